@@ -313,6 +313,118 @@ fn skeletons_with_handles_on_every_level() {
     compare(&map, |p| casteljau(&polygon, handles, (p[2] - 20.0) / 70.0, p[0] - 20.0, p[1] - 25.0));
 }
 
+fn joined(points: &[P]) -> String {
+    points.iter().map(|p| format!("{},{},{}", p[0], p[1], p[2])).collect::<Vec<_>>().join(" ")
+}
+
+const SKELETON: [P; 7] = [
+    [-10.0, 25.0, 55.0],
+    [0.0, 30.0, 60.0],
+    [12.0, 20.0, 58.0],
+    [20.0, 26.0, 48.0],
+    [35.0, 22.0, 52.0],
+    [42.0, 27.0, 60.0],
+    [55.0, 25.0, 57.0],
+];
+
+/// Points and handles of a B-spline of any degree are blended by the same basis functions.
+#[test]
+fn splines_with_handles_at_their_points() {
+    let side = |i: usize| [0.05 * i as f64, 1.0 + 0.03 * i as f64, 0.02 * (i * i) as f64 - 0.1];
+    let up = |i: usize| [-0.02 * i as f64, 0.1, 0.9 + 0.02 * i as f64];
+    let text =
+        |f: &dyn Fn(usize) -> P| (0..7).map(|i| format!("{i}:{}", joined(&[f(i)]))).collect::<Vec<_>>().join(" ");
+    for degree in 2..=6 {
+        let [skeleton, side_text, up_text, number] = [joined(&SKELETON), text(&side), text(&up), degree.to_string()];
+        let map = build(
+            "bend",
+            &[("skeleton", &skeleton), ("spline", "true"), ("degree", &number), ("side", &side_text), ("up", &up_text)],
+        );
+        let cells = 7 - degree;
+        for p in points() {
+            let (u, v, w) = ((p[0] + 10.0) / 60.0, p[1] - 25.0, p[2] - 55.0);
+            let want: P = std::array::from_fn(|k| {
+                (0..7).map(|i| b_spline(degree, cells, i, u) * (SKELETON[i][k] + v * side(i)[k] + w * up(i)[k])).sum()
+            });
+            assert!(map.point(DVec3::from_array(p)).distance(DVec3::from_array(want)) < 1e-11, "{degree} {p:?}");
+        }
+    }
+}
+
+/// At every joint, lines beside a skeleton with default handles have one derivative (equation 4), and one direction where the skeleton
+/// is drawn in pieces whose polygon is straight there (equation 5).
+#[test]
+fn default_handles_leave_no_kinks() {
+    let zigzag: Vec<P> = (0..9).map(|i| [10.0 * i as f64, 40.0 * (i % 2) as f64, 25.0 * (i % 3) as f64]).collect();
+    let drawn = "0,0,0 10,20,5 20,20,10 30,0,10 35,-10,10 50,-9,20 50,0,30 50,18,50 40,20,40 30,5,60";
+    let distances: Vec<f64> = zigzag.windows(2).map(|p| norm(minus(p[1], p[0])).sqrt()).collect();
+    let whole: f64 = distances.iter().sum();
+    let uniform = |n: usize| (1..n).map(|i| i as f64 / n as f64).collect::<Vec<f64>>();
+    let centripetal: Vec<f64> = (1..8).map(|i| distances[..i].iter().sum::<f64>() / whole).collect();
+    let text = joined(&zigzag);
+    for (pairs, joints, even) in [
+        (&[("skeleton", &*text), ("spline", "true"), ("degree", "2")][..], uniform(7), true),
+        (&[("skeleton", &text), ("spline", "true")], uniform(6), true),
+        (&[("skeleton", &text), ("spline", "true"), ("degree", "5")], uniform(4), true),
+        (&[("skeleton", &text), ("interpolate", "true")], centripetal, true),
+        (&[("skeleton", drawn)], uniform(3), false),
+    ] {
+        let map = build("bend", pairs);
+        for u in joints {
+            for (y, z) in [(25.0, 55.0), (25.5, 55.2), (24.0, 56.0), (26.0, 54.0)] {
+                let at = |e: f64| map.jet(DVec3::new(-10.0 + 60.0 * u + e, y, z)).d.col(0);
+                let (a, b) = (at(-1e-11), at(1e-11));
+                let off = if even { (a - b).length() / a.length() } else { (a.normalize() - b.normalize()).length() };
+                assert!(off < 1e-9, "{pairs:?} {u} {y} {z}: {a} {b}");
+            }
+        }
+    }
+}
+
+fn norm(v: P) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// Handles that kink are warned of, and bad ones refused by name.
+#[test]
+fn kinks_are_named_in_space() {
+    let [a, b] = BOX.map(DVec3::from_array);
+    let frame = Frame3::new(Box3::new(a, b));
+    let built =
+        |pairs: &[(&str, &str)]| Registry3::builtin().get("bend").unwrap().build_from(&Args::from_pairs(pairs), &frame);
+    let straight = ("skeleton", "0,0,0 10,0,0 20,0,0 30,0,0 40,0,0 50,0,0 60,0,0");
+    let warned = built(&[straight, ("side", "3:0,1,0 4:0,1,0.5")]).unwrap().warnings.join("");
+    assert!(warned.contains("kinks at 1 of 1 joints") && warned.contains("30.0"), "{warned}");
+    assert!(built(&[straight]).unwrap().warnings.is_empty());
+    for (more, problem) in [
+        (&[("side", "0:0,0,0")][..], "vanishes"),
+        (&[("side", "2:0,1,0 3:0,2,0")], "would tear"),
+        (&[("spline", "true"), ("up", "7:0,0,1")], "0 to 6"),
+        (&[("spline", "true"), ("shear", "2,0:0,0,1:0,0,1")], "no deeper level"),
+        (&[("spline", "true"), ("degree", "11")], "10"),
+        (&[("spline", "true"), ("interpolate", "true")], "cannot go with `interpolate`"),
+        (&[("preset", "swell")], "has its own skeleton"),
+    ] {
+        let refused = built(&[&[straight], more].concat()).err().unwrap().to_string();
+        assert!(refused.contains(problem), "{refused}");
+    }
+    let twice = built(&[("skeleton", "0,0,0 1,1,1 1,1,1 2,0,0"), ("interpolate", "true")]).err().unwrap().to_string();
+    assert!(twice.contains("two equal points, 1 and 2"), "{twice}");
+}
+
+/// A stretch and a swell from their definitions.
+#[test]
+fn stretch_and_swell() {
+    compare(&build("bend", &[("preset", "stretch"), ("along", "y"), ("factor", "1.7")]), |p| {
+        [p[0], 5.0 + 1.7 * (p[1] - 5.0), p[2]]
+    });
+    compare(&build("bend", &[("preset", "swell"), ("along", "z"), ("factor", "1.4")]), |p| {
+        let u = (p[2] - 20.0) / 70.0;
+        let k = 1.0 + 4.0 * 0.4 * u * (1.0 - u);
+        [20.0 + k * (p[0] - 20.0), 25.0 + k * (p[1] - 25.0), p[2]]
+    });
+}
+
 /// Barr's closed forms.
 #[test]
 fn barr() {

@@ -36,6 +36,14 @@ impl<const C: usize> Tensor<C> {
         Self { size, c }
     }
 
+    /// Drops powers of x above `degree`, which are rounding, from the polynomials from number `from` on.
+    pub(crate) fn without(mut self, degree: usize, from: usize) -> Self {
+        let n = self.size[0];
+        let over = self.c.iter_mut().enumerate().filter(|(i, _)| i % n > degree);
+        over.for_each(|(_, c)| c[from..].fill(0.0));
+        self
+    }
+
     /// Iterates over the terms, as powers and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = ([usize; 3], &[f64; C])> {
         let [nx, ny, _] = self.size;

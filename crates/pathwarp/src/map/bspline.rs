@@ -55,6 +55,69 @@ pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
     (0..cells).map(bezier).collect()
 }
 
+/// The Bézier pieces of a uniform spline of this degree over control points of any dimension, which share their ends: clamped with
+/// `points.len()` − degree cells, or periodic with `points.len()` cells, the first of which begins at the first point (or, of an even
+/// degree, half a cell after it). The handles of a skeleton become those of its pieces as the points do.
+#[must_use]
+pub fn pieces<const K: usize>(degree: usize, points: &[[f64; K]], closed: bool) -> Vec<Vec<[f64; K]>> {
+    let n = points.len();
+    // The middle cell of a long clamped spline has only uniform knots.
+    let cells = extraction(degree, if closed { 2 * degree - 1 } else { n - degree });
+    let first = if closed { n * degree - (degree - 1) / 2 } else { 0 };
+    let bezier = |i: usize| -> Vec<[f64; K]> {
+        let rows = &cells[if closed { degree - 1 } else { i }];
+        let sum = |row: &Vec<f64>, k: usize| (0..=degree).map(|l| row[l] * points[(first + i + l) % n][k]).sum();
+        rows.iter().map(|row| std::array::from_fn(|k| sum(row, k))).collect()
+    };
+    let mut out: Vec<_> = (0..if closed { n } else { n - degree }).map(bezier).collect();
+    // Rounding must not separate the ends at a joint.
+    for i in 1 - usize::from(closed)..out.len() {
+        let before = out[(i + out.len() - 1) % out.len()][degree];
+        out[i][0] = before;
+    }
+    out
+}
+
+/// The cubic Bézier pieces of the C² spline through points of any dimension, whose parameters are these `widths` apart: one width fewer
+/// than points and no curvature at the ends, or, closed, as many.
+#[must_use]
+pub fn through<const K: usize>(points: &[[f64; K]], widths: &[f64], closed: bool) -> Vec<Vec<[f64; K]>> {
+    /// Sweeps, each of which halves the error at least.
+    const SWEEPS: usize = 60;
+    let (n, m) = (points.len(), widths.len());
+    let chord = |i: usize, k: usize| points[(i + 1) % n][k] - points[i][k];
+    let mut slopes = vec![[0.0; K]; n];
+    for _ in 0..SWEEPS {
+        for i in 0..n {
+            // The pieces before and after a point; at an open end there is one.
+            let before = if closed { Some((i + n - 1) % n) } else { i.checked_sub(1) };
+            let sides = [before.map(|b| (b, b)), (i < m).then_some((i, (i + 1) % n))];
+            let weight: f64 = sides.iter().flatten().map(|(piece, _)| 2.0 / widths[*piece]).sum();
+            slopes[i] = std::array::from_fn(|k| {
+                let pull = |(piece, other): &(usize, usize)| {
+                    let h = widths[*piece];
+                    (3.0 * chord(*piece, k) / h - slopes[*other][k]) / h
+                };
+                sides.iter().flatten().map(pull).sum::<f64>() / weight
+            });
+        }
+    }
+    let piece = |i: usize| {
+        let (j, third) = ((i + 1) % n, widths[i] / 3.0);
+        let inner = |p: usize, by: f64| std::array::from_fn(|k| points[p][k] + by * slopes[p][k]);
+        vec![points[i], inner(i, third), inner(j, -third), points[j]]
+    };
+    (0..m).map(piece).collect()
+}
+
+/// The widths of a spline through points with these distances between them: their square roots (centripetal parameters, E. T. Y. Lee,
+/// *Choosing nodes in parametric curve interpolation*, CAD 21, 1989), with the sum 1.
+#[must_use]
+pub fn centripetal(distances: &[f64]) -> Vec<f64> {
+    let sum: f64 = distances.iter().map(|d| d.sqrt()).sum();
+    distances.iter().map(|d| d.sqrt() / sum).collect()
+}
+
 /// The first control point with influence at `s`, and the values of the basis functions from there on.
 #[must_use]
 pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {

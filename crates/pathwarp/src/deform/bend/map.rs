@@ -1,13 +1,13 @@
 //! The map: pieces of the skeleton side by side, and the artwork's position on them.
 
-use crate::anchors;
-use crate::error::{Error, show};
+use crate::error::show;
+use crate::map::bspline::bernstein;
 use crate::map::curves::ArcLength;
 use crate::map::rational_bezier::Scaled;
-use crate::map::{AffineMap, Class, Cost, Crease, Creases, Dual, Jet, Level, Map, RationalBezier, Real, bspline};
-use crate::outline::{Outline, Seg, Subpath};
-use crate::param::{Letter, NamedPath};
-use kurbo::{Affine, CubicBez, Line, Point, QuadBez, Rect, Vec2};
+use crate::map::{AffineMap, Class, Cost, Crease, Creases, Dual, Jet, Level, Map, RationalBezier, Real};
+use crate::outline::Seg;
+use crate::param::Letter;
+use kurbo::{Affine, BezPath, CubicBez, Line, Point, QuadBez, Rect, Vec2};
 use std::sync::Arc;
 
 /// The map from the artwork to the strip: distance s = k·x + origin, height d = up·(base − y).
@@ -260,7 +260,7 @@ impl SkeletonPiece {
     /// The work of a point: an arc takes several sines and cosines, and the de Casteljau steps of a ribbon twice as long as a net.
     pub(super) fn work(&self) -> f64 {
         match &self.strip {
-            Strip::Normals { spine, .. } if matches!(spine.seg, Seg::Arc(_)) => 2.0,
+            Strip::Normals { spine, .. } if matches!(spine.curve, Curve::Seg(Seg::Arc(_)) | Curve::Bezier(_)) => 2.0,
             Strip::Straight { .. } | Strip::Normals { .. } => 1.0,
             Strip::Ribbon { .. } => 2.0,
         }
@@ -320,10 +320,106 @@ pub(super) fn normal(t: Vec2) -> Vec2 {
     Vec2::new(t.y, -t.x)
 }
 
+/// A segment of a path, or a Bézier curve of a higher degree.
+#[derive(Debug, Clone)]
+pub(super) enum Curve {
+    Seg(Seg),
+    Bezier(Arc<[Point]>),
+}
+
+impl Curve {
+    pub(super) fn bezier(points: Vec<Point>) -> Self {
+        match points[..] {
+            [a, b] => Self::Seg(Seg::Line(Line::new(a, b))),
+            [a, b, c] => Self::Seg(Seg::Quad(QuadBez::new(a, b, c))),
+            [a, b, c, d] => Self::Seg(Seg::Cubic(CubicBez::new(a, b, c, d))),
+            _ => Self::Bezier(points.into()),
+        }
+    }
+
+    /// Returns the control points; of an arc those of a cubic near it.
+    pub(super) fn points(&self) -> Vec<Point> {
+        match self {
+            Self::Seg(Seg::Line(s)) => vec![s.p0, s.p1],
+            Self::Seg(Seg::Quad(s)) => vec![s.p0, s.p1, s.p2],
+            Self::Seg(other) => {
+                let c = other.to_cubic();
+                vec![c.p0, c.p1, c.p2, c.p3]
+            }
+            Self::Bezier(points) => points.to_vec(),
+        }
+    }
+
+    pub(super) fn eval(&self, u: f64) -> Point {
+        match self {
+            Self::Seg(s) => s.eval(u),
+            Self::Bezier(points) => derivative(points, u, 0).to_point(),
+        }
+    }
+
+    pub(super) fn deriv(&self, u: f64) -> Vec2 {
+        match self {
+            Self::Seg(s) => s.deriv(u),
+            Self::Bezier(points) => derivative(points, u, 1),
+        }
+    }
+
+    /// Returns the second derivative.
+    fn second(&self, u: f64) -> Vec2 {
+        match self {
+            Self::Seg(Seg::Line(_)) => Vec2::ZERO,
+            Self::Seg(Seg::Arc(a)) => {
+                let (sin, cos) = (a.start + a.sweep * u).sin_cos();
+                (a.a * cos + a.b * sin) * -(a.sweep * a.sweep)
+            }
+            Self::Seg(Seg::Quad(q)) => ((q.p2 - q.p1) - (q.p1 - q.p0)) * 2.0,
+            Self::Seg(Seg::Cubic(c)) => {
+                let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
+                ((d1 - d0) * (1.0 - u) + (d2 - d1) * u) * 6.0
+            }
+            Self::Bezier(points) => derivative(points, u, 2),
+        }
+    }
+
+    pub(super) fn reversed(&self) -> Self {
+        match self {
+            Self::Seg(s) => Self::Seg(s.reversed()),
+            Self::Bezier(points) => Self::Bezier(points.iter().rev().copied().collect()),
+        }
+    }
+
+    /// Returns segments for a preview: of a curve of higher degree, cubics near it.
+    pub(super) fn segs(&self) -> Vec<Seg> {
+        if let Self::Seg(s) = self {
+            return vec![*s];
+        }
+        let end = |i: u32| (self.eval(f64::from(i) / 8.0), self.deriv(f64::from(i) / 8.0) / 24.0);
+        let cubic = |((a, da), (b, db))| Seg::Cubic(CubicBez::new(a, a + da, b - db, b));
+        (0..8).map(|i| cubic((end(i), end(i + 1)))).collect()
+    }
+}
+
+/// Returns the path along these points.
+pub(super) fn polyline(points: impl Iterator<Item = Point>) -> BezPath {
+    let mut out = BezPath::new();
+    points.enumerate().for_each(|(i, p)| if i == 0 { out.move_to(p) } else { out.line_to(p) });
+    out
+}
+
+/// Returns a derivative of this order of a Bézier curve.
+fn derivative(points: &[Point], u: f64, order: usize) -> Vec2 {
+    let (mut row, mut factor) = (points.iter().map(|p| p.to_vec2()).collect::<Vec<_>>(), 1.0);
+    for _ in 0..order {
+        factor *= (row.len() - 1) as f64;
+        row = row.windows(2).map(|p| p[1] - p[0]).collect();
+    }
+    row.iter().zip(bernstein(row.len() - 1, u)).fold(Vec2::ZERO, |sum, (p, b)| sum + *p * (b * factor))
+}
+
 /// A piece of the skeleton's curve.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Spine {
-    pub(super) seg: Seg,
+    pub(super) curve: Curve,
     /// The speed that counts as zero.
     still: f64,
 }
@@ -338,53 +434,40 @@ pub(super) struct MovingFrame {
 }
 
 impl Spine {
-    pub(super) fn new(seg: Seg) -> Self {
+    pub(super) fn new(curve: Curve) -> Self {
         /// The speed that counts as zero, as a share of the piece's size.
         const STILL: f64 = 1e-9;
-        let b = seg.bounding_box();
-        Self { seg, still: STILL * (b.width() + b.height()) }
+        let b = match &curve {
+            Curve::Seg(seg) => seg.bounding_box(),
+            Curve::Bezier(points) => points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p)),
+        };
+        Self { curve, still: STILL * (b.width() + b.height()) }
     }
 
     /// Returns the point and the unit tangent at a parameter.
     fn frame(&self, u: f64) -> (Point, Vec2) {
         let (_, v, speed) = self.velocity(u);
-        (self.seg.eval(u), v / speed)
+        (self.curve.eval(u), v / speed)
     }
 
     /// Returns the moving frame at a parameter.
     pub(super) fn moving(&self, u: f64) -> MovingFrame {
         let (at, v, speed) = self.velocity(u);
-        MovingFrame { p: self.seg.eval(u), t: v / speed, bend: v.cross(second(&self.seg, at)) / speed.powi(3) }
+        MovingFrame { p: self.curve.eval(u), t: v / speed, bend: v.cross(self.curve.second(at)) / speed.powi(3) }
     }
 
     /// Returns a parameter with the derivative and its length there: `u` itself, or one a little further in where the curve stands still.
     fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
         /// How much further in.
         const ASIDE: f64 = 1e-5;
-        let v = self.seg.deriv(u);
+        let v = self.curve.deriv(u);
         let speed = v.hypot();
         if speed > self.still {
             return (u, v, speed);
         }
         let at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
-        let v = self.seg.deriv(at);
+        let v = self.curve.deriv(at);
         (at, v, v.hypot())
-    }
-}
-
-/// Returns the second derivative.
-fn second(seg: &Seg, u: f64) -> Vec2 {
-    match seg {
-        Seg::Line(_) => Vec2::ZERO,
-        Seg::Quad(q) => ((q.p2 - q.p1) - (q.p1 - q.p0)) * 2.0,
-        Seg::Cubic(c) => {
-            let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
-            ((d1 - d0) * (1.0 - u) + (d2 - d1) * u) * 6.0
-        }
-        Seg::Arc(a) => {
-            let (sin, cos) = (a.start + a.sweep * u).sin_cos();
-            (a.a * cos + a.b * sin) * -(a.sweep * a.sweep)
-        }
     }
 }
 
@@ -418,39 +501,45 @@ fn eval<'a, S: Real, const D: usize>(
     row[0]
 }
 
-/// A Bézier piece of degree up to 3 with its handles.
+/// A Bézier piece with its handles.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ribbon {
-    /// The control points, two to four.
+    /// The control points.
     points: Vec<Point>,
+    /// Handles at the control points, which are maps p + v·s of their own then; or none.
+    at_points: Vec<[f64; 2]>,
     /// The handles, level by level: n of the first, n−1 of the second ... The last levels may be omitted.
     levels: Vec<Vec<[f64; 2]>>,
 }
 
-/// Limit on control points.
-const MAX_POINTS: usize = 4;
+/// The highest degree of a skeleton's pieces.
+pub(super) const MAX_DEGREE: usize = 10;
 
 impl Ribbon {
-    /// Creates a piece; `None` unless there are two to four points, and n+1−j handles on level j.
+    /// Creates a piece; `None` unless there are n+1−j handles on level j.
     pub(super) fn new(points: Vec<Point>, levels: &[Vec<Vec2>]) -> Option<Self> {
         let n = points.len().checked_sub(1)?;
-        let fits = (2..=MAX_POINTS).contains(&points.len()) && levels.len() <= n;
+        let fits = (1..=MAX_DEGREE).contains(&n) && levels.len() <= n;
         if !fits || levels.iter().enumerate().any(|(j, l)| l.len() != n - j) {
             return None;
         }
         let levels = levels.iter().map(|l| l.iter().map(|h| [h.x, h.y]).collect()).collect();
-        Some(Self { points, levels })
+        Some(Self { points, at_points: Vec::new(), levels })
     }
 
-    pub(super) fn degree(&self) -> usize {
-        self.points.len() - 1
+    /// Creates a piece with a handle at each of its points.
+    pub(super) fn with_handles_at_points(points: Vec<Point>, handles: &[Vec2]) -> Self {
+        Self { points, at_points: handles.iter().map(|h| [h.x, h.y]).collect(), levels: Vec::new() }
     }
 
     /// Returns F(u, v).
     pub(super) fn at<S: Real>(&self, u: S, v: S) -> [S; 2] {
-        let mut row = [[S::from(0.0); 2]; MAX_POINTS];
+        let mut row = [[S::from(0.0); 2]; MAX_DEGREE + 1];
         for (r, p) in row.iter_mut().zip(&self.points) {
             *r = [S::from(p.x), S::from(p.y)];
+        }
+        for (r, h) in row.iter_mut().zip(&self.at_points) {
+            *r = [r[0] + v * S::from(h[0]), r[1] + v * S::from(h[1])];
         }
         // Levels without handles are free.
         let handles = |level: usize, i: usize| match self.levels.get(level - 1) {
@@ -463,12 +552,31 @@ impl Ribbon {
     /// Returns S(u) at an end: 0 or 1.
     pub(super) fn side_at_end(&self, end: usize) -> Vec2 {
         let pick = |l: &Vec<[f64; 2]>| if end == 0 { l.first().copied() } else { l.last().copied() };
-        self.levels.iter().filter_map(pick).fold(Vec2::ZERO, |a, [x, y]| a + Vec2::new(x, y))
+        let all = self.levels.iter().chain([&self.at_points]);
+        all.filter_map(pick).fold(Vec2::ZERO, |a, [x, y]| a + Vec2::new(x, y))
     }
 
-    /// Returns the exact image of a curve in (u, v), of n times its degree.
+    /// Returns the first level of the algorithm, which takes artwork between two heights to every side of the control polygon, as in
+    /// the paper's figure 1c: the polygon, and the quadrangles between the handles of both ends.
+    pub(super) fn first_level(&self, heights: [f64; 2]) -> Vec<BezPath> {
+        let handle = |leg: usize, end: usize| {
+            let [x, y] =
+                self.at_points.get(leg + end).or(self.levels.first().and_then(|l| l.get(leg))).unwrap_or(&[0.0; 2]);
+            Vec2::new(*x, *y)
+        };
+        let quad = |(i, p): (usize, &[Point])| {
+            let corner = |end: usize, v: f64| p[end] + handle(i, end) * v;
+            let [a, b] = heights;
+            polyline([corner(0, a), corner(0, b), corner(1, b), corner(1, a), corner(0, a)].into_iter())
+        };
+        let polygon = polyline(self.points.iter().copied());
+        self.points.windows(2).enumerate().map(quad).chain([polygon]).collect()
+    }
+
+    /// Returns the exact image of a curve in (u, v), of n times its degree, or n + 1 times with handles at the points.
     pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
-        let n = self.degree();
+        let n = self.points.len() - 1;
+        let whole = n + usize::from(!self.at_points.is_empty());
         let [u, v, w] = [0, 1, 2].map(|k| curve.coordinate(k));
         let rest = {
             let mut r = w.clone();
@@ -476,78 +584,28 @@ impl Ribbon {
             r
         };
         // Homogeneous Bernstein terms: C(k, i)·uⁱ(w−u)^(k−i), times v for handles, times powers of w to raise the degree.
-        let (up, rp, wp) = (u.powers(n), rest.powers(n), w.powers(n));
-        let term = |k: usize, i: usize| up[i].times(&rp[k - i]);
-        let (mut x, mut y) = (Scaled::zero(n * curve.degree()), Scaled::zero(n * curve.degree()));
-        let mut add = |at: Vec2, k: usize, i: usize, t: &Scaled| {
-            let c = binomial(k, i);
-            x.add_scaled(at.x * c, t);
-            y.add_scaled(at.y * c, t);
+        let (up, rp, wp) = (u.powers(n), rest.powers(n), w.powers(whole));
+        let (mut x, mut y) = (Scaled::zero(whole * curve.degree()), Scaled::zero(whole * curve.degree()));
+        let mut add = |[px, py]: [f64; 2], k: usize, i: usize, with: &Scaled| {
+            let (c, t) = (binomial(k, i), up[i].times(&rp[k - i]).times(with));
+            x.add_scaled(px * c, &t);
+            y.add_scaled(py * c, &t);
         };
         for (i, p) in self.points.iter().enumerate() {
-            add(p.to_vec2(), n, i, &term(n, i));
+            add([p.x, p.y], n, i, &wp[whole - n]);
         }
-        for (j, level) in self.levels.iter().enumerate() {
-            let k = n - j - 1;
+        // The degrees of S's terms fall from n, that of the handles at points.
+        for (j, level) in [&self.at_points].into_iter().chain(&self.levels).enumerate() {
             for (i, h) in level.iter().enumerate() {
-                add(Vec2::new(h[0], h[1]), k, i, &term(k, i).times(&v).times(&wp[j]));
+                add(*h, n - j, i, &v.times(&wp[whole + j - n - 1]));
             }
         }
-        RationalBezier::from_coordinates([&x, &y, &wp[n]], curve.is_polynomial())
+        RationalBezier::from_coordinates([&x, &y, &wp[whole]], curve.is_polynomial())
     }
 }
 
 fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
-}
-
-// Skeletons given as B-splines: the anchors of a path are control points.
-//
-// An open path is a uniform clamped B-spline, a closed one a uniform periodic one; every cell becomes a Bézier piece
-// ([`bspline`]; W. Boehm, *Inserting new knots into B-spline curves*, CAD 12, 1980). Pieces meet with degree − 1 continuous
-// derivatives.
-
-/// Returns the spline of this degree, 1 to 3, over the anchors of `path`.
-pub(super) fn through(path: &NamedPath, degree: usize) -> Result<NamedPath, Error> {
-    let sub = anchors::only_subpath(path, "a single connected run of them")?;
-    let points = sub.anchors();
-    let min = if sub.closed { 3 } else { degree + 1 };
-    if points.len() < min {
-        let problem = format!("needs at least {min} anchors; the skeleton has {}", points.len());
-        return Err(Error::usage("spline", degree.to_string(), problem));
-    }
-    let mut pieces: Vec<Vec<Point>> = if sub.closed {
-        // The middle cell of a long clamped spline has only uniform knots. The first piece begins near the first anchor.
-        let uniform = &bspline::extraction(degree, 2 * degree - 1)[degree - 1];
-        let n = points.len();
-        let first = n - (degree - 1) / 2;
-        (0..n).map(|i| bezier(uniform, &|l| points[(first + i + l) % n])).collect()
-    } else {
-        let cells = bspline::extraction(degree, points.len() - degree);
-        cells.iter().enumerate().map(|(i, rows)| bezier(rows, &|l| points[i + l])).collect()
-    };
-    // Rounding must not separate the ends at a joint.
-    for i in 1..pieces.len() {
-        pieces[i][0] = pieces[i - 1][degree];
-    }
-    if sub.closed {
-        let (start, last) = (pieces[0][0], pieces.len() - 1);
-        pieces[last][degree] = start;
-    }
-    let segs = pieces.iter().filter_map(|p| match p[..] {
-        [a, b] => Some(Seg::Line(Line::new(a, b))),
-        [a, b, c] => Some(Seg::Quad(QuadBez::new(a, b, c))),
-        [a, b, c, d] => Some(Seg::Cubic(CubicBez::new(a, b, c, d))),
-        _ => None,
-    });
-    let spline = Subpath { start: pieces[0][0], segs: segs.collect(), closed: sub.closed };
-    Ok(NamedPath { name: path.name.clone(), outline: Outline { subpaths: vec![spline] } })
-}
-
-/// Returns Bézier points: a cell's matrix times its control points.
-fn bezier(rows: &[Vec<f64>], control: &dyn Fn(usize) -> Point) -> Vec<Point> {
-    let sum = |row: &Vec<f64>| row.iter().enumerate().fold(Vec2::ZERO, |s, (l, c)| s + control(l).to_vec2() * *c);
-    rows.iter().map(|row| sum(row).to_point()).collect()
 }
 
 #[cfg(test)]
@@ -623,44 +681,5 @@ mod tests {
                 assert!(image.eval(t).distance(Point::new(x, y)) < 1e-11, "{t}");
             }
         }
-    }
-
-    fn spline(d: &str, degree: usize) -> Result<Subpath, Error> {
-        let path = NamedPath { name: d.into(), outline: Outline::from_svg(d).unwrap() };
-        Ok(through(&path, degree)?.outline.subpaths.remove(0))
-    }
-
-    /// Against the textbook's values at the knots, with all continuous derivatives.
-    #[test]
-    fn pieces_are_the_spline() {
-        let p = [(0.0, 0.0), (10.0, 30.0), (50.0, 20.0), (60.0, -10.0), (20.0, -40.0)].map(Point::from);
-        let v = |i: usize| p[i % 5].to_vec2();
-        let near = |a: Point, b: Vec2| a.distance(b.to_point()) < 1e-12;
-        let closed = "M0,0 L10,30 50,20 60,-10 20,-40 Z";
-        let cubic = spline(closed, 3).unwrap();
-        let quadratic = spline(closed, 2).unwrap();
-        assert!(cubic.closed && cubic.segs.len() == 5 && quadratic.segs.len() == 5);
-        for i in 0..5 {
-            assert!(near(cubic.segs[i].start(), (v(i + 4) + 4.0 * v(i) + v(i + 1)) / 6.0));
-            assert!(near(quadratic.segs[i].start(), (v(i) + v(i + 1)) / 2.0));
-            assert_eq!(cubic.segs[i].end(), cubic.segs[(i + 1) % 5].start());
-        }
-        let open = spline("M0,0 L10,30 50,20 60,-10 20,-40", 3).unwrap();
-        assert!(!open.closed && open.segs.len() == 2 && open.start == p[0] && open.segs[1].end() == p[4]);
-        for (s, a, b) in [(&cubic, 0, 1), (&cubic, 2, 3), (&cubic, 4, 0), (&open, 0, 1)] {
-            let (a, b) = (s.segs[a].to_cubic(), s.segs[b].to_cubic());
-            let off = |a: Vec2, b: Vec2| (a - b).hypot();
-            // The second derivative of the open one jumps nowhere either: its inner knot is simple and its cells equally wide.
-            assert!(off(a.p3 - a.p2, b.p1 - b.p0) < 1e-12);
-            assert!(off((a.p3 - a.p2) - (a.p2 - a.p1), (b.p2 - b.p1) - (b.p1 - b.p0)) < 1e-12);
-        }
-    }
-
-    #[test]
-    fn too_few_points_are_an_error() {
-        for (d, degree) in [("M0,0 L5,5 Z", 2), ("M0,0 L9,0", 2)] {
-            assert!(spline(d, degree).is_err(), "{d}");
-        }
-        assert!(spline("M0,0 L1,1 5,0", 3).err().unwrap().to_string().contains("at least 4 anchors"));
     }
 }

@@ -8,27 +8,30 @@
 //!   both neighbours, of lines only near the corner, so that offsets of a polygon are exact;
 //! - **handles** ([`map`]): the generalised algorithm of de Casteljau, one handle per leg of the control polygon, deeper
 //!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is one again, exactly. By default a handle is
-//!   the leg's unit normal, as long as the artwork is high.
+//!   the leg's unit normal, as long as the artwork is high. Where pieces meet, and on splines ([`spline`]), handles stand at the control
+//!   points instead, which keeps parallels smooth.
 //!
 //! Source: *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
-//! its joint conditions (4) and (5) are checked and reported. A skeleton may be given as a B-spline. Joints of the skeleton are
-//! creases: verticals in the artwork.
+//! its joint conditions (4) and (5) are checked and reported. Joints of the skeleton are creases: verticals in the artwork.
 
 #[cfg(feature = "serde")]
 mod file;
 mod letters;
 mod map;
 mod skeleton;
+mod spline;
 #[cfg(test)]
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
+use crate::anchors;
 use crate::error::{Error, show};
 use crate::outline::Outline;
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, NamedText, Settings, choice, is_spiral, parameters};
-use kurbo::{Affine, Point, Rect, Vec2};
-use map::{BendMap, ToStrip};
+use kurbo::{Affine, BezPath, Point, Rect, Vec2};
+use map::{BendMap, MAX_DEGREE, Strip, ToStrip};
 use skeleton::{Corner, Joined, Skeleton};
+use spline::Spline;
 use std::sync::Arc;
 
 pub use letters::LetterSetting;
@@ -51,7 +54,8 @@ parameters! {
     pub struct Bend(s, along: NamedPath) {
         /// The skeleton: one connected path, such as circle:r=60mm, arc:r=60mm,from=200,to=340 or
         /// spiral:turns=3,inner=20mm,outer=80mm.
-        param = path("along").needed();
+        /// It is needed unless there is a preset.
+        param = path("along");
         /// Lengths: keep them, scale the artwork evenly to the skeleton's length, fit its width only, or repeat it all along.
         stretch: Stretch = new("stretch", Kind::Choice(Stretch::WORDS)).default("keep");
         /// The part of the artwork that comes to the same part of the skeleton.
@@ -68,10 +72,16 @@ parameters! {
         width: f64 = number("width").default("100%").within(1e-6, 1e6).slider(0.1, 3.0);
         /// Run evenly along the skeleton, or by its pieces' parameters with handles for sides.
         by_parameter: bool = either("by", &["arclength", "parameter"]);
-        /// A JSON file of handles; the skeleton is then taken as drawn.
+        /// A JSON file of handles, of the skeleton's pieces or of a spline's points; the skeleton is then taken as drawn.
         param = new("handles", Kind::File);
         /// Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.
-        spline: Option<usize> = new("spline", Kind::Count).within(1.0, 3.0);
+        spline: Option<usize> = new("spline", Kind::Count).within(1.0, MAX_DEGREE as f64).slider(1.0, 5.0);
+        /// Lay a smooth skeleton through the anchors; the curves between them are ignored.
+        interpolate: bool = flag("interpolate");
+        /// Stretch the artwork lengthwise, let it swell in the middle, or taper it to its right, instead of bending it.
+        param = new("preset", Kind::Choice(PRESETS));
+        /// The length of a stretch, the height of the middle of a swell, or of the right end of a taper. Default: 150 %, of a taper 50 %.
+        param = number("factor").within(0.0, 100.0).slider(0.0, 3.0);
         /// Letters, or without lettering the objects of a drawing: bend them, or set them one by one: turned, sheared with vertical verticals
         /// or horizontal horizontals, or just moved.
         param = new("glyphs", Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"])).default("bend");
@@ -147,7 +157,9 @@ impl Bend {
         baseline(y: f64) => baseline: y;
         /// Sets the paper's handles: for every piece of degree n the n handles of the first level, then n−1 of the second, and so
         /// on; deeper levels may be omitted. A handle is the image of the artwork's height. The skeleton is taken as drawn.
-        handles(pieces: Vec<Vec<Vec<Vec2>>>) => handles: Some((pieces, "handles".into()));
+        handles(pieces: Vec<Vec<Vec<Vec2>>>) => handles: Some(Handles::Pieces(pieces));
+        /// Sets the handles at the points of a skeleton that is a B-spline or interpolates its points; `None` takes the default.
+        handles_at_points(handles: Vec<Option<Vec2>>) => handles: Some(Handles::Points(handles));
         /// Sets letters one by one instead of bending them; their places are in
         /// [`Placement::letters`](crate::deform::Placement::letters).
         letters(letters: Arc<[Letter]>, setting: LetterSetting) => letters: letters, setting: Some(setting);
@@ -161,18 +173,22 @@ impl Bend {
     /// not fit the skeleton.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        let path = match self.spline {
-            Some(degree) => map::through(&self.along, degree)?,
-            None => self.along.clone(),
+        let sub = anchors::only_subpath(&self.along, "a single connected run of them")?;
+        let (closed, given) = (sub.closed, self.points()?);
+        let parts = match (self.spline, self.interpolate) {
+            (None, false) => skeleton::drawn(sub),
+            (None, true) => Spline::Through.parts(&sub, given, self.unit())?,
+            (Some(degree), false) => Spline::Near(degree).parts(&sub, given, self.unit())?,
+            (Some(n), true) => return Err(Error::usage("spline", n.to_string(), "cannot go with `interpolate`")),
         };
         let rect = self.frame;
-        let skeleton = Skeleton::new(&path, self.is_as_drawn(), self.reverse)?;
+        let skeleton = Skeleton::new((parts, closed, &self.along.name), self.is_as_drawn(), self.reverse)?;
         let size = rect.width().hypot(rect.height()).max(skeleton.length);
         self.check_together()?;
         let skeleton = self.measured(skeleton, size)?;
-        let (length, closed) = (skeleton.length, skeleton.closed);
+        let (length, cage) = (skeleton.length, skeleton.path(1e-4 * size));
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
-        let Joined { pieces, corners, notes } = self.joined(skeleton)?;
+        let Joined { pieces, corners, notes, warning } = self.joined(skeleton)?;
 
         let spreads = self.spreads_letters(closed);
         let k = match self.stretch {
@@ -204,7 +220,7 @@ impl Bend {
         let map = BendMap { pieces, length, closed, to_strip, reach };
 
         let mut built = Built::new(map.simplest());
-        built.explanation.notes = notes;
+        (built.explanation.notes, built.explanation.warnings) = (notes, warning.into_iter().collect());
         let spread = placed && (copies.is_some() || self.stretch == Stretch::Fit);
         explain(&mut built, &map, &corners, if spread { [rect.x0; 2] } else { self.seen(rect, shift) });
         if copies.is_some() {
@@ -230,8 +246,42 @@ impl Bend {
         } else {
             self.explain_letters(&mut built, &map, rect, spreads);
         }
-        built.overlay(Role::Cage, path.outline.to_bez_path(1e-4 * size));
+        built.overlay(Role::Cage, cage);
+        let heights = self.heights(1.0).map(|d| d / self.unit());
+        let ribbons = map
+            .pieces
+            .iter()
+            .filter_map(|p| if let Strip::Ribbon { ribbon, .. } = &p.strip { Some(ribbon) } else { None });
+        let tool: BezPath = ribbons.flat_map(|r| r.first_level(heights)).flatten().collect();
+        if !tool.elements().is_empty() {
+            built.overlay(Role::Cage, tool);
+        }
         Ok(built)
+    }
+
+    /// The height that v = 1 means; for artwork without height any will do.
+    fn unit(&self) -> f64 {
+        if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 }
+    }
+
+    /// The heights of the artwork's top and bottom over the skeleton, if it is scaled by `k`.
+    fn heights(&self, k: f64) -> [f64; 2] {
+        [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y) * self.width * k)
+    }
+
+    /// The handles at the points of a spline, if there are any.
+    fn points(&self) -> Result<&[Option<Vec2>], Error> {
+        let wrong = |problem| Err(Error::input("handles", problem));
+        match &self.handles {
+            Some(Handles::Points(_)) if self.spline.is_none() && !self.interpolate => {
+                wrong("are of a spline's points, and the skeleton is none: it needs `spline` or `interpolate`")
+            }
+            Some(Handles::Points(_)) if self.reverse => {
+                wrong("say where up is at every point; draw the skeleton the other way instead of using `reverse`")
+            }
+            Some(Handles::Points(given)) => Ok(given),
+            _ => Ok(&[]),
+        }
     }
 
     /// The left and the right edge of what is seen of the artwork in all its copies, whose frame is `rect` and the last of which is
@@ -290,28 +340,25 @@ impl Bend {
             skeleton
         };
         match &self.handles {
-            Some((_, file)) if skeleton.has_arcs() => {
-                Err(Error::input(file.clone(), "has handles for lines and Bézier curves; the skeleton has arcs"))
+            Some(_) if skeleton.has_arcs() => {
+                Err(Error::input("handles", "are of lines and Bézier curves; the skeleton has arcs"))
             }
             Some(_) => Ok(skeleton),
             None if !self.by_parameter => Ok(skeleton),
-            None => Ok(skeleton.polynomial(ARC_TOLERANCE * size, true)),
+            None => Ok(skeleton.polynomial(ARC_TOLERANCE * size)),
         }
     }
 
     /// Returns the pieces with their sides.
     fn joined(&self, skeleton: Skeleton) -> Result<Joined, Error> {
-        // The height that v = 1 means; for artwork without height any will do.
-        let unit = if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 };
-        match &self.handles {
-            Some((given, _)) => skeleton.with_handles(Some(given), unit, !self.by_parameter),
-            None if !self.by_parameter => {
-                let scale = if self.stretch == Stretch::Scale { skeleton.length / self.frame.width() } else { 1.0 };
-                let heights = [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y).abs());
-                skeleton.with_normals(heights[0].max(heights[1]) * self.width * scale)
-            }
-            None => skeleton.with_handles(None, unit, false),
-        }
+        let heights =
+            self.heights(if self.stretch == Stretch::Scale { skeleton.length / self.frame.width() } else { 1.0 });
+        let given = match &self.handles {
+            None if !self.by_parameter => return skeleton.with_normals(heights[0].abs().max(heights[1].abs())),
+            Some(Handles::Pieces(given)) => Some(&given[..]),
+            _ => None,
+        };
+        skeleton.with_handles(given, (self.unit(), heights), !self.by_parameter)
     }
 
     /// Places the letters, or warns where the artwork folds.
@@ -381,8 +428,10 @@ to the skeleton, fit stretches it lengthwise only. --copies 12 sets so many copi
 fit on the skeleton with --gap between them, spread evenly: a border closes on a ring.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
 stands on its upper or outer side, with its middle on the highest point of a closed one. --reverse runs a skeleton the other way: artwork on a closed \
 one then stands upright on its lowest point, inside. --as-drawn takes it as it was drawn, as is always done with spirals and \
-with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --spline 3 makes a smooth skeleton of a \
-few points: it is pulled towards them and has no corners; an open one begins at the first and ends at the last.\n\n\
+with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --interpolate lays a smooth \
+skeleton through a few points: a cubic spline whose curvature is continuous, with centripetal parameters (square roots of the distances), which \
+keep it from overshooting where points are close. --spline 3 pulls it towards them instead, and it waves less; an open one begins at the first \
+and ends at the last.\n\n\
 Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
 one instead of bent: rotate turns them, skew keeps their verticals vertical, ribbon keeps their horizontals horizontal, stair only moves them. \
 They keep their own size, times --width; --stretch fit spreads them out from end to end, scale sizes them. Text around a whole ring is spread out by \
@@ -391,7 +440,13 @@ group of several, of which those that overlap are one. With --copies, gaps betwe
 half the height of the artwork instead of on the skeleton, so that letters neither crowd inside a bend nor drift apart outside it.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
 its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
 …]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
-omitted). A handle is the image of the artwork's height.")
+omitted). A handle is the image of the artwork's height. With --spline or --interpolate it may hold {\"points\": [[dx,dy], null, …]} \
+instead, a handle for each point or null for its own: they are blended as the points are, so that every line along the skeleton is as smooth as \
+it is. Without a file, such handles are mitres (--spline) or normals (--interpolate); on several curves in a row handles stand at their control \
+points too, and lines are smooth wherever the skeleton is. What still has kinks is a warning, and --explain names every joint. --preview shows the \
+control polygon with its handles and the artwork's frame on each of its sides, the first level of the algorithm.\n\n--preset needs no skeleton: \
+stretch makes the artwork longer by --factor, swell scales its height in the middle, taper at its right end. (A twist needs space: \
+`pathwarp solid bend --preset twist`.)")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
     .params(Bend::PARAMS)
     .demo(&[("along", "M-10,60 Q25,35 50,45 T110,50")])
@@ -421,6 +476,14 @@ omitted). A handle is the image of the artwork's height.")
             command: "bend samples/headline.svg --along 'M120,220 A120,120 0 0 1 360,220' --glyphs rotate --spacing even --stretch fit -o out.svg",
         },
         Example {
+            what: "On a smooth curve through five points",
+            command: "bend samples/lettering.svg --along '20,170 140,110 270,165 390,90 516,130' --interpolate -o out.svg",
+        },
+        Example {
+            what: "Higher in its middle",
+            command: "bend samples/logo.svg --preset swell --factor 140% -o out.svg",
+        },
+        Example {
             what: "A grid along a winding path, by the paper's polynomial map",
             command: "bend samples/grid.svg --along 'M10,120 C60,20 90,20 120,120 S180,220 230,120' --by parameter --stretch fit --width 40% -o out.svg",
         },
@@ -436,6 +499,15 @@ omitted). A handle is the image of the artwork's height.")
         Law::Same(
             &[("along", "M0,60 Q50,20 100,60"), ("reverse", "true")],
             &[("along", "M100,60 Q50,20 0,60"), ("as-drawn", "true")],
+        ),
+        Law::Identity(&[("along", "0,50 25,50 50,50 75,50 100,50"), ("interpolate", "true"), ("by", "parameter")]),
+        Law::Identity(&[("along", "0,50 50,50 100,50"), ("spline", "2"), ("by", "parameter"), ("stretch", "fit")]),
+        Law::Area(&[("preset", "stretch"), ("factor", "1.5")], 1.5),
+        Law::KeepsLinesAlong(&[("preset", "taper"), ("factor", "2")], (1.0, 0.0)),
+        Law::KeepsLinesAlong(&[("preset", "swell")], (0.0, 1.0)),
+        Law::Same(
+            &[("along", "0,60 30,20 70,90 100,50"), ("spline", "3"), ("by", "parameter"), ("reverse", "true")],
+            &[("along", "100,50 70,90 30,20 0,60"), ("spline", "3"), ("by", "parameter"), ("as-drawn", "true")],
         ),
         // A B-spline with as many points as its degree asks for is a Bézier curve; points in a row make a line.
         Law::Same(&[("along", "0,60 30,20 70,90 100,50"), ("spline", "3")], &[("along", "M0,60 C30,20 70,90 100,50")]),
@@ -454,6 +526,9 @@ omitted). A handle is the image of the artwork's height.")
         // The polynomial map: C(1/2) + S(1/2)/2 of a quadratic with legs (30,-40) and (30,40), their normals (-.8,-.6), (.8,-.6).
         Case { args: PARAMETER, at: (50.0, 50.0), to: (30.0, -20.0), tolerance: 1e-12 },
         Case { args: PARAMETER, at: (50.0, 0.0), to: (30.0, -50.0), tolerance: 1e-12 },
+        // A quadratic B-spline at its only inner knot: the mean of the middle points, and of their mitres (0.5, -1) and (-0.5, -1).
+        Case { args: SPLINE, at: (50.0, 50.0), to: (20.0, 0.0), tolerance: 1e-12 },
+        Case { args: SPLINE, at: (50.0, 0.0), to: (20.0, -50.0), tolerance: 1e-12 },
     ]);
 
 const ARC: &str = "M0,50 A50,50 0 0 1 100,50";
@@ -461,23 +536,76 @@ const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
 const ON_ARC: Pairs = &[("along", ARC), ("baseline", "0")];
 const CORNER: Pairs = &[("along", "0,0 50,0 50,50"), ("align", "start")];
 const PARAMETER: Pairs = &[("along", "M0,0 Q30,-40 60,0"), ("by", "parameter"), ("stretch", "fit")];
+const SPLINE: Pairs = &[
+    ("along", "-24,32 0,0 40,0 64,32"),
+    ("spline", "2"),
+    ("by", "parameter"),
+    ("stretch", "fit"),
+    ("as-drawn", "true"),
+];
 const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
 const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     let missing = || Error::missing("along", "the path to bend the artwork along");
+    if let Some(preset) = preset(s)? {
+        return preset.build();
+    }
     let bend = Bend::read(s, s.path_if("along")?.ok_or_else(missing)?)?;
     let drawn = s.texts("along").last().is_some_and(|t| is_spiral(t));
     if drawn { bend.as_drawn(true).build() } else { bend.build() }
 });
 
-/// The levels of handles of every piece, and the file's name.
-type Handles = (Vec<Vec<Vec<Vec2>>>, String);
+/// Barr's deformations that a plane has; a twist needs space.
+const PRESETS: &[&str] = &["stretch", "swell", "taper"];
+
+/// Reads a preset: a straight skeleton whose handles differ in length.
+fn preset(s: &Settings<'_>) -> Result<Option<Bend>, Error> {
+    if !s.given("preset") {
+        return match s.texts("factor").last() {
+            Some(factor) => Err(Error::usage("factor", *factor, "is for a `preset`")),
+            None => Ok(None),
+        };
+    }
+    if let Some(name) = ["along", "stretch", "by", "handles", "spline", "interpolate"].into_iter().find(|n| s.given(n))
+    {
+        let problem = "cannot go with `preset`, which has its own skeleton";
+        return Err(Error::usage(name, s.texts(name).join(" "), problem));
+    }
+    let word = s.choice("preset")?;
+    let factor = s.number_if("factor")?.unwrap_or(if word == "taper" { 0.5 } else { 1.5 });
+    // The middle of the quadratic (1, m, 1) is (1 + m)/2.
+    let (sizes, length) = match word {
+        "stretch" => (vec![1.0, 1.0], factor),
+        "taper" => (vec![1.0, factor], 1.0),
+        _ => (vec![1.0, 2.0 * factor - 1.0, 1.0], 1.0),
+    };
+    let bend = Bend::read(s, NamedPath { name: word.into(), outline: Outline::default() })?;
+    let (rect, degree) = (bend.frame, sizes.len() - 1);
+    let at = |i: usize| Point::new(rect.x0 + rect.width() * length * i as f64 / degree as f64, bend.baseline);
+    let points: Vec<Point> = (0..=degree).map(at).collect();
+    let handles = sizes.iter().map(|k| Some(Vec2::new(0.0, -bend.unit()) * *k)).collect();
+    Ok(Some(Bend {
+        along: NamedPath { name: word.into(), outline: Outline::from_points(&points, false) },
+        spline: Some(degree),
+        handles: Some(Handles::Points(handles)),
+        by_parameter: true,
+        stretch: Stretch::Fit,
+        ..bend
+    }))
+}
+
+/// The paper's handles: the levels of every piece, or those at the points of a spline.
+#[derive(Debug, Clone, PartialEq)]
+enum Handles {
+    Pieces(Vec<Vec<Vec<Vec2>>>),
+    Points(Vec<Option<Vec2>>),
+}
 
 #[cfg(feature = "serde")]
 fn handles(file: &NamedText) -> Result<Handles, Error> {
-    Ok((file::read(&file.name, &file.text)?, file.name.clone()))
+    file::read(&file.name, &file.text)
 }
 
 #[cfg(not(feature = "serde"))]

@@ -1,12 +1,12 @@
 //! The skeleton: a path's pieces in a row, measured, oriented, and joined.
 
-use super::map::{MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
-use crate::anchors;
+use super::map::{Curve, MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
+use super::spline::{Part, directions, mitre};
 use crate::error::{Error, show};
+use crate::map::Joint;
 use crate::map::curves::ArcLength;
-use crate::outline::{Seg, Subpath};
-use crate::param::NamedPath;
-use kurbo::{Line, Point, Vec2};
+use crate::outline::{Outline, Seg, Subpath};
+use kurbo::{BezPath, Line, Point, Vec2};
 
 /// Below this angle (radians) a joint is smooth.
 const SMOOTH: f64 = 1e-6;
@@ -18,6 +18,8 @@ const SHARPEST: f64 = 1.0 / 32.0;
 /// The measured pieces of a path.
 pub(super) struct Skeleton {
     spines: Vec<(Spine, ArcLength)>,
+    /// The handles at the points of every piece, and its share of the parameter, if the skeleton is a spline.
+    frames: Vec<(Vec<Vec2>, f64)>,
     pub(super) closed: bool,
     pub(super) length: f64,
     /// The height at which lengths are measured.
@@ -37,31 +39,52 @@ pub(super) struct Joined {
     pub(super) pieces: Vec<SkeletonPiece>,
     pub(super) corners: Vec<Corner>,
     pub(super) notes: Vec<String>,
+    pub(super) warning: Option<String>,
+}
+
+/// The only connected run of a path, as pieces.
+pub(super) fn drawn(sub: Subpath) -> Vec<Part> {
+    let part = |s| Part { curve: Curve::Seg(s), handles: Vec::new(), width: 0.0 };
+    sub.segs.into_iter().map(part).collect()
 }
 
 impl Skeleton {
-    /// Takes the only connected run of `path`. Unless `as_drawn`, an open one is oriented left to right, except if it goes around more
+    /// Measures the pieces of the path of this name. Unless `as_drawn`, an open one is oriented left to right, except if it goes around more
     /// than once, a closed one clockwise (up is then outside). `reverse` turns it around after that.
-    pub(super) fn new(path: &NamedPath, as_drawn: bool, reverse: bool) -> Result<Self, Error> {
-        let mut sub = anchors::only_subpath(path, "a single connected run of them")?;
-        let backwards = match sub.closed {
-            true => turns_left(&sub),
-            false => runs_left(&sub) && !winds(&sub),
+    pub(super) fn new(
+        (parts, closed, name): (Vec<Part>, bool, &str),
+        as_drawn: bool,
+        reverse: bool,
+    ) -> Result<Self, Error> {
+        let curves: Vec<&Curve> = parts.iter().map(|p| &p.curve).collect();
+        let backwards = match closed {
+            true => turns_left(&curves),
+            false => runs_left(&curves) && !winds(&curves),
         };
+        let mut parts = parts;
         if reverse != (backwards && !as_drawn) {
-            sub = sub.reversed();
+            parts = parts.into_iter().rev().map(Part::reversed).collect();
         }
-        let measured: Vec<_> = sub.segs.into_iter().map(|s| (Spine::new(s), ArcLength::of(&s))).collect();
-        let length: f64 = measured.iter().map(|(_, t)| t.length()).sum();
+        let measured: Vec<_> = parts.into_iter().map(|p| (measured(p.curve), (p.handles, p.width))).collect();
+        let length: f64 = measured.iter().map(|((_, t), _)| t.length()).sum();
         if !(length > 0.0 && length.is_finite()) {
-            return Err(Error::usage("along", path.name.clone(), "has no length"));
+            return Err(Error::usage("along", name, "has no length"));
         }
-        let spines = measured.into_iter().filter(|(_, t)| t.length() > 1e-12 * length).collect();
-        Ok(Self { spines, closed: sub.closed, length, even: 0.0, name: path.name.clone() })
+        let (spines, mut frames): (Vec<_>, Vec<_>) =
+            measured.into_iter().filter(|((_, t), _)| t.length() > 1e-12 * length).unzip();
+        frames.retain(|(handles, _)| !handles.is_empty());
+        Ok(Self { spines, frames, closed, length, even: 0.0, name: name.to_owned() })
+    }
+
+    /// Returns the curve, for a preview.
+    pub(super) fn path(&self, tolerance: f64) -> BezPath {
+        let segs: Vec<Seg> = self.spines.iter().flat_map(|(s, _)| s.curve.segs()).collect();
+        let run = Subpath { start: self.spines[0].0.curve.eval(0.0), segs, closed: self.closed };
+        Outline { subpaths: vec![run] }.to_bez_path(tolerance)
     }
 
     pub(super) fn has_arcs(&self) -> bool {
-        self.spines.iter().any(|(s, _)| matches!(s.seg, Seg::Arc(_)))
+        self.spines.iter().any(|(s, _)| matches!(s.curve, Curve::Seg(Seg::Arc(_))))
     }
 
     /// Measures lengths at height `d`: along the offset curve, whose speed is (1 + κd) times the skeleton's.
@@ -77,13 +100,13 @@ impl Skeleton {
                 let problem = format!(
                     "needs a gentler bend: near {} the centre of curvature is no further from the skeleton than half the \
 artwork's height; a smaller `width` helps too",
-                    show(spine.seg.eval(u))
+                    show(spine.curve.eval(u))
                 );
                 return Err(Error::usage("spacing", "even", problem));
             }
         }
         let measured = self.spines.into_iter().map(|(s, _)| {
-            let table = ArcLength::new(&move |u| s.seg.deriv(u).hypot() * rate(&s, u));
+            let table = ArcLength::new(&|u| s.curve.deriv(u).hypot() * rate(&s, u));
             (s, table)
         });
         let spines: Vec<(Spine, ArcLength)> = measured.collect();
@@ -109,18 +132,17 @@ artwork's height; a smaller `width` helps too",
         Err(Error::usage("spacing", "even", problem))
     }
 
-    /// Converts arcs to cubics within `tolerance`, and lines to quadratics if `raise`, for the paper's handles.
-    pub(super) fn polynomial(mut self, tolerance: f64, raise: bool) -> Self {
-        let spines = std::mem::take(&mut self.spines);
-        for (spine, table) in spines {
-            match spine.seg {
-                Seg::Arc(a) => {
-                    let cubics = a.to_cubics(tolerance).map(Seg::Cubic);
-                    self.spines.extend(cubics.map(|s| (Spine::new(s), ArcLength::of(&s))));
+    /// Converts arcs to cubics within `tolerance`, for the paper's handles. Of several pieces, quadratics that turn by more than a right
+    /// angle become cubics too: one point cannot have the mitres of both their ends.
+    pub(super) fn polynomial(mut self, tolerance: f64) -> Self {
+        let several = self.frames.is_empty() && (self.closed || self.spines.len() > 1);
+        for (spine, table) in std::mem::take(&mut self.spines) {
+            match spine.curve {
+                Curve::Seg(Seg::Arc(a)) => {
+                    self.spines.extend(a.to_cubics(tolerance).map(|c| measured(Curve::Seg(Seg::Cubic(c)))))
                 }
-                Seg::Line(l) if raise => {
-                    let raised = Seg::Quad(kurbo::QuadBez::new(l.p0, l.p0.midpoint(l.p1), l.p1));
-                    self.spines.push((Spine::new(raised), table));
+                Curve::Seg(Seg::Quad(q)) if several && (q.p1 - q.p0).dot(q.p2 - q.p1) < 0.0 => {
+                    self.spines.push((Spine::new(Curve::Seg(Seg::Cubic(q.raise()))), table));
                 }
                 _ => self.spines.push((spine, table)),
             }
@@ -137,7 +159,7 @@ artwork's height; a smaller `width` helps too",
         for (spine, table) in &self.spines {
             for i in 0..=SAMPLES {
                 let s = table.length() * f64::from(i) / f64::from(SAMPLES);
-                let y = spine.seg.eval(table.parameter(s)).y;
+                let y = spine.curve.eval(table.parameter(s)).y;
                 let y = if lowest { -y } else { y };
                 if y < best.0 {
                     best = (y, start + s);
@@ -187,60 +209,72 @@ artwork's height; a smaller `width` helps too",
         for ((spine, table), [a, b]) in self.spines.iter().zip(sides) {
             let (first, last) = (spine.moving(0.0), spine.moving(1.0));
             let mitres = [a - normal(first.t), b - normal(last.t)];
-            match spine.seg {
-                Seg::Line(line) => strips.extend(on_a_line(line, mitres, height)),
+            match spine.curve {
+                Curve::Seg(Seg::Line(line)) => strips.extend(on_a_line(line, mitres, height)),
                 _ => {
-                    let curved =
-                        Strip::Normals { spine: *spine, table: table.clone(), mitres, even: self.even, smooth: false };
+                    let curved = Strip::Normals {
+                        spine: spine.clone(),
+                        table: table.clone(),
+                        mitres,
+                        even: self.even,
+                        smooth: false,
+                    };
                     strips.push((curved, table.length()));
                 }
             }
         }
         let pieces = self.in_a_row(strips);
-        Ok(Joined { pieces, corners, notes: Vec::new() })
+        Ok(Joined { pieces, corners, notes: Vec::new(), warning: None })
     }
 
-    /// Joins pieces whose sides are the paper's handles: `given` for every piece, or the unit normals of the control polygon's legs
-    /// times `unit`.
+    /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`: `given` for every piece, those of a
+    /// spline, the unit normals of the sides of a single piece's control polygon, or else mitres at the points of several, which keep
+    /// parallels smooth wherever the skeleton is (the paper's equation 5).
     pub(super) fn with_handles(
         self,
         given: Option<&[Vec<Vec<Vec2>>]>,
-        unit: f64,
+        (unit, heights): (f64, [f64; 2]),
         by_arc_length: bool,
     ) -> Result<Joined, Error> {
-        let (sides, corners) = if given.is_some() { (Vec::new(), Vec::new()) } else { self.sides()? };
+        let own = given.is_some() || !self.frames.is_empty();
+        let (sides, corners) = if own { (Vec::new(), Vec::new()) } else { self.sides()? };
         if let Some(g) = given.filter(|g| g.len() != self.spines.len()) {
             let problem = format!("has handles for {} pieces; the skeleton has {}", g.len(), self.spines.len());
             return Err(Error::input("handles", problem));
         }
-        let mut ribbons = Vec::with_capacity(self.spines.len());
-        for (i, (spine, _)) in self.spines.iter().enumerate() {
-            let points = control_points(&spine.seg);
-            let degree = points.len() - 1;
-            let levels = match given {
-                Some(g) => g[i].clone(),
-                None => vec![legs(&points, sides[i]).into_iter().map(|n| n * unit).collect()],
+        let single = !self.closed && self.spines.len() == 1;
+        let ribbon = |(i, (spine, _)): (usize, &(Spine, ArcLength))| {
+            let points = spine.curve.points();
+            let Some(g) = given else {
+                if let Some((handles, _)) = self.frames.get(i) {
+                    return Ok(Ribbon::with_handles_at_points(points, handles));
+                }
+                let legs: Vec<Vec2> = directions(&points, false).into_iter().map(|d| normal(d) * unit).collect();
+                if let Some(ribbon) = Ribbon::new(points.clone(), &[legs]).filter(|_| single) {
+                    return Ok(ribbon);
+                }
+                let handles: Vec<Vec2> = mitres(&points, sides[i]).into_iter().map(|h| h * unit).collect();
+                return Ok(Ribbon::with_handles_at_points(points, &handles));
             };
-            let ribbon = Ribbon::new(points, &levels).ok_or_else(|| {
+            let degree = points.len() - 1;
+            Ribbon::new(points, &g[i]).ok_or_else(|| {
                 let wanted: Vec<String> = (1..=degree).rev().map(|n| n.to_string()).collect();
                 let problem = format!(
                     "piece {} has degree {degree}: its levels need {} handles; it has {:?}",
                     i + 1,
                     wanted.join(", "),
-                    levels.iter().map(Vec::len).collect::<Vec<_>>()
+                    g[i].iter().map(Vec::len).collect::<Vec<_>>()
                 );
                 Error::input("handles", problem)
-            })?;
-            ribbons.push(ribbon);
-        }
-        let mut notes = Vec::new();
+            })
+        };
+        let ribbons: Vec<Ribbon> = self.spines.iter().enumerate().map(ribbon).collect::<Result<_, _>>()?;
         for (i, j) in self.joints() {
             let (a, b) = (ribbons[i].side_at_end(1), ribbons[j].side_at_end(0));
-            let at = self.spines[j].0.seg.start();
             if (a - b).hypot() > 1e-6 * (a.hypot() + b.hypot()) {
                 let problem = format!(
                     "the handles on both sides of the joint at {} differ: {:.6},{:.6} and {:.6},{:.6}; the artwork would tear",
-                    show(at),
+                    show(self.spines[j].0.curve.eval(0.0)),
                     a.x,
                     a.y,
                     b.x,
@@ -249,8 +283,11 @@ artwork's height; a smaller `width` helps too",
                 return Err(Error::input("handles", problem));
             }
         }
-        let strips = self.spines.iter().zip(ribbons).map(|((_, table), ribbon)| {
-            let length = table.length();
+        // By parameter, the pieces of a spline have the lengths of their knots.
+        let whole: f64 = self.frames.iter().map(|(_, width)| width).sum();
+        let strips = self.spines.iter().zip(ribbons).enumerate().map(|(i, ((_, table), ribbon))| {
+            let knots = self.frames.get(i).filter(|_| !by_arc_length);
+            let length = knots.map_or(table.length(), |(_, width)| self.length * width / whole);
             (Strip::Ribbon { ribbon, unit, table: by_arc_length.then(|| table.clone()) }, length)
         });
         let strips: Vec<_> = strips.collect();
@@ -258,10 +295,14 @@ artwork's height; a smaller `width` helps too",
         let pieces = self.in_a_row(strips);
         // The straight continuations of open ends are pieces too.
         let first = usize::from(!self.closed);
-        for (i, j) in joints {
-            notes.push(continuity(&pieces[first + i], &pieces[first + j], unit));
-        }
-        Ok(Joined { pieces, corners, notes })
+        let joints: Vec<Joint> =
+            joints.into_iter().map(|(i, j)| joint(&pieces[first + i], &pieces[first + j], heights)).collect();
+        Ok(Joined {
+            pieces,
+            corners,
+            notes: joints.iter().map(Joint::described).collect(),
+            warning: Joint::warning(&joints),
+        })
     }
 
     /// Lines up the pieces; an open skeleton continues straight at both ends.
@@ -308,7 +349,7 @@ fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
         let strip = if mitres == [Vec2::ZERO; 2] {
             Strip::Straight { p: part.p0, t, n: normal(t) }
         } else {
-            Strip::Normals { spine: Spine::new(seg), table: ArcLength::of(&seg), mitres, even: 0.0, smooth }
+            Strip::Normals { spine: Spine::new(Curve::Seg(seg)), table: ArcLength::of(&seg), mitres, even: 0.0, smooth }
         };
         (strip, to - from)
     };
@@ -326,84 +367,61 @@ fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
     out
 }
 
+/// Chords of a piece.
+const CHORDS: u32 = 32;
+
+/// Samples a run, the joints twice.
+fn samples<'a>(curves: &'a [&Curve]) -> impl Iterator<Item = Point> + 'a {
+    curves.iter().flat_map(|s| (0..=CHORDS).map(|i| s.eval(f64::from(i) / f64::from(CHORDS))))
+}
+
 /// Returns `true` if a closed run goes counter-clockwise on the screen: its area, y down, is negative.
-fn turns_left(sub: &Subpath) -> bool {
-    /// Chords of a piece.
-    const CHORDS: u32 = 32;
-    let chord = |s: &Seg, i: u32| {
-        let at = |i: u32| s.eval(f64::from(i) / f64::from(CHORDS)) - sub.start;
-        at(i).cross(at(i + 1))
-    };
-    sub.segs.iter().map(|s| (0..CHORDS).map(|i| chord(s, i)).sum::<f64>()).sum::<f64>() < 0.0
+fn turns_left(curves: &[&Curve]) -> bool {
+    let start = curves.first().map_or(Point::ORIGIN, |c| c.eval(0.0));
+    let points: Vec<Vec2> = samples(curves).map(|p| p - start).collect();
+    points.windows(2).map(|p| p[0].cross(p[1])).sum::<f64>() < 0.0
 }
 
 /// Returns `true` if an open run ends left of its start. The ends of a whole circle are the same up to rounding.
-fn runs_left(sub: &Subpath) -> bool {
+fn runs_left(curves: &[&Curve]) -> bool {
     const SAME: f64 = 1e-9;
-    let size = sub.segs.iter().map(|s| s.eval(0.5).distance(sub.start)).fold(0.0, f64::max);
-    sub.start.x - sub.end().x > SAME * size
+    let (Some(first), Some(last)) = (curves.first(), curves.last()) else { return false };
+    let start = first.eval(0.0);
+    let size = curves.iter().map(|s| s.eval(0.5).distance(start)).fold(0.0, f64::max);
+    start.x - last.eval(1.0).x > SAME * size
 }
 
-/// Returns `true` if the tangent of an open run turns through more than a whole turn from its start to its end.
-fn winds(sub: &Subpath) -> bool {
-    /// Chords of a piece. They turn through a little less than the piece itself.
-    const CHORDS: u32 = 32;
-    let points = sub.segs.iter().flat_map(|s| (0..=CHORDS).map(|i| s.eval(f64::from(i) / f64::from(CHORDS))));
-    let (mut last, mut chord, mut turn) = (sub.start, Vec2::ZERO, 0.0);
-    for p in points.filter(|p| p.is_finite()) {
-        let next = p - last;
-        if next != Vec2::ZERO {
-            turn += if chord == Vec2::ZERO { 0.0 } else { chord.cross(next).atan2(chord.dot(next)) };
-            (last, chord) = (p, next);
-        }
+/// Returns `true` if the tangent of an open run turns through more than a whole turn from its start to its end. Chords turn a little less.
+fn winds(curves: &[&Curve]) -> bool {
+    let points: Vec<Point> = samples(curves).filter(|p| p.is_finite()).collect();
+    let (mut chord, mut turn) = (Vec2::ZERO, 0.0);
+    for next in points.windows(2).map(|p| p[1] - p[0]).filter(|next| *next != Vec2::ZERO) {
+        turn += if chord == Vec2::ZERO { 0.0 } else { chord.cross(next).atan2(chord.dot(next)) };
+        chord = next;
     }
     turn.abs() > std::f64::consts::TAU
 }
 
-fn control_points(seg: &Seg) -> Vec<Point> {
-    match seg {
-        Seg::Line(s) => vec![s.p0, s.p1],
-        Seg::Quad(s) => vec![s.p0, s.p1, s.p2],
-        other => {
-            let c = other.to_cubic();
-            vec![c.p0, c.p1, c.p2, c.p3]
-        }
-    }
+fn measured(curve: Curve) -> (Spine, ArcLength) {
+    let table = ArcLength::new(&|u| curve.deriv(u).hypot());
+    (Spine::new(curve), table)
 }
 
-/// Returns the unit normals of the control polygon's legs. The outer ones are given, because they may be mitred; a leg without
-/// length takes its neighbours' mean.
-fn legs(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
-    let n = points.len() - 1;
-    let size: f64 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
-    let mut out: Vec<Vec2> = Vec::with_capacity(n);
-    for (i, p) in points.windows(2).enumerate() {
-        let leg = p[1] - p[0];
-        let own = (leg.hypot() > 1e-9 * size).then(|| normal(leg / leg.hypot()));
-        out.push(match own {
-            _ if i == 0 => ends[0],
-            _ if i == n - 1 => ends[1],
-            Some(own) => own,
-            None => (ends[0] + ends[1]) * 0.5,
-        });
+/// Returns handles at the points of a piece with given ones at its ends: mitres of the sides of its control polygon, which turn
+/// along the skeleton alone at both ends, as unit normals do.
+fn mitres(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
+    let (n, legs) = (points.len() - 1, directions(points, false));
+    let inner = legs.windows(2).map(|d| mitre(normal(d[0]), normal(d[1])));
+    let mut out: Vec<Vec2> = std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect();
+    if n > 1 {
+        out[1] = ends[0] + legs[0] * legs[0].dot(out[1] - ends[0]);
+        out[n - 1] = ends[1] + legs[n - 1] * legs[n - 1].dot(out[n - 1] - ends[1]);
     }
     out
 }
 
-/// Describes the joint of two pieces by the paper's conditions (4) and (5), in distances instead of parameters.
-fn continuity(a: &SkeletonPiece, b: &SkeletonPiece, unit: f64) -> String {
-    let ((p, a0, _), (_, a1, _)) = (a.jet(a.length, 0.0), a.jet(a.length, unit));
-    let ((_, b0, _), (_, b1, _)) = (b.jet(0.0, 0.0), b.jet(0.0, unit));
-    let same = |a: Vec2, b: Vec2| (a - b).hypot() <= 1e-6 * (a.hypot() + b.hypot());
-    let along = |a: Vec2, b: Vec2| a.cross(b).abs() <= SMOOTH * a.hypot() * b.hypot() && a.dot(b) > 0.0;
-    let what = if same(a0, b0) && same(a1, b1) {
-        "C¹: smooth"
-    } else if along(a0, b0) && along(a1, b1) {
-        "G¹: directions are continuous, but lengths are stretched differently on both sides"
-    } else if along(a0, b0) {
-        "G¹ on the skeleton only: beside it, lines along the skeleton have a kink (handles condition)"
-    } else {
-        "C⁰: a corner"
-    };
-    format!("joint at {} is {what}", show(p))
+/// Compares lines along the skeleton on both sides of a joint, by distances instead of parameters.
+fn joint(a: &SkeletonPiece, b: &SkeletonPiece, [low, high]: [f64; 2]) -> Joint {
+    let line = |d: f64| [a.jet(a.length, d).1, b.jet(0.0, d).1].map(|v| [v.x, v.y]);
+    Joint::new(show(b.point(0.0, 0.0)), &[0.0, low, high].map(line))
 }

@@ -128,7 +128,8 @@ fn the_polynomial_mode_has_exact_images() {
         .map;
     let source = RationalBezier::from_seg(&Seg::Line(kurbo::Line::new((5.0, 10.0), (40.0, 90.0)))).unwrap();
     let image = m.branch(Point::new(20.0, 50.0)).unwrap().image(&source).unwrap();
-    assert_eq!(image.degree(), 3);
+    // Handles at the points of cubic pieces: C has degree 3, v·S one more.
+    assert_eq!(image.degree(), 4);
     for i in 0..=10 {
         let t = f64::from(i) / 10.0;
         assert!(image.eval(t).distance(m.point(source.eval(t))) < 1e-10);
@@ -414,4 +415,189 @@ fn artwork_longer_than_the_path_is_named() {
     assert_eq!(said("0,0 100,0 100,200"), [""; 0]);
     let [warning] = &said("0,50 80,50")[..] else { panic!() };
     assert!(warning.contains("longer than the path by 20.000 (25 % of the path)"), "{warning}");
+}
+
+/// The value of a B-spline's basis function over uniform knots: clamped with `cells` cells, or, without, on all whole numbers.
+fn basis(cells: Option<usize>, i: isize, d: usize, degree: usize, x: f64) -> f64 {
+    let knot = |k: isize| cells.map_or(k as f64, |c| (k - degree as isize).clamp(0, c as isize) as f64);
+    let (t, n) = (knot(i), knot(i + d as isize + 1));
+    if d == 0 {
+        return f64::from(u8::from(t <= x && x < n));
+    }
+    let part = |num: f64, den: f64, b: f64| if den > 0.0 { num / den * b } else { 0.0 };
+    part(x - t, knot(i + d as isize) - t, basis(cells, i, d - 1, degree, x))
+        + part(n - x, n - knot(i + 1), basis(cells, i + 1, d - 1, degree, x))
+}
+
+/// Points and handles of a spline of any degree are blended by the same B-splines (the recursion of Cox and de Boor, written again), and lines
+/// along the skeleton are as smooth at the joints as the formula.
+#[test]
+fn handles_at_the_points_of_a_spline_are_control_points_too() {
+    let points =
+        [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.), (170., 60.), (190., 50.), (230., 0.)];
+    let sides = [
+        (0., -60.),
+        (20., -50.),
+        (-9., -70.),
+        (5., -40.),
+        (0., -55.),
+        (-20., -60.),
+        (8., -45.),
+        (10., -50.),
+        (0., -66.),
+    ];
+    let text = |v: &[(f64, f64)], by: &str| v.iter().map(|(x, y)| format!("{x},{y}")).collect::<Vec<_>>().join(by);
+    let json = format!(r#"{{"points":[[{}]]}}"#, text(&sides, "],["));
+    let along = text(&points, " ");
+    for degree in 1..=8 {
+        let cells = points.len() - degree;
+        let number = degree.to_string();
+        let args = [("along", &*along), ("spline", &*number), ("by", "parameter"), ("stretch", "fit")];
+        let m = with_handles(&args, &json).unwrap().map;
+        for k in 0..97 {
+            let (u, y) = ((f64::from(k) + 0.5) / 97.0, 3.0 * f64::from(k % 30));
+            let sum = (0..points.len()).fold(Vec2::ZERO, |sum, i| {
+                let b = basis(Some(cells), i as isize, degree, degree, u * cells as f64);
+                sum + (Vec2::from(points[i]) + Vec2::from(sides[i]) * ((50.0 - y) / 100.0)) * b
+            });
+            let got = m.point(Point::new(100.0 * u, y));
+            assert!(got.distance(sum.to_point()) < 1e-10, "{degree} {u}: {got:?} {sum:?}");
+        }
+        for k in 1..cells {
+            let at = |e: f64| m.jet(Point::new(100.0 * k as f64 / cells as f64 + e, 12.0));
+            let (a, b) = (at(-1e-11), at(1e-11));
+            assert!(degree == 1 || (a.dx - b.dx).hypot() < 1e-9 * a.dx.hypot().max(1.0), "{degree}: {a:?} {b:?}");
+        }
+    }
+}
+
+/// Of any degree, by arc length: true to size, with the derivatives of the map.
+#[test]
+fn splines_of_high_degree_are_measured() {
+    let points = "0,50 20,10 60,20 80,90 130,70 150,20 170,60 190,50 230,0 250,40";
+    for how in [("spline", "4"), ("spline", "9"), ("interpolate", "true")] {
+        let m = build(&[("along", points), how, ("align", "start"), ("width", "0.1")]).unwrap().map;
+        for k in 1..40 {
+            for y in [50.0, 10.0] {
+                let (p, h) = (Point::new(2.5 * f64::from(k) + 0.01, y), 1e-5);
+                let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
+                assert!((dx - m.jet(p).dx).hypot() < 1e-5, "{how:?} {p:?}");
+                assert!(y < 50.0 || (m.jet(p).dx.hypot() - 1.0).abs() < 1e-9, "{how:?} {p:?}");
+            }
+        }
+    }
+}
+
+/// A curve runs through its points with a continuous second derivative, and its default handles stand square on it.
+#[test]
+fn skeletons_run_through_points() {
+    let points = [(0., 50.), (20., 10.), (60., 20.), (80., 90.), (130., 70.), (150., 20.)];
+    let text: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+    let args = [("along", &*text.join(" ")), ("interpolate", "true"), ("by", "parameter"), ("stretch", "fit")];
+    let widths: Vec<f64> = points.windows(2).map(|p| Point::from(p[0]).distance(p[1].into()).sqrt()).collect();
+    let knots: Vec<f64> =
+        (0..6).map(|i| 100.0 * widths[..i].iter().sum::<f64>() / widths.iter().sum::<f64>()).collect();
+    let m = build(&args).unwrap().map;
+    let at = |x: f64| m.jet(Point::new(x, 50.0));
+    for (x, p) in knots.iter().zip(points) {
+        let j = at(*x);
+        assert!(j.p.distance(p.into()) < 1e-10 && j.dx.dot(j.dy).abs() < 1e-9 * j.dx.hypot(), "{j:?}");
+        assert!((j.dy.hypot() - 1.0).abs() < 1e-12 && j.dx.cross(j.dy) > 0.0, "{j:?}");
+    }
+    let second = |x: f64, h: f64| (at(x + h).dx - at(x).dx) / h;
+    for x in &knots[1..5] {
+        let (before, after) = (second(x - 1e-9, -1e-4), second(*x + 1e-9, 1e-4));
+        assert!((before - after).hypot() < 1e-2 * (1.0 + before.hypot()), "{before:?} {after:?}");
+    }
+    assert!(second(1e-9, 1e-4).hypot() < 1e-3, "no curvature at the ends");
+}
+
+/// Stretch, swell and taper from their definitions.
+#[test]
+fn presets_are_polynomial_profiles() {
+    let m = |pairs: &[(&str, &str)]| build(pairs).unwrap().map;
+    let (stretch, taper) = (m(&[("preset", "stretch"), ("factor", "3")]), m(&[("preset", "taper")]));
+    let swell = m(&[("preset", "swell"), ("factor", "0.2")]);
+    for i in 0..50 {
+        let (x, y) = (2.0 * f64::from(i) + 1.0, 97.0 - 1.7 * f64::from(i));
+        let (u, d) = (x / 100.0, y - 50.0);
+        let near = |m: &Arc<dyn crate::map::Map>, x: f64, y: f64| {
+            m.point(Point::new(100.0 * u, 50.0 + d)).distance(Point::new(x, y)) < 1e-11
+        };
+        assert!(near(&stretch, 3.0 * x, y) && near(&taper, x, 50.0 + d * (1.0 - 0.5 * u)), "{x} {y}");
+        // A parabola through 1, 0.2 and 1.
+        assert!(near(&swell, x, 50.0 + d * (1.0 - 3.2 * u * (1.0 - u))), "{x} {y}");
+    }
+}
+
+#[test]
+fn bad_skeletons_and_handles_are_named() {
+    let spline = [("along", "0,0 50,20 100,0"), ("spline", "2")];
+    let none = r#"{"points":[null,null,null]}"#;
+    for (args, json, problem) in [
+        (&spline[..], r#"{"points":[[0,-9],[0,0],null]}"#, "vanishes, of point 2"),
+        (&spline, r#"{"points":[null]}"#, "for 1 points"),
+        (&spline, r#"{"points":[null,null,null],"pieces":[]}"#, "either `pieces` or"),
+        (&spline[..1], none, "needs `spline` or `interpolate`"),
+        (&[spline[0], spline[1], ("reverse", "true")], none, "the other way"),
+        (&[("along", "M0,0 Q50,20 100,0")], r#"{"pieces":[{"levels":[[[0,0],[1,1]]]}]}"#, "vanishes, of piece 1"),
+    ] {
+        let e = with_handles(args, json).err().unwrap().to_string();
+        assert!(e.contains(problem), "{e}");
+    }
+    for (args, problem) in [
+        (&[("along", "0,0 50,20 50,20 100,0"), ("interpolate", "true")][..], "two equal points in a row at 50,20"),
+        (&[("along", "0,0 50,20"), ("spline", "11")], "10"),
+        (&[("along", "0,0 50,20"), ("spline", "0")], "10"),
+        (&[("along", "0,0 50,20"), ("spline", "1"), ("interpolate", "true")], "cannot go with `interpolate`"),
+        (&[("along", "0,0 50,20"), ("preset", "taper")], "has its own skeleton"),
+        (&[("along", "0,0 50,20"), ("factor", "2")], "is for a `preset`"),
+        (&[("preset", "twist")], "stretch, swell"),
+    ] {
+        let e = build(args).err().unwrap().to_string();
+        assert!(e.contains(problem), "{e}");
+    }
+}
+
+/// The command that once turned lines by 100°, and its relatives: at every joint, both sides of every parallel have the same derivative
+/// where the skeleton is a spline, and the same direction where it is drawn.
+#[test]
+fn default_handles_leave_no_kinks() {
+    let zigzag = "0,100 30,40 60,120 90,50 120,130 150,60 180,100";
+    let ring = "M0,0 L60,-10 100,30 70,90 10,70 Z";
+    let drawn = "M0,100 C20,40 60,40 80,100 S120,160 150,100 Q170,60 210,70 L250,80 Q290,90 250,150 T170,160";
+    let loops = "M0,0 C80,0 60,60 0,60 C-30,60 -40,0 0,0 Z";
+    let scattered: Vec<String> = (1..13).map(|i| format!("{},{}", i * 7919 % 307, i * i * 104_729 % 311)).collect();
+    for along in [zigzag, ring, drawn, loops, &scattered.join(" ")] {
+        for how in [("spline", "2"), ("spline", "3"), ("spline", "4"), ("interpolate", "true"), ("reverse", "true")] {
+            if (how.0 == "reverse") != (along == drawn || along == loops) {
+                continue;
+            }
+            let args = [("along", along), how, ("by", "parameter"), ("stretch", "fit"), ("width", "0.05")];
+            let built = build(&args).unwrap();
+            let warnings = &built.explanation.warnings;
+            assert!(warnings.iter().all(|w| !w.contains("kink")), "{along} {how:?} {warnings:?}");
+            let mut creases = Creases::default();
+            built.map.creases(&mut creases);
+            let mut joints = 0;
+            for c in creases.items() {
+                let Level::Line { a, c, .. } = c.level else { panic!("joints are vertical lines") };
+                if !(1e-6..100.0 - 1e-6).contains(&(-c / a)) {
+                    continue;
+                }
+                joints += 1;
+                for y in [0.0, 20.0, 50.0, 90.0, 100.0] {
+                    let at = |e: f64| built.map.jet(Point::new(-c / a + e, y)).dx;
+                    let (p, q) = (at(-1e-12), at(1e-12));
+                    let off = if how.0 == "reverse" {
+                        p.cross(q).atan2(p.dot(q)).abs() * 1e-3
+                    } else {
+                        (p - q).hypot() / p.hypot().max(1.0)
+                    };
+                    assert!(off < 1e-9, "{along} {how:?} {y}: {p:?} {q:?}");
+                }
+            }
+            assert!(joints > 0);
+        }
+    }
 }

@@ -1,0 +1,163 @@
+//! Skeletons given by points: B-splines that the anchors of a path control, and cubic splines that run through them.
+//!
+//! A point has a handle, the image of the artwork's height there. Points and handles together are control points in four dimensions,
+//! so that the generalised algorithm of de Boor, or interpolation, applies to both alike: S has the degree, the knots and the
+//! continuity of C, and every parallel C + v·S is as smooth as the skeleton. At a joint of Bézier pieces that is the paper's
+//! equation 4, s₃ = (s₂ + s₄)/2.
+//!
+//! Unless it is given, the handle of a B-spline's point is the mitre of the polygon's sides, so that the control points of a parallel are
+//! the corners of the polygon's offset (W. Tiller and E. G. Hanson, *Offsets of two-dimensional profiles*, IEEE CG&A 4, 1984). On an
+//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, where normals change so.
+
+use super::map::{Curve, normal};
+use crate::error::{Error, show};
+use crate::map::bspline;
+use crate::outline::Subpath;
+use kurbo::{Point, Vec2};
+
+/// How the anchors of a path make a skeleton.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Spline {
+    /// They are control points of a uniform B-spline of this degree.
+    Near(usize),
+    /// A C² cubic spline runs through them, with centripetal parameters.
+    Through,
+}
+
+/// A piece of a skeleton before it is measured.
+pub(super) struct Part {
+    pub(super) curve: Curve,
+    /// The handles at its control points; empty if they follow from the curve.
+    pub(super) handles: Vec<Vec2>,
+    /// Its share of the parameter; 0 if that follows from its length.
+    pub(super) width: f64,
+}
+
+impl Part {
+    /// Returns the piece run the other way, on whose other side the artwork then stands.
+    pub(super) fn reversed(mut self) -> Self {
+        self.handles.reverse();
+        self.handles.iter_mut().for_each(|h| *h = -*h);
+        Self { curve: self.curve.reversed(), ..self }
+    }
+}
+
+impl Spline {
+    /// Returns the pieces. `given` has a handle for every anchor, or `None` for one of its own, which is `unit` long; no handles at all are
+    /// as many of these.
+    pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
+        let (points, closed) = (sub.anchors(), sub.closed);
+        let n = points.len();
+        let degree = if let Self::Near(degree) = self { degree } else { 1 };
+        let min = if closed { 3 } else { degree + 1 };
+        if n < min {
+            let problem = format!("has {n} anchors; such a spline needs at least {min} anchors");
+            return Err(Error::usage("along", "", problem));
+        }
+        if !given.is_empty() && given.len() != n {
+            let problem = format!("has handles for {} points; the skeleton has {n}", given.len());
+            return Err(Error::input("handles", problem));
+        }
+        let handle = |i: usize, own: Vec2| given.get(i).copied().flatten().unwrap_or(own * unit);
+        if let Self::Near(degree) = self {
+            let frame = |(i, own): (usize, Vec2)| [points[i].to_vec2(), handle(i, own)];
+            let frames = mitres(&points, closed).into_iter().enumerate().map(frame).map(|[p, h]| [p.x, p.y, h.x, h.y]);
+            let part = |f: Vec<[f64; 4]>| {
+                let (points, handles) = f.iter().map(|f| (Point::new(f[0], f[1]), Vec2::new(f[2], f[3]))).unzip();
+                Part { curve: Curve::bezier(points), handles, width: 1.0 }
+            };
+            return Ok(bspline::pieces(degree, &frames.collect::<Vec<_>>(), closed).into_iter().map(part).collect());
+        }
+        let legs = if closed { n } else { n - 1 };
+        let distances: Vec<f64> = (0..legs).map(|i| points[i].distance(points[(i + 1) % n])).collect();
+        if let Some(i) = distances.iter().position(|d| *d <= 0.0) {
+            let problem = format!("has two equal points in a row at {}; remove one", show(points[i]));
+            return Err(Error::usage("along", "", problem));
+        }
+        let widths = bspline::centripetal(&distances);
+        let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        let part = |(i, (f, width)): (usize, (Vec<[f64; 2]>, f64))| {
+            let p: Vec<Point> = f.into_iter().map(|p| Point::new(p[0], p[1])).collect();
+            let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
+            let own = |t: Vec2| normal(if t.hypot() > 0.0 { t / t.hypot() } else { (p[3] - p[0]).normalize() });
+            let (g, h) = (handle(i, own(a)), handle((i + 1) % n, own(c)));
+            let eased = |h: Vec2, a: Vec2| h - a * (h.dot(b - a) / (1.5 * a.hypot2()).max(1e-18 * b.hypot2()));
+            Part { curve: Curve::bezier(p), handles: vec![g, eased(g, a), eased(h, c), h], width }
+        };
+        let pieces = bspline::through(&flat, &widths, closed);
+        Ok(pieces.into_iter().zip(widths).enumerate().map(part).collect())
+    }
+}
+
+/// Returns the directions of a polygon's sides; one without length has that of the side before it.
+pub(super) fn directions(points: &[Point], closed: bool) -> Vec<Vec2> {
+    let n = points.len();
+    let legs: Vec<Vec2> = (0..if closed { n } else { n - 1 }).map(|i| points[(i + 1) % n] - points[i]).collect();
+    let size = legs.iter().map(|l| l.hypot()).fold(0.0, f64::max);
+    let unit = |l: &Vec2| (l.hypot() > 1e-9 * size).then(|| *l / l.hypot());
+    let mut last = legs.iter().find_map(unit).unwrap_or(Vec2::new(1.0, 0.0));
+    let fill = |l: &Vec2| {
+        last = unit(l).unwrap_or(last);
+        last
+    };
+    legs.iter().map(fill).collect()
+}
+
+/// Returns the mitre of two unit normals, which is as high over either of their lines as they are; beyond a right angle it grows no longer.
+pub(super) fn mitre(n: Vec2, m: Vec2) -> Vec2 {
+    let c = 1.0 + n.dot(m);
+    if c < 1e-9 { n } else { (n + m) / c.max(c.sqrt()) }
+}
+
+/// Returns the mitres at the corners of a polygon, and the normals at its ends.
+fn mitres(points: &[Point], closed: bool) -> Vec<Vec2> {
+    let sides: Vec<Vec2> = directions(points, closed).into_iter().map(normal).collect();
+    let (n, last) = (points.len(), sides.len() - 1);
+    let at = |i: usize| if closed { sides[(i + n - 1) % n] } else { sides[i.saturating_sub(1)] };
+    (0..n).map(|i| mitre(at(i), sides[i.min(last)])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outline::Outline;
+
+    fn spline(d: &str, degree: usize) -> Result<Vec<Vec<Point>>, Error> {
+        let sub = Outline::from_svg(d).unwrap().subpaths.remove(0);
+        Ok(Spline::Near(degree).parts(&sub, &[], 1.0)?.into_iter().map(|p| p.curve.points()).collect())
+    }
+
+    /// Against the textbook's values at the knots, with all continuous derivatives.
+    #[test]
+    fn pieces_are_the_spline() {
+        let p = [(0.0, 0.0), (10.0, 30.0), (50.0, 20.0), (60.0, -10.0), (20.0, -40.0)].map(Point::from);
+        let v = |i: usize| p[i % 5].to_vec2();
+        let near = |a: Point, b: Vec2| a.distance(b.to_point()) < 1e-12;
+        let closed = "M0,0 L10,30 50,20 60,-10 20,-40 Z";
+        let cubic = spline(closed, 3).unwrap();
+        let quadratic = spline(closed, 2).unwrap();
+        assert!(cubic.len() == 5 && quadratic.len() == 5);
+        for i in 0..5 {
+            assert!(near(cubic[i][0], (v(i + 4) + 4.0 * v(i) + v(i + 1)) / 6.0));
+            assert!(near(quadratic[i][0], (v(i) + v(i + 1)) / 2.0));
+            assert_eq!(cubic[i][3], cubic[(i + 1) % 5][0]);
+        }
+        let open = spline("M0,0 L10,30 50,20 60,-10 20,-40", 3).unwrap();
+        assert!(open.len() == 2 && open[0][0] == p[0] && open[1][3] == p[4]);
+        for (s, a, b) in [(&cubic, 0, 1), (&cubic, 2, 3), (&cubic, 4, 0), (&open, 0, 1)] {
+            let (a, b) = (&s[a], &s[b]);
+            let off = |a: Vec2, b: Vec2| (a - b).hypot();
+            // The second derivative of the open one jumps nowhere either: its inner knot is simple and its cells equally wide.
+            assert!(off(a[3] - a[2], b[1] - b[0]) < 1e-12);
+            assert!(off((a[3] - a[2]) - (a[2] - a[1]), (b[2] - b[1]) - (b[1] - b[0])) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn too_few_points_are_an_error() {
+        for (d, degree) in [("M0,0 L5,5 Z", 2), ("M0,0 L9,0", 2)] {
+            assert!(spline(d, degree).is_err(), "{d}");
+        }
+        assert!(spline("M0,0 L1,1 5,0", 3).err().unwrap().to_string().contains("at least 4 anchors"));
+    }
+}

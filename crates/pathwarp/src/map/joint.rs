@@ -1,0 +1,66 @@
+//! Joints of strips F = C + v·S (+ w·T in space): the conditions of Y.-K. Chang and A. Rockwood, *A generalized de Casteljau approach to 3D
+//! free-form deformation* (SIGGRAPH 1994), equations 4 and 5.
+
+/// How lines along a skeleton meet at a joint of its pieces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    place: String,
+    /// The angles (radians) of the skeleton's kink, and of the worst beside it.
+    on: f64,
+    beside: f64,
+    /// Derivatives are continuous, not only directions.
+    even: bool,
+}
+
+impl Joint {
+    /// Below this angle a kink is invisible.
+    const UNSEEN: f64 = 5e-3;
+
+    /// Compares derivatives along lines before and after a joint: `lines` has those of the skeleton, then those beside it. A line that
+    /// runs backwards is on a fold, a fault of its own, and left out.
+    #[must_use]
+    pub fn new<const D: usize>(place: String, lines: &[[[f64; D]; 2]]) -> Self {
+        let dot = |p: &[f64; D], q: &[f64; D]| p.iter().zip(q).map(|(a, b)| a * b).sum::<f64>();
+        let apart = |p: &[f64; D], q: &[f64; D]| p.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let unit = |p: &[f64; D]| p.map(|v| v / dot(p, p).sqrt());
+        let kink = |[p, q]: &[[f64; D]; 2]| 2.0 * (0.5 * apart(&unit(p), &unit(q))).min(1.0).asin();
+        let straight = |l: &&[[f64; D]; 2]| l.iter().all(|p| dot(p, &lines[0][0]) > 0.0);
+        let all = || lines.iter().filter(straight);
+        let same = |[p, q]: &[[f64; D]; 2]| apart(p, q) <= 1e-6 * (dot(p, p).sqrt() + dot(q, q).sqrt());
+        Self { place, on: kink(&lines[0]), beside: all().map(kink).fold(0.0, f64::max), even: all().all(same) }
+    }
+
+    /// Returns `true` if the skeleton is smooth and lines beside it are not.
+    fn kinks(&self) -> bool {
+        self.on <= Self::UNSEEN && self.beside > Self::UNSEEN
+    }
+
+    /// Describes the joint in a sentence.
+    #[must_use]
+    pub fn described(&self) -> String {
+        let what = match self {
+            _ if self.on > Self::UNSEEN => "C⁰: a corner",
+            _ if self.kinks() => {
+                "G¹ on the skeleton only: beside it, lines along the skeleton have a kink (handles condition)"
+            }
+            _ if self.even => "C¹: smooth",
+            _ => "G¹: directions are continuous, but lengths are stretched differently on both sides",
+        };
+        format!("joint at {} is {what}", self.place)
+    }
+
+    /// Returns a warning about the joints with kinks beside a smooth skeleton, if there are any.
+    #[must_use]
+    pub fn warning(joints: &[Self]) -> Option<String> {
+        let kinks = || joints.iter().filter(|j| j.kinks());
+        let worst = kinks().reduce(|a, b| if b.beside > a.beside { b } else { a })?;
+        Some(format!(
+            "bend: beside the skeleton, lines along it have kinks at {} of {} joints, the worst of {:.1}° at {}: the handles \
+on both sides of a smooth joint must change alike (equations 4 and 5 of the paper); default handles do",
+            kinks().count(),
+            joints.len(),
+            worst.beside.to_degrees(),
+            worst.place
+        ))
+    }
+}
