@@ -2,13 +2,13 @@
 //!
 //! Over a tetrahedron δ(u) = Σ δᵢ·n!/(i!j!k!l!)·u₀ⁱu₁ʲu₂ᵏu₃ˡ in barycentric coordinates, over a box the tensor product of
 //! Bernstein polynomials. A *sheet*, a triangle or a rectangle, gives every point the δ of its ray: the barycentric coordinates of
-//! a point's projection from O onto a triangle are u'ᵢ/Σu' with p − O = Σ u'ᵢ·(bᵢ − O), which are linear in p.
+//! a point's projection from O onto a triangle are u'ᵢ/Σu' with (p, 1) = Σ u'ᵢ·(bᵢ, 1) + t·O, which are linear in p.
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), equations 6, 8 and 10.
 
-use super::reference::Reference3;
-use crate::map::{Chart, Creases3, Local, Poly3, Tensor};
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use super::reference::{Eye3, Reference3};
+use crate::map::{Chart, Local, Poly3, Tensor};
+use glam::{DMat4, DVec3, DVec4};
 
 /// Highest degree.
 pub(super) const MAX_DEGREE: usize = 10;
@@ -23,7 +23,7 @@ pub(super) enum Dilation3 {
     /// Over a box.
     Cuboid { local: Local, tensor: Tensor<1> },
     /// Over a rectangle seen from the eye: on the plane where coordinate `axis` is `at`.
-    Rectangle { eye: DVec3, axis: usize, at: f64, local: Local, tensor: Tensor<1> },
+    Rectangle { eye: Eye3, axis: usize, at: f64, local: Local, tensor: Tensor<1> },
 }
 
 /// A polynomial in barycentric coordinates.
@@ -75,7 +75,7 @@ impl Simplex {
 
 impl Dilation3 {
     /// Makes δ over a reference from its values at the control points, in the order of the reference's nodes.
-    pub(super) fn new(reference: &Reference3, eye: DVec3, values: &[f64]) -> Self {
+    pub(super) fn new(reference: &Reference3, eye: Eye3, values: &[f64]) -> Self {
         let simplex = |n: usize| Simplex::new(n, reference.nodes().into_iter().zip(values.iter().copied()));
         let tensor = |size: [usize; 3]| Tensor::bernstein(size, values.iter().map(|v| [*v]).collect());
         match *reference {
@@ -85,10 +85,16 @@ impl Dilation3 {
                 Self::Tetrahedron { forms: [0, 1, 2, 3].map(|i| inverse.row(i)), terms: simplex(n) }
             }
             Reference3::Triangle([a, b, c], n) => {
-                let inverse = DMat3::from_cols(a - eye, b - eye, c - eye).inverse();
-                let form = |g: DVec3| g.extend(-g.dot(eye));
-                let [f, g, h] = [0, 1, 2].map(|i| form(inverse.row(i)));
+                // p = Σ u'ᵢ·bᵢ + t·O in homogeneous coordinates.
+                let inverse =
+                    DMat4::from_cols(a.extend(1.0), b.extend(1.0), c.extend(1.0), eye.homogeneous()).inverse();
+                let [f, g, h] = [0, 1, 2].map(|i| inverse.row(i));
                 Self::Triangle { forms: [f, g, h, f + g + h], terms: simplex(n) }
+            }
+            // Its map is that of a rational lattice; here only its box counts.
+            Reference3::Spline(b, ..) => {
+                let local = Local { middle: b.center(), scale: 2.0 / b.size() };
+                Self::Cuboid { local, tensor: Tensor::bernstein([1; 3], vec![[1.0]]) }
             }
             Reference3::Cuboid(b, degree) => {
                 let local = Local { middle: b.center(), scale: 2.0 / b.size() };
@@ -128,6 +134,17 @@ impl Dilation3 {
                 (value, DVec3::new(x, y, z) * local.scale)
             }
             Self::Rectangle { eye, axis, at, local, tensor } => {
+                let eye = match *eye {
+                    Eye3::At(eye) => eye,
+                    Eye3::Infinite(v) => {
+                        // q = p − v·(pₐ − at)/vₐ.
+                        let q = p - v * ((p[*axis] - at) / v[*axis]);
+                        let [[value, x, y, z]] = tensor.jet((q - local.middle) * local.scale);
+                        let mut gradient = DVec3::new(x, y, z) * local.scale;
+                        gradient[*axis] -= gradient.dot(v) / v[*axis];
+                        return (value, gradient);
+                    }
+                };
                 let (ray, depth) = (p - eye, p[*axis] - eye[*axis]);
                 let t = (at - eye[*axis]) / depth;
                 if t.is_nan() || t <= 0.0 {
@@ -167,6 +184,18 @@ impl Dilation3 {
                 (delta, Poly3::constant(1.0))
             }
             Self::Rectangle { eye, axis, at, local, tensor } => {
+                let eye = match *eye {
+                    Eye3::At(eye) => eye,
+                    Eye3::Infinite(v) => {
+                        let coordinate = |a: usize| {
+                            let k = v[a] / v[*axis];
+                            let form = (DVec3::AXES[a] - DVec3::AXES[*axis] * k).extend(at * k - local.middle[a]);
+                            chart.linear(form * local.scale[a])
+                        };
+                        let [delta] = tensor.in_terms_of(&[0, 1, 2].map(coordinate));
+                        return (delta, Poly3::constant(1.0));
+                    }
+                };
                 // A ray meets the plane at O + (p − O)·d/(p − O)ₐ. Multiplying by the depth (p − O)ₐ makes this homogeneous.
                 let depth = chart.linear(DVec3::AXES[*axis].extend(-eye[*axis]));
                 let d = at - eye[*axis];
@@ -203,12 +232,25 @@ impl Dilation3 {
             Self::Tetrahedron { forms, .. } => forms.to_vec(),
             Self::Triangle { forms, .. } => forms[..3].to_vec(),
             Self::Cuboid { .. } => {
-                let Reference3::Cuboid(b, _) = reference else { return Vec::new() };
+                let (Reference3::Cuboid(b, _) | Reference3::Spline(b, ..)) = reference else { return Vec::new() };
                 let side = |a: usize, sign: f64, at: f64| (DVec3::AXES[a] * sign).extend(-sign * at);
                 (0..3).flat_map(|a| [side(a, 1.0, b.min[a]), side(a, -1.0, b.max[a])]).collect()
             }
             Self::Rectangle { eye, axis, at, .. } => {
                 let Reference3::Rectangle(b, ..) = reference else { return Vec::new() };
+                let eye = match eye {
+                    Eye3::At(eye) => eye,
+                    Eye3::Infinite(v) => {
+                        let mut out = Vec::new();
+                        for a in (0..3).filter(|a| a != axis) {
+                            let k = v[a] / v[*axis];
+                            let form = (DVec3::AXES[a] - DVec3::AXES[*axis] * k).extend(at * k);
+                            out.push(form - DVec4::W * b.min[a]);
+                            out.push(DVec4::W * b.max[a] - form);
+                        }
+                        return out;
+                    }
+                };
                 let d = at - eye[*axis];
                 // (p − O)ₐ·d ≥ 0 and, for the other axes, (min − O)·(p − O)ₐ/d ≤ p − O ≤ (max − O)·(p − O)ₐ/d.
                 let form = |g: DVec3| g.extend(-g.dot(*eye));
@@ -239,14 +281,5 @@ impl Dilation3 {
     /// Whether δ is constant along rays.
     pub(super) fn is_sheet(&self) -> bool {
         matches!(self, Self::Triangle { .. } | Self::Rectangle { .. })
-    }
-
-    /// Adds the boundary of the domain, which is where δ > 0.
-    pub(super) fn edge(&self, out: &mut Creases3) {
-        let own = self.clone();
-        out.edge(move |p| {
-            let delta = own.at(p);
-            if delta.is_nan() { -1.0 } else { delta }
-        });
     }
 }

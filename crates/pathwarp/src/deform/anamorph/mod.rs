@@ -19,22 +19,25 @@
 //! geometry*, Computing 79 (2007).
 
 mod dilation;
+mod mirror;
 mod net;
 mod scene;
 mod surface;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SpaceFile};
+use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Place, Role, SightMark, SpaceFile};
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Settings, parameters};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
+use mirror::{Part, Reflection};
 use net::{Push, PushedNet};
-use scene::Scene;
+use scene::{Eye, Scene, measured};
 use std::sync::Arc;
 use surface::{Anamorphosis, Camera, Radial, Surface};
 
+pub use mirror::{Mirror, MirrorShape};
 pub use surface::Onto;
 
 parameters! {
@@ -54,7 +57,8 @@ parameters! {
     /// ```
     #[derive(Debug, Clone, PartialEq)]
     pub struct Anamorph(s) {
-        /// Position of the eye, in the drawing or straight in front of this point.
+        /// Position of the eye, in the drawing or straight in front of this point; or inf:DX,DY[,DZ], infinitely far away in this
+        /// direction, DZ in front of the drawing, or inf: and two angles to the right and up, such as inf:30deg,20deg.
         param = new("eye", Kind::Point).default("50%,50%");
         /// Distance of the eye in front of the drawing. Without it the eye lies in the drawing.
         distance: Option<f64> = length("distance", Axis::X).within(1e-6, 1e9).slider(10.0, 2000.0);
@@ -66,6 +70,13 @@ parameters! {
         length: Option<f64> = length("length", Axis::Y).within(1e-6, 1e9).slider(10.0, 40000.0);
         /// The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above.
         param = new("onto", Kind::Text("SURFACE"));
+        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as below.
+        param = new("mirror", Kind::Text("SHAPE"));
+        /// Place of the mirror's foot on the page, such as on the photograph of a drawing that --inverse restores. Default: below
+        /// the artwork's middle.
+        param = new("foot", Kind::Point);
+        /// Draw beside the result where the eye belongs, with its distance and height, and the mirror's foot.
+        sight_mark: bool = flag("sight-mark");
         /// Give the eye's view.
         param = flag("seen");
         /// Give the view from here, Z in front of the drawing, looking at its middle.
@@ -80,9 +91,9 @@ parameters! {
         param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
         /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
         param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
-        /// Takes this point to so many times its distance from the eye, by pushing the control point nearest to it that is not on
+        /// Takes this point to so many times its distance from the eye, or a length with its unit further, by pushing the control point nearest to it that is not on
         /// a fixed side: the first side of a triangle, the edge of a box if --local.
-        param = new("point", Kind::Text("X,Y:FACTOR")).repeated();
+        param = new("point", Kind::Text("X,Y:FACTOR|LENGTH")).repeated();
         /// Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance.
         param = new("mesh", Kind::Save);
         /// Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance.
@@ -90,9 +101,10 @@ parameters! {
         /// Move only artwork inside the reference.
         local: bool = flag("local");
         let frame: Rect = s.frame().rect;
-        let eye: Point = s.point("eye")?;
+        let eye: Eye = eye(s)?;
         let eye_given: bool = s.given("eye");
         let onto: Option<Onto> = s.texts("onto").pop().map(|text| onto(s, text)).transpose()?;
+        let mirror: Option<Mirror> = mirror(s)?;
         let look: Look = look(s)?;
         let net: Option<PushedNet> = net(s)?;
         let files: Vec<SpaceFile> = files(s, "mesh", true).chain(files(s, "curves", false)).collect();
@@ -121,9 +133,13 @@ impl Anamorph {
 
     setters! {
         /// Sets the eye, or its foot in the drawing.
-        eye(eye: impl Into<Point>) => eye: eye.into(), eye_given: true;
+        eye(eye: impl Into<Point>) => eye: Eye::At(eye.into(), 0.0), eye_given: true;
+        /// Puts the eye at infinity in a direction: in the drawing's plane if z is 0, otherwise z in front of it.
+        eye_at_infinity(x: f64, y: f64, z: f64) => eye: Eye::Infinite([x, y, -z]), eye_given: true;
         /// Sets the surface that the artwork is projected onto. Needs the [`distance`](Self::distance).
         onto(surface: Onto) => onto: Some(surface);
+        /// Sets the mirror in which the artwork appears.
+        mirror(mirror: Mirror) => mirror: Some(mirror);
         /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
         view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
@@ -172,6 +188,13 @@ impl Anamorph {
         self.with_net(|net| net.pushes.push(Push::To(node, to)))
     }
 
+    /// Takes a point this much further from the eye, user units, by one control point near it.
+    #[must_use]
+    pub fn prescribe_away(self, point: impl Into<Point>, length: f64) -> Self {
+        let point = point.into();
+        self.with_net(|net| net.pushes.push(Push::PrescribeAway(point, length)))
+    }
+
     /// Takes a point to this many times its distance from the eye, by one control point near it.
     #[must_use]
     pub fn prescribe(self, point: impl Into<Point>, factor: f64) -> Self {
@@ -186,14 +209,157 @@ impl Anamorph {
     /// that a ray misses or that cannot be laid flat.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        match self.distance {
-            Some(distance) => self.in_front(distance),
-            None => self.in_plane(),
+        if let Some(mirror) = self.mirror {
+            return self.reflected(mirror);
+        }
+        match (self.eye, self.distance) {
+            (Eye::At(foot, _), Some(distance)) => self.in_front(Eye::At(foot, distance)),
+            (Eye::At(foot, _), None) => self.in_plane(Eye::At(foot, 0.0)),
+            (Eye::Infinite(_), Some(_)) => {
+                Err(Error::usage("distance", "", "is infinite for this `eye`; omit one of them"))
+            }
+            (Eye::Infinite(towards), None) => {
+                let eye = Eye::Infinite(direction(towards)?);
+                match towards[2] {
+                    0.0 => self.in_plane(eye),
+                    z if z < -1e-9 * surface::length(towards) => self.in_front(eye),
+                    _ => Err(Error::usage("eye", "", "is behind the picture; DZ must be positive, in front of it")),
+                }
+            }
         }
     }
 
+    /// Builds the map onto the table under a mirror.
+    fn reflected(&self, mirror: Mirror) -> Result<Built, Error> {
+        let others = [
+            ("onto", self.onto.is_some()),
+            ("view", self.look != Look::Unrolled),
+            (self.net.as_ref().and_then(|n| n.pushes.first()).map_or("reference", |p| p.param()), self.net.is_some()),
+            ("length", self.length.is_some()),
+            ("local", self.local),
+        ];
+        if let Some((name, _)) = others.iter().find(|o| o.1) {
+            return Err(Error::usage(
+                name,
+                "",
+                "does not go with `mirror`, whose drawing lies on the table; omit one of them",
+            ));
+        }
+        let eye = match (self.eye, self.distance, self.eye_height) {
+            (Eye::Infinite(towards), None, None) => Eye::Infinite(direction(towards)?),
+            (Eye::Infinite(_), ..) => {
+                return Err(Error::usage("eye", "", "is at infinity; omit `distance` and `eye-height`"));
+            }
+            // Straight above the mirror.
+            (Eye::At(foot, _), None, Some(_)) => Eye::At(foot, 0.0),
+            (Eye::At(foot, _), Some(distance), _) => Eye::At(foot, distance),
+            (Eye::At(..), None, None) => {
+                let hint =
+                    "the eye's distance in front of the mirror, or `eye-height` alone for an eye straight above it";
+                return Err(Error::missing("distance", hint));
+            }
+        };
+        let mut scene = self.scene(eye)?;
+        if let (Eye::At(_, distance), Some(height)) = (eye, self.eye_height) {
+            scene.eye = Eye::At(mirror.anchor(scene.frame) - Vec2::new(0.0, height), distance);
+        }
+        let cast = Reflection::new(mirror, &scene)?;
+        let tip = cast.check()?;
+        let map: Arc<dyn Map> = Arc::new(cast.clone());
+        let mut built =
+            Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
+        let units = self.units_per_px;
+        built.note(scene.size(&*map, units));
+        let needed = cast.needed_height();
+        if needed > 0.0 {
+            built.note(format!("the mirror shows it up to {} above its foot", measured(needed, units)));
+        }
+        if tip.is_some() {
+            built.warn("the cone's tip shows inside the artwork's box: what covers it lacks the outer edge; leave a hole there");
+        }
+        let scale = scene.scale;
+        let fault = cast.clone();
+        built.undefined = Some(Arc::new(move |p| {
+            let (v, why) = fault.fault(scale * p);
+            (v.is_nan() || v <= 0.0).then(|| why.to_owned())
+        }));
+        let part = |what: Part, scale: Affine| -> Place {
+            let cast = cast.clone();
+            Arc::new(move |p| cast.in_space(what, scale * p).filter(|q| q.iter().all(|v| v.is_finite())))
+        };
+        let unit = Rect::new(0.0, 0.0, 1.0, 1.0);
+        let all = scene.extent(&*map).union(cast.footprint().bounding_box());
+        let (room, foot) = (all.inflate(0.05 * all.width(), 0.05 * all.height()), cast.foot);
+        // The sheet lies a hair under the drawing.
+        let hair = 1e-3 * cast.height();
+        let sheet: Place = Arc::new(move |p| Some([p.x - foot.x, hair, foot.y - p.y]));
+        let besides = vec![
+            ("table", Some(room), sheet),
+            ("mirror", Some(unit), part(Part::Mirror(cast.height()), Affine::IDENTITY)),
+            ("seen", None, part(Part::Picture, scale)),
+        ];
+        built.space = Some(InSpace { place: part(Part::Table, scale), besides, files: self.files.clone() });
+        if self.sight_mark {
+            let (at, label) = match cast.eye() {
+                Some((at, [distance, height])) => {
+                    let [distance, height] = [distance, height].map(|v| measured(v, units));
+                    (at, format!("eye {height} above the table, {distance} from the mirror's middle"))
+                }
+                None => {
+                    let Eye::Infinite([x, y, z]) = eye else { return Ok(built) };
+                    (foot + Vec2::new(x, -z) * 1e9, far_away(-y))
+                }
+            };
+            let mut sight = scene::mark(at, label, all, units);
+            sight.path.extend(cast.footprint());
+            built.sight = Some(sight);
+        }
+        built.overlay(Role::Base, self.frame.to_path(0.1));
+        built.overlay(Role::Cage, cast.footprint());
+        if let Some(path) = scene.outline(&*map) {
+            built.overlay(Role::Target, path);
+        }
+        Ok(built)
+    }
+
+    /// Marks the place of the eye beside the image on a surface that was laid flat.
+    fn sighted(&self, cast: &Anamorphosis, scene: &Scene, map: &dyn Map) -> Result<Option<SightMark>, Error> {
+        if !self.sight_mark {
+            return Ok(None);
+        }
+        if self.look != Look::Unrolled {
+            return Err(Error::usage("sight-mark", "", "is for what is printed; omit it, or `view` and `seen`"));
+        }
+        let units = self.units_per_px;
+        let (at, label) = match (&cast.surface, scene.eye) {
+            (Surface::Plane(p), eye) => {
+                let Some((at, height)) = p.nearest(eye) else { return Ok(None) };
+                match eye {
+                    Eye::At(..) => (at, format!("eye {} straight above this mark", measured(height, units))),
+                    Eye::Infinite(_) => (at, far_away(height)),
+                }
+            }
+            (Surface::Round(r), Eye::At(foot, distance)) => {
+                // Straight in front of the axis at the eye's height.
+                let k = distance / (distance + r.axis());
+                let front = match r.level {
+                    true => Point::new(foot.x, foot.y + (r.middle.y - foot.y) * k),
+                    false => Point::new(foot.x + (r.middle.x - foot.x) * k, foot.y),
+                };
+                let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
+                (map.point(front), format!("eye {} in front of this mark", measured(apart, units)))
+            }
+            (_, Eye::At(..)) => return Ok(None),
+            (_, Eye::Infinite([x, y, z])) => {
+                let [right, up] = [x.atan2(-z), (-y).asin()].map(f64::to_degrees);
+                (map.point(scene.frame.center()), format!("eye far away, {right:.1}° to the right and {up:.1}° up"))
+            }
+        };
+        Ok(Some(scene::mark(at, label, scene.extent(map), units)))
+    }
+
     /// Builds the map for an eye in the plane of the drawing.
-    fn in_plane(&self) -> Result<Built, Error> {
+    fn in_plane(&self, eye: Eye) -> Result<Built, Error> {
         let needs_distance = [
             ("onto", self.onto.is_some()),
             ("view", matches!(self.look, Look::From(_))),
@@ -210,16 +376,27 @@ impl Anamorph {
                 format!("the eye's distance in front of the drawing; `{name}` needs it"),
             ));
         }
-        let scene = Scene { frame: self.frame, scale: Affine::IDENTITY, eye: self.eye };
-        let dilation = self.net.clone().unwrap_or_default().dilation(&scene, 0.0, self.local)?;
-        let map = dilation.about(scene.eye, self.local);
-        let pushed = dilation.lines(|p, delta| scene.eye + (p - scene.eye) / delta);
+        let scene = Scene { frame: self.frame, scale: Affine::IDENTITY, eye };
+        let dilation = self.net.clone().unwrap_or_default().dilation(&scene, self.local)?;
+        let map = dilation.about(eye, self.local);
+        let pushed = dilation.lines(|p, delta| match eye {
+            Eye::At(eye, _) => eye + (p - eye) / delta,
+            Eye::Infinite([x, y, _]) => p + Vec2::new(x, y) * (delta - 1.0),
+        });
         let map: Arc<dyn Map> = if self.local {
             Arc::new(Local::new(&dilation.reference().corners(), Arc::new(map)))
         } else {
             map.simplest()
         };
-        let mut built = Built::new(map);
+        let mut built = Built::new(Arc::clone(&map));
+        if self.sight_mark {
+            let at = match eye {
+                Eye::At(at, _) => at,
+                Eye::Infinite([x, y, _]) => scene.frame.center() + Vec2::new(x, y) * 1e9,
+            };
+            let all = scene.extent(&*map);
+            built.sight = Some(scene::mark(at, "eye, in the plane of the drawing".into(), all, self.units_per_px));
+        }
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
         }
@@ -229,40 +406,40 @@ impl Anamorph {
     }
 
     /// Builds the map for an eye in front of the drawing.
-    fn in_front(&self, distance: f64) -> Result<Built, Error> {
+    fn in_front(&self, eye: Eye) -> Result<Built, Error> {
         if self.local {
             return Err(Error::usage("local", "", "is for an eye in the drawing, without `distance`"));
         }
-        let scene = self.scene(distance)?;
-        let foot = scene.eye;
+        let scene = self.scene(eye)?;
         let surface = match (self.onto, &self.net) {
             (Some(_), Some(net)) => {
                 let name = net.pushes.first().map_or("reference", |p| p.param());
                 return Err(Error::usage(name, "", "moves control points, but `onto` has the surface already"));
             }
-            (Some(onto), None) => onto.surface(&scene, distance)?,
+            (Some(onto), None) => onto.surface(&scene)?,
             // Without control points, the sheet in front of the eye is the drawing itself.
             (None, None) if self.look == Look::Unrolled => {
                 let hint = "the surface in front of the eye, such as cylinder:radius=40mm; or bend a sheet there, with `push` or `at`";
                 return Err(Error::missing("onto", hint));
             }
             (None, net) => {
-                let dilation = net.clone().unwrap_or_default().dilation(&scene, distance, self.local)?;
-                let flat = net::flat(&dilation, foot, distance);
+                let dilation = net.clone().unwrap_or_default().dilation(&scene, self.local)?;
+                let flat = net::flat(&dilation, scene.eye);
                 flat.map_or_else(|| Surface::Radial(Radial::net(&dilation)), Surface::Plane)
             }
         };
-        let cast = Anamorphosis { foot, distance, surface };
+        let cast = Anamorphosis { eye: scene.eye, surface };
         surface::check_met(self.onto, &cast, scene.frame)?;
         let map = self.shown(&cast, &scene)?;
         let mut built =
             Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
-        let (scale, solid) = (scene.scale, cast);
+        let (scale, solid) = (scene.scale, cast.clone());
         let place = Arc::new(move |p| {
             let p = scale * p;
             (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
-        built.space = Some(InSpace { place, files: self.files.clone() });
+        built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
+        built.sight = self.sighted(&cast, &scene, &*map)?;
         built.note(scene.size(&*map, self.units_per_px));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
@@ -293,7 +470,7 @@ impl Anamorph {
     }
 
     /// Returns the artwork at its apparent size, and the eye.
-    fn scene(&self, distance: f64) -> Result<Scene, Error> {
+    fn scene(&self, eye: Eye) -> Result<Scene, Error> {
         let drawn = self.frame;
         if self.eye_height.is_some() && self.eye_given {
             return Err(Error::usage("eye-height", "", "and `eye` both place the eye; give one"));
@@ -303,7 +480,7 @@ impl Anamorph {
                 return Err(Error::usage("length", "", "and `picture-width` both size the artwork; give one"));
             }
             (Some(w), None) => w / drawn.width(),
-            (None, Some(length)) => surface::scale_for(self.onto, length, drawn.height(), self.eye_height, distance)?,
+            (None, Some(length)) => surface::scale_for(self.onto, length, drawn.height(), self.eye_height, eye)?,
             (None, None) => 1.0,
         };
         if !k.is_finite() || k <= 0.0 {
@@ -311,12 +488,27 @@ impl Anamorph {
         }
         let anchor = Point::new(drawn.center().x, drawn.y1);
         let scale = if k == 1.0 { Affine::IDENTITY } else { Affine::scale_about(k, anchor) };
-        let eye = match self.eye_height {
-            Some(h) => anchor - Vec2::new(0.0, h),
-            None => scale * self.eye,
+        let eye = match (eye, self.eye_height) {
+            (Eye::At(_, distance), Some(h)) => Eye::At(anchor - Vec2::new(0.0, h), distance),
+            (Eye::At(foot, distance), None) => Eye::At(scale * foot, distance),
+            (infinite, _) => infinite,
         };
         Ok(Scene { frame: scale.transform_rect_bbox(drawn), scale, eye })
     }
+}
+
+/// Returns the unit vector of a direction.
+fn direction(towards: [f64; 3]) -> Result<[f64; 3], Error> {
+    let size = surface::length(towards);
+    if (1e-100..1e100).contains(&size) {
+        return Ok(towards.map(|v| v / size));
+    }
+    Err(Error::usage("eye", "", "has no direction; give one, such as inf:1,0,2"))
+}
+
+/// Describes an eye at infinity by the sine of its elevation.
+fn far_away(sine: f64) -> String {
+    format!("eye far away in this direction, {:.1}° above the sheet", sine.clamp(-1.0, 1.0).asin().to_degrees())
 }
 
 static INFO: Info = Info::new("anamorph", "draw artwork that looks right from one place: road markings, mugs, domes")
@@ -340,6 +532,13 @@ sphere:radius=60mm     a ball; it cannot be laid flat, so it needs --view\n  \
 sphere:eye             a dome with the eye on its near pole: lines become circles\n\
 Add `,inside` to a cylinder, cone or sphere to see it from within, `,level` to a cylinder to lay it down. --seen gives the eye's view, \
 which is the artwork itself; --view the view from elsewhere.\n\n\
+In a mirror (--mirror): the artwork appears in a mirror that stands on a table, from the eye at --distance in front of it and \
+--eye-height above the table (without --distance straight above it). The result is the drawing on the table, seen from above with the \
+viewer at the bottom; lay it out with --sight-mark, which draws the mirror's foot:\n  \
+cylinder:diameter=60mm  the artwork stands in it; note: its height follows from --explain\n  \
+cone:diameter=60mm,height=80mm  seen from above, around it; leave a hole in the middle for the tip\n  \
+sphere:diameter=80mm    the artwork appears below its middle\n\
+Add `,lift=10mm` to raise the artwork, `,tilt=10` to lean a cylinder or cone away from you.\n\n\
 In the plane: without --distance the eye lies in the drawing, and control points are pushed towards it or away from it (--push, \
 --away, --at, --point). They lie over a --reference triangle or box. With --distance the same pushes bend a sheet in front of the eye: \
 flat for a triangle of degree 1, otherwise shown with --view.")
@@ -366,6 +565,14 @@ flat for a triangle of degree 1, otherwise shown with --view.")
         Example {
             what: "A paper cup",
             command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top-diameter=90mm,bottom-diameter=60mm,height=100mm -o out.svg",
+        },
+        Example {
+            what: "A word that shows in a mirror, 60 mm thick, with marks for the mirror and the eye",
+            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit page -o out.svg",
+        },
+        Example {
+            what: "A relief that is right in a parallel projection from above on the left",
+            command: "anamorph samples/logo.svg --eye inf:-1,-2,3 --onto plane:floor --fit page -o out.svg",
         },
         Example {
             what: "Into a dome, as another visitor sees it",
@@ -431,15 +638,37 @@ const LOCAL: Pairs =
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     // The surface as typed, rather than in user units.
-    Anamorph::read(s)?.build().map_err(|e| match (e, s.texts("onto").pop()) {
-        (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
-        (e, _) => e,
+    Anamorph::read(s)?.build().map_err(|e| match e {
+        Error::Usage { param, value, problem, advice } => {
+            let typed = ["onto", "mirror"].iter().find(|n| **n == param).and_then(|n| s.texts(n).pop());
+            Error::Usage { value: typed.map_or(value, str::to_owned), param, problem, advice }
+        }
+        e => e,
     })
 });
 
 /// The files that a parameter asks for.
 fn files(s: &Settings<'_>, param: &'static str, filled: bool) -> impl Iterator<Item = SpaceFile> {
     s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
+}
+
+fn eye(s: &Settings<'_>) -> Result<Eye, Error> {
+    let Some(text) = s.texts("eye").pop().filter(|t| t.starts_with("inf")) else {
+        return Ok(Eye::At(s.point("eye")?, 0.0));
+    };
+    let wrong =
+        || Error::usage("eye", text, "is not inf:DX,DY, inf:DX,DY,DZ or inf: and two angles such as 30deg,20deg");
+    let parts: Vec<&str> = text.strip_prefix("inf:").ok_or_else(wrong)?.split(',').map(str::trim).collect();
+    let number = |text: &str| s.number_in("eye", text);
+    Ok(Eye::Infinite(match parts[..] {
+        [right, up] if right.ends_with(char::is_alphabetic) => {
+            let [right, up] = [s.angle_in("eye", right)?.to_radians(), s.angle_in("eye", up)?.to_radians()];
+            [right.sin() * up.cos(), -up.sin(), -right.cos() * up.cos()]
+        }
+        [x, y] => [number(x)?, number(y)?, 0.0],
+        [x, y, z] => [number(x)?, number(y)?, -number(z)?],
+        _ => return Err(wrong()),
+    }))
 }
 
 fn look(s: &Settings<'_>) -> Result<Look, Error> {
@@ -489,7 +718,12 @@ fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
     }
     for text in s.texts("point") {
         let (place, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
-        pushes.push(Push::Prescribe(s.point_in("point", place)?, s.number_in("point", factor)?));
+        let (p, is_length) = (s.point_in("point", place)?, factor.trim().ends_with(char::is_alphabetic));
+        pushes.push(if is_length {
+            Push::PrescribeAway(p, s.length_in("point", factor, Axis::Diagonal)?)
+        } else {
+            Push::Prescribe(p, s.number_in("point", factor)?)
+        });
     }
     Ok(Some(PushedNet { reference: reference.unwrap_or_default(), degree, pushes }))
 }
@@ -503,17 +737,18 @@ fn degree(text: &str, part: &str) -> Result<usize, Error> {
 
 /// The parts of `KIND:WORD,NAME=VALUE,…`.
 struct Words<'t> {
+    param: &'static str,
     text: &'t str,
     kind: &'t str,
     list: Vec<(&'t str, Option<&'t str>)>,
 }
 
 impl<'t> Words<'t> {
-    fn new(text: &'t str) -> Self {
+    fn new(param: &'static str, text: &'t str) -> Self {
         let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
         let list = rest.split(',').map(str::trim).filter(|w| !w.is_empty());
         let list = list.map(|w| w.split_once('=').map_or((w, None), |(n, v)| (n.trim(), Some(v.trim()))));
-        Self { text, kind: kind.trim(), list: list.collect() }
+        Self { param, text, kind: kind.trim(), list: list.collect() }
     }
 
     fn has(&self, name: &str) -> bool {
@@ -525,7 +760,7 @@ impl<'t> Words<'t> {
     }
 
     fn wrong(&self, problem: impl Into<String>) -> Error {
-        Error::usage("onto", self.text, problem)
+        Error::usage(self.param, self.text, problem)
     }
 
     /// Refuses all but these words.
@@ -550,7 +785,7 @@ impl<'t> Words<'t> {
 
     fn size(&self, s: &Settings<'_>, name: &str) -> Result<Option<f64>, Error> {
         let Some(text) = self.value(name) else { return Ok(None) };
-        let v = s.length_in("onto", text, Axis::X)?;
+        let v = s.length_in(self.param, text, Axis::X)?;
         if v > 0.0 && v < 1e9 { Ok(Some(v)) } else { Err(self.wrong(format!("has a {name} that is not positive"))) }
     }
 
@@ -572,7 +807,7 @@ impl<'t> Words<'t> {
 
 /// Reads the surface.
 fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
-    let w = Words::new(text);
+    let w = Words::new("onto", text);
     match w.kind {
         "plane" => plane(s, &w),
         "cylinder" => {
@@ -609,6 +844,36 @@ fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
         }
         _ => Err(w.wrong("is not a surface; there are plane:…, cylinder:…, cone:… and sphere:…")),
     }
+}
+
+/// Reads the mirror.
+fn mirror(s: &Settings<'_>) -> Result<Option<Mirror>, Error> {
+    let at = if s.given("foot") { Some(s.point("foot")?) } else { None };
+    let Some(text) = s.texts("mirror").pop() else {
+        let missing = || Error::missing("mirror", "the mirror whose foot this is");
+        return if at.is_some() { Err(missing()) } else { Ok(None) };
+    };
+    let w = Words::new("mirror", text);
+    let known = ["radius", "diameter", "height", "lift", "tilt"];
+    let shape = match w.kind {
+        "cylinder" => {
+            w.only(&[], &known)?;
+            MirrorShape::Cylinder(w.radius(s)?, w.size(s, "height")?)
+        }
+        "cone" => {
+            w.only(&[], &known)?;
+            let height = w.size(s, "height")?.ok_or_else(|| w.wrong("needs height=…, such as height=60mm"))?;
+            MirrorShape::Cone(w.radius(s)?, height)
+        }
+        "sphere" => {
+            w.only(&[], &["radius", "diameter", "lift"])?;
+            MirrorShape::Sphere(w.radius(s)?)
+        }
+        _ => return Err(w.wrong("is not a mirror; there are cylinder:…, cone:… and sphere:…")),
+    };
+    let tilt = w.value("tilt").map_or(Ok(0.0), |text| s.angle_in("mirror", text))?;
+    let lift = w.value("lift").map_or(Ok(0.0), |text| s.length_in("mirror", text, Axis::Y))?;
+    Ok(Some(Mirror { shape, tilt, lift, at }))
 }
 
 fn plane(s: &Settings<'_>, w: &Words<'_>) -> Result<Onto, Error> {
