@@ -10,6 +10,7 @@
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
 //! geometry*, Computing 79 (2007).
 
+mod cells;
 mod dilation;
 mod reference;
 
@@ -460,14 +461,16 @@ impl RadialInverse {
         (self.off(r, s).0.abs() <= 1e-12 * s.abs().max(1.0)).then_some(s)
     }
 
+    /// Returns the source of `q` among the points that move.
+    fn inner(&self, q: DVec3) -> Option<DVec3> {
+        let line = self.line(q);
+        let place = |s: f64| line.from + line.along * s + self.0.base;
+        self.factor(q).map(place).filter(|p| self.0.moves(*p))
+    }
+
     fn source(&self, q: DVec3) -> Option<DVec3> {
-        let place = |s: f64| {
-            let r = self.line(q);
-            r.from + r.along * s + self.0.base
-        };
-        let source = self.factor(q).map(place).filter(|p| self.0.moves(*p));
         // Outside points stay where they are, unless inside points have moved there.
-        source.or_else(|| (!self.0.moves(q)).then_some(q))
+        self.inner(q).or_else(|| (!self.0.moves(q)).then_some(q))
     }
 }
 
@@ -511,6 +514,9 @@ box. Default: the model's box."),
             Param::flag("spline", "B-splines over the box: each control point has influence on a few cells only."),
             Param::new("cells", Kind::Text("LxMxN"), "Cells of the B-splines along x, y and z, 1 to 16 each: there are degree + cells \
 control points. Default with --spline: 4x4x4."),
+            Param::new("tetrahedra", Kind::Text("I,J,K,L …"), "Several tetrahedra at once, by the numbers of their corners among the points \
+of the --reference, from 0; pushes name a point by its number, such as 4:150%. Nothing moves outside, and shared faces do not tear.")
+            .repeated(),
             Param::new("collineation", Kind::Text("DX,DY,DZ,D"), "A collineation by its numbers: δ(p) = (DX,DY,DZ)·(p − eye) + D, as \
 --explain prints them. For an eye at infinity p is not relative to it, and 1 − δ is the length of the move."),
             Param::new("axis", Kind::Text("X,Y,Z X,Y,Z X,Y,Z"), "A collineation by three points of its axis, the plane that stays; one \
@@ -657,6 +663,9 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     } else if !axis.is_empty() {
         return Err(Error::usage("axis", "", "must have three points"));
     }
+    if !s.words("tetrahedra").is_empty() {
+        return tetrahedra(s, eye, &points);
+    }
     if points.is_empty() {
         points = vec![s.bounds().min, s.bounds().max];
     }
@@ -708,6 +717,51 @@ fn typed(eye: Eye3, form: DVec4) -> Built3 {
     let mut built = Built3::new(Arc::new(Collineation::about(perspective(eye.relative_to(about), form), about)));
     built.eye = matches!(eye, Eye3::At(_)).then_some(about);
     built
+}
+
+/// Reads tetrahedra by the numbers of their corners among the points of the reference, and the pushes of points by their numbers.
+fn tetrahedra(s: &Settings3<'_>, eye: Eye3, points: &[DVec3]) -> Result<Built3, Error> {
+    let numbered = |name: &str, text: &str| {
+        let i: Option<usize> = text.trim().parse().ok().filter(|i| *i < points.len());
+        let last = points.len().saturating_sub(1);
+        i.ok_or_else(|| {
+            Error::usage(name, text, format!("is not the number of a point of the `reference`: 0 to {last}"))
+        })
+    };
+    if let Some(name) = ["cells", "degree", "point"].iter().find(|n| !s.words(n).is_empty() && s.flat().given(n)) {
+        return Err(Error::usage(
+            name,
+            "",
+            "does not go with `tetrahedra`; push points by their numbers, such as `push 4:150%`",
+        ));
+    }
+    let mut all = Vec::new();
+    for word in s.words("tetrahedra") {
+        let corners: Result<Vec<usize>, Error> = word.split(',').map(|t| numbered("tetrahedra", t)).collect();
+        let wrong = |_| Error::usage("tetrahedra", word, "is not four numbers of points I,J,K,L");
+        all.push(<[usize; 4]>::try_from(corners?).map_err(wrong)?);
+    }
+    // A box around all points is where the map is computed.
+    let (min, max) = points.iter().fold((points[0], points[0]), |(a, b), p| (a.min(*p), b.max(*p)));
+    let place = Anamorph3::new(eye, Reference3::Cuboid(Box3 { min, max }, [1; 3])).base();
+    let (eye, points): (_, Vec<DVec3>) = (eye.relative_to(place), points.iter().map(|p| *p - place).collect());
+    let mut values = vec![1.0; points.len()];
+    for name in ["push", "away", "at"] {
+        for word in s.words(name) {
+            let (node, value) = word.split_once(':').ok_or_else(|| Error::usage(name, word, "is not NUMBER:VALUE"))?;
+            let (i, none) = (numbered(name, node)?, [0; 4]);
+            let push = match name {
+                "push" => Push3::By(none, s.flat().number_in(name, value)?),
+                "away" => Push3::Away(none, s.length_in(name, value, Extent::Diagonal)?),
+                _ => Push3::To(none, s.point_in(name, value)?),
+            };
+            // A box of degree 1 whose first control point is this one.
+            let corner = Box3 { min: points[i], max: points[i] + DVec3::ONE };
+            let one = Anamorph3::new(eye, Reference3::Cuboid(corner, [1; 3]));
+            one.apply(push, place, &[none], std::slice::from_mut(&mut values[i]))?;
+        }
+    }
+    cells::build(eye, place, &points, &all, &values)
 }
 
 /// Highest number of cells of B-splines along an axis.

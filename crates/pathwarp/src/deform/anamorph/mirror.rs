@@ -243,7 +243,10 @@ impl Reflection {
                 tip,
                 "the eye sees the cone's tip, where the mirror has no direction; leave a hole in the artwork there, or move it (`lift`)",
             ),
-            (b.disc / (r * r), "the ray misses the mirror; make the artwork smaller (`picture-width`) or the mirror larger"),
+            (
+                b.disc / (r * r),
+                "the ray misses the mirror; make the artwork smaller (`picture-width`) or the mirror larger",
+            ),
             (b.ahead / r, "the mirror begins behind the eye; move the eye away (`distance`)"),
             (
                 if matches!(self.mirror.shape, MirrorShape::Sphere(_)) { 1.0 } else { top },

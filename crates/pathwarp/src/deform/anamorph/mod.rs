@@ -430,7 +430,17 @@ impl Anamorph {
         };
         let cast = Anamorphosis { eye: scene.eye, surface };
         surface::check_met(self.onto, &cast, scene.frame)?;
-        let map = self.shown(&cast, &scene)?;
+        let own = match self.look {
+            // A sheet that has no flat view is seen from the eye's side, from a quarter to the right and above.
+            Look::Unrolled if !self.files.is_empty() && cast.unrolled().is_none() => {
+                let middle = cast.point(scene.frame.center());
+                let away = scene.eye.apart(middle);
+                let p = scene.scale.inverse() * Point::new(middle[0] + 0.5 * away, middle[1] - 0.35 * away);
+                Some(Self { look: Look::From([p.x, p.y, 0.8 * away - middle[2]]), ..self.clone() })
+            }
+            _ => None,
+        };
+        let map = own.as_ref().unwrap_or(self).shown(&cast, &scene)?;
         let mut built =
             Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
         let (scale, solid) = (scene.scale, cast.clone());
@@ -440,6 +450,11 @@ impl Anamorph {
         });
         built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
         built.sight = self.sighted(&cast, &scene, &*map)?;
+        if let Some(Self { look: Look::From([x, y, z]), .. }) = own {
+            built.note(format!(
+                "such a surface cannot be laid flat: the drawing is the view from {x:.4},{y:.4},{z:.4} (`view`)"
+            ));
+        }
         built.note(scene.size(&*map, self.units_per_px));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
@@ -598,6 +613,18 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             &[("distance", "500"), ("onto", "cylinder:radius=80")],
             &[("distance", "500"), ("onto", "cone:top-radius=80,bottom-diameter=160,height=7")],
         ),
+        Law::KeepsLines(&[("eye", "inf:0.3,-1,2"), ("onto", "plane:floor")]),
+        Law::KeepsLines(&[("eye", "inf:0.3,-1,2"), ("onto", "plane:wall=20"), ("view", "20,30,200")]),
+        Law::KeepsLines(&[("eye", "inf:1,2"), ("reference", "0,0 100,0 0,100"), ("away", "0,1,0:30")]),
+        Law::Identity(&[("eye", "inf:0.1,-0.2,1"), ("onto", "cylinder:radius=90"), ("seen", "true")]),
+        Law::Same(
+            &[("eye", "inf:30deg,20deg"), ("onto", "cylinder:radius=80")],
+            &[("eye", "inf:0.46984631039295416,-0.3420201433256687,0.8137976813493738"), ("onto", "cylinder:radius=80")],
+        ),
+        Law::Same(
+            &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "200"), ("foot", "50,100")],
+            &[("mirror", "cylinder:diameter=120,tilt=0,height=200"), ("distance", "300"), ("eye", "50,-100")],
+        ),
         Law::Same(
             &[("eye", "-30,20"), ("push", "1,1:2")],
             &[("eye", "-30,20"), ("away", "1,1:152.6433752247"), ("reference", "100,100 0,0")],
@@ -613,6 +640,13 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             args: &[("distance", "100"), ("eye", "50,50"), ("onto", "cylinder:radius=100,inside")],
             at: (150.0, 50.0),
             to: (50.0 + 25.0 * std::f64::consts::PI, 50.0),
+            tolerance: 1e-11,
+        },
+        // A mirror shows the middle of its foot where the eye's ray leaves its front as it came: as far before as that is behind it.
+        Case {
+            args: &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "200")],
+            at: (50.0, 100.0),
+            to: (50.0, 220.0),
             tolerance: 1e-11,
         },
         // In the plane: one corner of a triangle twice as far; halfway along its side δ is the mean of 1 and ½.

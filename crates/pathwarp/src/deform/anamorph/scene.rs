@@ -25,6 +25,15 @@ impl Eye {
         matches!(self, Self::Infinite(_))
     }
 
+    /// Returns the distance of a point in space, at infinity some distance.
+    pub(super) fn apart(self, [x, y, z]: [f64; 3]) -> f64 {
+        const FAR: f64 = 1e3;
+        match self {
+            Self::At(foot, distance) => (Point::new(x, y) - foot).hypot().hypot(z + distance),
+            Self::Infinite(_) => FAR,
+        }
+    }
+
     /// Returns the line of sight of an eye at infinity in front of the drawing: per unit of depth.
     pub(super) fn sight(self) -> [f64; 3] {
         match self {
