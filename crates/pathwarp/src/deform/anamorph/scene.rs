@@ -70,12 +70,25 @@ pub(super) fn measured(length: f64, units_per_px: [f64; 2]) -> String {
     if metres < 1.0 { format!("{} mm", trimmed(metres * 1e3, 1)) } else { format!("{} m", trimmed(metres, 3)) }
 }
 
+/// The words beside a mark.
+pub(super) struct Words {
+    /// Beside the place itself.
+    pub(super) here: String,
+    /// Beside an arrow towards it.
+    pub(super) there: String,
+    /// The length of the way from the arrow is added.
+    pub(super) measured: bool,
+}
+
 /// Marks a place, or by an arrow the way there if it is far from the result, whose box is `all`.
-pub(super) fn mark(at: Point, label: String, all: Rect, units_per_px: [f64; 2]) -> SightMark {
+pub(super) fn mark(at: Point, words: Words, all: Rect, units_per_px: [f64; 2]) -> SightMark {
     /// Height of a mark, in metres and as a share of the result.
     const SMALLEST: f64 = 0.003;
     const SHARE: f64 = 0.012;
     let size = (SMALLEST * METRE * units_per_px[0]).max(SHARE * (all.width() + all.height()));
+    /// Half the width of a letter, as a share of its height.
+    const HALF: f64 = 0.25;
+    let under = |at: Point, text: &str| at + Vec2::new(-HALF * size * text.chars().count() as f64, 3.0 * size);
     let mut path = BezPath::new();
     let mut line = |a: Point, b: Point| {
         path.move_to(a);
@@ -87,7 +100,7 @@ pub(super) fn mark(at: Point, label: String, all: Rect, units_per_px: [f64; 2]) 
             line(at - v, at + v);
         }
         path.extend(Circle::new(at, size).path_elements(1e-3 * size));
-        return SightMark { path, label: (at + Vec2::new(2.0 * size, 0.4 * size), label), size };
+        return SightMark { path, label: (under(at, &words.here), words.here), size };
     }
     let way = (at - all.center()) / (at - all.center()).hypot();
     // Where the way leaves the box.
@@ -98,7 +111,11 @@ pub(super) fn mark(at: Point, label: String, all: Rect, units_per_px: [f64; 2]) 
     for side in [-1.0, 1.0] {
         line(to, to - way * (1.5 * size) + across * (side * 0.7 * size));
     }
-    SightMark { path, label: (to + Vec2::new(size, 0.4 * size), label), size }
+    let text = match words.measured {
+        true => format!("{}, {} from the tail of the arrow", words.there, measured((at - from).hypot(), units_per_px)),
+        false => words.there,
+    };
+    SightMark { path, label: (under(if to.y > from.y { to } else { from }, &text), text), size }
 }
 
 impl Scene {
