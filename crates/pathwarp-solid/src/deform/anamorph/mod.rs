@@ -10,13 +10,12 @@
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
 //! geometry*, Computing 79 (2007).
 
-mod cells;
 mod dilation;
 mod reference;
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::lattice::{Lattice3, LatticeMap3};
-use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
+use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Poly3, Radial, for_all};
 use crate::settings::{Box3, Extent, Settings3, show};
 use dilation::{Dilation3, MAX_DEGREE};
 use glam::{DMat3, DMat4, DVec3, DVec4};
@@ -56,7 +55,11 @@ impl Push3 {
     fn text(self, reference: &Reference3) -> String {
         match self {
             Self::By(n, _) | Self::Away(n, _) | Self::To(n, _) => {
-                let count = if matches!(reference, Reference3::Tetrahedron(..)) { 4 } else { 3 };
+                let count = match reference {
+                    Reference3::Tetrahedron(..) => 4,
+                    Reference3::Tetrahedra(..) => 1,
+                    _ => 3,
+                };
                 n[..count].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
             Self::Prescribe(p, by) | Self::PrescribeAway(p, by) => format!("{}:{by}", show(p)),
@@ -110,7 +113,7 @@ impl Anamorph3 {
     /// [`Error::Usage`] for control points that do not exist, pushes through the eye, and points that cannot be prescribed.
     pub fn build(&self) -> Result<Built3, Error> {
         let base = self.base();
-        Self { eye: self.eye.relative_to(base), reference: self.reference.relative_to(base), ..self.clone() }
+        Self { eye: self.eye.relative_to(base), reference: self.reference.clone().relative_to(base), ..self.clone() }
             .about(base)
     }
 
@@ -165,6 +168,14 @@ impl Anamorph3 {
             };
             built.note(format!("collineation: {},{},{},{at} about {place} (d and its constant)", d.x, d.y, d.z));
         }
+        if let Some([shared, torn]) = self.reference.faces(&values) {
+            built.note(format!("continuous across the faces {shared}"));
+            if !torn.is_empty() {
+                built.note(format!(
+                    "outer faces with corners that move, at which a model is torn that crosses them: {torn}"
+                ));
+            }
+        }
         for (node, delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
             let from = self.reference.point(*node);
             let to = self.eye.moved(from, *delta);
@@ -177,7 +188,7 @@ impl Anamorph3 {
     /// Returns the influence of every control point at `p`: δ with 1 at it and 0 elsewhere.
     fn influence(&self, p: DVec3, nodes: &[[usize; 4]]) -> Vec<f64> {
         let mut out = vec![0.0; nodes.len()];
-        if let Reference3::Spline(region, degree, cells) = self.reference {
+        if let Reference3::Spline(region, degree, cells) = self.reference.clone() {
             let lattice = Lattice3::regular(region, degree, cells);
             lattice.influence(p).into_iter().for_each(|(node, v)| out[lattice.index(node)] = v);
             return out;
@@ -287,6 +298,19 @@ impl RadialMap {
         self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p - self.base) >= 0.0))
     }
 
+    /// δ of the tetrahedron around a box, or 1; `None` if a face may cross it.
+    fn tetrahedron(&self, on: &Box3) -> Option<DVec4> {
+        self.dilation.around(&on.corners().map(|p| p - self.base))
+    }
+
+    /// The map by δ = `divisor`/`common`.
+    fn along_rays(&self, chart: Chart, divisor: Poly3, common: Poly3) -> Fraction3 {
+        match self.eye {
+            Eye3::At(eye) => Fraction3::radial(chart, eye + self.base, divisor, &common),
+            Eye3::Infinite(towards) => Fraction3::shifted(chart, towards, &divisor, common),
+        }
+    }
+
     /// Whether a box may move. `None` if a side of the moved region may cross it.
     fn moves_on(&self, on: &Box3) -> Option<bool> {
         let corners = on.corners();
@@ -337,6 +361,10 @@ impl Map3 for RadialMap {
 
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
+        if let Dilation3::Tetrahedra(_) = self.dilation {
+            let delta = chart.relative_to(self.base).linear(self.tetrahedron(on)?);
+            return Some(self.along_rays(chart, delta, Poly3::constant(1.0)));
+        }
         if !self.moves_on(on)? {
             return Some(Fraction3::identity(chart));
         }
@@ -344,13 +372,13 @@ impl Map3 for RadialMap {
             return None;
         }
         let (divisor, common) = self.dilation.fraction(&chart.relative_to(self.base));
-        Some(match self.eye {
-            Eye3::At(eye) => Fraction3::radial(chart, eye + self.base, divisor, &common),
-            Eye3::Infinite(towards) => Fraction3::shifted(chart, towards, &divisor, common),
-        })
+        Some(self.along_rays(chart, divisor, common))
     }
 
     fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        if let Dilation3::Tetrahedra(_) = self.dilation {
+            return Some(Arc::new(Collineation::about(perspective(self.eye, self.tetrahedron(on)?), self.base)));
+        }
         Some(match self.moves_on(on)? {
             true => Arc::new(Self { within: None, ..self.clone() }),
             false => Arc::new(Collineation::IDENTITY),
@@ -361,6 +389,11 @@ impl Map3 for RadialMap {
         let base = self.base;
         for form in self.within.iter().flat_map(|forms| forms.iter().copied()) {
             out.kink(move |p| form.dot((p - base).extend(1.0)));
+        }
+        if let Dilation3::Tetrahedra(all) = &self.dilation {
+            for form in all.iter().flat_map(|t| t.0) {
+                out.kink(move |p| form.dot((p - base).extend(1.0)));
+            }
         }
         if let Eye3::At(_) = self.eye {
             let own = self.clone();
@@ -461,16 +494,12 @@ impl RadialInverse {
         (self.off(r, s).0.abs() <= 1e-12 * s.abs().max(1.0)).then_some(s)
     }
 
-    /// Returns the source of `q` among the points that move.
-    fn inner(&self, q: DVec3) -> Option<DVec3> {
+    fn source(&self, q: DVec3) -> Option<DVec3> {
         let line = self.line(q);
         let place = |s: f64| line.from + line.along * s + self.0.base;
-        self.factor(q).map(place).filter(|p| self.0.moves(*p))
-    }
-
-    fn source(&self, q: DVec3) -> Option<DVec3> {
+        let source = self.factor(q).map(place).filter(|p| self.0.moves(*p));
         // Outside points stay where they are, unless inside points have moved there.
-        self.inner(q).or_else(|| (!self.0.moves(q)).then_some(q))
+        source.or_else(|| (!self.0.moves(q)).then_some(q))
     }
 }
 
@@ -663,13 +692,11 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     } else if !axis.is_empty() {
         return Err(Error::usage("axis", "", "must have three points"));
     }
-    if !s.words("tetrahedra").is_empty() {
-        return tetrahedra(s, eye, &points);
-    }
     if points.is_empty() {
         points = vec![s.bounds().min, s.bounds().max];
     }
     let reference = match (cells, &points[..]) {
+        (None, _) if !s.words("tetrahedra").is_empty() => tetrahedra(s, points)?,
         (Some(cells), [a, b]) => Reference3::spline(Box3::new(*a, *b), degree, cells)?,
         (Some(_), _) => return Err(Error::usage("cells", "", "are for a box: give two corners of the `reference`")),
         (None, _) => Reference3::new(&points, degree, eye)?,
@@ -719,49 +746,14 @@ fn typed(eye: Eye3, form: DVec4) -> Built3 {
     built
 }
 
-/// Reads tetrahedra by the numbers of their corners among the points of the reference, and the pushes of points by their numbers.
-fn tetrahedra(s: &Settings3<'_>, eye: Eye3, points: &[DVec3]) -> Result<Built3, Error> {
-    let numbered = |name: &str, text: &str| {
-        let i: Option<usize> = text.trim().parse().ok().filter(|i| *i < points.len());
-        let last = points.len().saturating_sub(1);
-        i.ok_or_else(|| {
-            Error::usage(name, text, format!("is not the number of a point of the `reference`: 0 to {last}"))
-        })
-    };
-    if let Some(name) = ["cells", "degree", "point"].iter().find(|n| !s.words(n).is_empty() && s.flat().given(n)) {
-        return Err(Error::usage(
-            name,
-            "",
-            "does not go with `tetrahedra`; push points by their numbers, such as `push 4:150%`",
-        ));
-    }
-    let mut all = Vec::new();
-    for word in s.words("tetrahedra") {
-        let corners: Result<Vec<usize>, Error> = word.split(',').map(|t| numbered("tetrahedra", t)).collect();
+/// Reads tetrahedra by the numbers of their corners among the points of the reference.
+fn tetrahedra(s: &Settings3<'_>, points: Vec<DVec3>) -> Result<Reference3, Error> {
+    let read = |word: &str| {
+        let numbers: Vec<usize> = word.split(',').filter_map(|t| t.trim().parse().ok()).collect();
         let wrong = |_| Error::usage("tetrahedra", word, "is not four numbers of points I,J,K,L");
-        all.push(<[usize; 4]>::try_from(corners?).map_err(wrong)?);
-    }
-    // A box around all points is where the map is computed.
-    let (min, max) = points.iter().fold((points[0], points[0]), |(a, b), p| (a.min(*p), b.max(*p)));
-    let place = Anamorph3::new(eye, Reference3::Cuboid(Box3 { min, max }, [1; 3])).base();
-    let (eye, points): (_, Vec<DVec3>) = (eye.relative_to(place), points.iter().map(|p| *p - place).collect());
-    let mut values = vec![1.0; points.len()];
-    for name in ["push", "away", "at"] {
-        for word in s.words(name) {
-            let (node, value) = word.split_once(':').ok_or_else(|| Error::usage(name, word, "is not NUMBER:VALUE"))?;
-            let (i, none) = (numbered(name, node)?, [0; 4]);
-            let push = match name {
-                "push" => Push3::By(none, s.flat().number_in(name, value)?),
-                "away" => Push3::Away(none, s.length_in(name, value, Extent::Diagonal)?),
-                _ => Push3::To(none, s.point_in(name, value)?),
-            };
-            // A box of degree 1 whose first control point is this one.
-            let corner = Box3 { min: points[i], max: points[i] + DVec3::ONE };
-            let one = Anamorph3::new(eye, Reference3::Cuboid(corner, [1; 3]));
-            one.apply(push, place, &[none], std::slice::from_mut(&mut values[i]))?;
-        }
-    }
-    cells::build(eye, place, &points, &all, &values)
+        <[usize; 4]>::try_from(numbers).map_err(wrong)
+    };
+    Reference3::tetrahedra(points, s.words("tetrahedra").into_iter().map(read).collect::<Result<_, _>>()?)
 }
 
 /// Highest number of cells of B-splines along an axis.
@@ -772,11 +764,16 @@ fn nodes_pushed(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>,
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
-            let (node, value) = if matches!(reference, Reference3::Tetrahedron(..)) {
-                s.flat().node_in::<4>(name, word)?
-            } else {
-                let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
-                ([i, j, k, 0], value)
+            let (node, value) = match reference {
+                Reference3::Tetrahedron(..) => s.flat().node_in::<4>(name, word)?,
+                Reference3::Tetrahedra(..) => {
+                    let ([i], value) = s.flat().node_in::<1>(name, word)?;
+                    ([i, 0, 0, 0], value)
+                }
+                _ => {
+                    let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
+                    ([i, j, k, 0], value)
+                }
             };
             out.push(match name {
                 "push" => Push3::By(node, s.flat().number_in(name, value)?),

@@ -1,9 +1,11 @@
 //! The reference of an anamorphosis.
 
-use crate::settings::Box3;
+use super::dilation::Dilation3;
+use crate::settings::{Box3, show};
 use glam::{DVec3, DVec4};
 use pathwarp::Error;
 use pathwarp::map::bspline;
+use std::collections::BTreeMap;
 
 /// The eye of an anamorphosis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +49,7 @@ impl Eye3 {
     /// Returns the place of a point after it has moved along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
     pub(super) fn moved(self, p: DVec3, delta: f64) -> DVec3 {
         match self {
+            Self::At(_) if delta == 1.0 => p,
             Self::At(eye) => eye + (p - eye) / delta,
             Self::Infinite(towards) => p + towards * (delta - 1.0),
         }
@@ -54,7 +57,7 @@ impl Eye3 {
 }
 
 /// A regular net of control points, before any is moved.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
     Tetrahedron([DVec3; 4], usize),
@@ -64,6 +67,8 @@ pub enum Reference3 {
     Cuboid(Box3, [usize; 3]),
     /// Control points of B-splines over a box, with degrees and numbers of cells along the axes.
     Spline(Box3, [usize; 3], [usize; 3]),
+    /// Points, and tetrahedra by the numbers of their corners.
+    Tetrahedra(Vec<DVec3>, Vec<[usize; 4]>),
     /// A sheet: a box that is flat along the given axis, along which all points have the number 0.
     Rectangle(Box3, usize, [usize; 3]),
 }
@@ -146,6 +151,56 @@ impl Reference3 {
         Err(Error::usage("cells", "", "are for a box; the `reference` is flat"))
     }
 
+    /// Makes tetrahedra that share faces, by the numbers of their corners among `points`: one δ for every point.
+    ///
+    /// # Errors
+    /// There is no such point, a tetrahedron is flat, or the middle of one lies in another.
+    pub fn tetrahedra(points: Vec<DVec3>, all: Vec<[usize; 4]>) -> Result<Self, Error> {
+        const MOST: usize = 1000;
+        let wrong =
+            |t: &[usize; 4], problem: &str| Error::usage("tetrahedra", t.map(|i| i.to_string()).join(","), problem);
+        if let Some(t) = all.get(MOST) {
+            return Err(wrong(t, "is one too many: 1000 at most"));
+        }
+        for t in &all {
+            if t.iter().any(|i| *i >= points.len()) {
+                return Err(wrong(
+                    t,
+                    &format!("has a point that the `reference` lacks: 0 to {}", points.len().max(1) - 1),
+                ));
+            }
+            Self::new(&t.map(|i| points[i]), [1; 3], DVec3::ZERO)
+                .map_err(|_| wrong(t, "has its four corners in one plane, or one twice"))?;
+        }
+        let own = Self::Tetrahedra(points, all);
+        let Self::Tetrahedra(points, all) = &own else { return Ok(own) };
+        for (k, t) in all.iter().enumerate() {
+            let middle = t.iter().map(|i| points[*i]).sum::<DVec3>() * 0.25;
+            let others: Vec<[usize; 4]> = all.iter().enumerate().filter(|(n, _)| *n != k).map(|(_, t)| *t).collect();
+            let others = Self::Tetrahedra(points.clone(), others);
+            if Dilation3::new(&others, Eye3::At(DVec3::ZERO), &vec![2.0; points.len()]).at(middle) != 1.0 {
+                return Err(wrong(t, &format!("lies in another one at {}; let them share faces", show(middle))));
+            }
+        }
+        Ok(own)
+    }
+
+    /// Names the faces that two tetrahedra share, and the outer ones with a corner whose δ is not 1.
+    pub(super) fn faces(&self, values: &[f64]) -> Option<[String; 2]> {
+        let Self::Tetrahedra(_, all) = self else { return None };
+        let mut faces: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+        for (t, k) in all.iter().flat_map(|t| (0..4).map(move |k| (t, k))) {
+            let mut face: Vec<usize> = (0..4).filter(|i| *i != k).map(|i| t[i]).collect();
+            face.sort_unstable();
+            *faces.entry(face).or_default() += 1;
+        }
+        let named = |wanted: &dyn Fn(&[usize], usize) -> bool| {
+            let text = |f: &Vec<usize>| f.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+            faces.iter().filter(|(f, n)| wanted(f, **n)).map(|(f, _)| text(f)).collect::<Vec<_>>().join(" ")
+        };
+        Some([named(&|_, n| n > 1), named(&|f, n| n == 1 && f.iter().any(|i| values[*i] != 1.0))])
+    }
+
     /// Returns the bounding box.
     pub(super) fn bounds(&self) -> Box3 {
         let corners = |all: &[DVec3]| {
@@ -155,6 +210,7 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, _) => corners(c),
             Self::Triangle(c, _) => corners(c),
+            Self::Tetrahedra(points, _) => corners(points),
             Self::Cuboid(b, _) | Self::Spline(b, ..) | Self::Rectangle(b, ..) => *b,
         }
     }
@@ -165,6 +221,7 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, n) => Self::Tetrahedron(c.map(|p| p - base), n),
             Self::Triangle(c, n) => Self::Triangle(c.map(|p| p - base), n),
+            Self::Tetrahedra(points, all) => Self::Tetrahedra(points.iter().map(|p| *p - base).collect(), all),
             Self::Cuboid(b, d) => Self::Cuboid(less(b), d),
             Self::Spline(b, d, c) => Self::Spline(less(b), d, c),
             Self::Rectangle(b, axis, d) => Self::Rectangle(less(b), axis, d),
@@ -180,6 +237,7 @@ impl Reference3 {
                 rows.flat_map(|(k, l)| (0..=n - l - k).map(move |j| [n - j - k - l, j, k, l])).collect()
             }
             Self::Triangle(_, n) => (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect(),
+            Self::Tetrahedra(ref points, _) => (0..points.len()).map(|i| [i, 0, 0, 0]).collect(),
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
                 let [l, m, n] = self.last();
                 let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
@@ -193,7 +251,7 @@ impl Reference3 {
         match *self {
             Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => degree,
             Self::Spline(_, degree, cells) => [0, 1, 2].map(|a| degree[a] + cells[a] - 1),
-            Self::Tetrahedron(..) | Self::Triangle(..) => [0; 3],
+            Self::Tetrahedron(..) | Self::Triangle(..) | Self::Tetrahedra(..) => [0; 3],
         }
     }
 
@@ -206,6 +264,7 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, n) => weighted(c, *n),
             Self::Triangle(c, n) => weighted(c, *n),
+            Self::Tetrahedra(points, _) => points[node[0]],
             Self::Spline(b, degree, cells) => {
                 let t = DVec3::from_array([0, 1, 2].map(|a| bspline::regular(degree[a], cells[a])[node[a]]));
                 b.min + t * b.size()
@@ -222,6 +281,7 @@ impl Reference3 {
     pub fn numbers(&self) -> String {
         match self {
             Self::Tetrahedron(_, n) => format!("I,J,K,L must add up to {n}, the degree"),
+            Self::Tetrahedra(points, _) => format!("the points have the numbers 0 to {}", points.len() - 1),
             Self::Triangle(_, n) => format!("I,J,K must add up to {n}, the degree"),
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
                 let [l, m, n] = self.last();
@@ -235,6 +295,7 @@ impl Reference3 {
     #[must_use]
     pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
         match self {
+            Self::Tetrahedra(..) => false,
             Self::Tetrahedron(..) => node[3] == 0,
             Self::Triangle(..) => node[2] == 0,
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {

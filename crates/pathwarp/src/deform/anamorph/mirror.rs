@@ -9,13 +9,14 @@
 //! normal n there, it leaves along r = d − 2(d·n)/(n·n)·n, and meets the table at H − r·H_y/r_y. A cylinder or cone with the axis a
 //! and the radius R(s) = R − g·s at s = (q − F)·a is |q − F − s·a|² = R(s)², its normal q − F − s·a + g·R(s)·a.
 //!
-//! The inverse has no closed form (at a sphere it is Alhazen's problem); it is sought by Newton's method over the picture.
+//! The inverse has no closed form (at a sphere it is Alhazen's problem); it is sought by Newton's
+//! method over the picture.
 
 use super::scene::{Eye, Scene};
 use super::surface::{Space, cross, dot, length, minus, picture_axes};
 use crate::error::{Error, show};
-use crate::map::{Crease, Creases, Formula, Level, Map, NewtonInverse, Real};
-use kurbo::{BezPath, Circle, Point, Rect, Shape};
+use crate::map::{Cost, Crease, Creases, Formula, Jet, Level, Map, Real};
+use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -288,7 +289,7 @@ impl Reflection {
 
     /// Returns a place on the table for a point in space.
     pub(super) fn on_page(&self, [x, _, z]: Space) -> Point {
-        self.foot + kurbo::Vec2::new(x, -z)
+        self.foot + Vec2::new(x, -z)
     }
 
     /// Returns the outline of the foot on the page; of a sphere, its outline from above.
@@ -380,7 +381,67 @@ impl Formula for Reflection {
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let reach = 1e-9 * (self.domain.width() + self.domain.height());
-        Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [4, 4])))
+        Some(Arc::new(Back::new(self.clone())))
+    }
+}
+
+/// The inverse. A mirror that bulges everywhere shows each place of the table once, so that every solution is the one.
+struct Back {
+    of: Reflection,
+    /// Places of the artwork, and their images.
+    starts: Vec<[Point; 2]>,
+}
+
+impl Back {
+    fn new(of: Reflection) -> Self {
+        const SIDE: u32 = 24;
+        let r = of.domain;
+        let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE);
+        let place = |k: u32| {
+            let (u, v) = (at(k % SIDE), at(k / SIDE));
+            Point::new(r.x0 + u * r.width(), r.y0 + v * r.height())
+        };
+        let starts = (0..SIDE * SIDE).map(place).filter(|p| of.fault(*p).0 > 0.0).map(|p| [p, Map::point(&of, p)]);
+        Self { starts: starts.collect(), of }
+    }
+
+    /// Damped Newton steps from the nearest of the places.
+    fn solve(&self, q: Point) -> Option<Jet> {
+        const STEPS: usize = 60;
+        const TRIES: usize = 4;
+        let reach = 1e-9 * (self.of.domain.width() + self.of.domain.height());
+        let within = self.of.domain.inflate(reach, reach);
+        let mut starts: Vec<(f64, Point)> = self.starts.iter().map(|[p, image]| (image.distance(q), *p)).collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.into_iter().take(TRIES).find_map(|(mut off, mut p)| {
+            for _ in 0..STEPS {
+                let jet = Map::jet(&self.of, p);
+                let gap = q - jet.p;
+                let step = Vec2::new(gap.cross(jet.dy), jet.dx.cross(gap)) / jet.det();
+                let halved = (0..12).map(|k| p + step * 0.5_f64.powi(k));
+                let better = halved.map(|p| (Map::point(&self.of, p).distance(q), p)).find(|(next, _)| *next < off);
+                let Some((next, to)) = better else { break };
+                (off, p) = (next, to);
+            }
+            let jet = Map::jet(&self.of, p);
+            let size = (q - self.of.foot).hypot() + self.of.mirror.radius();
+            let found = jet.p.distance(q) <= 1e-10 * size && within.contains(p) && self.of.fault(p).0 > 0.0;
+            let det = jet.det();
+            found.then(|| Jet { p, dx: Vec2::new(jet.dy.y, -jet.dx.y) / det, dy: Vec2::new(-jet.dy.x, jet.dx.x) / det })
+        })
+    }
+}
+
+impl Map for Back {
+    fn jet(&self, q: Point) -> Jet {
+        self.solve(q).unwrap_or(Jet::UNDEFINED)
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.of.clone()))
+    }
+
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(64.0)
     }
 }

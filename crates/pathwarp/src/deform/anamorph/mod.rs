@@ -539,8 +539,8 @@ flat for a triangle of degree 1, otherwise shown with --view.")
         Law::KeepsLines(&[("eye", "inf:1,2"), ("reference", "0,0 100,0 0,100"), ("away", "0,1,0:30")]),
         Law::Identity(&[("eye", "inf:0.1,-0.2,1"), ("onto", "cylinder:radius=90"), ("seen", "true")]),
         Law::Same(
-            &[("eye", "inf:30deg,20deg"), ("onto", "cylinder:radius=80")],
-            &[("eye", "inf:0.46984631039295416,-0.3420201433256687,0.8137976813493738"), ("onto", "cylinder:radius=80")],
+            &[("eye", "inf:30deg,20deg"), ("onto", "cylinder:radius=130")],
+            &[("eye", "inf:0.46984631039295416,-0.3420201433256687,0.8137976813493738"), ("onto", "cylinder:radius=130")],
         ),
         Law::Same(
             &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "200"), ("foot", "50,100")],
