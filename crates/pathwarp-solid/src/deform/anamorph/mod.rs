@@ -36,10 +36,8 @@ pub enum Push3 {
     Away([usize; 4], f64),
     /// Moves a control point to the point on its ray nearest to this one.
     To([usize; 4], DVec3),
-    /// Moves a point of the model to a multiple of its distance from the eye.
+    /// Moves a point of the model to a multiple of its distance from the eye, or this much further from an eye at infinity.
     Prescribe(DVec3, f64),
-    /// Moves a point of the model this much further from the eye.
-    PrescribeAway(DVec3, f64),
 }
 
 impl Push3 {
@@ -48,7 +46,7 @@ impl Push3 {
             Self::By(..) => "push",
             Self::Away(..) => "away",
             Self::To(..) => "at",
-            Self::Prescribe(..) | Self::PrescribeAway(..) => "point",
+            Self::Prescribe(..) => "point",
         }
     }
 
@@ -62,7 +60,7 @@ impl Push3 {
                 };
                 n[..count].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
-            Self::Prescribe(p, by) | Self::PrescribeAway(p, by) => format!("{}:{by}", show(p)),
+            Self::Prescribe(p, by) => format!("{}:{by}", show(p)),
         }
     }
 }
@@ -211,14 +209,12 @@ impl Anamorph3 {
             let missing = || wrong(format!("is not a control point: {}", self.reference.numbers()));
             nodes.iter().position(|n| *n == node).ok_or_else(missing)
         };
-        let by = |factor: f64| {
-            match self.eye {
+        let by = |factor: f64| match self.eye {
             Eye3::At(_) => sound(1.0 / factor),
             Eye3::Infinite(_) => Err(wrong(
-                "multiplies the distance of an eye at infinity; give a length instead, by `away`, or with its unit after a `point`"
+                "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`"
                     .into(),
             )),
-        }
         };
         let away = |from: DVec3, length: f64| {
             sound(match self.eye {
@@ -239,13 +235,9 @@ impl Anamorph3 {
                     Eye3::Infinite(towards) => 1.0 + (to - from).dot(towards),
                 })?;
             }
-            Push3::Prescribe(p, _) | Push3::PrescribeAway(p, _) => {
+            Push3::Prescribe(p, value) => {
                 let p = p - base;
-                let wanted = match push {
-                    Push3::PrescribeAway(_, length) => away(p, length)?,
-                    Push3::Prescribe(_, factor) => by(factor)?,
-                    _ => 1.0,
-                };
+                let wanted = if let Eye3::At(_) = self.eye { by(value)? } else { away(p, value)? };
                 let influence = self.influence(p, nodes);
                 let here: f64 = influence.iter().zip(&*values).map(|(b, v)| b * v).sum();
                 let free = (0..nodes.len()).filter(|i| !self.reference.held(nodes[*i], self.local));
@@ -682,7 +674,7 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     if let [a, b, c] = axis[..] {
         let wrong =
             || Error::missing("point", "one point X,Y,Z:FACTOR and where it goes; `axis` needs it, and nothing else");
-        let [Push3::Prescribe(p, _) | Push3::PrescribeAway(p, _)] = prescribed(s)?[..] else { return Err(wrong()) };
+        let [Push3::Prescribe(p, _)] = prescribed(s)?[..] else { return Err(wrong()) };
         if !points.is_empty() || cells.is_some() || degree != [1; 3] {
             return Err(wrong());
         }
@@ -792,11 +784,12 @@ fn prescribed(s: &Settings3<'_>) -> Result<Vec<Push3>, Error> {
         let wrong = || Error::usage("point", word, "is not X,Y,Z:FACTOR, such as 10,20,30:150%");
         let (p, factor) = word.split_once(':').ok_or_else(wrong)?;
         let p: DVec3 = s.point_in("point", p)?;
-        let is_length = factor.trim().ends_with(char::is_alphabetic);
-        out.push(match is_length {
-            true => Push3::PrescribeAway(p, s.length_in("point", factor, Extent::Diagonal)?),
-            false => Push3::Prescribe(p, s.flat().number_in("point", factor)?),
-        });
+        let infinite = s.last("eye").is_some_and(|t| t.starts_with("inf"));
+        let value = match infinite {
+            true => s.length_in("point", factor, Extent::Diagonal)?,
+            false => s.flat().number_in("point", factor)?,
+        };
+        out.push(Push3::Prescribe(p, value));
     }
     Ok(out)
 }

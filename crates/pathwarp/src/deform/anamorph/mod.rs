@@ -35,7 +35,7 @@ use crate::param::{Axis, Kind, Settings, parameters};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
 use net::{Push, PushedNet};
 use reading::{eye, look, mirror, net, onto};
-use scene::{Eye, Scene, measured};
+use scene::{Eye, HERE, Scene, measured};
 use std::sync::Arc;
 use surface::{Anamorphosis, Camera, Radial, Surface};
 
@@ -93,7 +93,7 @@ parameters! {
         param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
         /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
         param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
-        /// Takes this point to so many times its distance from the eye, or a length with its unit further, by pushing the control point nearest to it that is not on
+        /// Takes this point to so many times its distance from the eye (a length further from an eye at infinity), by pushing the control point nearest to it that is not on
         /// a fixed side: the first side of a triangle, the edge of a box if --local.
         param = new("point", Kind::Text("X,Y:FACTOR|LENGTH")).repeated();
         /// Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance.
@@ -190,14 +190,8 @@ impl Anamorph {
         self.with_net(|net| net.pushes.push(Push::To(node, to)))
     }
 
-    /// Takes a point this much further from the eye, user units, by one control point near it.
-    #[must_use]
-    pub fn prescribe_away(self, point: impl Into<Point>, length: f64) -> Self {
-        let point = point.into();
-        self.with_net(|net| net.pushes.push(Push::PrescribeAway(point, length)))
-    }
-
-    /// Takes a point to this many times its distance from the eye, by one control point near it.
+    /// Takes a point to this many times its distance from the eye, or this much further from an eye at infinity, by one control point
+    /// near it.
     #[must_use]
     pub fn prescribe(self, point: impl Into<Point>, factor: f64) -> Self {
         let point = point.into();
@@ -247,7 +241,7 @@ impl Anamorph {
                     Eye::At(..) => {
                         let height = measured(height, units);
                         let here = format!("eye {height} straight above this mark");
-                        (at, scene::Words { here, there: format!("eye {height} above the sheet"), measured: true })
+                        (at, [here, format!("eye {height} above the sheet{HERE}")])
                     }
                     Eye::Infinite(_) => (at, far_away(height)),
                 }
@@ -261,14 +255,14 @@ impl Anamorph {
                 };
                 let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
                 let here = format!("eye {} in front of this mark", measured(apart, units));
-                let there = format!("eye {} in front of the surface", measured(apart, units));
-                (map.point(front), scene::Words { here, there, measured: true })
+                let there = format!("eye {} in front of the surface{HERE}", measured(apart, units));
+                (map.point(front), [here, there])
             }
             (_, Eye::At(..)) => return Ok(None),
             (_, Eye::Infinite([x, y, z])) => {
                 let [right, up] = [x.atan2(-z), (-y).asin()].map(f64::to_degrees);
                 let here = format!("eye far away, {right:.1}° to the right and {up:.1}° up");
-                (map.point(scene.frame.center()), scene::Words { here: here.clone(), there: here, measured: false })
+                (map.point(scene.frame.center()), [here.clone(), here])
             }
         };
         Ok(Some(scene::mark(at, label, scene.extent(map), units)))
@@ -311,10 +305,12 @@ impl Anamorph {
                 Eye::Infinite([x, y, _]) => scene.frame.center() + Vec2::new(x, y) * 1e9,
             };
             let all = scene.extent(&*map);
-            let finite = matches!(eye, Eye::At(..));
-            let there = if finite { "eye in the plane of the drawing" } else { "eye far away in this direction" };
-            let words = scene::Words { here: "eye".into(), there: there.into(), measured: finite };
-            built.sight = Some(scene::mark(at, words, all, self.units_per_px));
+            let there = if matches!(eye, Eye::At(..)) {
+                "eye in the plane of the drawing, from here"
+            } else {
+                "eye far away in this direction"
+            };
+            built.sight = Some(scene::mark(at, ["eye".into(), there.into()], all, self.units_per_px));
         }
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
@@ -441,10 +437,10 @@ fn direction(towards: [f64; 3]) -> Result<[f64; 3], Error> {
 }
 
 /// Describes an eye at infinity by the sine of its elevation.
-fn far_away(sine: f64) -> scene::Words {
+fn far_away(sine: f64) -> [String; 2] {
     let up = sine.clamp(-1.0, 1.0).asin().to_degrees();
     let there = format!("eye far away in this direction, {up:.1}° above the sheet");
-    scene::Words { here: there.clone(), there, measured: false }
+    [there.clone(), there]
 }
 
 static INFO: Info = Info::new("anamorph", "draw artwork that looks right from one place: road markings, mugs, domes")

@@ -32,10 +32,8 @@ pub(super) enum Push {
     Away([usize; 3], f64),
     /// To the point of its ray nearest to this one.
     To([usize; 3], Point),
-    /// So that this point goes to this many times its distance from the eye.
+    /// So that this point goes to this many times its distance from the eye, or this much further from an eye at infinity.
     Prescribe(Point, f64),
-    /// So that this point goes this much further from the eye, user units.
-    PrescribeAway(Point, f64),
 }
 
 impl Push {
@@ -44,7 +42,7 @@ impl Push {
             Self::By(..) => "push",
             Self::Away(..) => "away",
             Self::To(..) => "at",
-            Self::Prescribe(..) | Self::PrescribeAway(..) => "point",
+            Self::Prescribe(..) => "point",
         }
     }
 
@@ -57,7 +55,7 @@ impl Push {
             (Self::By(n, _) | Self::Away(n, _) | Self::To(n, _), Reference::Rectangle(..)) => {
                 format!("{},{}", n[0], n[1])
             }
-            (Self::Prescribe(p, by) | Self::PrescribeAway(p, by), _) => format!("{}:{by}", show(p)),
+            (Self::Prescribe(p, by), _) => format!("{}:{by}", show(p)),
         }
     }
 }
@@ -83,7 +81,7 @@ impl PushedNet {
             }
             let by = |factor: f64| {
                 if scene.eye.is_infinite() {
-                    let problem = "multiplies the distance of an eye at infinity; give a length instead, by `away`, or with its unit after a `point`";
+                    let problem = "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`";
                     return Err(wrong(problem.into()));
                 }
                 sound(1.0 / factor)
@@ -112,13 +110,9 @@ impl PushedNet {
                     };
                     out.set(node, sound(delta)?);
                 }
-                Push::Prescribe(p, _) | Push::PrescribeAway(p, _) => {
+                Push::Prescribe(p, value) => {
                     let p = scene.scale * p;
-                    let delta = match *push {
-                        Push::Prescribe(_, factor) => by(factor)?,
-                        Push::PrescribeAway(_, length) => away(p, length)?,
-                        _ => 1.0,
-                    };
+                    let delta = if scene.eye.is_infinite() { away(p, value)? } else { by(value)? };
                     let moved = out.prescribe(p, delta, |node| fixed(&reference, node, local)).ok_or_else(|| {
                         wrong("is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`".into())
                     })?;

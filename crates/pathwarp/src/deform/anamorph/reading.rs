@@ -74,12 +74,10 @@ pub(super) fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
     }
     for text in s.texts("point") {
         let (place, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
-        let (p, is_length) = (s.point_in("point", place)?, factor.trim().ends_with(char::is_alphabetic));
-        pushes.push(if is_length {
-            Push::PrescribeAway(p, s.length_in("point", factor, Axis::Diagonal)?)
-        } else {
-            Push::Prescribe(p, s.number_in("point", factor)?)
-        });
+        let infinite = s.texts("eye").pop().is_some_and(|t| t.starts_with("inf"));
+        let value =
+            if infinite { s.length_in("point", factor, Axis::Diagonal)? } else { s.number_in("point", factor)? };
+        pushes.push(Push::Prescribe(s.point_in("point", place)?, value));
     }
     Ok(Some(PushedNet { reference: reference.unwrap_or_default(), degree, pushes }))
 }

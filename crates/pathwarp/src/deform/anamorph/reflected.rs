@@ -101,7 +101,7 @@ fn sight(cast: &Reflection, eye: Eye, all: Rect, units: [f64; 2]) -> SightMark {
             let [distance, height] = [distance, height].map(|v| measured(v, units));
             let here = format!("eye {height} above this mark");
             let there = format!("eye {height} above the table, {distance} from the mirror's middle");
-            (at, scene::Words { here, there, measured: false })
+            (at, [here, there])
         }
         (None, Eye::Infinite([x, y, z])) => (cast.foot + Vec2::new(x, -z) * 1e9, far_away(-y)),
         (None, Eye::At(..)) => (cast.foot, far_away(1.0)),

@@ -70,18 +70,11 @@ pub(super) fn measured(length: f64, units_per_px: [f64; 2]) -> String {
     if metres < 1.0 { format!("{} mm", trimmed(metres * 1e3, 1)) } else { format!("{} m", trimmed(metres, 3)) }
 }
 
-/// The words beside a mark.
-pub(super) struct Words {
-    /// Beside the place itself.
-    pub(super) here: String,
-    /// Beside an arrow towards it.
-    pub(super) there: String,
-    /// The length of the way from the arrow is added.
-    pub(super) measured: bool,
-}
+/// The end of words after which the length of the way is added.
+pub(super) const HERE: &str = ", from here";
 
-/// Marks a place, or by an arrow the way there if it is far from the result, whose box is `all`.
-pub(super) fn mark(at: Point, words: Words, all: Rect, units_per_px: [f64; 2]) -> SightMark {
+/// Marks a place, or by an arrow the way there if it is far from the result, whose box is `all`; with words for either.
+pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_px: [f64; 2]) -> SightMark {
     /// Height of a mark, in metres and as a share of the result.
     const SMALLEST: f64 = 0.003;
     const SHARE: f64 = 0.012;
@@ -100,7 +93,7 @@ pub(super) fn mark(at: Point, words: Words, all: Rect, units_per_px: [f64; 2]) -
             line(at - v, at + v);
         }
         path.extend(Circle::new(at, size).path_elements(1e-3 * size));
-        return SightMark { path, label: (under(at, &words.here), words.here), size };
+        return SightMark { path, label: (under(at, &here), here), size };
     }
     let way = (at - all.center()) / (at - all.center()).hypot();
     // Where the way leaves the box.
@@ -111,9 +104,9 @@ pub(super) fn mark(at: Point, words: Words, all: Rect, units_per_px: [f64; 2]) -
     for side in [-1.0, 1.0] {
         line(to, to - way * (1.5 * size) + across * (side * 0.7 * size));
     }
-    let text = match words.measured {
-        true => format!("{}, {} from the tail of the arrow", words.there, measured((at - from).hypot(), units_per_px)),
-        false => words.there,
+    let text = match there.strip_suffix(HERE) {
+        Some(there) => format!("{there}, {} from the tail of the arrow", measured((at - from).hypot(), units_per_px)),
+        None => there,
     };
     SightMark { path, label: (under(if to.y > from.y { to } else { from }, &text), text), size }
 }
