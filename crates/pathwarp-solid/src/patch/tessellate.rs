@@ -10,8 +10,10 @@ use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
 const DEFAULT_SIDE: usize = 8;
-/// Quads along a side of a patch if any is trimmed.
-const TRIMMED_SIDE: usize = 64;
+/// Quads along a side of a patch if any is trimmed, of few patches and of many.
+const TRIMMED_SIDES: [usize; 2] = [256, 64];
+/// The most patches that are few.
+const FEW: usize = 8;
 /// The most quads along a side of a patch.
 const MAX_SIDE: usize = 256;
 
@@ -42,11 +44,11 @@ pub fn tessellate_image(
     let corners: usize = trims.iter().flatten().flatten().map(Vec::len).sum();
     let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
     let mut side = match within {
-        _ if corners > 0 => TRIMMED_SIDE,
+        _ if corners > 0 => TRIMMED_SIDES[usize::from(patches.len() > FEW)],
         Some(_) => 1,
         None => DEFAULT_SIDE,
     };
-    budget.spend((corners * TRIMMED_SIDE * TRIMMED_SIDE) as f64 * 0.1)?;
+    budget.spend((corners * side * side) as f64 * 0.1)?;
     if let Some(within) = within {
         // Powers of two, so that parameters counted from either end of an edge are the same numbers.
         while side < MAX_SIDE {
@@ -82,7 +84,9 @@ fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
     let spans = |k: &[f64]| k.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
     let (us, vs) = (spans(&us), spans(&vs));
     let part = |(u, v): ((f64, f64), (f64, f64))| trims.part([u.0, v.0], [u.1, v.1]).map(|t| t.polygons());
-    vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v))).map(part).collect()
+    let parts: Vec<_> = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v))).map(part).collect();
+    // Loops around nothing would leave nothing to see.
+    if parts.iter().all(|p| p.as_ref().is_some_and(Vec::is_empty)) { vec![None; pieces.len()] } else { parts }
 }
 
 /// Whether an odd number of polygons surrounds a place.

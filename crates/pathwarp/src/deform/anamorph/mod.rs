@@ -346,13 +346,7 @@ impl Anamorph {
         let cast = Anamorphosis { eye: scene.eye, surface };
         surface::check_met(self.onto, &cast, scene.frame)?;
         let own = match self.look {
-            // A sheet that has no flat view is seen from the eye's side, from a quarter to the right and above.
-            Look::Unrolled if !self.files.is_empty() && cast.unrolled().is_none() => {
-                let middle = cast.point(scene.frame.center());
-                let away = scene.eye.apart(middle);
-                let p = scene.scale.inverse() * Point::new(middle[0] + 0.5 * away, middle[1] - 0.35 * away);
-                Some(Self { look: Look::From([p.x, p.y, 0.8 * away - middle[2]]), ..self.clone() })
-            }
+            Look::Unrolled if !self.files.is_empty() && cast.unrolled().is_none() => self.beside(&cast, &scene),
             _ => None,
         };
         let map = own.as_ref().unwrap_or(self).shown(&cast, &scene)?;
@@ -376,6 +370,23 @@ impl Anamorph {
             built.overlay(Role::Target, path);
         }
         Ok(built)
+    }
+
+    /// Returns the same with the view of a sheet that has no flat one: from the eye's side, from as far to the right, left or above as no
+    /// part hides another.
+    fn beside(&self, cast: &Anamorphosis, scene: &Scene) -> Option<Self> {
+        const SIDES: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
+        let middle = cast.point(scene.frame.center());
+        let away = scene.eye.apart(middle);
+        let from = |[x, y]: [f64; 2]| {
+            let p = scene.scale.inverse() * Point::new(middle[0] + x * away, middle[1] + y * away);
+            Self { look: Look::From([p.x, p.y, 0.8 * away - middle[2]]), ..self.clone() }
+        };
+        let shows_all = |own: &Self| {
+            let map = own.shown(cast, scene);
+            map.is_ok_and(|m| surface::samples(scene.frame).all(|p| m.jet(p).det() > 0.0))
+        };
+        SIDES.map(from).into_iter().find(shows_all)
     }
 
     /// Returns the requested view of the surface.

@@ -68,7 +68,6 @@ impl Anamorph {
         built.space = Some(InSpace { files: self.files.clone(), ..in_space(&cast, scale, all) });
         built.sight = self.sight_mark.then(|| sight(&cast, eye, all, units));
         built.overlay(Role::Base, self.frame.to_path(0.1));
-        built.overlay(Role::Cage, cast.footprint());
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
         }
