@@ -27,6 +27,7 @@ mod hostile;
 mod inkscape;
 mod lettering;
 mod linked_pictures;
+mod mirror;
 mod oracle;
 mod photographs;
 mod pictures;

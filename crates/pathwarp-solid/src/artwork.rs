@@ -89,8 +89,20 @@ pub fn filled(
     tolerance: f64,
     budget: &Budget,
 ) -> Result<String, Error> {
+    scene(&[(shapes.to_vec(), space)], tolerance, budget)
+}
+
+/// Does the same with shapes on several surfaces, in one file.
+///
+/// # Errors
+/// As [`filled`].
+pub fn scene(
+    groups: &[(Vec<NamedShape<'_>>, &SurfaceFn<'_>)],
+    tolerance: f64,
+    budget: &Budget,
+) -> Result<String, Error> {
     let mut out = ObjWriter::new();
-    for s in shapes {
+    for (s, space) in groups.iter().flat_map(|(shapes, space)| shapes.iter().map(move |s| (s, space))) {
         let polygons = polygons(s, space, tolerance, budget)?;
         let mesh = fill(s, &polygons)?;
         let mesh = to_surface(s.name, mesh, space, tolerance, budget)?;

@@ -97,10 +97,15 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
                 names.push(name);
             }
         }
+        let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
+        if kind == PolygonKind::Line {
+            for w in corners.windows(2) {
+                canvas.line([w[0], w[1]].map(|c| places[c.vertex as usize]), nearest, base);
+            }
+        }
         if kind != PolygonKind::Face {
             continue;
         }
-        let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
         for w in corners.windows(2).skip(1) {
             let t = [corners[0], w[0], w[1]].map(|c| c.vertex as usize);
             let [a, b, c] = t.map(|v| mesh.positions[v]);
@@ -115,7 +120,7 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
     }
     for guide in guides {
         for w in guide.windows(2) {
-            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), nearest);
+            canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), nearest, GUIDE);
         }
     }
     canvas.pixels()
@@ -155,7 +160,7 @@ impl Canvas {
     }
 
     /// Draws a thin line over everything.
-    fn line(&mut self, [a, b]: [DVec3; 2], nearest: f64) {
+    fn line(&mut self, [a, b]: [DVec3; 2], nearest: f64, color: [f64; 3]) {
         if a.z <= nearest || b.z <= nearest || !(a.is_finite() && b.is_finite()) {
             return;
         }
@@ -164,7 +169,7 @@ impl Canvas {
         for i in 0..=steps as usize {
             let p = a.lerp(b, i as f64 / steps);
             if (0.0..limit).contains(&p.x) && (0.0..limit).contains(&p.y) {
-                self.color[p.y as usize * self.side + p.x as usize] = GUIDE;
+                self.color[p.y as usize * self.side + p.x as usize] = color;
             }
         }
     }

@@ -519,3 +519,233 @@ fn a_prescribed_point_of_a_local_tetrahedron() {
     let face: P = std::array::from_fn(|k| 0.2 * CORNERS[0][k] + 0.3 * CORNERS[1][k] + 0.5 * CORNERS[2][k]);
     assert!(map.point(DVec3::from_array(face)).distance(DVec3::from_array(face)) < 1e-12);
 }
+
+/// The direction 0.3, 0.2, 1 of an eye at infinity.
+fn towards() -> P {
+    let n = (0.09_f64 + 0.04 + 1.0).sqrt();
+    [0.3 / n, 0.2 / n, 1.0 / n]
+}
+
+/// A point moved away from the eye at infinity.
+fn shifted(p: P, length: f64) -> P {
+    std::array::from_fn(|k| p[k] - towards()[k] * length)
+}
+
+/// The value of far eyes in the limit, by Richardson's extrapolation.
+fn limit(of: impl Fn(f64) -> DVec3) -> DVec3 {
+    let mut row: Vec<DVec3> = (0..7).map(|k| of(1e3 * f64::from(1 << k))).collect();
+    let mut power = 2.0;
+    while row.len() > 1 {
+        row = row.windows(2).map(|w| (w[1] * power - w[0]) / (power - 1.0)).collect();
+        power *= 2.0;
+    }
+    row[0]
+}
+
+#[test]
+fn an_eye_at_infinity_moves_along_parallel_rays() {
+    let eye = ("eye", "inf:0.3,0.2,1");
+    let in_box = |p: P| -> P { std::array::from_fn(|a| (p[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a])) };
+    // Where the ray of a point meets the plane z = 10.
+    let on_plane = |p: P| {
+        let [x, y, z] = towards();
+        [p[0] - x / z * (p[2] - 10.0), p[1] - y / z * (p[2] - 10.0)]
+    };
+    type Truth<'a> = Box<dyn Fn(P) -> P + 'a>;
+    let cases: Vec<(Vec<(&str, &str)>, Truth<'_>)> = vec![
+        (
+            vec![("reference", TETRAHEDRON), ("away", "0,0,0,1:25 0,1,0,0:-8")],
+            Box::new(|p| {
+                let u = barycentric(p, CORNERS);
+                shifted(p, 25.0 * u[3] - 8.0 * u[1])
+            }),
+        ),
+        (
+            vec![("reference", TETRAHEDRON), ("degree", "2"), ("away", "0,1,0,1:12 2,0,0,0:-7")],
+            Box::new(|p| {
+                let u = barycentric(p, CORNERS);
+                shifted(p, 24.0 * u[1] * u[3] - 7.0 * u[0] * u[0])
+            }),
+        ),
+        (
+            vec![("degree", "3x1x2"), ("away", "1,1,1:12 3,0,2:-9")],
+            Box::new(move |p| {
+                let t = in_box(p);
+                let b = |i, j, k| bernstein(3, i, t[0]) * bernstein(1, j, t[1]) * bernstein(2, k, t[2]);
+                shifted(p, 12.0 * b(1, 1, 1) - 9.0 * b(3, 0, 2))
+            }),
+        ),
+        (
+            vec![("degree", "2"), ("cells", "3x2x1"), ("away", "1,2,1:9 3,0,2:-6")],
+            Box::new(move |p| {
+                let t = in_box(p);
+                let b = |i, j, k| b_spline(2, 3, i, t[0]) * b_spline(2, 2, j, t[1]) * b_spline(2, 1, k, t[2]);
+                shifted(p, 9.0 * b(1, 2, 1) - 6.0 * b(3, 0, 2))
+            }),
+        ),
+        (
+            vec![("reference", "-20,0,10 60,50,10"), ("degree", "2x1x1"), ("away", "1,1,0:15")],
+            Box::new(move |p| {
+                let [x, y] = on_plane(p);
+                shifted(p, 15.0 * bernstein(2, 1, (x + 20.0) / 80.0) * bernstein(1, 1, y / 50.0))
+            }),
+        ),
+        (
+            vec![("reference", "-20,0,10 60,0,10 0,80,10"), ("degree", "2"), ("away", "1,0,1:15")],
+            Box::new(move |p| {
+                let [x, y] = on_plane(p);
+                let (v, w) = ((x + 20.0 - 20.0 * y / 80.0) / 80.0, y / 80.0);
+                shifted(p, 15.0 * 2.0 * (1.0 - v - w) * w)
+            }),
+        ),
+    ];
+    for (pairs, truth) in &cases {
+        let map = build("anamorph", &[&[eye][..], pairs].concat());
+        compare(&map, truth);
+        for p in points().into_iter().take(5).map(DVec3::from_array) {
+            let far = limit(|d| {
+                let [x, y, z] = towards().map(|v| v * d);
+                let eye = format!("{},{},{}", 20.0 + x, 25.0 + y, 55.0 + z);
+                build("anamorph", &[&[("eye", &*eye)][..], pairs].concat()).point(p)
+            });
+            assert!(far.distance(map.point(p)) < 1e-9 * 100.0, "{pairs:?} {p}: {far} {}", map.point(p));
+        }
+    }
+    // A point that is prescribed by a length.
+    let map = build("anamorph", &[eye, ("reference", TETRAHEDRON), ("point", "22,27,60:10mm")]);
+    let (at, want) = ([22.0, 27.0, 60.0], shifted([22.0, 27.0, 60.0], 10.0));
+    assert!(map.point(DVec3::from_array(at)).distance(DVec3::from_array(want)) < 1e-10);
+}
+
+/// B-splines as a tool: δ = Σ δᵢ·Nᵢ.
+#[test]
+fn splines_push_along_rays() {
+    let map = build(
+        "anamorph",
+        &[("eye", "20,30,300"), ("degree", "2"), ("cells", "3x2x1"), ("push", "1,2,1:1.2 3,0,2:0.8")],
+    );
+    compare(&map, |p| {
+        let t: P = std::array::from_fn(|a| (p[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a]));
+        let b = |i, j, k| b_spline(2, 3, i, t[0]) * b_spline(2, 2, j, t[1]) * b_spline(2, 1, k, t[2]);
+        radial(EYE, p, 1.0 + (1.0 / 1.2 - 1.0) * b(1, 2, 1) + (1.0 / 0.8 - 1.0) * b(3, 0, 2))
+    });
+}
+
+/// Equations 12 to 14 of the paper: a collineation by d and d₀, or by its axis and one point.
+#[test]
+fn collineations_by_their_data() {
+    let map = build("anamorph", &[("eye", "20,30,300"), ("collineation", "0.001,-0.002,0.0005,1.3")]);
+    compare(&map, |p| {
+        let q: P = std::array::from_fn(|k| p[k] - EYE[k]);
+        radial(EYE, p, 0.001 * q[0] - 0.002 * q[1] + 0.0005 * q[2] + 1.3)
+    });
+    assert!(map.collineation().is_some());
+    let map =
+        build("anamorph", &[("eye", "20,30,300"), ("axis", "0,0,20 70,0,20 0,90,22"), ("point", "20,20,80:1.25")]);
+    let normal = [0.0, -2.0 / 90.0, 1.0];
+    let off = |p: P| (0..3).map(|k| normal[k] * (p[k] - [0.0, 0.0, 20.0][k])).sum::<f64>();
+    compare(&map, |p| radial(EYE, p, 1.0 + (1.0 / 1.25 - 1.0) * off(p) / off([20.0, 20.0, 80.0])));
+}
+
+/// Ten million units away, models and eyes give the same result up to the rounding of coordinates.
+#[test]
+fn anamorphoses_are_the_same_far_from_the_origin() {
+    let far = DVec3::new(1e7, -1.2e7, 0.8e7);
+    let cases: &[(&[(&str, &str)], &str)] = &[
+        (&[("push", "0,0,0,1:1.25 0,1,0,0:0.8")], "-20,0,20 70,0,20 0,90,20 20,20,110"),
+        (&[("degree", "2"), ("push", "0,1,0,1:1.25 2,0,0,0:0.9")], "-20,0,20 70,0,20 0,90,20 20,20,110"),
+        (&[("degree", "2"), ("push", "0,1,0:1.25")], "-20,0,10 60,0,10 0,80,10"),
+        (&[("degree", "2"), ("push", "0,1,0:1.25")], "-20,0,10 60,50,10"),
+        (&[("degree", "2"), ("push", "1,1,1:1.05"), ("local", "true")], "-10,5,20 50,45,90"),
+        (&[("degree", "2"), ("cells", "2x2x2"), ("push", "0,1,0:1.25")], "-10,5,20 50,45,90"),
+    ];
+    for (pairs, corners) in cases {
+        for eye in ["20,30,300", "inf:0.3,0.2,1"] {
+            let at = |by: DVec3| {
+                let moved = |text: &str| {
+                    let v: Vec<f64> = text.split(',').map(|t| t.parse().unwrap()).collect();
+                    format!("{},{},{}", v[0] + by.x, v[1] + by.y, v[2] + by.z)
+                };
+                let corners: Vec<String> = corners.split(' ').map(moved).collect();
+                let (corners, place) =
+                    (corners.join(" "), if eye.starts_with("inf") { eye.into() } else { moved(eye) });
+                // The pushes as lengths, for either eye.
+                let pairs: Vec<(&str, &str)> = pairs
+                    .iter()
+                    .map(|(name, value)| match (*name, eye.starts_with("inf")) {
+                        ("push", true) => ("away", *value),
+                        _ => (*name, *value),
+                    })
+                    .collect();
+                build("anamorph", &[&[("eye", &*place), ("reference", &*corners)][..], &pairs[..]].concat())
+            };
+            let (near, away) = (at(DVec3::ZERO), at(far));
+            let back = away.inverse();
+            for p in points().into_iter().map(|p| DVec3::from_array(p.map(|v| (v * 64.0).round() / 64.0))) {
+                let (want, got) = (near.point(p), away.point(p + far));
+                // A last place of 1.2e7 is 2e-9.
+                assert!((got - far).distance(want) < 2e-8, "{pairs:?} {eye} {p}: {} {want}", got - far);
+                if let Some(back) = &back {
+                    assert!(back.point(got).distance(p + far) < 1e-7, "{pairs:?} {eye} {p}");
+                }
+            }
+        }
+    }
+}
+
+/// Two tetrahedra on either side of a face, and one that shares an edge: δ is linear in each, and continuous.
+#[test]
+fn tetrahedra_that_share_faces_do_not_tear() {
+    let corners: [P; 5] =
+        [[-30.0, -30.0, 40.0], [110.0, -20.0, 40.0], [10.0, 120.0, 40.0], [20.0, 25.0, 130.0], [20.0, 25.0, -40.0]];
+    let text = corners.map(|c| c.map(|v| v.to_string()).join(",")).join(" ");
+    let pairs = [
+        ("eye", "20,30,300"),
+        ("reference", &*text),
+        ("tetrahedra", "0,1,2,3 0,2,1,4"),
+        ("push", "3:1.2 4:0.9 0:1.05"),
+    ];
+    let map = build("anamorph", &pairs);
+    let delta = [1.0 / 1.05, 1.0, 1.0, 1.0 / 1.2, 1.0 / 0.9];
+    let back = map.inverse().unwrap();
+    let mut sides = [0; 3];
+    for p in points() {
+        let inside = [[0, 1, 2, 3], [0, 2, 1, 4]]
+            .into_iter()
+            .position(|t: [usize; 4]| barycentric(p, t.map(|i| corners[i])).iter().all(|u| *u >= 0.0));
+        let want = match inside {
+            Some(k) => {
+                let t = [[0, 1, 2, 3], [0, 2, 1, 4]][k];
+                let u = barycentric(p, t.map(|i| corners[i]));
+                radial(EYE, p, (0..4).map(|i| u[i] * delta[t[i]]).sum())
+            }
+            None => p,
+        };
+        sides[inside.unwrap_or(2)] += 1;
+        let (got, want) = (map.point(DVec3::from_array(p)), DVec3::from_array(want));
+        assert!(got.distance(want) <= 1e-12 * (1.0 + want.length()), "{p:?}: {got} {want}");
+        assert!(map.point(back.point(got)).distance(got) <= 1e-9 * (1.0 + got.length()), "{p:?}");
+    }
+    assert!(sides[0] > 20 && sides[1] > 20, "{sides:?}");
+    // The common face from either side.
+    for k in 0..50 {
+        let (v, w) = (0.013 * f64::from(k % 7) + 0.1, 0.017 * f64::from(k) / 2.0 + 0.05);
+        let on: P = std::array::from_fn(|i| corners[0][i] * (1.0 - v - w) + corners[1][i] * v + corners[2][i] * w);
+        let [above, below] = [1e-9, -1e-9].map(|h| map.point(DVec3::new(on[0], on[1], on[2] + h)));
+        assert!(above.distance(below) < 1e-7, "{on:?}: {above} {below}");
+    }
+    let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::ONE));
+    let fails = |pairs: &[(&str, &str)]| {
+        Registry3::builtin()
+            .get("anamorph")
+            .unwrap()
+            .build_from(&Args::from_pairs(pairs), &frame)
+            .unwrap_err()
+            .to_string()
+    };
+    let with = |t: &'static str| fails(&[pairs[0], pairs[1], ("tetrahedra", t)]);
+    assert!(with("0,1,2").contains("four numbers"));
+    assert!(with("0,1,2,7").contains("0 to 4"));
+    assert!(with("0,1,2,2").contains("one plane"));
+    assert!(with("0,1,2,3 1,2,4,3").contains("lies in"), "{}", with("0,1,2,3 1,2,4,3"));
+}

@@ -10,7 +10,7 @@ use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;
 use pathwarp_solid::glam::{DMat4, DVec3, DVec4};
 use pathwarp_solid::map::{Chain3, Collineation, Map3};
-use pathwarp_solid::patch::{DeformedPatches, PatchError, Surface, TrimCurve, deform_patches, tessellate};
+use pathwarp_solid::patch::{DeformedPatches, PatchError, Surface, TrimCurve, deform_patches, json, tessellate};
 use pathwarp_solid::{Box3, Frame3};
 use std::sync::Arc;
 use std::time::Duration;
@@ -317,4 +317,71 @@ fn long_surfaces_take_linear_time() {
     let done = deform_patches(&mut vec![patch([3, 3], false)], &high, 0.5, &small).unwrap();
     // Pieces and products are not counted, but all of this takes a tenth of a second.
     assert!(done.refitted == 1 && begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+}
+
+/// A quarter of a circle of radius 32 about 8,8,20 keeps its degree under a collineation, and has 2·d under a map of degree d; every
+/// point of the image is that of a point of the circle at the same parameter.
+#[test]
+fn curves_in_space_keep_their_degree() {
+    let arc =
+        r#"{"curves":[{"degree":2,"points":[[40,8,20],[40,40,20],[8,40,20]],"weights":[1,0.7071067811865476,1]}]}"#;
+    let tetrahedron = ("reference", "0,0,0 64,0,0 0,64,0 0,0,64");
+    let cases: [(&[(&str, &str)], usize); 3] = [
+        (&[tetrahedron, ("push", "1,0,0,0:1.25 0,0,1,0:0.8")], 2),
+        (&[tetrahedron, ("degree", "2"), ("push", "1,1,0,0:1.25")], 4),
+        (&[("degree", "1x2x1"), ("push", "1,1,0:1.25")], 8),
+    ];
+    for (pairs, degree) in cases {
+        let map = chain("anamorph", &[&[("eye", "20,30,300")][..], pairs].concat());
+        let source = json::read(arc.as_bytes()).unwrap();
+        let mut image = source.clone();
+        let done = deform_patches(&mut image, &map, 1e-3, &budget()).unwrap();
+        assert_eq!((done.exact, image.len(), image[0].degree[0]), (1, 1, degree));
+        // Written and read again, the curve is still one.
+        let written = json::write(&image).unwrap();
+        assert!(written.starts_with("{\"curves\":[{"), "{written}");
+        let image = json::read(written.as_bytes()).unwrap();
+        let [source, image] = [&source[0], &image[0]].map(|s| s.pieces().0.swap_remove(0));
+        for i in 0..=16 {
+            let t = f64::from(i) / 16.0;
+            let p = source.point(t, 0.0);
+            assert!(((p.x - 8.0).hypot(p.y - 8.0) - 32.0).abs() < 1e-12 * 32.0);
+            assert!(image.point(t, 0.0).distance(map.point(p)) < 1e-11 * 64.0, "{pairs:?} {t}");
+        }
+    }
+    let faulty = arc.replace("[8,40,20]", "[8,40,1e300]");
+    assert!(json::read(faulty.as_bytes()).unwrap_err().to_string().contains("curve 1"));
+}
+
+/// A square with a round hole: in a picture the hole is open, and its area is missing.
+#[test]
+fn pictures_leave_out_what_is_trimmed_away() {
+    let mut square = Surface::bezier(
+        "s",
+        [1, 1],
+        [[0, 0], [64, 0], [0, 64], [64, 64]].map(|[x, y]| DVec3::new(f64::from(x), f64::from(y), 0.0)).to_vec(),
+    );
+    let line =
+        |points: Vec<[f64; 2]>| TrimCurve { degree: 1, knots: vec![0.0, 0.0, 1.0, 1.0], points, weights: vec![1.0; 2] };
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+    let quarter = |k: usize| {
+        let at = |i: usize| {
+            let [x, y] =
+                [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0], [0.0, -1.0], [1.0, -1.0]]
+                    [i % 8];
+            [0.5 + 0.25 * x, 0.5 + 0.25 * y]
+        };
+        let points = vec![at(2 * k), at(2 * k + 1), at(2 * k + 2)];
+        TrimCurve {
+            degree: 2,
+            knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            points,
+            weights: vec![1.0, 0.5_f64.sqrt(), 1.0],
+        }
+    };
+    square.trims = vec![corners.windows(2).map(|w| line(w.to_vec())).collect(), (0..4).map(quarter).collect()];
+    let mesh = tessellate(&[square], None, &budget()).unwrap();
+    let area = pathwarp_solid::mesh::topology(&mesh).area;
+    let want = 64.0 * 64.0 * (1.0 - std::f64::consts::PI / 16.0);
+    assert!((area - want).abs() < 0.005 * want, "{area} {want}");
 }

@@ -6,9 +6,11 @@ use crate::bitmap::encode;
 use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::CommonOptions;
+use pathwarp::Outline;
 use pathwarp::deform::{Built, Role};
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::map::{Map, RationalBezier, exact_images};
+use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltParts, BuiltRecipe};
 use pathwarp_raster::{OverlayKind, Panel, Preview, PreviewOverlay};
 use pathwarp_solid::artwork::{self, NamedShape};
@@ -128,7 +130,19 @@ pub(super) fn surface_files(
             let wanted: Vec<NamedShape<'_>> =
                 wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
             let made = if file.filled {
-                artwork::filled(&wanted, &place, options.refit.tolerance, doc.budget())
+                let own = space.besides.iter().map(|(name, area, place)| {
+                    let outline = area.map(|r| Outline::from_points(&Frame::new(r).corners(), true));
+                    (*name, outline, move |p: Point| place(before.iter().fold(p, |q, s| s.map.point(q))), place)
+                });
+                let own: Vec<_> = own.collect();
+                let mut groups: Vec<(Vec<NamedShape<'_>>, &artwork::SurfaceFn<'_>)> = vec![(wanted, &place)];
+                for (name, outline, of_artwork, place) in &own {
+                    groups.push(match outline {
+                        Some(outline) => (vec![NamedShape { name, outline, even_odd: false }], &***place),
+                        None => (groups[0].0.clone(), of_artwork),
+                    });
+                }
+                artwork::scene(&groups, options.refit.tolerance, doc.budget())
             } else {
                 artwork::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
             };

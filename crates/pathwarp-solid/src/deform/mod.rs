@@ -12,7 +12,7 @@ mod wrap;
 use std::fmt;
 use std::sync::Arc;
 
-pub use anamorph::{Anamorph3, Push3, Reference3};
+pub use anamorph::{Anamorph3, Eye3, Push3, Reference3};
 pub use bend::{Bend3, Handle3, Spine3};
 pub use entry::{About3, Built3, Case3, Deformation3, Law3};
 pub use ffd::{Change3, Ffd3};

@@ -1,8 +1,9 @@
 //! Collineations: maps of space that keep planes plane.
 
-use glam::{DMat4, DVec4};
+use glam::{DMat4, DVec3, DVec4};
 
-/// A collineation: (x, y, z, 1) times a matrix, divided by the last coordinate.
+/// A collineation: (x, y, z, 1) times a matrix, divided by the last coordinate, in coordinates about a point, so that no digits are
+/// lost far from the origin.
 ///
 /// It is defined where certain linear forms are positive: its own last coordinate, and those of the collineations of which it is
 /// composed.
@@ -11,31 +12,51 @@ pub struct Collineation {
     pub(super) matrix: DMat4,
     /// Linear forms in (x, y, z, 1) that are positive in the domain.
     pub(super) positive: Vec<DVec4>,
+    /// The point about which matrix and forms are meant.
+    pub(super) about: DVec3,
 }
 
 impl Collineation {
     /// The collineation that moves nothing.
-    pub const IDENTITY: Self = Self { matrix: DMat4::IDENTITY, positive: Vec::new() };
+    pub const IDENTITY: Self = Self { matrix: DMat4::IDENTITY, positive: Vec::new(), about: DVec3::ZERO };
 
     /// Makes a collineation from its matrix, defined where the last coordinate is positive.
     #[must_use]
     pub fn new(matrix: DMat4) -> Self {
         let last = matrix.row(3);
         let affine = last == DVec4::new(0.0, 0.0, 0.0, 1.0);
-        Self { matrix, positive: if affine { Vec::new() } else { vec![last] } }
+        Self { matrix, positive: if affine { Vec::new() } else { vec![last] }, about: DVec3::ZERO }
     }
 
-    /// The matrix.
+    /// Makes a collineation from its matrix in coordinates about a point.
+    #[must_use]
+    pub fn about(matrix: DMat4, about: DVec3) -> Self {
+        Self { about, ..Self::new(matrix) }
+    }
+
+    /// The matrix, in coordinates about some point: its determinant is that of the map.
     #[must_use]
     pub fn matrix(&self) -> DMat4 {
         self.matrix
     }
 
+    /// The homogeneous image of a point.
+    #[must_use]
+    pub fn homogeneous(&self, p: DVec3) -> DVec4 {
+        let q = self.matrix * (p - self.about).extend(1.0);
+        q + (self.about * q.w).extend(0.0)
+    }
+
     /// The collineation that applies this one first, and then `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
+        // The next one about this one's point.
+        let (to, back) = (next.about - self.about, self.about - next.about);
+        let (matrix, shift) = (next.matrix * DMat4::from_translation(back), DMat4::from_translation(back).transpose());
+        let matrix = DMat4::from_translation(to) * matrix;
         // The form f at M·p is the form Mᵀ·f at p.
-        let pulled = next.positive.iter().map(|f| self.matrix.transpose() * *f);
-        Self { matrix: next.matrix * self.matrix, positive: self.positive.iter().copied().chain(pulled).collect() }
+        let pulled = next.positive.iter().map(|f| self.matrix.transpose() * (shift * *f));
+        let positive = self.positive.iter().copied().chain(pulled).collect();
+        Self { matrix: matrix * self.matrix, positive, about: self.about }
     }
 }

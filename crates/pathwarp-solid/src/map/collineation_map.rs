@@ -8,21 +8,24 @@ use std::sync::Arc;
 impl Map3 for Collineation {
     #[inline]
     fn point(&self, p: DVec3) -> DVec3 {
-        let q = self.matrix * p.extend(1.0);
-        q.truncate() / q.w
+        let q = self.matrix * (p - self.about).extend(1.0);
+        q.truncate() / q.w + self.about
     }
 
     fn jet(&self, p: DVec3) -> Jet3 {
-        let q = self.matrix * p.extend(1.0);
+        let q = self.matrix * (p - self.about).extend(1.0);
         let image = q.truncate() / q.w;
         // d(N/W) = (dN − image·dW)/W.
         let column = |c: DVec4| (c.truncate() - image * c.w) / q.w;
         let m = &self.matrix;
-        Jet3 { p: image, d: DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis)) }
+        Jet3 { p: image + self.about, d: DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis)) }
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        crate::map::tensor::collineation(&self.matrix, ps);
+        if self.about == DVec3::ZERO {
+            return crate::map::tensor::collineation(&self.matrix, ps);
+        }
+        ps.iter_mut().for_each(|p| *p = self.point(*p));
     }
 
     fn collineation(&self) -> Option<&Collineation> {
@@ -31,8 +34,8 @@ impl Map3 for Collineation {
 
     fn creases(&self, out: &mut Creases3) {
         for form in &self.positive {
-            let form = *form;
-            out.edge(move |p| form.dot(p.extend(1.0)));
+            let (form, about) = (*form, self.about);
+            out.edge(move |p| form.dot((p - about).extend(1.0)));
         }
     }
 
@@ -46,7 +49,7 @@ impl Map3 for Collineation {
         let last = back.row(3);
         let affine = last == DVec4::new(0.0, 0.0, 0.0, 1.0);
         let positive = if affine { forms.collect() } else { std::iter::once(last).chain(forms).collect() };
-        Some(Arc::new(Self { matrix: back, positive }))
+        Some(Arc::new(Self { matrix: back, positive, about: self.about }))
     }
 }
 

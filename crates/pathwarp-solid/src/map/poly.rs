@@ -98,6 +98,11 @@ impl Chart {
         self.half
     }
 
+    /// The chart of the same box relative to a point.
+    pub(crate) fn relative_to(self, base: DVec3) -> Self {
+        Self { middle: self.middle - base, ..self }
+    }
+
     /// A linear form in (x, y, z, 1) as a polynomial in the coordinates.
     pub(crate) fn linear(&self, form: DVec4) -> Poly3 {
         let mut out = Poly3::constant(form.dot(self.middle.extend(1.0)));
@@ -144,6 +149,14 @@ impl Fraction3 {
         let [x, y, z] = chart.place();
         let part = |p: Poly3, o: f64| p.plus(-o, &Poly3::constant(1.0)).times(common).plus(o, &divisor);
         Self { chart, parts: [part(x, eye.x), part(y, eye.y), part(z, eye.z), divisor] }
+    }
+
+    /// The map p + `along`·(`divisor`/`common` − 1).
+    pub(crate) fn shifted(chart: Chart, along: DVec3, divisor: &Poly3, common: Poly3) -> Self {
+        let by = divisor.plus(-1.0, &common);
+        let [x, y, z] = chart.place();
+        let part = |p: Poly3, v: f64| p.times(&common).plus(v, &by);
+        Self { chart, parts: [part(x, along.x), part(y, along.y), part(z, along.z), common] }
     }
 
     /// Whether nothing moves.

@@ -1,4 +1,6 @@
-//! Rational patches and NURBS surfaces as JSON, with trimming curves. `docs/solid.md` describes the format.
+//! Rational patches and NURBS surfaces as JSON, with trimming curves, and NURBS curves in space. `docs/solid.md` describes the format.
+//!
+//! A curve is a surface of degree p × 1 whose two rows of control points are the same: so is its image, whose rows are written once.
 
 use super::surface::{self, Surface, TrimCurve};
 use crate::mesh::MeshError;
@@ -8,7 +10,23 @@ use serde::{Deserialize, Serialize};
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     surfaces: Vec<Entry>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    curves: Vec<SpaceCurve>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SpaceCurve {
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    name: String,
+    degree: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    knots: Option<Vec<f64>>,
+    points: Vec<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weights: Option<Vec<f64>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -70,8 +88,25 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
         }
         out.push(surface);
     }
+    for (n, c) in file.curves.into_iter().enumerate() {
+        let weights = c.weights.unwrap_or_else(|| vec![1.0; c.points.len()]);
+        let own = c.knots.unwrap_or_else(|| surface::single(c.degree.min(usize::from(u8::MAX)), [0.0, 1.0]));
+        let points = c.points.into_iter().map(DVec3::from_array).collect::<Vec<_>>();
+        let surface = Surface {
+            name: c.name,
+            degree: [c.degree, 1],
+            knots: [own, surface::single(1, [0.0, 1.0])],
+            weights: weights.repeat(2),
+            points: points.repeat(2),
+            trims: Vec::new(),
+        };
+        if let Some(fault) = surface.fault() {
+            return Err(MeshError::whole(format!("curve {}, as a surface of two equal rows, {fault}", n + 1)));
+        }
+        out.push(surface);
+    }
     if out.is_empty() {
-        return Err(MeshError::whole("holds no surfaces"));
+        return Err(MeshError::whole("holds no surfaces and no curves"));
     }
     Ok(out)
 }
@@ -96,13 +131,43 @@ pub fn write(surfaces: &[Surface]) -> Result<String, String> {
         weights: weights(&s.weights),
         trims: s.trims.iter().map(|l| l.iter().map(curve).collect()).collect(),
     };
-    let file = File { surfaces: surfaces.iter().map(entry).collect() };
+    let of_space = |s: &Surface| {
+        let n = s.size()[0];
+        let own = weights(&s.weights[..n]);
+        SpaceCurve {
+            name: s.name.clone(),
+            degree: s.degree[0],
+            knots: (s.knots[0] != surface::single(s.degree[0], [0.0, 1.0])).then(|| s.knots[0].clone()),
+            points: s.points[..n].iter().map(DVec3::to_array).collect(),
+            weights: own,
+        }
+    };
+    let (curves, surfaces): (Vec<&Surface>, Vec<&Surface>) = surfaces.iter().partition(|s| s.is_curve());
+    let file = File {
+        surfaces: surfaces.into_iter().map(entry).collect(),
+        curves: curves.into_iter().map(of_space).collect(),
+    };
     serde_json::to_string(&file).map(|t| t + "\n").map_err(|e| e.to_string())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn curves_come_back() {
+        let text = r#"{"curves":[{"name":"arc","degree":2,"points":[[1,0,0],[1,1,0],[0,1,0]],"weights":[1,0.5,1]}]}"#;
+        let curves = read(text.as_bytes()).unwrap();
+        assert_eq!(
+            write(&curves).unwrap().trim(),
+            text.replace("1,0,0", "1.0,0.0,0.0")
+                .replace("1,1,0", "1.0,1.0,0.0")
+                .replace("0,1,0]", "0.0,1.0,0.0]")
+                .replace("[1,0.5,1]", "[1.0,0.5,1.0]")
+        );
+        let e = read(text.replace("0.5", "-0.5").as_bytes()).unwrap_err().to_string();
+        assert!(e.contains("curve 1") && e.contains("weight 2"), "{e}");
+    }
 
     #[test]
     fn surfaces_come_back_and_damage_is_named() {

@@ -97,7 +97,9 @@ pub fn deform_patches(
         if let Some(image) = image {
             out.exact += 1;
             images.push(vec![image]);
-        } else if let Some(parts) = cutter.image(surface, &pieces, &breaks)? {
+        } else if !surface.is_curve()
+            && let Some(parts) = cutter.image(surface, &pieces, &breaks)?
+        {
             out.cut += 1;
             out.distance = out.distance.max(parts.distance);
             images.push(parts.surfaces);

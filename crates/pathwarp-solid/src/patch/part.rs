@@ -75,7 +75,7 @@ fn has_kinks(map: &dyn Map3) -> bool {
 
 /// The bounding box of a box's image, if the box is all in front of the vanishing plane.
 fn image(on: &Box3, map: &Collineation) -> Option<Box3> {
-    let ahead = on.corners().iter().all(|p| map.matrix().row(3).dot(p.extend(1.0)) > 0.0);
+    let ahead = on.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
     if ahead { Box3::around(on.corners().map(|p| map.point(p))) } else { None }
 }
 

@@ -174,7 +174,7 @@ pub(super) fn image(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Resul
 fn projected(surface: &Surface, map: &Collineation) -> Surface {
     let mut out = surface.clone();
     for (p, w) in out.points.iter_mut().zip(&mut out.weights) {
-        let q = map.matrix() * p.extend(1.0);
+        let q = map.homogeneous(*p);
         (*p, *w) = (q.xyz() / q.w, *w * q.w);
     }
     out

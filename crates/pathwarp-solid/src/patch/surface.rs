@@ -61,6 +61,16 @@ impl Surface {
         self.size() == self.degree.map(|d| d + 1)
     }
 
+    /// Whether all rows of control points are the same up to rounding: a curve.
+    #[must_use]
+    pub fn is_curve(&self) -> bool {
+        const SAME: f64 = 1e-12;
+        let n = self.size()[0].max(1);
+        let size = self.points.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+        self.points.chunks(n).all(|row| row.iter().zip(&self.points).all(|(p, q)| p.distance(*q) <= SAME * size))
+            && self.weights.chunks(n).all(|row| row.iter().zip(&self.weights).all(|(v, w)| (v - w).abs() <= SAME * w))
+    }
+
     /// The bounding box of the control points, which contains the surface.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {

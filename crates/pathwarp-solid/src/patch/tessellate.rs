@@ -1,6 +1,7 @@
 //! Surfaces as meshes of quads.
 
 use super::surface::{BezierPatch, Surface};
+use super::trims::Trims;
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
@@ -9,11 +10,16 @@ use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
 const DEFAULT_SIDE: usize = 8;
+/// Quads along a side of a patch if any is trimmed, of few patches and of many.
+const TRIMMED_SIDES: [usize; 2] = [256, 64];
+/// The most patches that are few.
+const FEW: usize = 8;
 /// The most quads along a side of a patch.
 const MAX_SIDE: usize = 256;
 
 /// Turns surfaces into a mesh of quads no farther than `within` from them, as measured at the middles of edges and quads; without `within`,
-/// into 8 × 8 quads per patch. Patches that share an edge share its vertices. Trimming curves are ignored.
+/// into 8 × 8 quads per patch. Patches that share an edge share its vertices. Of a trimmed surface, those quads are left out whose middles
+/// are trimmed away, at a patch cut 64 × 64 or finer: enough for a picture. Curves become lines.
 ///
 /// # Errors
 /// It would take more evaluations than the limit allows.
@@ -34,8 +40,15 @@ pub fn tessellate_image(
 ) -> Result<Mesh, Exceeded> {
     let patches: Vec<(usize, BezierPatch)> =
         surfaces.iter().enumerate().flat_map(|(n, s)| s.pieces().0.into_iter().map(move |p| (n, p))).collect();
+    let trims: Vec<Option<Polygons>> = surfaces.iter().flat_map(trimmed).collect();
+    let corners: usize = trims.iter().flatten().flatten().map(Vec::len).sum();
     let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
-    let mut side = if within.is_some() { 1 } else { DEFAULT_SIDE };
+    let mut side = match within {
+        _ if corners > 0 => TRIMMED_SIDES[usize::from(patches.len() > FEW)],
+        Some(_) => 1,
+        None => DEFAULT_SIDE,
+    };
+    budget.spend((corners * side * side) as f64 * 0.1)?;
     if let Some(within) = within {
         // Powers of two, so that parameters counted from either end of an edge are the same numbers.
         while side < MAX_SIDE {
@@ -50,18 +63,48 @@ pub fn tessellate_image(
     let mut mesh = Mesh::default();
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     let mut last = None;
-    for (n, patch) in &patches {
+    for ((n, patch), trims) in patches.iter().zip(&trims) {
         if last != Some(n) && !surfaces[*n].name.is_empty() {
             let first = u32::try_from(mesh.polygons.len()).unwrap_or(NONE);
             mesh.marks.push((first, Mark::Object(surfaces[*n].name.clone())));
         }
         last = Some(n);
-        quads(&mut mesh, &mut places, patch, map, side);
+        quads(&mut mesh, &mut places, (patch, trims.as_ref()), map, side);
     }
     Ok(mesh)
 }
 
-fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPatch, map: &dyn Map3, side: usize) {
+/// Polygons of which an odd number surrounds what belongs to a patch, in its parameters from 0 to 1.
+type Polygons = Vec<Vec<[f64; 2]>>;
+
+/// The trimming loops of a surface's patches, u fastest; `None` for a whole patch.
+fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
+    let (pieces, [us, vs]) = surface.pieces();
+    let Some(trims) = Trims::of(surface) else { return vec![None; pieces.len()] };
+    let spans = |k: &[f64]| k.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
+    let (us, vs) = (spans(&us), spans(&vs));
+    let part = |(u, v): ((f64, f64), (f64, f64))| trims.part([u.0, v.0], [u.1, v.1]).map(|t| t.polygons());
+    let parts: Vec<_> = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v))).map(part).collect();
+    // Loops around nothing would leave nothing to see.
+    if parts.iter().all(|p| p.as_ref().is_some_and(Vec::is_empty)) { vec![None; pieces.len()] } else { parts }
+}
+
+/// Whether an odd number of polygons surrounds a place.
+fn surrounded(polygons: &Polygons, [x, y]: [f64; 2]) -> bool {
+    let crosses = |(a, b): (&[f64; 2], &[f64; 2])| {
+        (a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])
+    };
+    let crossings = |p: &Vec<[f64; 2]>| p.iter().zip(p.iter().cycle().skip(1)).filter(|s| crosses(*s)).count();
+    polygons.iter().map(crossings).sum::<usize>() % 2 == 1
+}
+
+fn quads(
+    mesh: &mut Mesh,
+    places: &mut HashMap<[u64; 3], u32>,
+    (patch, trims): (&BezierPatch, Option<&Polygons>),
+    map: &dyn Map3,
+    side: usize,
+) {
     let at = |i: usize| i as f64 / side as f64;
     let mut vertex = |p: DVec3| {
         // Adding 0 turns −0 into 0.
@@ -76,6 +119,10 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
         .collect();
     for j in 0..side {
         for i in 0..side {
+            let middle = [i, j].map(|k| (k as f64 + 0.5) / side as f64);
+            if trims.is_some_and(|t| !surrounded(t, middle)) {
+                continue;
+            }
             let k = j * (side + 1) + i;
             let mut corners = vec![grid[k], grid[k + 1], grid[k + side + 2], grid[k + side + 1]];
             // At a pole, an edge has no length.
@@ -83,12 +130,13 @@ fn quads(mesh: &mut Mesh, places: &mut HashMap<[u64; 3], u32>, patch: &BezierPat
             if corners.len() > 1 && corners.first() == corners.last() {
                 corners.pop();
             }
-            if corners.len() > 2 {
-                mesh.push(
-                    PolygonKind::Face,
-                    corners.into_iter().map(|vertex| Corner { vertex, uv: NONE, normal: NONE }),
-                );
-            }
+            let kind = match corners.len() {
+                2 if j == 0 && grid[k] == grid[k + (side + 1) * side] => PolygonKind::Line,
+                0..=2 => continue,
+                _ => PolygonKind::Face,
+            };
+            let corner = |vertex| Corner { vertex, uv: NONE, normal: NONE };
+            mesh.push(kind, corners.into_iter().map(corner));
         }
     }
 }

@@ -35,6 +35,11 @@ impl Trims {
         (!loops.is_empty()).then_some(Self(loops))
     }
 
+    /// Polygons through many points of the loops.
+    pub(super) fn polygons(&self) -> Vec<Vec<[f64; 2]>> {
+        self.0.iter().map(|l| polygon(l)).collect()
+    }
+
     /// Whether no point of the part belongs to the surface.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -142,11 +147,16 @@ fn line([a, b]: [[f64; 2]; 2]) -> Curve {
     [a, b].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec()
 }
 
-/// The area inside a loop, approximately: that of a polygon with many corners on each curve. Exact if all curves are straight.
-fn area(curves: &[Curve]) -> f64 {
+/// The polygon with many corners on each curve of a loop.
+fn polygon(curves: &[Curve]) -> Vec<[f64; 2]> {
     const CORNERS: usize = 16;
     let on = |c: &Curve| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64)).collect::<Vec<_>>();
-    let corners: Vec<[f64; 2]> = curves.iter().flat_map(on).collect();
+    curves.iter().flat_map(on).collect()
+}
+
+/// The area inside a loop, approximately: that of its polygon. Exact if all curves are straight.
+fn area(curves: &[Curve]) -> f64 {
+    let corners = polygon(curves);
     let next = corners.iter().cycle().skip(1);
     0.5 * corners.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs()
 }

@@ -5,6 +5,7 @@ use crate::scene::model::{Part, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::select::Selection;
 use crate::source::text::SourceText;
+use pathwarp::deform::SightMark;
 use pathwarp::edit::{Area, Contour, Offset, OpenPaths, around, moved};
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp::map::Chain;
@@ -192,6 +193,8 @@ options! {
         pub text: TextMode = TextMode::default(), with_text;
         /// Method of writing the file.
         pub structure: Structure = Structure::default(), with_structure;
+        /// Marks beside the artwork, in root user space.
+        pub sight: Option<SightMark> = None, with_sight;
         /// The part of the document to warp.
         pub selection: Selection = Selection::default(), with_selection;
         /// Reaction to a shape that cannot be warped.

@@ -7,7 +7,8 @@ use crate::bend::outcome::{Notes, Skipped};
 use crate::scene::geometry::stretch;
 use crate::source::markup::Tag;
 use crate::source::number::{rectangle, single};
-use pathwarp::kurbo::{Point, Rect};
+use pathwarp::deform::SightMark;
+use pathwarp::kurbo::{Point, Rect, Shape};
 use std::fmt::Write as _;
 
 /// A millimetre and a quarter of a point in px.
@@ -34,17 +35,38 @@ fn unit(input: &WriteInput<'_>) -> f64 {
 
 /// What lies beneath all artwork, and the layers above it.
 pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
-    let Some(line) = w.input.line else { return Default::default() };
+    let sight = w.input.options.sight.clone().map_or(String::new(), |s| sight(w, &s));
+    let Some(line) = w.input.line else { return [String::new(), sight] };
     let style = &w.input.options.line;
     let beneath = bleed(w, line).unwrap_or_default();
     let name = style.spot.as_deref().unwrap_or("Contour");
-    let mut above = layer(w, name, ("#ec008c", &line.data), style.spot.as_deref());
+    let mut above = sight + &layer(w, name, ("#ec008c", &line.data), style.spot.as_deref());
     if style.marks {
         let bled = line.bled.as_ref().map_or(line.bounds, |b| b.1);
         // Every plate of a print has the marks.
         above.push_str(&layer(w, "Marks", ("#000", &marks(line.bounds, bled, MM * unit(&w.input))), Some("All")));
     }
     [beneath, above]
+}
+
+/// The box of the marks that say where to look from.
+pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
+    /// The width of a letter, as a share of its height.
+    const LETTER: f64 = 0.6;
+    let ((at, text), size) = (&sight.label, sight.size);
+    let text = Rect::new(at.x, at.y - size, at.x + LETTER * size * text.chars().count() as f64, at.y + 0.3 * size);
+    sight.path.bounding_box().union(text)
+}
+
+/// The layer of the marks that say where to look from.
+fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
+    let path = w.markup.element("path").with("d", &sight.path.to_svg());
+    let path = path.with("style", &format!("fill:none;stroke:#000;stroke-width:{}", single(0.04 * sight.size)));
+    let (at, text) = &sight.label;
+    let label = w.markup.element("text").with("x", &single(at.x)).with("y", &single(at.y));
+    let label = label.with("style", &format!("font-family:sans-serif;font-size:{}px;fill:#000", single(sight.size)));
+    let group = w.markup.element("g").with("id", &w.defs.new_id("sight-mark"));
+    group.around(&(path.empty() + &label.around(text))) + "\n"
 }
 
 /// A layer with one hairline.

@@ -194,8 +194,9 @@ fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
     let counts = guideless(input);
     let measure = Measure { counts: &counts, room, page: input.options.grown.or(input.drawing.specified_area()) };
     let line = input.line.map(|l| line::bounds(input, l));
+    let sight = input.options.sight.as_ref().map(line::sight_bounds);
     let drawn = group_box(input, &input.scene.root, measure);
-    drawn.into_iter().chain(line).reduce(|a, b| a.union(b))
+    drawn.into_iter().chain(line).chain(sight).reduce(|a, b| a.union(b))
 }
 
 /// For every element, `true` unless it is a guide.

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::map::{Called, Map};
 use crate::param::{Args, Frame, Param, Settings};
-use kurbo::{Affine, BezPath, Point};
+use kurbo::{Affine, BezPath, Point, Rect};
 use std::fmt;
 use std::sync::Arc;
 
@@ -309,6 +309,8 @@ pub struct Built {
     pub saves: Vec<SavedFile>,
     /// The surface in space that the artwork lies on, for deformations onto surfaces.
     pub space: Option<InSpace>,
+    /// Marks beside the result that say where to look from.
+    pub sight: Option<SightMark>,
     /// Explains why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
     /// Explains how the map failed after it was built, for maps that can fail.
@@ -332,6 +334,7 @@ impl Built {
             seam: None,
             saves: Vec::new(),
             space: None,
+            sight: None,
             undefined: None,
             failure: None,
         }
@@ -447,11 +450,27 @@ pub struct SavedFile {
     pub text: String,
 }
 
+/// Marks beside the result that say where to look from, in the plane of the result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SightMark {
+    /// Lines: the place of the eye or an arrow towards it, and the foot of a mirror.
+    pub path: BezPath,
+    /// The beginning of a line of text, and the text.
+    pub label: (Point, String),
+    /// The height of the text.
+    pub size: f64,
+}
+
+/// Takes a point of the source to a place in space: x right, y down, z away, user units. `None` if there is none.
+pub type Place = Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>;
+
 /// The surface in space that the artwork lies on.
 #[derive(Clone)]
 pub struct InSpace {
     /// Takes a point of the source to the surface: x right, y down, z away, user units. `None` if the ray misses the surface.
-    pub place: Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>,
+    pub place: Place,
+    /// What a mesh shows besides: by name the places of a rectangle, or of the artwork itself.
+    pub besides: Vec<(&'static str, Option<Rect>, Place)>,
     /// Files requested by the parameters.
     pub files: Vec<SpaceFile>,
 }

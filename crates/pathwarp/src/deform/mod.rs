@@ -37,14 +37,14 @@ mod wave;
 mod wordart;
 
 pub use affine::Affine;
-pub use anamorph::{Anamorph, Onto};
+pub use anamorph::{Anamorph, Mirror, MirrorShape, Onto};
 pub use bend::{Align, Bend, LetterSetting, Stretch};
 pub use bilinear::Bilinear;
 pub use birational::Birational;
 pub use bulge::Bulge;
 pub use entry::{
     Built, ByHand, Case, Deformation, Example, Explanation, Failure, Gallery, Guides, InSpace, Info, Instead, Law,
-    Overlay, Pairs, Placement, Role, SavedFile, Seam, SpaceFile, Undefined, Variant,
+    Overlay, Pairs, Place, Placement, Role, SavedFile, Seam, SightMark, SpaceFile, Undefined, Variant,
 };
 pub use envelope::{Envelope, Keep, Lines, Spread};
 pub use expr::Expr;

@@ -2,13 +2,15 @@
 //!
 //! Over a tetrahedron δ(u) = Σ δᵢ·n!/(i!j!k!l!)·u₀ⁱu₁ʲu₂ᵏu₃ˡ in barycentric coordinates, over a box the tensor product of
 //! Bernstein polynomials. A *sheet*, a triangle or a rectangle, gives every point the δ of its ray: the barycentric coordinates of
-//! a point's projection from O onto a triangle are u'ᵢ/Σu' with p − O = Σ u'ᵢ·(bᵢ − O), which are linear in p.
+//! a point's projection from O onto a triangle are u'ᵢ/Σu' with (p, 1) = Σ u'ᵢ·(bᵢ, 1) + t·O, which are linear in p.
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), equations 6, 8 and 10.
 
-use super::reference::Reference3;
-use crate::map::{Chart, Creases3, Local, Poly3, Tensor};
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use super::beyond;
+use super::reference::{Eye3, Reference3};
+use crate::map::{Chart, Local, Poly3, Tensor};
+use glam::{DMat4, DVec3, DVec4};
+use std::sync::Arc;
 
 /// Highest degree.
 pub(super) const MAX_DEGREE: usize = 10;
@@ -18,12 +20,36 @@ pub(super) const MAX_DEGREE: usize = 10;
 pub(super) enum Dilation3 {
     /// Over a tetrahedron: the barycentric coordinates as linear forms in (x, y, z, 1).
     Tetrahedron { forms: [DVec4; 4], terms: Simplex },
-    /// Over a triangle seen from the eye: linear forms in (x, y, z, 1) that vanish at the eye. The fourth is their sum.
-    Triangle { forms: [DVec4; 4], terms: Simplex },
     /// Over a box.
     Cuboid { local: Local, tensor: Tensor<1> },
-    /// Over a rectangle seen from the eye: on the plane where coordinate `axis` is `at`.
-    Rectangle { eye: DVec3, axis: usize, at: f64, local: Local, tensor: Tensor<1> },
+    /// Over a triangle or rectangle seen from the eye: its coordinates are quotients of linear forms that vanish at the eye, with
+    /// the fourth as denominator.
+    Sheet { forms: [DVec4; 4], net: Net },
+    /// Over tetrahedra that share faces: the barycentric coordinates of each, and δ; elsewhere 1.
+    Tetrahedra(Arc<[([DVec4; 4], DVec4)]>),
+}
+
+/// δ over a sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Net {
+    Triangle(Simplex),
+    Rectangle(Tensor<1>),
+}
+
+impl Net {
+    /// The value and its three partial derivatives.
+    fn jet(&self, at: [f64; 3]) -> (f64, [f64; 3]) {
+        match self {
+            Self::Triangle(terms) => {
+                let (value, [x, y, z, _]) = terms.jet([at[0], at[1], at[2], 0.0]);
+                (value, [x, y, z])
+            }
+            Self::Rectangle(tensor) => {
+                let [[value, x, y, z]] = tensor.jet(at.into());
+                (value, [x, y, z])
+            }
+        }
+    }
 }
 
 /// A polynomial in barycentric coordinates.
@@ -73,34 +99,51 @@ impl Simplex {
     }
 }
 
+/// The barycentric coordinates of a tetrahedron as forms. Its last corner may be at infinity.
+fn barycentric(corners: [DVec4; 4]) -> [DVec4; 4] {
+    let [a, b, c, d] = corners;
+    let inverse = DMat4::from_cols(a, b, c, d).inverse();
+    [0, 1, 2, 3].map(|i| inverse.row(i))
+}
+
 impl Dilation3 {
     /// Makes δ over a reference from its values at the control points, in the order of the reference's nodes.
-    pub(super) fn new(reference: &Reference3, eye: DVec3, values: &[f64]) -> Self {
+    pub(super) fn new(reference: &Reference3, eye: Eye3, values: &[f64]) -> Self {
         let simplex = |n: usize| Simplex::new(n, reference.nodes().into_iter().zip(values.iter().copied()));
         let tensor = |size: [usize; 3]| Tensor::bernstein(size, values.iter().map(|v| [*v]).collect());
-        match *reference {
+        match reference {
             Reference3::Tetrahedron(corners, n) => {
-                let columns = corners.map(|b| b.extend(1.0));
-                let inverse = DMat4::from_cols(columns[0], columns[1], columns[2], columns[3]).inverse();
-                Self::Tetrahedron { forms: [0, 1, 2, 3].map(|i| inverse.row(i)), terms: simplex(n) }
+                Self::Tetrahedron { forms: barycentric(corners.map(|b| b.extend(1.0))), terms: simplex(*n) }
             }
             Reference3::Triangle([a, b, c], n) => {
-                let inverse = DMat3::from_cols(a - eye, b - eye, c - eye).inverse();
-                let form = |g: DVec3| g.extend(-g.dot(eye));
-                let [f, g, h] = [0, 1, 2].map(|i| form(inverse.row(i)));
-                Self::Triangle { forms: [f, g, h, f + g + h], terms: simplex(n) }
+                // (p, 1) = Σ u'ᵢ·(bᵢ, 1) + t·O.
+                let [f, g, h, _] = barycentric([a.extend(1.0), b.extend(1.0), c.extend(1.0), eye.homogeneous()]);
+                Self::Sheet { forms: [f, g, h, f + g + h], net: Net::Triangle(simplex(*n)) }
             }
-            Reference3::Cuboid(b, degree) => {
+            // The map of B-splines is that of a rational lattice; here only their box counts.
+            Reference3::Cuboid(b, _) | Reference3::Spline(b, ..) => {
                 let local = Local { middle: b.center(), scale: 2.0 / b.size() };
-                Self::Cuboid { local, tensor: tensor(degree.map(|d| d + 1)) }
+                let tensor = match reference {
+                    Reference3::Cuboid(_, degree) => tensor(degree.map(|d| d + 1)),
+                    _ => Tensor::bernstein([1; 3], vec![[1.0]]),
+                };
+                Self::Cuboid { local, tensor }
             }
             Reference3::Rectangle(b, axis, degree) => {
-                let mut scale = 2.0 / b.size();
-                scale[axis] = 0.0;
+                // From −1 to 1 along both sides.
+                let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+                let corner = |k: usize| (b.min + DVec3::AXES[k] * b.size()[k]).extend(1.0);
+                let [f, g, h, _] = barycentric([b.min.extend(1.0), corner(x), corner(y), eye.homogeneous()]);
+                let mut forms = [DVec4::ZERO, DVec4::ZERO, DVec4::ZERO, f + g + h];
+                (forms[x], forms[y]) = (g * 2.0 - forms[3], h * 2.0 - forms[3]);
                 let mut size = degree.map(|d| d + 1);
-                size[axis] = 1;
-                let local = Local { middle: b.center(), scale };
-                Self::Rectangle { eye, axis, at: b.min[axis], local, tensor: tensor(size) }
+                size[*axis] = 1;
+                Self::Sheet { forms, net: Net::Rectangle(tensor(size)) }
+            }
+            Reference3::Tetrahedra(points, all) => {
+                let forms = |t: &[usize; 4]| barycentric(t.map(|i| points[i].extend(1.0)));
+                let delta = |t: &[usize; 4]| (0..4).map(|k| forms(t)[k] * values[t[k]]).sum();
+                Self::Tetrahedra(all.iter().map(|t| (forms(t), delta(t))).collect())
             }
         }
     }
@@ -112,33 +155,24 @@ impl Dilation3 {
                 let (value, slope) = terms.jet(forms.map(|f| f.dot(p.extend(1.0))));
                 (value, (0..4).map(|a| forms[a].truncate() * slope[a]).sum())
             }
-            Self::Triangle { forms, terms } => {
+            Self::Sheet { forms, net } => {
                 let [u, v, w, sum] = forms.map(|f| f.dot(p.extend(1.0)));
                 if sum.is_nan() || sum <= 0.0 {
                     return (f64::NAN, DVec3::NAN);
                 }
-                let (value, slope) = terms.jet([u / sum, v / sum, w / sum, 0.0]);
+                let at = [u, v, w].map(|u| u / sum);
+                let (value, slope) = net.jet(at);
                 // ∂(u'ᵢ/Σ) = (∇u'ᵢ − uᵢ·∇Σ)/Σ.
                 let g = forms.map(DVec4::truncate);
-                let part = |a: usize, u: f64| (g[a] - u / sum * g[3]) * (slope[a] / sum);
-                (value, part(0, u) + part(1, v) + part(2, w))
+                (value, (0..3).map(|a| (g[a] - g[3] * at[a]) * (slope[a] / sum)).sum())
             }
             Self::Cuboid { local, tensor } => {
                 let [[value, x, y, z]] = tensor.jet((p - local.middle) * local.scale);
                 (value, DVec3::new(x, y, z) * local.scale)
             }
-            Self::Rectangle { eye, axis, at, local, tensor } => {
-                let (ray, depth) = (p - eye, p[*axis] - eye[*axis]);
-                let t = (at - eye[*axis]) / depth;
-                if t.is_nan() || t <= 0.0 {
-                    return (f64::NAN, DVec3::NAN);
-                }
-                let [[value, x, y, z]] = tensor.jet((eye + ray * t - local.middle) * local.scale);
-                let slope = DVec3::new(x, y, z) * local.scale;
-                // q = O + t·(p − O) with ∇t = −t/(p − O)ₐ along the axis.
-                let mut gradient = slope * t;
-                gradient[*axis] -= slope.dot(ray) * t / depth;
-                (value, gradient)
+            Self::Tetrahedra(all) => {
+                let around = all.iter().find(|t| t.0.iter().all(|f| beyond(f, p) >= 0.0));
+                around.map_or((1.0, DVec3::ZERO), |(_, delta)| (delta.dot(p.extend(1.0)), delta.truncate()))
             }
         }
     }
@@ -146,8 +180,11 @@ impl Dilation3 {
     /// The degree of δ over the reference.
     pub(super) fn degree(&self) -> usize {
         match self {
-            Self::Tetrahedron { terms, .. } | Self::Triangle { terms, .. } => terms.degree,
-            Self::Cuboid { tensor, .. } | Self::Rectangle { tensor, .. } => tensor.degrees().iter().sum(),
+            Self::Tetrahedron { terms, .. } | Self::Sheet { net: Net::Triangle(terms), .. } => terms.degree,
+            Self::Cuboid { tensor, .. } | Self::Sheet { net: Net::Rectangle(tensor), .. } => {
+                tensor.degrees().iter().sum()
+            }
+            Self::Tetrahedra(_) => 1,
         }
     }
 
@@ -157,35 +194,30 @@ impl Dilation3 {
             Self::Tetrahedron { forms, terms } => {
                 (terms.in_terms_of(&forms.map(|f| chart.linear(f))), Poly3::constant(1.0))
             }
-            Self::Triangle { forms, terms } => {
+            Self::Sheet { forms, net } => {
                 let [u, v, w, sum] = forms.map(|f| chart.linear(f));
-                let below = sum.powers(terms.degree).swap_remove(terms.degree);
-                (terms.in_terms_of(&[u, v, w, Poly3::default()]), below)
+                let total = self.degree();
+                let below = sum.powers(total);
+                let delta = match net {
+                    Net::Triangle(terms) => terms.in_terms_of(&[u, v, w, Poly3::default()]),
+                    Net::Rectangle(tensor) => {
+                        let powers = [u, v, w].map(|u| u.powers(total));
+                        let mut delta = Poly3::default();
+                        for ([i, j, k], [c]) in tensor.terms() {
+                            let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
+                            delta.add(*c, &product.times(&below[total - i - j - k]));
+                        }
+                        delta
+                    }
+                };
+                (delta, below[total].clone())
             }
             Self::Cuboid { local, tensor } => {
                 let [delta] = tensor.in_terms_of(&chart.local(local));
                 (delta, Poly3::constant(1.0))
             }
-            Self::Rectangle { eye, axis, at, local, tensor } => {
-                // A ray meets the plane at O + (p − O)·d/(p − O)ₐ. Multiplying by the depth (p − O)ₐ makes this homogeneous.
-                let depth = chart.linear(DVec3::AXES[*axis].extend(-eye[*axis]));
-                let d = at - eye[*axis];
-                let coordinate = |a: usize| {
-                    let ray = chart.linear(DVec3::AXES[a].extend(-eye[a]));
-                    let start = (eye[a] - local.middle[a]) * local.scale[a];
-                    Poly3::default().plus(start, &depth).plus(d * local.scale[a], &ray)
-                };
-                let degrees = tensor.degrees();
-                let total: usize = degrees.iter().sum();
-                let below = depth.powers(total);
-                let powers = [0, 1, 2].map(|a| coordinate(a).powers(degrees[a]));
-                let mut delta = Poly3::default();
-                for ([i, j, k], [c]) in tensor.terms() {
-                    let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
-                    delta.add(*c, &product.times(&below[total - i - j - k]));
-                }
-                (delta, below[total].clone())
-            }
+            // Only for parts that lie in one of them, which have a form of their own.
+            Self::Tetrahedra(_) => (Poly3::constant(1.0), Poly3::constant(1.0)),
         }
     }
 
@@ -201,25 +233,25 @@ impl Dilation3 {
     pub(super) fn sides(&self, reference: &Reference3) -> Vec<DVec4> {
         match self {
             Self::Tetrahedron { forms, .. } => forms.to_vec(),
-            Self::Triangle { forms, .. } => forms[..3].to_vec(),
+            Self::Sheet { forms, net: Net::Triangle(_) } => forms[..3].to_vec(),
+            Self::Sheet { forms, .. } => (0..3).flat_map(|a| [forms[3] + forms[a], forms[3] - forms[a]]).collect(),
             Self::Cuboid { .. } => {
-                let Reference3::Cuboid(b, _) = reference else { return Vec::new() };
+                let (Reference3::Cuboid(b, _) | Reference3::Spline(b, ..)) = reference else { return Vec::new() };
                 let side = |a: usize, sign: f64, at: f64| (DVec3::AXES[a] * sign).extend(-sign * at);
                 (0..3).flat_map(|a| [side(a, 1.0, b.min[a]), side(a, -1.0, b.max[a])]).collect()
             }
-            Self::Rectangle { eye, axis, at, .. } => {
-                let Reference3::Rectangle(b, ..) = reference else { return Vec::new() };
-                let d = at - eye[*axis];
-                // (p − O)ₐ·d ≥ 0 and, for the other axes, (min − O)·(p − O)ₐ/d ≤ p − O ≤ (max − O)·(p − O)ₐ/d.
-                let form = |g: DVec3| g.extend(-g.dot(*eye));
-                let depth = DVec3::AXES[*axis];
-                let mut out = vec![form(depth * d)];
-                for a in (0..3).filter(|a| a != axis) {
-                    out.push(form(DVec3::AXES[a] - depth * ((b.min[a] - eye[a]) / d)));
-                    out.push(form(depth * ((b.max[a] - eye[a]) / d) - DVec3::AXES[a]));
-                }
-                out
-            }
+            Self::Tetrahedra(_) => Vec::new(),
+        }
+    }
+
+    /// δ of tetrahedra on a box in one of them, or in none; `None` if a face may cross it, or for another δ.
+    pub(super) fn around(&self, corners: &[DVec3; 8]) -> Option<DVec4> {
+        let Self::Tetrahedra(all) = self else { return None };
+        let inside = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) >= 0.0);
+        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) <= 0.0);
+        match all.iter().find(|t| t.0.iter().all(inside)) {
+            Some((_, delta)) => Some(*delta),
+            None => all.iter().all(|t| t.0.iter().any(behind)).then_some(DVec4::W),
         }
     }
 
@@ -238,15 +270,6 @@ impl Dilation3 {
 
     /// Whether δ is constant along rays.
     pub(super) fn is_sheet(&self) -> bool {
-        matches!(self, Self::Triangle { .. } | Self::Rectangle { .. })
-    }
-
-    /// Adds the boundary of the domain, which is where δ > 0.
-    pub(super) fn edge(&self, out: &mut Creases3) {
-        let own = self.clone();
-        out.edge(move |p| {
-            let delta = own.at(p);
-            if delta.is_nan() { -1.0 } else { delta }
-        });
+        matches!(self, Self::Sheet { .. })
     }
 }

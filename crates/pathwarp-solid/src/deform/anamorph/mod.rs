@@ -14,7 +14,8 @@ mod dilation;
 mod reference;
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
-use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Radial, for_all};
+use crate::lattice::{Lattice3, LatticeMap3};
+use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Poly3, Radial, for_all};
 use crate::settings::{Box3, Extent, Settings3, show};
 use dilation::{Dilation3, MAX_DEGREE};
 use glam::{DMat3, DMat4, DVec3, DVec4};
@@ -24,7 +25,7 @@ use pathwarp::param::{Kind, Param};
 use pathwarp::setters;
 use std::sync::Arc;
 
-pub use reference::Reference3;
+pub use reference::{Eye3, Reference3};
 
 /// A push of a control point, or of a point of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +36,7 @@ pub enum Push3 {
     Away([usize; 4], f64),
     /// Moves a control point to the point on its ray nearest to this one.
     To([usize; 4], DVec3),
-    /// Moves a point of the model to a multiple of its distance from the eye.
+    /// Moves a point of the model to a multiple of its distance from the eye, or this much further from an eye at infinity.
     Prescribe(DVec3, f64),
 }
 
@@ -52,10 +53,14 @@ impl Push3 {
     fn text(self, reference: &Reference3) -> String {
         match self {
             Self::By(n, _) | Self::Away(n, _) | Self::To(n, _) => {
-                let count = if matches!(reference, Reference3::Tetrahedron(..)) { 4 } else { 3 };
+                let count = match reference {
+                    Reference3::Tetrahedron(..) => 4,
+                    Reference3::Tetrahedra(..) => 1,
+                    _ => 3,
+                };
                 n[..count].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
-            Self::Prescribe(p, factor) => format!("{}:{factor}", show(p)),
+            Self::Prescribe(p, by) => format!("{}:{by}", show(p)),
         }
     }
 }
@@ -75,7 +80,7 @@ impl Push3 {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Anamorph3 {
-    eye: DVec3,
+    eye: Eye3,
     reference: Reference3,
     pushes: Vec<Push3>,
     local: bool,
@@ -84,8 +89,8 @@ pub struct Anamorph3 {
 impl Anamorph3 {
     /// Makes an anamorphosis that moves nothing yet.
     #[must_use]
-    pub fn new(eye: DVec3, reference: Reference3) -> Self {
-        Self { eye, reference, pushes: Vec::new(), local: false }
+    pub fn new(eye: impl Into<Eye3>, reference: Reference3) -> Self {
+        Self { eye: eye.into(), reference, pushes: Vec::new(), local: false }
     }
 
     /// Pushes a control point.
@@ -105,40 +110,97 @@ impl Anamorph3 {
     /// # Errors
     /// [`Error::Usage`] for control points that do not exist, pushes through the eye, and points that cannot be prescribed.
     pub fn build(&self) -> Result<Built3, Error> {
+        let base = self.base();
+        Self { eye: self.eye.relative_to(base), reference: self.reference.clone().relative_to(base), ..self.clone() }
+            .about(base)
+    }
+
+    /// Returns a point about which the map is computed: the origin, or if that is far away the middle of the reference.
+    fn base(&self) -> DVec3 {
+        /// Distance of the origin in sizes of the reference.
+        const FAR: f64 = 16.0;
+        let b = self.reference.bounds();
+        if b.center().length() > FAR * b.diagonal() { b.center() } else { DVec3::ZERO }
+    }
+
+    /// Builds the map with eye and reference relative to `base`; pushes are absolute.
+    fn about(&self, base: DVec3) -> Result<Built3, Error> {
         let nodes = self.reference.nodes();
         let mut values = vec![1.0; nodes.len()];
         for push in &self.pushes {
-            self.apply(*push, &nodes, &mut values)?;
+            self.apply(*push, base, &nodes, &mut values)?;
         }
         let dilation = Dilation3::new(&self.reference, self.eye, &values);
         let linear = dilation.linear().filter(|_| !self.local);
-        let range = values.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
-        let within = self.local.then(|| dilation.sides(&self.reference).into());
-        let map: Arc<dyn Map3> = match linear {
-            Some(form) => Arc::new(Collineation::new(perspective(self.eye, form))),
-            None => Arc::new(RadialMap { eye: self.eye, dilation, within, range }),
+        let map: Arc<dyn Map3> = match (linear, &self.reference) {
+            (Some(form), _) => Arc::new(Collineation::about(perspective(self.eye, form), base)),
+            (None, Reference3::Spline(region, degree, cells)) => {
+                // A rational lattice whose control points have moved, with δ as weights.
+                let region = Box3 { min: region.min + base, max: region.max + base };
+                let mut lattice = Lattice3::regular(region, *degree, *cells);
+                for ([i, j, k, _], delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
+                    let (node, from) = ([*i, *j, *k], lattice.regular_point([*i, *j, *k]));
+                    lattice.place(node, self.eye.moved(from - base, *delta) + base);
+                    if let Eye3::At(_) = self.eye {
+                        lattice.set_weight(node, *delta);
+                    }
+                }
+                Arc::new(LatticeMap3::new(&lattice, !self.local))
+            }
+            (None, reference) => {
+                let range = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+                let within = self.local.then(|| dilation.sides(reference).into());
+                Arc::new(RadialMap { eye: self.eye, base, dilation, within, range })
+            }
         };
         let mut built = Built3::new(map);
-        built.eye = Some(self.eye);
+        let bounds = self.reference.bounds();
+        let far = 1e4 * bounds.diagonal();
+        built.eye = Some(self.eye.before(bounds.center(), far) + base);
         built.note(format!("{} control points; {}", nodes.len(), self.reference.numbers()));
         if let Some(form) = linear {
-            let at_eye = form.dot(self.eye.extend(1.0));
             let d = form.truncate();
-            built.note(format!("collineation: d = {:.6},{:.6},{:.6}, d0 = {at_eye:.6} about the eye", d.x, d.y, d.z));
+            let (at, place) = match self.eye {
+                Eye3::At(eye) => (form.dot(eye.extend(1.0)), "the eye"),
+                Eye3::Infinite(_) => (form.w - d.dot(base), "the origin"),
+            };
+            built.note(format!("collineation: {},{},{},{at} about {place} (d and its constant)", d.x, d.y, d.z));
+        }
+        if let Some([shared, torn]) = self.reference.faces(&values) {
+            built.note(format!("continuous across the faces {shared}"));
+            if !torn.is_empty() {
+                built.note(format!(
+                    "outer faces with corners that move, at which a model is torn that crosses them: {torn}"
+                ));
+            }
         }
         for (node, delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
             let from = self.reference.point(*node);
-            let to = self.eye + (from - self.eye) / delta;
-            built.note(format!("control point at {} moves to {}", show(from), show(to)));
-            built.guides.push(vec![self.eye, from, to]);
+            let to = self.eye.moved(from, *delta);
+            built.note(format!("control point at {} moves to {}", show(from + base), show(to + base)));
+            built.guides.push([self.eye.before(from, 0.0), from, to].map(|p| p + base).to_vec());
         }
         Ok(built)
     }
 
-    fn apply(&self, push: Push3, nodes: &[[usize; 4]], values: &mut [f64]) -> Result<(), Error> {
+    /// Returns the influence of every control point at `p`: δ with 1 at it and 0 elsewhere.
+    fn influence(&self, p: DVec3, nodes: &[[usize; 4]]) -> Vec<f64> {
+        let mut out = vec![0.0; nodes.len()];
+        if let Reference3::Spline(region, degree, cells) = self.reference.clone() {
+            let lattice = Lattice3::regular(region, degree, cells);
+            lattice.influence(p).into_iter().for_each(|(node, v)| out[lattice.index(node)] = v);
+            return out;
+        }
+        let unit = |i: usize| (0..nodes.len()).map(|k| if k == i { 1.0 } else { 0.0 }).collect::<Vec<_>>();
+        (0..nodes.len()).for_each(|i| out[i] = Dilation3::new(&self.reference, self.eye, &unit(i)).at(p));
+        out
+    }
+
+    fn apply(&self, push: Push3, base: DVec3, nodes: &[[usize; 4]], values: &mut [f64]) -> Result<(), Error> {
         let wrong = |problem: String| Error::usage(push.param(), push.text(&self.reference), problem);
         let sound = |delta: f64| {
-            if (1e-6..1e6).contains(&delta) {
+            let range = if let Eye3::At(_) = self.eye { 1e-6..1e6 } else { -1e12..1e12 };
+            if range.contains(&delta) {
                 return Ok(delta);
             }
             Err(wrong("would go through the eye, or out of reach; push it less".into()))
@@ -147,30 +209,39 @@ impl Anamorph3 {
             let missing = || wrong(format!("is not a control point: {}", self.reference.numbers()));
             nodes.iter().position(|n| *n == node).ok_or_else(missing)
         };
-        let ray = |node: [usize; 4]| self.reference.point(node) - self.eye;
+        let by = |factor: f64| match self.eye {
+            Eye3::At(_) => sound(1.0 / factor),
+            Eye3::Infinite(_) => Err(wrong(
+                "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`"
+                    .into(),
+            )),
+        };
+        let away = |from: DVec3, length: f64| {
+            sound(match self.eye {
+                Eye3::At(eye) => {
+                    let distance = (from - eye).length();
+                    distance / (distance + length)
+                }
+                Eye3::Infinite(_) => 1.0 - length,
+            })
+        };
         match push {
-            Push3::By(node, factor) => values[find(node)?] = sound(1.0 / factor)?,
-            Push3::Away(node, length) => {
-                let i = find(node)?;
-                let distance = ray(node).length();
-                values[i] = sound(distance / (distance + length))?;
-            }
+            Push3::By(node, factor) => values[find(node)?] = by(factor)?,
+            Push3::Away(node, length) => values[find(node)?] = away(self.reference.point(node), length)?,
             Push3::To(node, to) => {
-                let i = find(node)?;
-                let along = (to - self.eye).dot(ray(node)) / ray(node).length_squared();
-                values[i] = sound(1.0 / along)?;
+                let (i, from, to) = (find(node)?, self.reference.point(node), to - base);
+                values[i] = sound(match self.eye {
+                    Eye3::At(eye) => (from - eye).length_squared() / (to - eye).dot(from - eye),
+                    Eye3::Infinite(towards) => 1.0 + (to - from).dot(towards),
+                })?;
             }
-            Push3::Prescribe(p, factor) => {
-                let wanted = sound(1.0 / factor)?;
-                let here = Dilation3::new(&self.reference, self.eye, values).at(p);
-                // The influence of a control point is δ with 1 at it and 0 elsewhere.
-                let influence = |i: usize| {
-                    let mut unit = vec![0.0; nodes.len()];
-                    unit[i] = 1.0;
-                    Dilation3::new(&self.reference, self.eye, &unit).at(p)
-                };
+            Push3::Prescribe(p, value) => {
+                let p = p - base;
+                let wanted = if let Eye3::At(_) = self.eye { by(value)? } else { away(p, value)? };
+                let influence = self.influence(p, nodes);
+                let here: f64 = influence.iter().zip(&*values).map(|(b, v)| b * v).sum();
                 let free = (0..nodes.len()).filter(|i| !self.reference.held(nodes[*i], self.local));
-                let strongest = free.map(|i| (i, influence(i))).max_by(|a, b| a.1.total_cmp(&b.1));
+                let strongest = free.map(|i| (i, influence[i])).max_by(|a, b| a.1.total_cmp(&b.1));
                 let (i, b) = strongest.filter(|(_, b)| *b > 1e-9).ok_or_else(|| {
                     wrong("is on a fixed face, or no control point is free to move; raise `degree` or choose another `reference`".into())
                 })?;
@@ -181,16 +252,11 @@ impl Anamorph3 {
     }
 }
 
-/// The matrix of p ↦ O + (p − O)/δ for a linear form δ in (x, y, z, 1): (p + O·(δ − 1), δ).
-fn perspective(eye: DVec3, delta: DVec4) -> DMat4 {
-    let d = delta.truncate();
-    let linear = DMat3::IDENTITY + DMat3::from_cols(eye * d.x, eye * d.y, eye * d.z);
-    DMat4::from_cols(
-        linear.x_axis.extend(d.x),
-        linear.y_axis.extend(d.y),
-        linear.z_axis.extend(d.z),
-        (eye * (delta.w - 1.0)).extend(delta.w),
-    )
+/// The matrix of p ↦ O + (p − O)/δ for a linear form δ in (x, y, z, 1): (p + O·(δ − 1), 1 + w·(δ − 1)) for the eye (O, w).
+fn perspective(eye: Eye3, delta: DVec4) -> DMat4 {
+    let (d, eye) = (delta.truncate(), eye.homogeneous());
+    let columns = [eye * d.x, eye * d.y, eye * d.z, eye * (delta.w - 1.0)];
+    DMat4::IDENTITY + DMat4::from_cols(columns[0], columns[1], columns[2], columns[3])
 }
 
 // The map p̂ = O + (p − O)/δ(p), and its inverse along each ray.
@@ -208,7 +274,9 @@ fn beyond(form: &DVec4, p: DVec3) -> f64 {
 /// Every point moves along its ray through the eye.
 #[derive(Debug, Clone)]
 struct RadialMap {
-    eye: DVec3,
+    /// The eye, relative to `base` as all that follows.
+    eye: Eye3,
+    base: DVec3,
     dilation: Dilation3,
     /// For a local map, forms in (x, y, z, 1) that are all nonnegative where points move.
     within: Option<Arc<[DVec4]>>,
@@ -219,7 +287,20 @@ struct RadialMap {
 impl RadialMap {
     /// Whether a point may move.
     fn moves(&self, p: DVec3) -> bool {
-        self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p) >= 0.0))
+        self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p - self.base) >= 0.0))
+    }
+
+    /// δ of the tetrahedron around a box, or 1; `None` if a face may cross it.
+    fn tetrahedron(&self, on: &Box3) -> Option<DVec4> {
+        self.dilation.around(&on.corners().map(|p| p - self.base))
+    }
+
+    /// The map by δ = `divisor`/`common`.
+    fn along_rays(&self, chart: Chart, divisor: Poly3, common: Poly3) -> Fraction3 {
+        match self.eye {
+            Eye3::At(eye) => Fraction3::radial(chart, eye + self.base, divisor, &common),
+            Eye3::Infinite(towards) => Fraction3::shifted(chart, towards, &divisor, common),
+        }
     }
 
     /// Whether a box may move. `None` if a side of the moved region may cross it.
@@ -229,7 +310,7 @@ impl RadialMap {
         if corners.iter().all(|p| self.moves(*p)) {
             return Some(true);
         }
-        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) <= 0.0);
+        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p - self.base) <= 0.0);
         self.within.as_deref().is_some_and(|forms| forms.iter().any(behind)).then_some(false)
     }
 }
@@ -239,22 +320,32 @@ impl Map3 for RadialMap {
         if !self.moves(p) {
             return Jet3::identity(p);
         }
-        let ((delta, slope), ray) = (self.dilation.jet(p), p - self.eye);
-        let outer = DMat3::from_cols(ray * slope.x, ray * slope.y, ray * slope.z);
-        Jet3 { p: self.eye + ray / delta, d: (DMat3::IDENTITY - outer * (1.0 / delta)) * (1.0 / delta) }
+        let own = p - self.base;
+        let (delta, slope) = self.dilation.jet(own);
+        let outer = |v: DVec3| DMat3::from_cols(v * slope.x, v * slope.y, v * slope.z);
+        match self.eye {
+            Eye3::At(eye) => {
+                let d = (DMat3::IDENTITY - outer(own - eye) * (1.0 / delta)) * (1.0 / delta);
+                Jet3 { p: self.eye.moved(own, delta) + self.base, d }
+            }
+            Eye3::Infinite(towards) => Jet3 { p: p + towards * (delta - 1.0), d: DMat3::IDENTITY + outer(towards) },
+        }
     }
 
     fn point(&self, p: DVec3) -> DVec3 {
         if !self.moves(p) {
             return p;
         }
-        self.eye + (p - self.eye) / self.dilation.at(p)
+        let own = p - self.base;
+        self.eye.moved(own, self.dilation.at(own)) + self.base
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        match &self.dilation {
-            Dilation3::Cuboid { local, tensor } if self.within.is_none() => {
-                for_all(&Radial { local: *local, eye: self.eye, tensor }, ps);
+        match (&self.dilation, self.eye) {
+            (Dilation3::Cuboid { local, tensor }, Eye3::At(eye))
+                if self.within.is_none() && self.base == DVec3::ZERO =>
+            {
+                for_all(&Radial { local: *local, eye, tensor }, ps);
             }
             _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
         }
@@ -262,17 +353,24 @@ impl Map3 for RadialMap {
 
     fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
+        if let Dilation3::Tetrahedra(_) = self.dilation {
+            let delta = chart.relative_to(self.base).linear(self.tetrahedron(on)?);
+            return Some(self.along_rays(chart, delta, Poly3::constant(1.0)));
+        }
         if !self.moves_on(on)? {
             return Some(Fraction3::identity(chart));
         }
         if self.dilation.degree() > most {
             return None;
         }
-        let (divisor, common) = self.dilation.fraction(&chart);
-        Some(Fraction3::radial(chart, self.eye, divisor, &common))
+        let (divisor, common) = self.dilation.fraction(&chart.relative_to(self.base));
+        Some(self.along_rays(chart, divisor, common))
     }
 
     fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
+        if let Dilation3::Tetrahedra(_) = self.dilation {
+            return Some(Arc::new(Collineation::about(perspective(self.eye, self.tetrahedron(on)?), self.base)));
+        }
         Some(match self.moves_on(on)? {
             true => Arc::new(Self { within: None, ..self.clone() }),
             false => Arc::new(Collineation::IDENTITY),
@@ -280,14 +378,21 @@ impl Map3 for RadialMap {
     }
 
     fn creases(&self, out: &mut Creases3) {
+        let base = self.base;
         for form in self.within.iter().flat_map(|forms| forms.iter().copied()) {
-            out.kink(move |p| form.dot(p.extend(1.0)));
+            out.kink(move |p| form.dot((p - base).extend(1.0)));
         }
-        if self.within.is_none() {
-            self.dilation.edge(out);
-        } else {
+        if let Dilation3::Tetrahedra(all) = &self.dilation {
+            for form in all.iter().flat_map(|t| t.0) {
+                out.kink(move |p| form.dot((p - base).extend(1.0)));
+            }
+        }
+        if let Eye3::At(_) = self.eye {
             let own = self.clone();
-            out.edge(move |p| if own.moves(p) { own.dilation.at(p) } else { 1.0 });
+            out.edge(move |p| {
+                let delta = if own.moves(p) { own.dilation.at(p - base) } else { 1.0 };
+                if delta.is_nan() { -1.0 } else { delta }
+            });
         }
     }
 
@@ -307,57 +412,84 @@ const INTERVALS: u32 = 96;
 /// Factor by which the searched range exceeds that of the control points' δ.
 const BEYOND: f64 = 8.0;
 
+/// A point q and the points from which it may have come, relative to the base: O + s·(q − O), or q − (s − 1)·O for O at infinity.
+struct Line {
+    from: DVec3,
+    along: DVec3,
+}
+
 impl RadialInverse {
-    /// δ(O + s·r) − s and its slope.
-    fn off(&self, r: DVec3, s: f64) -> (f64, f64) {
-        let (delta, slope) = self.0.dilation.jet(self.0.eye + r * s);
-        (delta - s, slope.dot(r) - 1.0)
+    fn line(&self, q: DVec3) -> Line {
+        match self.0.eye {
+            Eye3::At(eye) => Line { from: eye, along: q - self.0.base - eye },
+            Eye3::Infinite(towards) => Line { from: q - self.0.base + towards, along: -towards },
+        }
+    }
+
+    /// δ − s at the place s of a line, and its slope.
+    fn off(&self, r: &Line, s: f64) -> (f64, f64) {
+        let (delta, slope) = self.0.dilation.jet(r.from + r.along * s);
+        (delta - s, slope.dot(r.along) - 1.0)
     }
 
     /// Finds the root near `s`. The slope must be negative, which means that the map keeps the order of points along the ray.
-    fn newton(&self, r: DVec3, mut s: f64) -> Option<f64> {
+    fn newton(&self, r: &Line, mut s: f64) -> Option<f64> {
+        let ahead = |s: f64| s.is_finite() && (s > 0.0 || matches!(self.0.eye, Eye3::Infinite(_)));
         for _ in 0..MAX_STEPS {
             let (off, slope) = self.off(r, s);
             let next = s - off / slope;
-            if !(next > 0.0 && next.is_finite()) {
+            if !ahead(next) {
                 return None;
             }
-            let still = (next - s).abs() <= 2.0 * f64::EPSILON * s;
+            let still = (next - s).abs() <= 2.0 * f64::EPSILON * s.abs();
             s = next;
             if still {
                 return (slope < 0.0).then_some(s);
             }
         }
         let (off, slope) = self.off(r, s);
-        (off.abs() <= 64.0 * f64::EPSILON * s && slope < 0.0).then_some(s)
+        (off.abs() <= 64.0 * f64::EPSILON * s.abs().max(1.0) && slope < 0.0).then_some(s)
     }
 
     fn factor(&self, q: DVec3) -> Option<f64> {
-        let r = q - self.0.eye;
+        let r = self.line(q);
+        let (least, most) = self.0.range;
+        let infinite = matches!(self.0.eye, Eye3::Infinite(_));
         if self.0.dilation.is_sheet() {
-            return Some(self.0.dilation.at(q)).filter(|d| *d > 0.0);
+            return Some(self.0.dilation.at(q - self.0.base)).filter(|d| *d > 0.0 || infinite);
         }
-        let (min, max) = (self.0.range.0 / BEYOND, self.0.range.1 * BEYOND);
-        let found = self.newton(r, 1.0).filter(|s| (min..=max).contains(s));
+        let (min, max) = match self.0.eye {
+            Eye3::At(_) => (least / BEYOND, most * BEYOND),
+            Eye3::Infinite(_) => {
+                let room = BEYOND * (most - least + 1e-9);
+                (least - room, most + room)
+            }
+        };
+        let found = self.newton(&r, 1.0).filter(|s| (min..=max).contains(s));
         found.or_else(|| {
-            let place = |i: u32| min * (max / min).powf(f64::from(i) / f64::from(INTERVALS));
-            let falls = |i: &u32| self.off(r, place(*i)).0 >= 0.0 && self.off(r, place(i + 1)).0 < 0.0;
-            (0..INTERVALS).filter(falls).find_map(|i| self.bisected(r, place(i), place(i + 1)))
+            let place = |i: u32| {
+                let t = f64::from(i) / f64::from(INTERVALS);
+                if infinite { min + t * (max - min) } else { min * (max / min).powf(t) }
+            };
+            let falls = |i: &u32| self.off(&r, place(*i)).0 >= 0.0 && self.off(&r, place(i + 1)).0 < 0.0;
+            (0..INTERVALS).filter(falls).find_map(|i| self.bisected(&r, place(i), place(i + 1)))
         })
     }
 
     /// Bisects between `a`, where the difference is positive, and `b`, where it is negative.
-    fn bisected(&self, r: DVec3, mut a: f64, mut b: f64) -> Option<f64> {
+    fn bisected(&self, r: &Line, mut a: f64, mut b: f64) -> Option<f64> {
         for _ in 0..64 {
             let m = 0.5 * (a + b);
             if self.off(r, m).0 >= 0.0 { a = m } else { b = m }
         }
         let s = 0.5 * (a + b);
-        (self.off(r, s).0.abs() <= 1e-12 * s).then_some(s)
+        (self.off(r, s).0.abs() <= 1e-12 * s.abs().max(1.0)).then_some(s)
     }
 
     fn source(&self, q: DVec3) -> Option<DVec3> {
-        let source = self.factor(q).map(|s| self.0.eye + (q - self.0.eye) * s).filter(|p| self.0.moves(*p));
+        let line = self.line(q);
+        let place = |s: f64| line.from + line.along * s + self.0.base;
+        let source = self.factor(q).map(place).filter(|p| self.0.moves(*p));
         // Outside points stay where they are, unless inside points have moved there.
         source.or_else(|| (!self.0.moves(q)).then_some(q))
     }
@@ -394,17 +526,30 @@ place, or a second layer of them for a smooth transition.")
         .source("J. Sánchez-Reyes, J. M. Chacón, Anamorphic free-form deformation, CAGD 46, 2016; D. Hansford, D. Collins, \
 Anamorphic 3D geometry, Computing 79, 2007")
         .params(&[
-            Param::new("eye", Kind::Text("X,Y,Z"), "The place from which the model looks unchanged.").needed(),
+            Param::new("eye", Kind::Text("X,Y,Z|inf:DX,DY,DZ"), "The place from which the model looks unchanged; inf: and a direction, or two \
+angles to the right and up from the front such as inf:30deg,20deg, for an eye at infinity, where the picture is a parallel projection.")
+            .needed(),
             Param::new("reference", Kind::Text("X,Y,Z …"), "Corners of the reference: four points, three, or two opposite corners of a \
 box. Default: the model's box."),
             Param::new("degree", Kind::Text("N|LxMxN"), "Degree of the reference, 1 to 10; a box may have one along each axis.").default("1"),
+            Param::flag("spline", "B-splines over the box: each control point has influence on a few cells only."),
+            Param::new("cells", Kind::Text("LxMxN"), "Cells of the B-splines along x, y and z, 1 to 16 each: there are degree + cells \
+control points. Default with --spline: 4x4x4."),
+            Param::new("tetrahedra", Kind::Text("I,J,K,L …"), "Several tetrahedra at once, by the numbers of their corners among the points \
+of the --reference, from 0; pushes name a point by its number, such as 4:150%. Nothing moves outside, and shared faces do not tear.")
+            .repeated(),
+            Param::new("collineation", Kind::Text("DX,DY,DZ,D"), "A collineation by its numbers: δ(p) = (DX,DY,DZ)·(p − eye) + D, as \
+--explain prints them. For an eye at infinity p is not relative to it, and 1 − δ is the length of the move."),
+            Param::new("axis", Kind::Text("X,Y,Z X,Y,Z X,Y,Z"), "A collineation by three points of its axis, the plane that stays; one \
+--point sets how far."),
             Param::new("push", Kind::Text("NODE:FACTOR"), "Take control point I,J,K (or I,J,K,L) to FACTOR times its distance from the \
 eye, such as 1,1,0:150%.")
             .repeated(),
             Param::new("away", Kind::Text("NODE:LENGTH"), "Take a control point LENGTH further from the eye; a negative one comes closer.")
                 .repeated(),
             Param::new("at", Kind::Text("NODE:X,Y,Z"), "Take a control point to the point of its ray nearest to X,Y,Z.").repeated(),
-            Param::new("point", Kind::Text("X,Y,Z:FACTOR"), "Take a point of the model to FACTOR times its distance from the eye, by the \
+            Param::new("point", Kind::Text("X,Y,Z:FACTOR|LENGTH"), "Take a point of the model to FACTOR times its distance from the eye, or a \
+length with its unit further, by the \
 control point that has most influence there and is not on the fixed face (the first three corners of a tetrahedron).")
             .repeated(),
             Param::flag("local", "Leave everything outside the reference in place."),
@@ -448,6 +593,29 @@ control point that has most influence there and is not on the fixed face (the fi
             &[("eye", "50,60,300"), ("push", "1,1,1:2")],
             &[("eye", "50,60,300"), ("away", "1,1,1:210.0")],
         ),
+        Law3::Identity(&[("eye", "inf:1,2,3")]),
+        Law3::Identity(&[("eye", "50,50,300"), ("cells", "2x3x2"), ("degree", "2")]),
+        Law3::Identity(&[("eye", "50,50,300"), ("collineation", "0,0,0,1")]),
+        Law3::KeepsRays(&[("eye", "50,60,300"), ("degree", "2"), ("cells", "3x2x2"), ("push", "1,2,1:1.3 3,0,0:0.7")], [50.0, 60.0, 300.0]),
+        Law3::KeepsPlanes(&[("eye", "inf:0.2,0.3,1"), ("reference", TETRAHEDRON), ("away", "0,0,0,1:40 1,0,0,0:-20")]),
+        // The box as one cell of B-splines.
+        Law3::Same(
+            &[("eye", "50,60,300"), ("degree", "3x2x1"), ("push", "1,1,1:1.3 2,0,0:0.7")],
+            &[("eye", "50,60,300"), ("degree", "3x2x1"), ("cells", "1"), ("push", "1,1,1:1.3 2,0,0:0.7")],
+        ),
+        // A tetrahedron with one corner at twice the distance: δ falls from 1 at z = 0 to 1/2 at z = 100.
+        Law3::Same(
+            &[("eye", "50,60,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:2")],
+            &[("eye", "50,60,300"), ("collineation", "0,0,-0.005,-0.5")],
+        ),
+        Law3::Same(
+            &[("eye", "50,60,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:2")],
+            &[("eye", "50,60,300"), ("axis", "7,9,0 1,0,0 0,1,0"), ("point", "0,0,100:2")],
+        ),
+        Law3::Same(
+            &[("eye", "inf:0,0,2"), ("reference", TETRAHEDRON), ("away", "0,0,0,1:30")],
+            &[("eye", "inf:0deg,0deg"), ("collineation", "0,0,-0.3,1")],
+        ),
         Law3::FixedOutside(LOCAL, [[20.0, 20.0, 20.0], [80.0, 80.0, 80.0]]),
     ],
     cases: &[
@@ -478,34 +646,126 @@ const LOCAL: Pairs = &[
 
 /// Reads the deformation from text.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
-    let eye =
-        s.point_if("eye")?.ok_or_else(|| Error::missing("eye", "the place from which the model looks unchanged"))?;
-    let mut points = Vec::new();
-    for word in s.words("reference").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty()) {
-        points.push(s.point_in("reference", word)?);
+    let eye = eye(s)?;
+    let listed = |name: &str| -> Result<Vec<DVec3>, Error> {
+        let words = s.words(name).into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
+        words.map(|w| s.point_in(name, w)).collect()
+    };
+    let (mut points, axis, form) = (listed("reference")?, listed("axis")?, numbers(s)?);
+    let degree = s.counts_if("degree", MAX_DEGREE)?.unwrap_or([1; 3]);
+    let cells = match s.counts_if("cells", MAX_CELLS)? {
+        None if s.flat().flag("spline")? => Some([4; 3]),
+        given => given,
+    };
+    let local = s.flat().flag("local")?;
+    if let Some(form) = form {
+        if let Some(name) =
+            ["reference", "axis", "cells", "push", "point", "away", "at"].iter().find(|n| s.flat().given(n))
+        {
+            return Err(Error::usage(
+                name,
+                "",
+                "does not go with `collineation`, which has all numbers already; omit one of them",
+            ));
+        }
+        return Ok(typed(eye, form));
+    }
+    let mut pushes = Vec::new();
+    if let [a, b, c] = axis[..] {
+        let wrong =
+            || Error::missing("point", "one point X,Y,Z:FACTOR and where it goes; `axis` needs it, and nothing else");
+        let [Push3::Prescribe(p, _)] = prescribed(s)?[..] else { return Err(wrong()) };
+        if !points.is_empty() || cells.is_some() || degree != [1; 3] {
+            return Err(wrong());
+        }
+        // The three points stay, so all depends on the fourth corner.
+        points = vec![a, b, c, p];
+        pushes = prescribed(s)?;
+    } else if !axis.is_empty() {
+        return Err(Error::usage("axis", "", "must have three points"));
     }
     if points.is_empty() {
         points = vec![s.bounds().min, s.bounds().max];
     }
-    let degree = s.counts_if("degree", MAX_DEGREE)?.unwrap_or([1; 3]);
-    let reference = Reference3::new(&points, degree, eye)?;
-    let mut out = Anamorph3::new(eye, reference).local(s.flat().flag("local")?);
-    for push in pushes(s, &reference)? {
-        out = out.push(push);
+    let reference = match (cells, &points[..]) {
+        (None, _) if !s.words("tetrahedra").is_empty() => tetrahedra(s, points)?,
+        (Some(cells), [a, b]) => Reference3::spline(Box3::new(*a, *b), degree, cells)?,
+        (Some(_), _) => return Err(Error::usage("cells", "", "are for a box: give two corners of the `reference`")),
+        (None, _) => Reference3::new(&points, degree, eye)?,
+    };
+    if pushes.is_empty() {
+        pushes = nodes_pushed(s, &reference)?;
+        pushes.extend(prescribed(s)?);
     }
-    out.build()
+    pushes.into_iter().fold(Anamorph3::new(eye, reference).local(local), Anamorph3::push).build()
 });
 
-/// Reads the pushes of control points, then those of points.
-fn pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {
+/// Reads the eye.
+fn eye(s: &Settings3<'_>) -> Result<Eye3, Error> {
+    let missing = || Error::missing("eye", "the place from which the model looks unchanged");
+    let text = s.last("eye").ok_or_else(missing)?;
+    let Some(direction) = text.strip_prefix("inf:") else { return Ok(Eye3::At(s.point_in("eye", text)?)) };
+    let parts: Vec<&str> = direction.split(',').map(str::trim).collect();
+    let number = |text: &str| s.flat().number_in("eye", text);
+    let towards = match parts[..] {
+        [right, up] => {
+            let [right, up] =
+                [s.flat().angle_in("eye", right)?.to_radians(), s.flat().angle_in("eye", up)?.to_radians()];
+            DVec3::new(right.sin() * up.cos(), up.sin(), right.cos() * up.cos())
+        }
+        [x, y, z] => DVec3::new(number(x)?, number(y)?, number(z)?),
+        _ => return Err(Error::usage("eye", text, "is not inf:DX,DY,DZ or inf: and two angles such as 30deg,20deg")),
+    };
+    let none = || Error::usage("eye", text, "has no direction; give one, such as inf:1,0,2");
+    towards.try_normalize().map(Eye3::Infinite).ok_or_else(none)
+}
+
+/// Reads the numbers of a collineation.
+fn numbers(s: &Settings3<'_>) -> Result<Option<DVec4>, Error> {
+    let Some(text) = s.last("collineation") else { return Ok(None) };
+    let all: Result<Vec<f64>, Error> = text.split(',').map(|t| s.flat().number_in("collineation", t)).collect();
+    match all?[..] {
+        [x, y, z, d] if DVec4::new(x, y, z, d).is_finite() => Ok(Some(DVec4::new(x, y, z, d))),
+        _ => Err(Error::usage("collineation", text, "is not four numbers DX,DY,DZ,D")),
+    }
+}
+
+/// Builds the collineation with δ(p) = d·(p − O) + d₀, or d·p + d₀ for an eye at infinity.
+fn typed(eye: Eye3, form: DVec4) -> Built3 {
+    let about = eye.before(DVec3::ZERO, 0.0);
+    let mut built = Built3::new(Arc::new(Collineation::about(perspective(eye.relative_to(about), form), about)));
+    built.eye = matches!(eye, Eye3::At(_)).then_some(about);
+    built
+}
+
+/// Reads tetrahedra by the numbers of their corners among the points of the reference.
+fn tetrahedra(s: &Settings3<'_>, points: Vec<DVec3>) -> Result<Reference3, Error> {
+    let read = |word: &str| {
+        let numbers: Vec<usize> = word.split(',').filter_map(|t| t.trim().parse().ok()).collect();
+        let wrong = |_| Error::usage("tetrahedra", word, "is not four numbers of points I,J,K,L");
+        <[usize; 4]>::try_from(numbers).map_err(wrong)
+    };
+    Reference3::tetrahedra(points, s.words("tetrahedra").into_iter().map(read).collect::<Result<_, _>>()?)
+}
+
+/// Highest number of cells of B-splines along an axis.
+const MAX_CELLS: usize = 16;
+
+/// Reads the pushes of control points.
+fn nodes_pushed(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
-            let (node, value) = if matches!(reference, Reference3::Tetrahedron(..)) {
-                s.flat().node_in::<4>(name, word)?
-            } else {
-                let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
-                ([i, j, k, 0], value)
+            let (node, value) = match reference {
+                Reference3::Tetrahedron(..) => s.flat().node_in::<4>(name, word)?,
+                Reference3::Tetrahedra(..) => {
+                    let ([i], value) = s.flat().node_in::<1>(name, word)?;
+                    ([i, 0, 0, 0], value)
+                }
+                _ => {
+                    let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
+                    ([i, j, k, 0], value)
+                }
             };
             out.push(match name {
                 "push" => Push3::By(node, s.flat().number_in(name, value)?),
@@ -514,11 +774,22 @@ fn pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error
             });
         }
     }
+    Ok(out)
+}
+
+/// Reads the pushes of points.
+fn prescribed(s: &Settings3<'_>) -> Result<Vec<Push3>, Error> {
+    let mut out = Vec::new();
     for word in s.words("point") {
         let wrong = || Error::usage("point", word, "is not X,Y,Z:FACTOR, such as 10,20,30:150%");
         let (p, factor) = word.split_once(':').ok_or_else(wrong)?;
         let p: DVec3 = s.point_in("point", p)?;
-        out.push(Push3::Prescribe(p, s.flat().number_in("point", factor)?));
+        let infinite = s.last("eye").is_some_and(|t| t.starts_with("inf"));
+        let value = match infinite {
+            true => s.length_in("point", factor, Extent::Diagonal)?,
+            false => s.flat().number_in("point", factor)?,
+        };
+        out.push(Push3::Prescribe(p, value));
     }
     Ok(out)
 }

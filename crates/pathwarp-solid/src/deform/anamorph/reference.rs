@@ -1,11 +1,63 @@
 //! The reference of an anamorphosis.
 
-use crate::settings::Box3;
-use glam::DVec3;
+use super::dilation::Dilation3;
+use crate::settings::{Box3, show};
+use glam::{DVec3, DVec4};
 use pathwarp::Error;
+use pathwarp::map::bspline;
+use std::collections::BTreeMap;
+
+/// The eye of an anamorphosis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Eye3 {
+    /// At a point.
+    At(DVec3),
+    /// At infinity, in the direction of this unit vector.
+    Infinite(DVec3),
+}
+
+impl From<DVec3> for Eye3 {
+    fn from(eye: DVec3) -> Self {
+        Self::At(eye)
+    }
+}
+
+impl Eye3 {
+    /// Returns the homogeneous coordinates.
+    pub(super) fn homogeneous(self) -> DVec4 {
+        match self {
+            Self::At(eye) => eye.extend(1.0),
+            Self::Infinite(towards) => towards.extend(0.0),
+        }
+    }
+
+    /// Returns a point from which `p` looks the same: the eye, or far away.
+    pub(super) fn before(self, p: DVec3, far: f64) -> DVec3 {
+        match self {
+            Self::At(eye) => eye,
+            Self::Infinite(towards) => p + towards * far,
+        }
+    }
+
+    pub(super) fn relative_to(self, base: DVec3) -> Self {
+        match self {
+            Self::At(eye) => Self::At(eye - base),
+            infinite => infinite,
+        }
+    }
+
+    /// Returns the place of a point after it has moved along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
+    pub(super) fn moved(self, p: DVec3, delta: f64) -> DVec3 {
+        match self {
+            Self::At(_) if delta == 1.0 => p,
+            Self::At(eye) => eye + (p - eye) / delta,
+            Self::Infinite(towards) => p + towards * (delta - 1.0),
+        }
+    }
+}
 
 /// A regular net of control points, before any is moved.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
     Tetrahedron([DVec3; 4], usize),
@@ -13,6 +65,10 @@ pub enum Reference3 {
     Triangle([DVec3; 3], usize),
     /// Points i, j, k of a box, with degrees along the axes.
     Cuboid(Box3, [usize; 3]),
+    /// Control points of B-splines over a box, with degrees and numbers of cells along the axes.
+    Spline(Box3, [usize; 3], [usize; 3]),
+    /// Points, and tetrahedra by the numbers of their corners.
+    Tetrahedra(Vec<DVec3>, Vec<[usize; 4]>),
     /// A sheet: a box that is flat along the given axis, along which all points have the number 0.
     Rectangle(Box3, usize, [usize; 3]),
 }
@@ -25,7 +81,8 @@ impl Reference3 {
     ///
     /// # Errors
     /// The points do not span such a reference, or the eye lies in the plane of a sheet.
-    pub fn new(points: &[DVec3], degree: [usize; 3], eye: DVec3) -> Result<Self, Error> {
+    pub fn new(points: &[DVec3], degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
+        let eye = eye.into();
         let wrong = |problem: &str| Error::usage("reference", "", problem);
         let even = degree[0] == degree[1] && degree[1] == degree[2];
         if points.len() > 2 && !even {
@@ -48,7 +105,11 @@ impl Reference3 {
                 if normal.length().is_nan() || normal.length() <= FLAT * size * size {
                     return Err(wrong("has three corners on one line; move one of them"));
                 }
-                if (eye - a).dot(normal.normalize()).abs() <= FLAT * size {
+                let off = match eye {
+                    Eye3::At(eye) => (eye - a).dot(normal.normalize()) / size,
+                    Eye3::Infinite(towards) => towards.dot(normal.normalize()),
+                };
+                if off.abs() <= FLAT {
                     return Err(in_plane());
                 }
                 Ok(Self::Triangle([a, b, c], degree[0]))
@@ -59,7 +120,12 @@ impl Reference3 {
                 let flat: Vec<usize> = (0..3).filter(|k| size[*k] <= FLAT * b.diagonal()).collect();
                 match flat[..] {
                     [] => Ok(Self::Cuboid(b, degree)),
-                    [axis] if (eye[axis] - b.min[axis]).abs() <= FLAT * b.diagonal() => Err(in_plane()),
+                    [axis]
+                        if matches!(eye, Eye3::At(eye) if (eye[axis] - b.min[axis]).abs() <= FLAT * b.diagonal())
+                            || matches!(eye, Eye3::Infinite(v) if v[axis].abs() <= FLAT) =>
+                    {
+                        Err(in_plane())
+                    }
                     [axis] => {
                         let mut degree = degree;
                         degree[axis] = 0;
@@ -74,6 +140,94 @@ impl Reference3 {
         }
     }
 
+    /// Makes a B-spline net over a box.
+    ///
+    /// # Errors
+    /// The box is flat.
+    pub fn spline(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Result<Self, Error> {
+        if region.size().min_element() > FLAT * region.diagonal() {
+            return Ok(Self::Spline(region, degree, cells));
+        }
+        Err(Error::usage("cells", "", "are for a box; the `reference` is flat"))
+    }
+
+    /// Makes tetrahedra that share faces, by the numbers of their corners among `points`: one δ for every point.
+    ///
+    /// # Errors
+    /// There is no such point, a tetrahedron is flat, or the middle of one lies in another.
+    pub fn tetrahedra(points: Vec<DVec3>, all: Vec<[usize; 4]>) -> Result<Self, Error> {
+        const MOST: usize = 1000;
+        let wrong =
+            |t: &[usize; 4], problem: &str| Error::usage("tetrahedra", t.map(|i| i.to_string()).join(","), problem);
+        if let Some(t) = all.get(MOST) {
+            return Err(wrong(t, "is one too many: 1000 at most"));
+        }
+        for t in &all {
+            if t.iter().any(|i| *i >= points.len()) {
+                return Err(wrong(
+                    t,
+                    &format!("has a point that the `reference` lacks: 0 to {}", points.len().max(1) - 1),
+                ));
+            }
+            Self::new(&t.map(|i| points[i]), [1; 3], DVec3::ZERO)
+                .map_err(|_| wrong(t, "has its four corners in one plane, or one twice"))?;
+        }
+        let own = Self::Tetrahedra(points, all);
+        let Self::Tetrahedra(points, all) = &own else { return Ok(own) };
+        for (k, t) in all.iter().enumerate() {
+            let middle = t.iter().map(|i| points[*i]).sum::<DVec3>() * 0.25;
+            let others: Vec<[usize; 4]> = all.iter().enumerate().filter(|(n, _)| *n != k).map(|(_, t)| *t).collect();
+            let others = Self::Tetrahedra(points.clone(), others);
+            if Dilation3::new(&others, Eye3::At(DVec3::ZERO), &vec![2.0; points.len()]).at(middle) != 1.0 {
+                return Err(wrong(t, &format!("lies in another one at {}; let them share faces", show(middle))));
+            }
+        }
+        Ok(own)
+    }
+
+    /// Names the faces that two tetrahedra share, and the outer ones with a corner whose δ is not 1.
+    pub(super) fn faces(&self, values: &[f64]) -> Option<[String; 2]> {
+        let Self::Tetrahedra(_, all) = self else { return None };
+        let mut faces: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+        for (t, k) in all.iter().flat_map(|t| (0..4).map(move |k| (t, k))) {
+            let mut face: Vec<usize> = (0..4).filter(|i| *i != k).map(|i| t[i]).collect();
+            face.sort_unstable();
+            *faces.entry(face).or_default() += 1;
+        }
+        let named = |wanted: &dyn Fn(&[usize], usize) -> bool| {
+            let text = |f: &Vec<usize>| f.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+            faces.iter().filter(|(f, n)| wanted(f, **n)).map(|(f, _)| text(f)).collect::<Vec<_>>().join(" ")
+        };
+        Some([named(&|_, n| n > 1), named(&|f, n| n == 1 && f.iter().any(|i| values[*i] != 1.0))])
+    }
+
+    /// Returns the bounding box.
+    pub(super) fn bounds(&self) -> Box3 {
+        let corners = |all: &[DVec3]| {
+            let (min, max) = all.iter().fold((all[0], all[0]), |(a, b), p| (a.min(*p), b.max(*p)));
+            Box3 { min, max }
+        };
+        match self {
+            Self::Tetrahedron(c, _) => corners(c),
+            Self::Triangle(c, _) => corners(c),
+            Self::Tetrahedra(points, _) => corners(points),
+            Self::Cuboid(b, _) | Self::Spline(b, ..) | Self::Rectangle(b, ..) => *b,
+        }
+    }
+
+    /// Returns the same net relative to a point.
+    pub(super) fn relative_to(self, base: DVec3) -> Self {
+        let less = |b: Box3| Box3 { min: b.min - base, max: b.max - base };
+        match self {
+            Self::Tetrahedron(c, n) => Self::Tetrahedron(c.map(|p| p - base), n),
+            Self::Triangle(c, n) => Self::Triangle(c.map(|p| p - base), n),
+            Self::Tetrahedra(points, all) => Self::Tetrahedra(points.iter().map(|p| *p - base).collect(), all),
+            Self::Cuboid(b, d) => Self::Cuboid(less(b), d),
+            Self::Spline(b, d, c) => Self::Spline(less(b), d, c),
+            Self::Rectangle(b, axis, d) => Self::Rectangle(less(b), axis, d),
+        }
+    }
+
     /// Lists the numbers of the control points. Only those of a tetrahedron have a fourth.
     #[must_use]
     pub fn nodes(&self) -> Vec<[usize; 4]> {
@@ -83,10 +237,21 @@ impl Reference3 {
                 rows.flat_map(|(k, l)| (0..=n - l - k).map(move |j| [n - j - k - l, j, k, l])).collect()
             }
             Self::Triangle(_, n) => (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect(),
-            Self::Cuboid(_, [l, m, n]) | Self::Rectangle(_, _, [l, m, n]) => {
+            Self::Tetrahedra(ref points, _) => (0..points.len()).map(|i| [i, 0, 0, 0]).collect(),
+            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+                let [l, m, n] = self.last();
                 let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
                 rows.flat_map(|(j, k)| (0..=l).map(move |i| [i, j, k, 0])).collect()
             }
+        }
+    }
+
+    /// Returns the last numbers along the axes of a box.
+    fn last(&self) -> [usize; 3] {
+        match *self {
+            Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => degree,
+            Self::Spline(_, degree, cells) => [0, 1, 2].map(|a| degree[a] + cells[a] - 1),
+            Self::Tetrahedron(..) | Self::Triangle(..) | Self::Tetrahedra(..) => [0; 3],
         }
     }
 
@@ -99,6 +264,11 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, n) => weighted(c, *n),
             Self::Triangle(c, n) => weighted(c, *n),
+            Self::Tetrahedra(points, _) => points[node[0]],
+            Self::Spline(b, degree, cells) => {
+                let t = DVec3::from_array([0, 1, 2].map(|a| bspline::regular(degree[a], cells[a])[node[a]]));
+                b.min + t * b.size()
+            }
             Self::Cuboid(b, degree) | Self::Rectangle(b, _, degree) => {
                 let t = DVec3::from_array([0, 1, 2].map(|a| node[a] as f64 / degree[a].max(1) as f64));
                 b.min + t * b.size()
@@ -111,8 +281,10 @@ impl Reference3 {
     pub fn numbers(&self) -> String {
         match self {
             Self::Tetrahedron(_, n) => format!("I,J,K,L must add up to {n}, the degree"),
+            Self::Tetrahedra(points, _) => format!("the points have the numbers 0 to {}", points.len() - 1),
             Self::Triangle(_, n) => format!("I,J,K must add up to {n}, the degree"),
-            Self::Cuboid(_, [l, m, n]) | Self::Rectangle(_, _, [l, m, n]) => {
+            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+                let [l, m, n] = self.last();
                 format!("I runs from 0 to {l}, J from 0 to {m}, K from 0 to {n}")
             }
         }
@@ -123,10 +295,12 @@ impl Reference3 {
     #[must_use]
     pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
         match self {
+            Self::Tetrahedra(..) => false,
             Self::Tetrahedron(..) => node[3] == 0,
             Self::Triangle(..) => node[2] == 0,
-            Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => {
-                local && (0..3).any(|a| degree[a] > 0 && (node[a] == 0 || node[a] == degree[a]))
+            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+                let last = self.last();
+                local && (0..3).any(|a| last[a] > 0 && (node[a] == 0 || node[a] == last[a]))
             }
         }
     }

@@ -10,10 +10,11 @@
 //! plane of the drawing that is a map of the plane; at degree 1 of a triangle δ(p) = d·(p − O) + d₀ is linear and the map the
 //! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
 
+use super::scene::Eye;
 use crate::deform::triangle;
 use crate::map::bspline::bernstein;
 use crate::map::{Plane, Quotient, powers, source_coordinates};
-use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
+use kurbo::{Affine, BezPath, Point, Rect, Shape};
 
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,22 +190,20 @@ impl Dilation {
     }
 
     /// Returns the map of the plane for an eye in it. If `bounded`, it is used inside the reference only.
-    pub(super) fn about(&self, eye: Point, bounded: bool) -> Quotient {
+    pub(super) fn about(&self, eye: Eye, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
+        let eye = match eye {
+            Eye::At(eye, _) => eye,
+            Eye::Infinite([x, y, _]) => {
+                let m = delta.plus(-1.0, &Plane::linear([1.0, 0.0, 0.0]));
+                return Quotient::polynomial(pre, m.scaled(x), m.scaled(y), self.domain());
+            }
+        };
         let [x, y] = source_coordinates(pre).map(Plane::linear);
         let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
         let domain = if bounded { self.reference.bounds() } else { self.domain() };
         let q = Quotient::rational(pre, eye, less(x, eye.x), less(y, eye.y), delta, domain);
         if bounded && self.is_positive() { q.without_poles() } else { q }
-    }
-
-    /// Returns (d, d₀) of the collineation δ(p) = d·(p − O) + d₀, the rows of its matrix [I 0; d d₀] about the eye: for triangles of
-    /// degree 1.
-    pub(super) fn collineation(&self, eye: Point) -> Option<(Vec2, f64)> {
-        let Reference::Triangle(_, 1) = self.reference else { return None };
-        let d0 = self.at(eye);
-        let along = |e: Vec2| self.at(eye + e) - d0;
-        Some((Vec2::new(along(Vec2::new(1.0, 0.0)), along(Vec2::new(0.0, 1.0))), d0))
     }
 
     /// Draws the net's lines, with `place` applied to every control point and its δ.

@@ -19,22 +19,27 @@
 //! geometry*, Computing 79 (2007).
 
 mod dilation;
+mod mirror;
 mod net;
+mod reading;
+mod reflected;
 mod scene;
 mod surface;
 #[cfg(test)]
 mod tests;
 
-use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SpaceFile};
+use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SightMark, SpaceFile};
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Settings, parameters};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
 use net::{Push, PushedNet};
-use scene::Scene;
+use reading::{eye, look, mirror, net, onto};
+use scene::{Eye, HERE, Scene, measured};
 use std::sync::Arc;
 use surface::{Anamorphosis, Camera, Radial, Surface};
 
+pub use mirror::{Mirror, MirrorShape};
 pub use surface::Onto;
 
 parameters! {
@@ -54,7 +59,8 @@ parameters! {
     /// ```
     #[derive(Debug, Clone, PartialEq)]
     pub struct Anamorph(s) {
-        /// Position of the eye, in the drawing or straight in front of this point.
+        /// Position of the eye, in the drawing or straight in front of this point; or inf:DX,DY[,DZ], infinitely far away in this
+        /// direction, DZ in front of the drawing, or inf: and two angles to the right and up, such as inf:30deg,20deg.
         param = new("eye", Kind::Point).default("50%,50%");
         /// Distance of the eye in front of the drawing. Without it the eye lies in the drawing.
         distance: Option<f64> = length("distance", Axis::X).within(1e-6, 1e9).slider(10.0, 2000.0);
@@ -66,6 +72,13 @@ parameters! {
         length: Option<f64> = length("length", Axis::Y).within(1e-6, 1e9).slider(10.0, 40000.0);
         /// The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above.
         param = new("onto", Kind::Text("SURFACE"));
+        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as below.
+        param = new("mirror", Kind::Text("SHAPE"));
+        /// Place of the mirror's foot on the page, such as on the photograph of a drawing that --inverse restores. Default: below
+        /// the artwork's middle.
+        param = new("foot", Kind::Point);
+        /// Draw beside the result where the eye belongs, with its distance and height, and the mirror's foot.
+        sight_mark: bool = flag("sight-mark");
         /// Give the eye's view.
         param = flag("seen");
         /// Give the view from here, Z in front of the drawing, looking at its middle.
@@ -80,9 +93,9 @@ parameters! {
         param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
         /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
         param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
-        /// Takes this point to so many times its distance from the eye, by pushing the control point nearest to it that is not on
+        /// Takes this point to so many times its distance from the eye (a length further from an eye at infinity), by pushing the control point nearest to it that is not on
         /// a fixed side: the first side of a triangle, the edge of a box if --local.
-        param = new("point", Kind::Text("X,Y:FACTOR")).repeated();
+        param = new("point", Kind::Text("X,Y:FACTOR|LENGTH")).repeated();
         /// Write the filled artwork on the surface as a mesh in 3D (OBJ), for printing and CAD; needs --distance.
         param = new("mesh", Kind::Save);
         /// Write the artwork's outlines on the surface as polylines in 3D (OBJ); needs --distance.
@@ -90,9 +103,10 @@ parameters! {
         /// Move only artwork inside the reference.
         local: bool = flag("local");
         let frame: Rect = s.frame().rect;
-        let eye: Point = s.point("eye")?;
+        let eye: Eye = eye(s)?;
         let eye_given: bool = s.given("eye");
         let onto: Option<Onto> = s.texts("onto").pop().map(|text| onto(s, text)).transpose()?;
+        let mirror: Option<Mirror> = mirror(s)?;
         let look: Look = look(s)?;
         let net: Option<PushedNet> = net(s)?;
         let files: Vec<SpaceFile> = files(s, "mesh", true).chain(files(s, "curves", false)).collect();
@@ -121,9 +135,13 @@ impl Anamorph {
 
     setters! {
         /// Sets the eye, or its foot in the drawing.
-        eye(eye: impl Into<Point>) => eye: eye.into(), eye_given: true;
+        eye(eye: impl Into<Point>) => eye: Eye::At(eye.into(), 0.0), eye_given: true;
+        /// Puts the eye at infinity in a direction: in the drawing's plane if z is 0, otherwise z in front of it.
+        eye_at_infinity(x: f64, y: f64, z: f64) => eye: Eye::Infinite([x, y, -z]), eye_given: true;
         /// Sets the surface that the artwork is projected onto. Needs the [`distance`](Self::distance).
         onto(surface: Onto) => onto: Some(surface);
+        /// Sets the mirror in which the artwork appears.
+        mirror(mirror: Mirror) => mirror: Some(mirror);
         /// Gives the view of a camera at (x, y), z in front of the drawing, that looks at its middle.
         view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
@@ -172,7 +190,8 @@ impl Anamorph {
         self.with_net(|net| net.pushes.push(Push::To(node, to)))
     }
 
-    /// Takes a point to this many times its distance from the eye, by one control point near it.
+    /// Takes a point to this many times its distance from the eye, or this much further from an eye at infinity, by one control point
+    /// near it.
     #[must_use]
     pub fn prescribe(self, point: impl Into<Point>, factor: f64) -> Self {
         let point = point.into();
@@ -186,14 +205,71 @@ impl Anamorph {
     /// that a ray misses or that cannot be laid flat.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        match self.distance {
-            Some(distance) => self.in_front(distance),
-            None => self.in_plane(),
+        if let Some(mirror) = self.mirror {
+            return self.reflected(mirror);
+        }
+        match (self.eye, self.distance) {
+            (Eye::At(foot, _), Some(distance)) => self.in_front(Eye::At(foot, distance)),
+            (Eye::At(foot, _), None) => self.in_plane(Eye::At(foot, 0.0)),
+            (Eye::Infinite(_), Some(_)) => {
+                Err(Error::usage("distance", "", "is infinite for this `eye`; omit one of them"))
+            }
+            (Eye::Infinite(towards), None) => {
+                let eye = Eye::Infinite(direction(towards)?);
+                match towards[2] {
+                    0.0 => self.in_plane(eye),
+                    z if z < -1e-9 * surface::length(towards) => self.in_front(eye),
+                    _ => Err(Error::usage("eye", "", "is behind the picture; DZ must be positive, in front of it")),
+                }
+            }
         }
     }
 
+    /// Marks the place of the eye beside the image on a surface that was laid flat.
+    fn sighted(&self, cast: &Anamorphosis, scene: &Scene, map: &dyn Map) -> Result<Option<SightMark>, Error> {
+        if !self.sight_mark {
+            return Ok(None);
+        }
+        if self.look != Look::Unrolled {
+            return Err(Error::usage("sight-mark", "", "is for what is printed; omit it, or `view` and `seen`"));
+        }
+        let units = self.units_per_px;
+        let (at, label) = match (&cast.surface, scene.eye) {
+            (Surface::Plane(p), eye) => {
+                let Some((at, height)) = p.nearest(eye) else { return Ok(None) };
+                match eye {
+                    Eye::At(..) => {
+                        let height = measured(height, units);
+                        let here = format!("eye {height} straight above this mark");
+                        (at, [here, format!("eye {height} above the sheet{HERE}")])
+                    }
+                    Eye::Infinite(_) => (at, far_away(height)),
+                }
+            }
+            (Surface::Round(r), Eye::At(foot, distance)) => {
+                // Straight in front of the axis at the eye's height.
+                let k = distance / (distance + r.axis());
+                let front = match r.level {
+                    true => Point::new(foot.x, foot.y + (r.middle.y - foot.y) * k),
+                    false => Point::new(foot.x + (r.middle.x - foot.x) * k, foot.y),
+                };
+                let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
+                let here = format!("eye {} in front of this mark", measured(apart, units));
+                let there = format!("eye {} in front of the surface{HERE}", measured(apart, units));
+                (map.point(front), [here, there])
+            }
+            (_, Eye::At(..)) => return Ok(None),
+            (_, Eye::Infinite([x, y, z])) => {
+                let [right, up] = [x.atan2(-z), (-y).asin()].map(f64::to_degrees);
+                let here = format!("eye far away, {right:.1}° to the right and {up:.1}° up");
+                (map.point(scene.frame.center()), [here.clone(), here])
+            }
+        };
+        Ok(Some(scene::mark(at, label, scene.extent(map), units)))
+    }
+
     /// Builds the map for an eye in the plane of the drawing.
-    fn in_plane(&self) -> Result<Built, Error> {
+    fn in_plane(&self, eye: Eye) -> Result<Built, Error> {
         let needs_distance = [
             ("onto", self.onto.is_some()),
             ("view", matches!(self.look, Look::From(_))),
@@ -210,16 +286,32 @@ impl Anamorph {
                 format!("the eye's distance in front of the drawing; `{name}` needs it"),
             ));
         }
-        let scene = Scene { frame: self.frame, scale: Affine::IDENTITY, eye: self.eye };
-        let dilation = self.net.clone().unwrap_or_default().dilation(&scene, 0.0, self.local)?;
-        let map = dilation.about(scene.eye, self.local);
-        let pushed = dilation.lines(|p, delta| scene.eye + (p - scene.eye) / delta);
+        let scene = Scene { frame: self.frame, scale: Affine::IDENTITY, eye };
+        let dilation = self.net.clone().unwrap_or_default().dilation(&scene, self.local)?;
+        let map = dilation.about(eye, self.local);
+        let pushed = dilation.lines(|p, delta| match eye {
+            Eye::At(eye, _) => eye + (p - eye) / delta,
+            Eye::Infinite([x, y, _]) => p + Vec2::new(x, y) * (delta - 1.0),
+        });
         let map: Arc<dyn Map> = if self.local {
             Arc::new(Local::new(&dilation.reference().corners(), Arc::new(map)))
         } else {
             map.simplest()
         };
-        let mut built = Built::new(map);
+        let mut built = Built::new(Arc::clone(&map));
+        if self.sight_mark {
+            let at = match eye {
+                Eye::At(at, _) => at,
+                Eye::Infinite([x, y, _]) => scene.frame.center() + Vec2::new(x, y) * 1e9,
+            };
+            let all = scene.extent(&*map);
+            let there = if matches!(eye, Eye::At(..)) {
+                "eye in the plane of the drawing, from here"
+            } else {
+                "eye far away in this direction"
+            };
+            built.sight = Some(scene::mark(at, ["eye".into(), there.into()], all, self.units_per_px));
+        }
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
         }
@@ -229,46 +321,72 @@ impl Anamorph {
     }
 
     /// Builds the map for an eye in front of the drawing.
-    fn in_front(&self, distance: f64) -> Result<Built, Error> {
+    fn in_front(&self, eye: Eye) -> Result<Built, Error> {
         if self.local {
             return Err(Error::usage("local", "", "is for an eye in the drawing, without `distance`"));
         }
-        let scene = self.scene(distance)?;
-        let foot = scene.eye;
+        let scene = self.scene(eye)?;
         let surface = match (self.onto, &self.net) {
             (Some(_), Some(net)) => {
                 let name = net.pushes.first().map_or("reference", |p| p.param());
                 return Err(Error::usage(name, "", "moves control points, but `onto` has the surface already"));
             }
-            (Some(onto), None) => onto.surface(&scene, distance)?,
+            (Some(onto), None) => onto.surface(&scene)?,
             // Without control points, the sheet in front of the eye is the drawing itself.
             (None, None) if self.look == Look::Unrolled => {
                 let hint = "the surface in front of the eye, such as cylinder:radius=40mm; or bend a sheet there, with `push` or `at`";
                 return Err(Error::missing("onto", hint));
             }
             (None, net) => {
-                let dilation = net.clone().unwrap_or_default().dilation(&scene, distance, self.local)?;
-                let flat = net::flat(&dilation, foot, distance);
+                let dilation = net.clone().unwrap_or_default().dilation(&scene, self.local)?;
+                let flat = net::flat(&dilation, scene.eye);
                 flat.map_or_else(|| Surface::Radial(Radial::net(&dilation)), Surface::Plane)
             }
         };
-        let cast = Anamorphosis { foot, distance, surface };
+        let cast = Anamorphosis { eye: scene.eye, surface };
         surface::check_met(self.onto, &cast, scene.frame)?;
-        let map = self.shown(&cast, &scene)?;
+        let own = match self.look {
+            Look::Unrolled if !self.files.is_empty() && cast.unrolled().is_none() => self.beside(&cast, &scene),
+            _ => None,
+        };
+        let map = own.as_ref().unwrap_or(self).shown(&cast, &scene)?;
         let mut built =
             Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
-        let (scale, solid) = (scene.scale, cast);
+        let (scale, solid) = (scene.scale, cast.clone());
         let place = Arc::new(move |p| {
             let p = scale * p;
             (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
-        built.space = Some(InSpace { place, files: self.files.clone() });
+        built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
+        built.sight = self.sighted(&cast, &scene, &*map)?;
+        if let Some(Self { look: Look::From([x, y, z]), .. }) = own {
+            built.note(format!(
+                "such a surface cannot be laid flat: the drawing is the view from {x:.4},{y:.4},{z:.4} (`view`)"
+            ));
+        }
         built.note(scene.size(&*map, self.units_per_px));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
         }
         Ok(built)
+    }
+
+    /// Returns the same with the view of a sheet that has no flat one: from the eye's side, from as far to the right, left or above as no
+    /// part hides another.
+    fn beside(&self, cast: &Anamorphosis, scene: &Scene) -> Option<Self> {
+        const SIDES: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
+        let middle = cast.point(scene.frame.center());
+        let away = scene.eye.apart(middle);
+        let from = |[x, y]: [f64; 2]| {
+            let p = scene.scale.inverse() * Point::new(middle[0] + x * away, middle[1] + y * away);
+            Self { look: Look::From([p.x, p.y, 0.8 * away - middle[2]]), ..self.clone() }
+        };
+        let shows_all = |own: &Self| {
+            let map = own.shown(cast, scene);
+            map.is_ok_and(|m| surface::samples(scene.frame).all(|p| m.jet(p).det() > 0.0))
+        };
+        SIDES.map(from).into_iter().find(shows_all)
     }
 
     /// Returns the requested view of the surface.
@@ -293,7 +411,7 @@ impl Anamorph {
     }
 
     /// Returns the artwork at its apparent size, and the eye.
-    fn scene(&self, distance: f64) -> Result<Scene, Error> {
+    fn scene(&self, eye: Eye) -> Result<Scene, Error> {
         let drawn = self.frame;
         if self.eye_height.is_some() && self.eye_given {
             return Err(Error::usage("eye-height", "", "and `eye` both place the eye; give one"));
@@ -303,7 +421,7 @@ impl Anamorph {
                 return Err(Error::usage("length", "", "and `picture-width` both size the artwork; give one"));
             }
             (Some(w), None) => w / drawn.width(),
-            (None, Some(length)) => surface::scale_for(self.onto, length, drawn.height(), self.eye_height, distance)?,
+            (None, Some(length)) => surface::scale_for(self.onto, length, drawn.height(), self.eye_height, eye)?,
             (None, None) => 1.0,
         };
         if !k.is_finite() || k <= 0.0 {
@@ -311,12 +429,29 @@ impl Anamorph {
         }
         let anchor = Point::new(drawn.center().x, drawn.y1);
         let scale = if k == 1.0 { Affine::IDENTITY } else { Affine::scale_about(k, anchor) };
-        let eye = match self.eye_height {
-            Some(h) => anchor - Vec2::new(0.0, h),
-            None => scale * self.eye,
+        let eye = match (eye, self.eye_height) {
+            (Eye::At(_, distance), Some(h)) => Eye::At(anchor - Vec2::new(0.0, h), distance),
+            (Eye::At(foot, distance), None) => Eye::At(scale * foot, distance),
+            (infinite, _) => infinite,
         };
         Ok(Scene { frame: scale.transform_rect_bbox(drawn), scale, eye })
     }
+}
+
+/// Returns the unit vector of a direction.
+fn direction(towards: [f64; 3]) -> Result<[f64; 3], Error> {
+    let size = surface::length(towards);
+    if (1e-100..1e100).contains(&size) {
+        return Ok(towards.map(|v| v / size));
+    }
+    Err(Error::usage("eye", "", "has no direction; give one, such as inf:1,0,2"))
+}
+
+/// Describes an eye at infinity by the sine of its elevation.
+fn far_away(sine: f64) -> [String; 2] {
+    let up = sine.clamp(-1.0, 1.0).asin().to_degrees();
+    let there = format!("eye far away in this direction, {up:.1}° above the sheet");
+    [there.clone(), there]
 }
 
 static INFO: Info = Info::new("anamorph", "draw artwork that looks right from one place: road markings, mugs, domes")
@@ -340,6 +475,13 @@ sphere:radius=60mm     a ball; it cannot be laid flat, so it needs --view\n  \
 sphere:eye             a dome with the eye on its near pole: lines become circles\n\
 Add `,inside` to a cylinder, cone or sphere to see it from within, `,level` to a cylinder to lay it down. --seen gives the eye's view, \
 which is the artwork itself; --view the view from elsewhere.\n\n\
+In a mirror (--mirror): the artwork appears in a mirror that stands on a table, from the eye at --distance in front of it and \
+--eye-height above the table (without --distance straight above it). The result is the drawing on the table, seen from above with the \
+viewer at the bottom; lay it out with --sight-mark, which draws the mirror's foot:\n  \
+cylinder:diameter=60mm  the artwork stands in it; note: its height follows from --explain\n  \
+cone:diameter=60mm,height=80mm  seen from above, around it; leave a hole in the middle for the tip\n  \
+sphere:diameter=80mm    the artwork appears below its middle\n\
+Add `,lift=10mm` to raise the artwork, `,tilt=10` to lean a cylinder or cone away from you.\n\n\
 In the plane: without --distance the eye lies in the drawing, and control points are pushed towards it or away from it (--push, \
 --away, --at, --point). They lie over a --reference triangle or box. With --distance the same pushes bend a sheet in front of the eye: \
 flat for a triangle of degree 1, otherwise shown with --view.")
@@ -368,6 +510,14 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             command: "anamorph samples/logo.svg --distance 40cm --picture-width 50mm --onto cone:top-diameter=90mm,bottom-diameter=60mm,height=100mm -o out.svg",
         },
         Example {
+            what: "A word that shows in a mirror, 60 mm thick, with marks for the mirror and the eye",
+            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit page -o out.svg",
+        },
+        Example {
+            what: "A relief that is right in a parallel projection from above on the left",
+            command: "anamorph samples/logo.svg --eye inf:-1,-2,3 --onto plane:floor --fit page -o out.svg",
+        },
+        Example {
             what: "Into a dome, as another visitor sees it",
             command: "anamorph samples/grid.svg --distance 200 --onto sphere:eye --view 105,120,150 -o out.svg",
         },
@@ -391,6 +541,18 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             &[("distance", "500"), ("onto", "cylinder:radius=80")],
             &[("distance", "500"), ("onto", "cone:top-radius=80,bottom-diameter=160,height=7")],
         ),
+        Law::KeepsLines(&[("eye", "inf:0.3,-1,2"), ("onto", "plane:floor")]),
+        Law::KeepsLines(&[("eye", "inf:0.3,-1,2"), ("onto", "plane:wall=20"), ("view", "20,30,200")]),
+        Law::KeepsLines(&[("eye", "inf:1,2"), ("reference", "0,0 100,0 0,100"), ("away", "0,1,0:30")]),
+        Law::Identity(&[("eye", "inf:0.1,-0.2,1"), ("onto", "cylinder:radius=90"), ("seen", "true")]),
+        Law::Same(
+            &[("eye", "inf:30deg,20deg"), ("onto", "cylinder:radius=130")],
+            &[("eye", "inf:0.46984631039295416,-0.3420201433256687,0.8137976813493738"), ("onto", "cylinder:radius=130")],
+        ),
+        Law::Same(
+            &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "200"), ("foot", "50,100")],
+            &[("mirror", "cylinder:diameter=120,tilt=0,height=200"), ("distance", "300"), ("eye", "50,-100")],
+        ),
         Law::Same(
             &[("eye", "-30,20"), ("push", "1,1:2")],
             &[("eye", "-30,20"), ("away", "1,1:152.6433752247"), ("reference", "100,100 0,0")],
@@ -406,6 +568,13 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             args: &[("distance", "100"), ("eye", "50,50"), ("onto", "cylinder:radius=100,inside")],
             at: (150.0, 50.0),
             to: (50.0 + 25.0 * std::f64::consts::PI, 50.0),
+            tolerance: 1e-11,
+        },
+        // A mirror shows the middle of its foot where the eye's ray leaves its front as it came: as far before as that is behind it.
+        Case {
+            args: &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "200")],
+            at: (50.0, 100.0),
+            to: (50.0, 220.0),
             tolerance: 1e-11,
         },
         // In the plane: one corner of a triangle twice as far; halfway along its side δ is the mean of 1 and ½.
@@ -431,198 +600,16 @@ const LOCAL: Pairs =
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     // The surface as typed, rather than in user units.
-    Anamorph::read(s)?.build().map_err(|e| match (e, s.texts("onto").pop()) {
-        (Error::Usage { param, problem, .. }, Some(text)) if param == "onto" => Error::usage("onto", text, problem),
-        (e, _) => e,
+    Anamorph::read(s)?.build().map_err(|e| match e {
+        Error::Usage { param, value, problem, advice } => {
+            let typed = ["onto", "mirror"].iter().find(|n| **n == param).and_then(|n| s.texts(n).pop());
+            Error::Usage { value: typed.map_or(value, str::to_owned), param, problem, advice }
+        }
+        e => e,
     })
 });
 
 /// The files that a parameter asks for.
 fn files(s: &Settings<'_>, param: &'static str, filled: bool) -> impl Iterator<Item = SpaceFile> {
     s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
-}
-
-fn look(s: &Settings<'_>) -> Result<Look, Error> {
-    let Some(text) = s.texts("view").pop() else {
-        return Ok(if s.flag("seen")? { Look::Eye } else { Look::Unrolled });
-    };
-    if s.flag("seen")? {
-        return Err(Error::usage("view", text, "and `seen` exclude each other"));
-    }
-    let parts: Vec<&str> = text.split(',').collect();
-    let [x, y, z] = parts[..] else {
-        return Err(Error::usage("view", text, "is not a point X,Y,Z"));
-    };
-    let p = s.point_in("view", &format!("{x},{y}"))?;
-    Ok(Look::From([p.x, p.y, s.length_in("view", z, Axis::X)?]))
-}
-
-/// Reads the control points; `None` if no parameter of theirs is given.
-fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
-    const NAMES: [&str; 6] = ["reference", "degree", "push", "away", "at", "point"];
-    if !NAMES.iter().any(|n| s.given(n)) {
-        return Ok(None);
-    }
-    let reference = s.texts("reference").pop().map(|text| s.points_in("reference", text)).transpose()?;
-    let text = s.texts("degree").pop().unwrap_or("1");
-    let triangle = reference.as_ref().is_some_and(|r| r.len() == 3);
-    let (m, n) = if triangle { (text, text) } else { text.split_once('x').unwrap_or((text, text)) };
-    let degree = [degree(text, m)?, degree(text, n)?];
-    let node = |name: &str, text: &str| -> Result<([usize; 3], String), Error> {
-        if triangle {
-            return s.node_in::<3>(name, text).map(|(node, rest)| (node, rest.to_owned()));
-        }
-        s.node_in::<2>(name, text).map(|([i, j], rest)| ([i, j, 0], rest.to_owned()))
-    };
-    let mut pushes = Vec::new();
-    for text in s.texts("push") {
-        let (node, rest) = node("push", text)?;
-        pushes.push(Push::By(node, s.number_in("push", &rest)?));
-    }
-    for text in s.texts("away") {
-        let (node, rest) = node("away", text)?;
-        pushes.push(Push::Away(node, s.length_in("away", &rest, Axis::Diagonal)?));
-    }
-    for text in s.texts("at") {
-        let (node, rest) = node("at", text)?;
-        pushes.push(Push::To(node, s.point_in("at", &rest)?));
-    }
-    for text in s.texts("point") {
-        let (place, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
-        pushes.push(Push::Prescribe(s.point_in("point", place)?, s.number_in("point", factor)?));
-    }
-    Ok(Some(PushedNet { reference: reference.unwrap_or_default(), degree, pushes }))
-}
-
-fn degree(text: &str, part: &str) -> Result<usize, Error> {
-    let n = part.trim().parse().ok().filter(|n| (1..=10).contains(n));
-    n.ok_or_else(|| {
-        Error::usage("degree", text, "is not a degree: a number from 1 to 10, or for a box two such as 3x2")
-    })
-}
-
-/// The parts of `KIND:WORD,NAME=VALUE,…`.
-struct Words<'t> {
-    text: &'t str,
-    kind: &'t str,
-    list: Vec<(&'t str, Option<&'t str>)>,
-}
-
-impl<'t> Words<'t> {
-    fn new(text: &'t str) -> Self {
-        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
-        let list = rest.split(',').map(str::trim).filter(|w| !w.is_empty());
-        let list = list.map(|w| w.split_once('=').map_or((w, None), |(n, v)| (n.trim(), Some(v.trim()))));
-        Self { text, kind: kind.trim(), list: list.collect() }
-    }
-
-    fn has(&self, name: &str) -> bool {
-        self.list.contains(&(name, None))
-    }
-
-    fn value(&self, name: &str) -> Option<&'t str> {
-        self.list.iter().find(|w| w.0 == name).and_then(|w| w.1)
-    }
-
-    fn wrong(&self, problem: impl Into<String>) -> Error {
-        Error::usage("onto", self.text, problem)
-    }
-
-    /// Refuses all but these words.
-    fn only(&self, switches: &[&str], values: &[&str]) -> Result<(), Error> {
-        for (name, value) in &self.list {
-            let known = if value.is_some() { values } else { switches };
-            if !known.contains(name) {
-                let all: Vec<String> =
-                    switches.iter().map(|s| (*s).to_owned()).chain(values.iter().map(|v| format!("{v}=…"))).collect();
-                return Err(self.wrong(format!(
-                    "has “{name}”, which a {} does not have; it has {}",
-                    self.kind,
-                    all.join(", ")
-                )));
-            }
-            if self.list.iter().filter(|w| w.0 == *name).count() > 1 {
-                return Err(self.wrong(format!("has “{name}” twice; give it once")));
-            }
-        }
-        Ok(())
-    }
-
-    fn size(&self, s: &Settings<'_>, name: &str) -> Result<Option<f64>, Error> {
-        let Some(text) = self.value(name) else { return Ok(None) };
-        let v = s.length_in("onto", text, Axis::X)?;
-        if v > 0.0 && v < 1e9 { Ok(Some(v)) } else { Err(self.wrong(format!("has a {name} that is not positive"))) }
-    }
-
-    /// Reads the radius or the diameter.
-    fn radius(&self, s: &Settings<'_>) -> Result<f64, Error> {
-        self.radius_at(s, "radius", "diameter")
-    }
-
-    /// Reads a radius by one of two names.
-    fn radius_at(&self, s: &Settings<'_>, radius: &str, diameter: &str) -> Result<f64, Error> {
-        match (self.size(s, radius)?, self.size(s, diameter)?) {
-            (Some(r), None) => Ok(r),
-            (None, Some(d)) => Ok(d / 2.0),
-            (Some(_), Some(_)) => Err(self.wrong(format!("has a {radius} and a {diameter}; give one"))),
-            (None, None) => Err(self.wrong(format!("needs {radius}=… or {diameter}=…, such as {diameter}=80mm"))),
-        }
-    }
-}
-
-/// Reads the surface.
-fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
-    let w = Words::new(text);
-    match w.kind {
-        "plane" => plane(s, &w),
-        "cylinder" => {
-            w.only(&["inside", "level"], &["radius", "diameter"])?;
-            Ok(Onto::Cylinder { radius: w.radius(s)?, level: w.has("level"), inside: w.has("inside") })
-        }
-        "cone" => {
-            if let Some((end, _)) = w.list.iter().find(|(name, _)| ["top", "bottom"].contains(name)) {
-                let problem =
-                    format!("has “{end}”, which could be a radius or a diameter: {end}-radius=… or {end}-diameter=…");
-                return Err(w.wrong(problem));
-            }
-            let ends = ["top-radius", "top-diameter", "bottom-radius", "bottom-diameter"];
-            w.only(&["inside"], &[&ends[..], &["height", "slant"]].concat())?;
-            let (top, bottom) = (w.radius_at(s, ends[0], ends[1])?, w.radius_at(s, ends[2], ends[3])?);
-            let height = match (w.size(s, "height")?, w.size(s, "slant")?) {
-                (Some(_), Some(_)) => return Err(w.wrong("has a height and a slant; give one")),
-                (height, None) => height,
-                (None, Some(slant)) => {
-                    let height = (slant * slant - (top - bottom).powi(2)).sqrt();
-                    let problem = "has a slant that is shorter than the radii differ";
-                    Some(Some(height).filter(|h| *h > 0.0).ok_or_else(|| w.wrong(problem))?)
-                }
-            };
-            Ok(Onto::Cone { top, bottom, height, inside: w.has("inside") })
-        }
-        "sphere" if w.has("eye") => {
-            w.only(&["eye"], &[])?;
-            Ok(Onto::Dome)
-        }
-        "sphere" => {
-            w.only(&["inside"], &["radius", "diameter"])?;
-            Ok(Onto::Sphere { radius: w.radius(s)?, inside: w.has("inside") })
-        }
-        _ => Err(w.wrong("is not a surface; there are plane:…, cylinder:…, cone:… and sphere:…")),
-    }
-}
-
-fn plane(s: &Settings<'_>, w: &Words<'_>) -> Result<Onto, Error> {
-    w.only(&["floor", "ceiling", "left", "right"], &["ramp", "wall"])?;
-    let angle = |text: &Option<&str>| s.angle_in("onto", text.unwrap_or("0"));
-    match &w.list[..] {
-        [("floor", None)] => Ok(Onto::Floor),
-        [("ceiling", None)] => Ok(Onto::Ceiling),
-        [("left", None)] => Ok(Onto::LeftWall),
-        [("right", None)] => Ok(Onto::RightWall),
-        [("ramp", text)] => Ok(Onto::Ramp(angle(text)?)),
-        [("wall", text)] => Ok(Onto::Wall(angle(text)?)),
-        _ => Err(w.wrong(
-            "is not one of plane:floor, plane:ceiling, plane:left, plane:right, plane:ramp=ANGLE, plane:wall=ANGLE",
-        )),
-    }
 }

@@ -1,11 +1,11 @@
 //! The control points and their pushes.
 
 use super::dilation::{Dilation, Reference};
-use super::scene::Scene;
-use super::surface::SpacePlane;
+use super::scene::{Eye, Scene};
+use super::surface::{Anamorphosis, Radial, SpacePlane, Surface, cross, minus};
 use crate::deform::entry::Built;
 use crate::error::{Error, GeometryError, show};
-use kurbo::{Point, Rect, Shape};
+use kurbo::{Point, Rect, Shape, Vec2};
 
 /// A net of control points, and the pushes along rays through the eye.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ pub(super) enum Push {
     Away([usize; 3], f64),
     /// To the point of its ray nearest to this one.
     To([usize; 3], Point),
-    /// So that this point goes to this many times its distance from the eye.
+    /// So that this point goes to this many times its distance from the eye, or this much further from an eye at infinity.
     Prescribe(Point, f64),
 }
 
@@ -55,20 +55,21 @@ impl Push {
             (Self::By(n, _) | Self::Away(n, _) | Self::To(n, _), Reference::Rectangle(..)) => {
                 format!("{},{}", n[0], n[1])
             }
-            (Self::Prescribe(p, factor), _) => format!("{}:{factor}", show(p)),
+            (Self::Prescribe(p, by), _) => format!("{}:{by}", show(p)),
         }
     }
 }
 
 impl PushedNet {
-    /// Returns the net with its control points pushed; the eye is `distance` in front of the drawing.
-    pub(super) fn dilation(&self, scene: &Scene, distance: f64, local: bool) -> Result<Dilation, Error> {
+    /// Returns the net with its control points pushed. For an eye at infinity δ is 1 less the length of the push.
+    pub(super) fn dilation(&self, scene: &Scene, local: bool) -> Result<Dilation, Error> {
         let reference = self.reference(scene)?;
         let mut out = Dilation::none(reference);
         for push in &self.pushes {
             let wrong = |problem: String| Error::usage(push.param(), push.text(&reference), problem);
             let sound = |delta: f64| {
-                if delta.is_finite() && (1e-6..1e6).contains(&delta) {
+                let range = if scene.eye.is_infinite() { -1e9..1e9 } else { 1e-6..1e6 };
+                if range.contains(&delta) {
                     return Ok(delta);
                 }
                 Err(wrong("would go through the eye, or out of reach; push it less".into()))
@@ -78,27 +79,43 @@ impl PushedNet {
             {
                 return Err(wrong(format!("is not a control point: {}", numbers(&reference))));
             }
-            match *push {
-                Push::By(node, factor) => out.set(node, sound(1.0 / factor)?),
-                Push::Away(node, length) => {
-                    let d = (reference.point(node) - scene.eye).hypot().hypot(distance);
-                    out.set(node, sound(d / (d + length))?);
-                }
-                Push::To(..) if distance > 0.0 => {
-                    let problem = "is for an eye in the drawing; for one in front of it use `push` or `away`";
+            let by = |factor: f64| {
+                if scene.eye.is_infinite() {
+                    let problem = "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`";
                     return Err(wrong(problem.into()));
                 }
+                sound(1.0 / factor)
+            };
+            let away = |from: Point, length: f64| {
+                sound(match scene.eye {
+                    Eye::At(foot, distance) => {
+                        let d = (from - foot).hypot().hypot(distance);
+                        d / (d + length)
+                    }
+                    Eye::Infinite(_) => 1.0 - length,
+                })
+            };
+            match *push {
+                Push::By(node, factor) => out.set(node, by(factor)?),
+                Push::Away(node, length) => out.set(node, away(reference.point(node), length)?),
                 Push::To(node, to) => {
-                    let ray = reference.point(node) - scene.eye;
-                    let along = (to - scene.eye).dot(ray) / ray.hypot2();
-                    out.set(node, sound(1.0 / along)?);
+                    let from = reference.point(node);
+                    let delta = match scene.eye {
+                        Eye::At(foot, 0.0) => (from - foot).hypot2() / (to - foot).dot(from - foot),
+                        Eye::Infinite([x, y, 0.0]) => 1.0 + (to - from).dot(Vec2::new(x, y)),
+                        _ => {
+                            let problem = "is for an eye in the drawing; for one in front of it use `push` or `away`";
+                            return Err(wrong(problem.into()));
+                        }
+                    };
+                    out.set(node, sound(delta)?);
                 }
-                Push::Prescribe(p, factor) => {
-                    let moved = out
-                        .prescribe(scene.scale * p, sound(1.0 / factor)?, |node| fixed(&reference, node, local))
-                        .ok_or_else(|| {
-                            wrong("is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`".into())
-                        })?;
+                Push::Prescribe(p, value) => {
+                    let p = scene.scale * p;
+                    let delta = if scene.eye.is_infinite() { away(p, value)? } else { by(value)? };
+                    let moved = out.prescribe(p, delta, |node| fixed(&reference, node, local)).ok_or_else(|| {
+                        wrong("is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`".into())
+                    })?;
                     sound(out.of(moved))?;
                 }
             }
@@ -154,16 +171,16 @@ fn numbers(reference: &Reference) -> String {
 }
 
 /// Returns the plane of a triangle's three corners after their pushes, if the net has degree 1.
-pub(super) fn flat(d: &Dilation, foot: Point, distance: f64) -> Option<SpacePlane> {
-    let (along, d0) = d.collineation(foot)?;
-    // δ = d·(p − foot) + d₀ = n·d/n·(P − O) with the ray (p − foot, distance): n is (d, d₀/distance).
-    let normal = [along.x, along.y, d0 / distance];
-    // Its intersection with the eye's line of sight through the middle of the reference.
-    let [a, b, c] = d.reference().corners().try_into().ok()?;
+pub(super) fn flat(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
+    let Reference::Triangle([a, b, c], 1) = *d.reference() else { return None };
     let middle = a + ((b - a) + (c - a)) / 3.0;
-    let k = 1.0 / d.at(middle);
-    let to = foot + (middle - foot) * k;
-    Some(SpacePlane::new([to.x, to.y, distance * (k - 1.0)], normal, middle))
+    let cast = Anamorphosis { eye, surface: Surface::Radial(Radial::net(d)) };
+    let [a, b, c, through] = [a, b, c, middle].map(|p| cast.point(p));
+    let normal = cross(minus(b, a), minus(c, a));
+    // The sense of the corners in the drawing, as they are seen from the eye.
+    let sense = (d.reference().corners()[1] - d.reference().corners()[0])
+        .cross(d.reference().corners()[2] - d.reference().corners()[0]);
+    Some(SpacePlane::new(through, normal.map(|v| v * sense.signum()), middle))
 }
 
 /// Warns of sides that tear the artwork that crosses them.

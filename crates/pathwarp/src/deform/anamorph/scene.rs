@@ -1,11 +1,56 @@
 //! The artwork at its apparent size, and the eye.
 
+use super::surface::samples;
 use crate::decimal::trimmed;
+use crate::deform::entry::SightMark;
+use crate::error::show;
 use crate::map::Map;
 use crate::outline::Outline;
 use crate::param::Frame;
 use crate::refit;
-use kurbo::{Affine, BezPath, Point, Rect};
+use kurbo::{Affine, BezPath, Circle, Point, Rect, Shape, Vec2};
+use std::fmt;
+
+/// The eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Eye {
+    /// This far in front of its foot in the drawing; 0: in the drawing.
+    At(Point, f64),
+    /// At infinity, in the direction of this unit vector: x right, y down, z away from the viewer.
+    Infinite([f64; 3]),
+}
+
+impl Eye {
+    pub(super) fn is_infinite(self) -> bool {
+        matches!(self, Self::Infinite(_))
+    }
+
+    /// Returns the distance of a point in space, at infinity some distance.
+    pub(super) fn apart(self, [x, y, z]: [f64; 3]) -> f64 {
+        const FAR: f64 = 1e3;
+        match self {
+            Self::At(foot, distance) => (Point::new(x, y) - foot).hypot().hypot(z + distance),
+            Self::Infinite(_) => FAR,
+        }
+    }
+
+    /// Returns the line of sight of an eye at infinity in front of the drawing: per unit of depth.
+    pub(super) fn sight(self) -> [f64; 3] {
+        match self {
+            Self::At(..) => [0.0, 0.0, 1.0],
+            Self::Infinite([x, y, z]) => [x / z, y / z, 1.0],
+        }
+    }
+}
+
+impl fmt::Display for Eye {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::At(foot, distance) => write!(f, "at {}, {distance} in front", show(*foot)),
+            Self::Infinite([x, y, z]) => write!(f, "at infinity towards {x:.3},{y:.3},{:.3}", -z),
+        }
+    }
+}
 
 /// The artwork at its apparent size, and the eye.
 pub(super) struct Scene {
@@ -13,8 +58,57 @@ pub(super) struct Scene {
     pub(super) frame: Rect,
     /// The scale from the drawing.
     pub(super) scale: Affine,
-    /// The eye, or its foot in the drawing.
-    pub(super) eye: Point,
+    /// The eye.
+    pub(super) eye: Eye,
+}
+
+const METRE: f64 = 96.0 / 0.0254;
+
+/// Describes a length in user units.
+pub(super) fn measured(length: f64, units_per_px: [f64; 2]) -> String {
+    let metres = length / (0.5 * (units_per_px[0] + units_per_px[1])) / METRE;
+    if metres < 1.0 { format!("{} mm", trimmed(metres * 1e3, 1)) } else { format!("{} m", trimmed(metres, 3)) }
+}
+
+/// The end of words after which the length of the way is added.
+pub(super) const HERE: &str = ", from here";
+
+/// Marks a place, or by an arrow the way there if it is far from the result, whose box is `all`; with words for either.
+pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_px: [f64; 2]) -> SightMark {
+    /// Height of a mark, in metres and as a share of the result.
+    const SMALLEST: f64 = 0.003;
+    const SHARE: f64 = 0.012;
+    let size = (SMALLEST * METRE * units_per_px[0]).max(SHARE * (all.width() + all.height()));
+    /// Half the width of a letter, as a share of its height.
+    const HALF: f64 = 0.25;
+    let under = |at: Point, text: &str| at + Vec2::new(-HALF * size * text.chars().count() as f64, 3.0 * size);
+    let mut path = BezPath::new();
+    let mut line = |a: Point, b: Point| {
+        path.move_to(a);
+        path.line_to(b);
+    };
+    let near = all.inflate(all.width().max(8.0 * size), all.height().max(8.0 * size));
+    if near.contains(at) {
+        for v in [Vec2::new(1.5 * size, 0.0), Vec2::new(0.0, 1.5 * size)] {
+            line(at - v, at + v);
+        }
+        path.extend(Circle::new(at, size).path_elements(1e-3 * size));
+        return SightMark { path, label: (under(at, &here), here), size };
+    }
+    let way = (at - all.center()) / (at - all.center()).hypot();
+    // Where the way leaves the box.
+    let leaves = [(all.width(), way.x), (all.height(), way.y)].map(|(side, v)| 0.5 * side / v.abs());
+    let from = all.center() + way * (leaves[0].min(leaves[1]) + 2.0 * size);
+    let (to, across) = (from + way * (6.0 * size), Vec2::new(-way.y, way.x));
+    line(from, to);
+    for side in [-1.0, 1.0] {
+        line(to, to - way * (1.5 * size) + across * (side * 0.7 * size));
+    }
+    let text = match there.strip_suffix(HERE) {
+        Some(there) => format!("{there}, {} from the tail of the arrow", measured((at - from).hypot(), units_per_px)),
+        None => there,
+    };
+    SightMark { path, label: (under(if to.y > from.y { to } else { from }, &text), text), size }
 }
 
 impl Scene {
@@ -26,14 +120,15 @@ impl Scene {
         refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
     }
 
+    /// Returns the box of the result.
+    pub(super) fn extent(&self, map: &dyn Map) -> Rect {
+        let all = samples(self.frame).map(|p| map.point(p)).filter(|p| p.is_finite());
+        all.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or(self.frame)
+    }
+
     /// Describes the sizes of the artwork and the result.
     pub(super) fn size(&self, map: &dyn Map, [x, y]: [f64; 2]) -> String {
-        const METRE: f64 = 96.0 / 0.0254;
-        let r = self.frame;
-        let grid = (0..=8).flat_map(|i| (0..=8).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 8.0)));
-        let at = |(u, v): (f64, f64)| map.point(Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()));
-        let all = grid.map(at).filter(|p| p.is_finite()).map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b));
-        let all = all.unwrap_or(r);
+        let (r, all) = (self.frame, self.extent(map));
         let say = |r: Rect| {
             let metres = [r.width() / x / METRE, r.height() / y / METRE];
             let (per_metre, unit) = if metres[0].max(metres[1]) < 1.0 { (1e3, "mm") } else { (1.0, "m") };

@@ -1,7 +1,7 @@
 //! The surfaces that artwork is projected onto.
 
 use super::dilation::Dilation;
-use super::scene::Scene;
+use super::scene::{Eye, Scene};
 use crate::error::{Error, show};
 use crate::map::{
     AffineMap, Crease, Creases, Formula, Level, Map, NewtonInverse, Plane, Quotient, Real, source_coordinates,
@@ -92,7 +92,7 @@ impl Onto {
     }
 
     /// Returns the surface in space.
-    pub(super) fn surface(self, scene: &Scene, distance: f64) -> Result<Surface, Error> {
+    pub(super) fn surface(self, scene: &Scene) -> Result<Surface, Error> {
         let r = scene.frame;
         let middle = r.center();
         let positive = |name: &str, v: f64| {
@@ -115,12 +115,15 @@ impl Onto {
             Self::Sphere { radius, inside } => {
                 Ok(Surface::Sphere(Sphere { middle, radius: positive("radius", radius)?, inside }))
             }
-            Self::Dome => Ok(Surface::Radial(Radial::stereographic(scene.eye, distance, r))),
-            _ => self.plane(scene, distance).map(Surface::Plane),
+            Self::Dome => match scene.eye {
+                Eye::At(foot, distance) => Ok(Surface::Radial(Radial::stereographic(foot, distance, r))),
+                Eye::Infinite(_) => Err(self.wrong("has the eye on it, so the eye needs a `distance`")),
+            },
+            _ => self.plane(scene).map(Surface::Plane),
         }
     }
 
-    fn plane(self, scene: &Scene, distance: f64) -> Result<SpacePlane, Error> {
+    fn plane(self, scene: &Scene) -> Result<SpacePlane, Error> {
         let r = scene.frame;
         let c = r.center();
         let upright = |angle: f64| [-angle.sin(), 0.0, angle.cos()];
@@ -133,12 +136,14 @@ impl Onto {
             _ => (c, upright(0.0).map(exact)),
         };
         let through = [at.x, at.y, 0.0];
-        let eye = [scene.eye.x, scene.eye.y, -distance];
-        let gap = dot(normal, minus(through, eye));
-        if gap <= 1e-9 * distance {
+        let (gap, size) = match scene.eye {
+            Eye::At(foot, distance) => (dot(normal, minus(through, [foot.x, foot.y, -distance])), distance),
+            Eye::Infinite(towards) => (-dot(normal, towards), 1.0),
+        };
+        if gap <= 1e-9 * size {
             return Err(self.wrong(format!(
-                "is seen from behind or edge-on by an eye at {}, {distance} in front; move the eye to its front side, for a floor above it",
-                show(scene.eye)
+                "is seen from behind or edge-on by an eye {}; move the eye to its front side, for a floor above it",
+                scene.eye
             )));
         }
         Ok(SpacePlane::new(through, normal, at))
@@ -156,18 +161,21 @@ pub(super) fn scale_for(
     length: f64,
     drawn: f64,
     eye_height: Option<f64>,
-    distance: f64,
+    eye: Eye,
 ) -> Result<f64, Error> {
     let Some(angle) = onto.and_then(Onto::rise) else {
         let problem = "is for `onto plane:floor` and plane:ramp=ANGLE; elsewhere use `picture-width`";
         return Err(Error::usage("length", "", problem));
     };
-    let Some(eye) = eye_height else {
-        return Err(Error::missing("eye-height", "the height of the eye above the floor; `length` needs it"));
-    };
     let (up, away) = (length * angle.sin(), length * angle.cos());
-    let seen = eye + (up - eye) * distance / (distance + away);
-    if seen > 0.0 && distance + away > 0.0 && drawn > 0.0 {
+    let (seen, in_front) = match (eye, eye_height) {
+        (Eye::Infinite(_), _) => (up + away * eye.sight()[1], true),
+        (Eye::At(_, distance), Some(eye)) => (eye + (up - eye) * distance / (distance + away), distance + away > 0.0),
+        (Eye::At(..), None) => {
+            return Err(Error::missing("eye-height", "the height of the eye above the floor; `length` needs it"));
+        }
+    };
+    if seen > 0.0 && in_front && drawn > 0.0 {
         return Ok(seen / drawn);
     }
     let problem = "is impossible: from there, so long a stretch of this ground is not seen from its front";
@@ -175,7 +183,7 @@ pub(super) fn scale_for(
 }
 
 /// Samples the artwork's box.
-fn samples(r: Rect) -> impl Iterator<Item = Point> {
+pub(super) fn samples(r: Rect) -> impl Iterator<Item = Point> {
     const N: u32 = 16;
     let at = move |i: u32, j: u32| {
         let (u, v) = (f64::from(i) / f64::from(N), f64::from(j) / f64::from(N));
@@ -220,6 +228,10 @@ pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, fr
 //   (δ = |d|²/distance², the inverse of the stereographic projection): δ is a polynomial;
 // - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
 //   each in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
+//
+// An eye at infinity in the direction of the unit vector e is the point (e, 0) where the others are (O, 1): the pencil
+// (p, 1) + (δ − 1)·(O, 1) of the paper's points becomes p + (δ − 1)·e, so that control points move by lengths 1 − δ. On planes δ − 1
+// = n·(P − p)/n·e; on curved surfaces rays start in front of everything and go along the line of sight.
 //
 // J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
 
@@ -277,6 +289,24 @@ impl SpacePlane {
     }
 }
 
+impl SpacePlane {
+    /// Returns the point of the plane nearest to the eye in its coordinates, and the distance; at infinity a far point in the eye's
+    /// direction, and the sine of the angle. `None` if that is square to the plane.
+    pub(super) fn nearest(&self, eye: Eye) -> Option<(Point, f64)> {
+        let to = match eye {
+            Eye::At(foot, distance) => minus([foot.x, foot.y, -distance], self.through),
+            Eye::Infinite(towards) => towards.map(|v| v * 1e9),
+        };
+        let [x, y] = self.axes.map(|a| dot(a, to));
+        let height = -dot(self.normal, to);
+        let at = Point::new(self.at.x + x, self.at.y + y);
+        match eye {
+            Eye::At(..) => Some((at, height)),
+            Eye::Infinite(_) => (x.hypot(y) > 1.0).then_some((at, height * 1e-9)),
+        }
+    }
+}
+
 /// A cylinder or cone with a vertical (or horizontal) axis that touches the plane of the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Round {
@@ -327,34 +357,46 @@ pub(super) enum Surface {
 /// An eye and a surface: takes points of the drawing to the points in space on the same ray.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Anamorphosis {
-    /// The foot of the perpendicular from the eye to the drawing.
-    pub(super) foot: Point,
-    /// The eye's distance in front of the drawing; positive.
-    pub(super) distance: f64,
+    /// The eye, in front of the drawing.
+    pub(super) eye: Eye,
     /// The surface that the drawing is projected onto.
     pub(super) surface: Surface,
+}
+
+/// Returns δ on a plane, a linear form about a point of the drawing: constant, coefficients of x and y.
+fn plane_form(eye: Eye, p: &SpacePlane) -> (Point, [f64; 3]) {
+    let [nx, ny, nz] = p.normal;
+    match eye {
+        Eye::At(foot, distance) => {
+            let across = dot(p.normal, minus(p.through, [foot.x, foot.y, -distance]));
+            (foot, [nz * distance / across, nx / across, ny / across])
+        }
+        Eye::Infinite(towards) => {
+            let k = dot(p.normal, towards);
+            let off = dot(p.normal, minus([p.at.x, p.at.y, 0.0], p.through));
+            (p.at, [1.0 - off / k, -nx / k, -ny / k])
+        }
+    }
 }
 
 /// aλ² + 2bλ + c = 0 along a ray.
 struct Quadratic<S> {
     a: S,
     b: S,
-    c: f64,
+    c: S,
     /// The surface is a hollow, whose far side is seen.
     hollow: bool,
 }
 
-impl<S> Quadratic<S> {
+impl<S: Real> Quadratic<S> {
     /// The nearer root is wanted, and the eye is outside.
     fn is_near(&self) -> bool {
-        self.c > 0.0 && !self.hollow
+        self.c.value() > 0.0 && !self.hollow
     }
-}
 
-impl<S: Real> Quadratic<S> {
     fn root(&self) -> S {
         let root = (self.b * self.b - self.a * self.c).sqrt();
-        S::from(self.c) / (if self.is_near() { root } else { -root } - self.b)
+        self.c / (if self.is_near() { root } else { -root } - self.b)
     }
 }
 
@@ -375,20 +417,25 @@ impl Quadratic<f64> {
 }
 
 impl Round {
-    /// Returns the ray through (x, y) from the eye, after swapping coordinates for a horizontal axis.
-    fn ray<S: Real>(&self, foot: Point, distance: f64, x: S, y: S) -> Quadratic<S> {
-        let (x, y, foot, middle) =
-            if self.level { (y, x, swap(foot), swap(self.middle)) } else { (x, y, foot, self.middle) };
-        let (dx, dy) = (x - foot.x, y - foot.y);
+    /// Returns the intersections with a ray, given by its start and its direction.
+    fn met<S: Real>(&self, [from, along]: [[S; 3]; 2]) -> Quadratic<S> {
+        let turned = |[x, y, z]: [S; 3]| if self.level { [y, x, z] } else { [x, y, z] };
+        let middle = if self.level { swap(self.middle) } else { self.middle };
+        let ([x, y, z], [dx, dy, dz]) = (turned(from), turned(along));
         let g = self.slope;
-        let (ox, oz) = (foot.x - middle.x, -distance - self.axis());
-        let radius = self.radius + g * (foot.y - middle.y);
+        let (ox, oz) = (x - middle.x, z - self.axis());
+        let radius = (y - middle.y) * g + self.radius;
         Quadratic {
-            a: dx * dx + distance * distance - dy * dy * (g * g),
-            b: dx * ox + distance * oz - dy * (g * radius),
+            a: dx * dx + dz * dz - dy * dy * (g * g),
+            b: dx * ox + dz * oz - dy * radius * g,
             c: ox * ox + oz * oz - radius * radius,
             hollow: self.inside,
         }
+    }
+
+    /// A distance in front of the drawing at which rays may start, outside.
+    fn reach(&self) -> f64 {
+        4.0 * self.radius
     }
 
     /// Returns the z of the axis.
@@ -408,15 +455,12 @@ pub(super) fn swap(p: Point) -> Point {
 }
 
 impl Sphere {
-    fn ray<S: Real>(&self, foot: Point, distance: f64, x: S, y: S) -> Quadratic<S> {
-        let (dx, dy) = (x - foot.x, y - foot.y);
-        let o = minus([foot.x, foot.y, -distance], self.centre());
-        Quadratic {
-            a: dx * dx + dy * dy + distance * distance,
-            b: dx * o[0] + dy * o[1] + distance * o[2],
-            c: dot(o, o) - self.radius * self.radius,
-            hollow: self.inside,
-        }
+    /// Returns the intersections with a ray, given by its start and its direction.
+    fn met<S: Real>(&self, [from, d]: [[S; 3]; 2]) -> Quadratic<S> {
+        let centre = self.centre();
+        let o: [S; 3] = std::array::from_fn(|i| from[i] - centre[i]);
+        let dot = |a: [S; 3], b: [S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        Quadratic { a: dot(d, d), b: dot(d, o), c: dot(o, o) - self.radius * self.radius, hollow: self.inside }
     }
 
     /// Returns the centre.
@@ -445,29 +489,53 @@ impl Radial {
 }
 
 impl Anamorphosis {
-    /// Returns the eye.
-    pub(super) fn eye(&self) -> Space {
-        [self.foot.x, self.foot.y, -self.distance]
-    }
-
-    /// Returns the factor by which the image of (x, y) is further from the eye.
-    fn stretch<S: Real>(&self, x: S, y: S) -> S {
-        match &self.surface {
-            Surface::Plane(p) => {
-                let across = dot(p.normal, minus(p.through, self.eye()));
-                let n = p.normal;
-                S::from(across) / ((x - self.foot.x) * n[0] + (y - self.foot.y) * n[1] + self.distance * n[2])
+    /// Returns the start and the direction of the ray through (x, y): from the eye, or from at most `reach` in front of the drawing.
+    fn ray<S: Real>(&self, x: S, y: S, reach: f64) -> [[S; 3]; 2] {
+        match self.eye {
+            // From a far eye, the way to the surface would cost digits.
+            Eye::At(foot, distance) if distance > reach => {
+                let [u, v] = [(x - foot.x) / distance, (y - foot.y) / distance];
+                [[x - u * reach, y - v * reach, S::from(-reach)], [u, v, S::from(1.0)]]
             }
-            Surface::Round(r) => r.ray(self.foot, self.distance, x, y).root(),
-            Surface::Sphere(s) => s.ray(self.foot, self.distance, x, y).root(),
-            Surface::Radial(r) => S::from(1.0) / r.at(x, y),
+            Eye::At(foot, distance) => {
+                let from = [foot.x, foot.y, -distance].map(S::from);
+                [from, [x - foot.x, y - foot.y, S::from(distance)]]
+            }
+            Eye::Infinite(_) => {
+                let v = self.eye.sight();
+                [[x - reach * v[0], y - reach * v[1], S::from(-reach)], v.map(S::from)]
+            }
         }
     }
 
     /// Returns the image in space.
     pub(super) fn at<S: Real>(&self, x: S, y: S) -> [S; 3] {
-        let k = self.stretch(x, y);
-        [(x - self.foot.x) * k + self.foot.x, (y - self.foot.y) * k + self.foot.y, (k - 1.0) * self.distance]
+        let from = |ray: [[S; 3]; 2], k: S| -> [S; 3] { std::array::from_fn(|i| ray[0][i] + ray[1][i] * k) };
+        let delta = match &self.surface {
+            Surface::Plane(p) => {
+                let (at, [d, dx, dy]) = plane_form(self.eye, p);
+                (x - at.x) * dx + (y - at.y) * dy + d
+            }
+            Surface::Radial(r) => r.at(x, y),
+            Surface::Round(r) => {
+                let ray = self.ray(x, y, r.reach());
+                return from(ray, r.met(ray).root());
+            }
+            Surface::Sphere(s) => {
+                let ray = self.ray(x, y, 4.0 * s.radius);
+                return from(ray, s.met(ray).root());
+            }
+        };
+        match self.eye {
+            Eye::At(foot, distance) => {
+                let k = S::from(1.0) / delta;
+                [(x - foot.x) * k + foot.x, (y - foot.y) * k + foot.y, (k - 1.0) * distance]
+            }
+            Eye::Infinite(towards) => {
+                let m = delta - 1.0;
+                [x + m * towards[0], y + m * towards[1], m * towards[2]]
+            }
+        }
     }
 
     /// Returns the point of the surface that the eye sees at the drawing's point `p`.
@@ -477,14 +545,18 @@ impl Anamorphosis {
 
     /// Positive where the ray through `p` meets the surface.
     pub(super) fn defined(&self, p: Point) -> f64 {
-        match &self.surface {
-            Surface::Round(r) => {
-                let d = r.ray(self.foot, self.distance, p.x, p.y).defined();
+        match (&self.surface, self.eye) {
+            (Surface::Round(r), _) => {
+                let d = r.met(self.ray(p.x, p.y, r.reach())).defined();
                 if d > 0.0 { d.min(r.radius_at(self.point(p))) } else { d }
             }
-            Surface::Sphere(s) => s.ray(self.foot, self.distance, p.x, p.y).defined(),
-            Surface::Plane(_) => 1.0 / self.stretch(p.x, p.y),
-            Surface::Radial(r) => r.at(p.x, p.y),
+            (Surface::Sphere(s), _) => s.met(self.ray(p.x, p.y, 4.0 * s.radius)).defined(),
+            (_, Eye::Infinite(_)) => 1.0,
+            (Surface::Plane(s), _) => {
+                let (at, [d, dx, dy]) = plane_form(self.eye, s);
+                d + dx * (p.x - at.x) + dy * (p.y - at.y)
+            }
+            (Surface::Radial(r), _) => r.at(p.x, p.y),
         }
     }
 }
@@ -541,10 +613,8 @@ impl Anamorphosis {
         match &self.surface {
             Surface::Radial(Radial { pre, delta, domain }) => Some((*pre, delta.clone(), *domain)),
             Surface::Plane(p) => {
-                let k = 1.0 / dot(p.normal, minus(p.through, self.eye()));
-                let [nx, ny, nz] = p.normal.map(|v| v * k);
-                let pre = Affine::translate(-self.foot.to_vec2());
-                Some((pre, Plane::linear([nz * self.distance, nx, ny]), Rect::ZERO))
+                let (at, form) = plane_form(self.eye, p);
+                Some((Affine::translate(-at.to_vec2()), Plane::linear(form), Rect::ZERO))
             }
             _ => None,
         }
@@ -561,20 +631,27 @@ impl Anamorphosis {
         origin: Point,
     ) -> Option<Quotient> {
         let (pre, delta, domain) = self.polynomial()?;
+        let one = Plane::linear([1.0, 0.0, 0.0]);
+        // The paper's point (p, 1) + (δ − 1)·(O, w) of a ray.
+        let (eye, below) = match self.eye {
+            Eye::At(foot, distance) => ([foot.x, foot.y, -distance], delta.clone()),
+            Eye::Infinite(towards) => (towards, one.clone()),
+        };
         let [x, y] = source_coordinates(pre);
-        // n·(q − from)·δ = n·(O − from)·δ + n·d.
+        // n·(q − from), multiplied by the point's weight: n·(p − from) + (δ − 1)·n·(O − w·from).
         let along = |n: Space| {
             let d = Plane::linear(std::array::from_fn(|i| {
-                let [x, y, z] =
-                    if i == 0 { [x[0] - self.foot.x, y[0] - self.foot.y, self.distance] } else { [x[i], y[i], 0.0] };
+                let [x, y, z] = if i == 0 { [x[0] - from[0], y[0] - from[1], -from[2]] } else { [x[i], y[i], 0.0] };
                 n[0] * x + n[1] * y + n[2] * z
             }));
-            d.plus(dot(n, minus(self.eye(), from)), &delta)
+            let o = if self.eye.is_infinite() { dot(n, eye) } else { dot(n, minus(eye, from)) };
+            d.plus(o, &delta).plus(-o, &one)
         };
         let [u, v] = axes.map(|n| along(n).scaled(scale));
+        let guard = if self.eye.is_infinite() { one.clone() } else { delta.clone() };
         Some(match depth {
-            None => Quotient::rational(pre, origin, u, v, delta, domain),
-            Some(n) => Quotient::rational(pre, origin, u, v, along(n), domain).guarded(delta),
+            None => Quotient::rational(pre, origin, u, v, below, domain),
+            Some(n) => Quotient::rational(pre, origin, u, v, along(n), domain).guarded(guard),
         })
     }
 
@@ -607,8 +684,16 @@ impl Anamorphosis {
 
     /// Returns the point of the drawing at which the eye sees a point in space.
     fn back<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
-        let k = S::from(self.distance) / (z + self.distance);
-        ((x - self.foot.x) * k + self.foot.x, (y - self.foot.y) * k + self.foot.y)
+        match self.eye {
+            Eye::At(foot, distance) => {
+                let k = S::from(distance) / (z + distance);
+                ((x - foot.x) * k + foot.x, (y - foot.y) * k + foot.y)
+            }
+            Eye::Infinite(_) => {
+                let v = self.eye.sight();
+                (x - z * v[0], y - z * v[1])
+            }
+        }
     }
 }
 

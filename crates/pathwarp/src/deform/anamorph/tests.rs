@@ -1,6 +1,7 @@
 //! Anamorphoses against geometry in space, the papers' figures, and their faults.
 
 use super::dilation::{Dilation, Reference};
+use super::scene::Eye;
 use super::surface::{Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
@@ -64,6 +65,16 @@ fn is_sound_on_every_surface() {
         &[("distance", "150"), ("reference", "-50,0 150,0 50,200"), ("push", "0,1,0:1.4")],
         &[("eye", "50,250"), ("degree", "3x2"), ("push", "1,0:1.3"), ("away", "3,2:-20"), ("at", "0,2:-10,120")],
         &[("eye", "50,250"), ("reference", "-50,100 150,100 50,-100"), ("degree", "3"), ("push", "1,1,1:1.3")],
+        &[("eye", "inf:0.2,-1,1.5"), ("onto", "plane:floor")],
+        &[("eye", "inf:20deg,10deg"), ("onto", "cylinder:radius=80")],
+        &[("eye", "inf:-0.2,-0.1,1"), ("onto", "cone:top-radius=70,bottom-radius=110,inside")],
+        &[("eye", "inf:0.2,-0.3,1"), ("onto", "sphere:radius=130"), ("view", "-60,10,250")],
+        &[("eye", "inf:0.2,-0.3,1"), ("degree", "2x3"), ("away", "1,1:20"), ("away", "2,3:30"), ("view", "-60,10,250")],
+        &[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye-height", "250")],
+        &[("mirror", "cylinder:radius=80,tilt=-12,lift=5"), ("eye", "inf:0.2,-1,1.1"), ("picture-width", "70")],
+        &[("mirror", "cone:radius=100,height=160,tilt=5,lift=60"), ("eye-height", "500"), ("picture-width", "40")],
+        &[("mirror", "sphere:radius=200"), ("distance", "400"), ("eye-height", "350"), ("picture-width", "50")],
+        &[("eye", "inf:1,-0.5"), ("degree", "3x2"), ("away", "1,0:13"), ("at", "0,2:-10,120"), ("point", "40,50:5px")],
         &[
             ("eye", "50,250"),
             ("reference", "0,100 100,100 50,0"),
@@ -86,7 +97,7 @@ fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
 const FOOT: Point = Point::new(40.0, 30.0);
 
 fn cast(surface: Surface) -> Anamorphosis {
-    Anamorphosis { foot: FOOT, distance: 250.0, surface }
+    Anamorphosis { eye: Eye::At(FOOT, 250.0), surface }
 }
 
 fn net(reference: Reference) -> Dilation {
@@ -228,7 +239,7 @@ fn degree_two_lies_on_a_quadric_through_the_eye() {
         let cast = cast(surface);
         let points: Vec<Space> = grid().step_by(11).chain(grid().step_by(7)).map(|p| cast.point(p)).collect();
         let mut others: Vec<Space> = grid().map(|p| cast.point(p)).collect();
-        others.push(cast.eye());
+        others.push([FOOT.x, FOOT.y, -250.0]);
         let off = off_quadric(&points, &others);
         assert_eq!(off < 1e-9, is, "{off:e}");
     }
@@ -237,7 +248,8 @@ fn degree_two_lies_on_a_quadric_through_the_eye() {
 #[test]
 fn the_matrix_of_degree_one_is_the_bezier_form() {
     let d = net(Reference::Triangle(CORNERS, 1));
-    let (along, d0) = d.collineation(FOOT).unwrap();
+    let d0 = d.at(FOOT);
+    let along = Vec2::new(d.at(FOOT + Vec2::new(1.0, 0.0)) - d0, d.at(FOOT + Vec2::new(0.0, 1.0)) - d0);
     let o = FOOT;
     // [I 0; d d₀] about the eye.
     let m = [
@@ -245,7 +257,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
         [o.y * along.x, 1.0 + o.y * along.y, o.y * (d0 - along.dot(o.to_vec2())) - o.y],
         [along.x, along.y, d0 - along.dot(o.to_vec2())],
     ];
-    let (matrix, bezier) = (Homography::new(m), d.about(FOOT, false));
+    let (matrix, bezier) = (Homography::new(m), d.about(Eye::At(FOOT, 0.0), false));
     assert!(matches!(Map::class(&bezier), Class::Projective(_)));
     // A cubic stays a cubic, with weights.
     let cubic = Seg::Cubic(kurbo::CubicBez::new((5.0, 5.0), (90.0, 5.0), (20.0, 80.0), (60.0, 60.0)));
@@ -259,7 +271,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
         let u = [area(p, b, c), area(a, p, c), area(a, b, p)].map(|v| v / area(a, b, c));
         let delta = u[0] * d.of([1, 0, 0]) + u[1] * d.of([0, 1, 0]) + u[2] * d.of([0, 0, 1]);
         let paper = FOOT + (p - FOOT) / delta;
-        let bezier = d.about(FOOT, false).simplest();
+        let bezier = d.about(Eye::At(FOOT, 0.0), false).simplest();
         assert!(bezier.point(p).distance(paper) < 1e-12 * 100.0 && matrix.point(p).distance(paper) < 1e-12 * 100.0);
         let back = bezier.inverse().unwrap();
         assert!(back.point(paper).distance(p) < 1e-10);
@@ -334,7 +346,7 @@ fn labels_are_as_long_as_their_arcs() {
         level: false,
         inside: true,
     });
-    let cast = Anamorphosis { foot: Point::ORIGIN, distance: 100.0, surface: cone };
+    let cast = Anamorphosis { eye: Eye::At(Point::ORIGIN, 100.0), surface: cone };
     let m = cast.unrolled().unwrap();
     // Seen from its axis at 45°: the point at a quarter of a half turn and height 0, 200 from the apex below.
     let got = m.point(Point::new(100.0, 0.0));
@@ -471,9 +483,229 @@ fn every_fault_is_named() {
         (&[("degree", "3x")], "not a degree"),
         (&[("point", "50,50:1.2"), ("local", "true")], "fixed"),
         (&[("point", "50,50")], "X,Y:FACTOR"),
+        (&[("eye", "inf:1")], "inf:DX,DY"),
+        (&[("eye", "inf:0,0")], "no direction"),
+        (&[("eye", "inf:0,-1,-1"), ("onto", "plane:floor")], "DZ must be positive"),
+        (&[("eye", "inf:0,1,1"), ("onto", "plane:floor")], "from behind"),
+        (&[("eye", "inf:0,-1,1"), ("onto", "plane:floor"), ("distance", "9")], "is infinite for this `eye`"),
+        (&[("eye", "inf:0,-1,1"), ("onto", "sphere:eye")], "needs a `distance`"),
+        (&[("eye", "inf:0,-1"), ("push", "0,0:2")], "give a length instead"),
+        (&[("eye", "inf:0,0,1"), ("onto", "plane:floor")], "edge-on"),
+        (&[("mirror", "cylinder:radius=60")], "distance is needed"),
+        (&[("mirror", "cube:radius=60"), ("distance", "300"), ("eye-height", "200")], "is not a mirror"),
+        (&[("mirror", "cylinder:radius=60"), ("distance", "30"), ("eye-height", "200")], "contains the eye"),
+        (&[("mirror", "sphere:radius=150"), ("distance", "30"), ("eye-height", "200")], "contains the eye"),
+        (&[("mirror", "cylinder:radius=60"), ("distance", "300"), ("eye", "50,120")], "not above the table"),
+        (&[("mirror", "cylinder:radius=40"), ("distance", "300"), ("eye-height", "200")], "misses the mirror"),
+        (
+            &[("mirror", "cylinder:radius=60,height=30"), ("distance", "300"), ("eye-height", "200")],
+            "over the mirror's top",
+        ),
+        (
+            &[
+                ("mirror", "cone:radius=60,height=40"),
+                ("distance", "300"),
+                ("eye-height", "200"),
+                ("picture-width", "9"),
+            ],
+            "reflects no table",
+        ),
+        (&[("mirror", "cylinder:radius=60,lift=-50"), ("distance", "300"), ("eye-height", "200")], "hides itself"),
+        (&[("mirror", "cone:radius=60"), ("distance", "300")], "needs height"),
+        (
+            &[("mirror", "cylinder:radius=60"), ("onto", "plane:floor"), ("distance", "300")],
+            "does not go with `mirror`",
+        ),
+        (&[("foot", "5,5")], "mirror is needed"),
     ];
     for (pairs, part) in cases {
         let e = build(pairs).err().unwrap_or_else(|| panic!("{pairs:?} builds")).to_string();
         assert!(e.contains(part), "{pairs:?}: {e}");
     }
+}
+
+/// The limit of far eyes in a direction, from eyes at 1, 2, 4, … times a distance by Richardson's extrapolation.
+fn limit(of: impl Fn(f64) -> Point) -> Point {
+    let mut row: Vec<Vec2> = (0..7).map(|k| of(1e3 * f64::from(1 << k)).to_vec2()).collect();
+    let mut power = 2.0;
+    while row.len() > 1 {
+        row = row.windows(2).map(|w| (w[1] * power - w[0]) / (power - 1.0)).collect();
+        power *= 2.0;
+    }
+    row[0].to_point()
+}
+
+/// An eye at infinity is the limit of far eyes, and what it sees goes along parallel rays.
+#[test]
+fn an_eye_at_infinity_is_the_limit_of_far_ones() {
+    let u = {
+        let v = [0.3, -0.5, 1.0_f64];
+        let n = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        v.map(|v| v / n)
+    };
+    let space: &[Given] = &[
+        &[("onto", "plane:floor")],
+        &[("onto", "plane:wall=25")],
+        &[("onto", "cylinder:radius=130")],
+        &[("onto", "cylinder:radius=150,level,inside")],
+        &[("onto", "cone:top-radius=120,bottom-radius=150")],
+        &[("onto", "sphere:radius=150"), ("view", "-60,10,250")],
+        &[("onto", "sphere:radius=150,inside"), ("view", "-60,10,150")],
+        &[("degree", "2x3"), ("away", "1,1:20"), ("away", "2,3:-15"), ("view", "-60,10,250")],
+        &[("reference", "-50,0 150,0 50,200"), ("away", "0,1,0:40"), ("away", "1,0,0:-10")],
+    ];
+    let plane: &[Given] = &[
+        &[("degree", "2x3"), ("away", "1,1:20"), ("away", "2,3:-15"), ("point", "60,30:10px")],
+        &[("reference", "-50,0 150,0 50,200"), ("degree", "2"), ("at", "0,1,1:140,30"), ("away", "1,0,1:-10")],
+    ];
+    let mut worst = 0.0_f64;
+    for (more, in_front) in space.iter().map(|m| (m, true)).chain(plane.iter().map(|m| (m, false))) {
+        let place = if in_front { "inf:0.3,-0.5,1" } else { "inf:0.6,-0.8" };
+        let at = build(&[&[("eye", place)], &more[..]].concat()).unwrap().map;
+        for p in [Point::new(20.0, 10.0), Point::new(90.0, 80.0), Point::new(55.0, 45.0)] {
+            let far = limit(|d| {
+                let v = if in_front { [u[0], u[1]] } else { [0.6, -0.8] };
+                let (eye, distance) = (format!("{},{}", 50.0 + v[0] * d, 50.0 + v[1] * d), (u[2] * d).to_string());
+                let own: &[(&str, &str)] = &[("eye", &eye), ("distance", &distance)];
+                build(&[&own[..if in_front { 2 } else { 1 }], &more[..]].concat()).unwrap().map.point(p)
+            });
+            worst = worst.max(far.distance(at.point(p)));
+            assert!(far.distance(at.point(p)) < 1e-9 * 100.0, "{more:?} {p:?}: {far:?} {:?}", at.point(p));
+        }
+    }
+    // By parallel rays: the floor under a point at height h is met h/0.5 further away and 0.3·h/0.5 aside.
+    let floor = build(&[("eye", "inf:0.3,-0.5,1"), ("onto", "plane:floor")]).unwrap().map;
+    let right = build(&[("eye", "inf:0deg,30deg"), ("onto", "cylinder:radius=80")]).unwrap().map;
+    for p in grid() {
+        let away = (100.0 - p.y) / 0.5;
+        let want = Point::new(p.x - 0.3 * away, 100.0 - away);
+        assert!(floor.point(p).distance(want) < 1e-10, "{p:?}");
+        // A cylinder of radius r around an axis r behind the middle: z = r − √(r² − x²) and y falls by z·tan 30°.
+        let (x, r) = (p.x - 50.0, 80.0_f64);
+        let z = r - (r * r - x * x).sqrt();
+        let want = Point::new(50.0 + r * (x / r).asin(), p.y + z * (PI / 6.0).tan());
+        assert!(right.point(p).distance(want) < 1e-10, "{p:?}");
+    }
+    println!("{worst:e}");
+}
+
+/// Follows the ray from the eye through a point of the picture by vectors: where it meets the mirror, and after a reflection the table
+/// y = 0. Space is x right, y down, z away, from the middle of the foot.
+fn traced(shape: MirrorShape, tilt: f64, eye: Space, p: Space) -> Option<Space> {
+    let add = |a: Space, b: Space, k: f64| -> Space { std::array::from_fn(|i| a[i] + b[i] * k) };
+    let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let axis = [0.0, -tilt.to_radians().cos(), tilt.to_radians().sin()];
+    // How far a point is outside, and the gradient of that.
+    let outside = |q: Space| -> (f64, Space) {
+        match shape {
+            MirrorShape::Sphere(r) => {
+                let w = add(q, [0.0, -r, 0.0], -1.0);
+                (dot(w, w).sqrt() - r, w)
+            }
+            MirrorShape::Cylinder(r, _) => {
+                let w = add(q, axis, -dot(q, axis));
+                (dot(w, w).sqrt() - r, w)
+            }
+            MirrorShape::Cone(r, h) => {
+                let s = dot(q, axis);
+                let w = add(q, axis, -s);
+                let across = dot(w, w).sqrt();
+                (across - r * (1.0 - s / h), add(w.map(|v| v / across), axis, r / h))
+            }
+        }
+    };
+    // The first place where the ray enters, by steps and bisection.
+    let d = add(p, eye, -1.0);
+    let (mut a, steps) = (0.0, 40_000);
+    let mut b =
+        (1..=steps).map(|k| 1.5 * f64::from(k) / f64::from(steps)).find(|t| outside(add(eye, d, *t)).0 < 0.0)?;
+    a += b - 1.5 / f64::from(steps);
+    for _ in 0..80 {
+        let m = 0.5 * (a + b);
+        if outside(add(eye, d, m)).0 > 0.0 { a = m } else { b = m }
+    }
+    let hit = add(eye, d, 0.5 * (a + b));
+    let n = outside(hit).1;
+    let r = add(d, n, -2.0 * dot(d, n) / dot(n, n));
+    Some(add(hit, r, -hit[1] / r[1]))
+}
+
+/// Mirrors against rays and reflections by vectors, and there and back.
+#[test]
+fn mirrors_reflect_the_drawing_into_the_eye() {
+    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+    let cases = [
+        (MirrorShape::Cylinder(60.0, None), 0.0, 0.0, [10.0, -250.0, -300.0], "cylinder:radius=60"),
+        (MirrorShape::Cylinder(70.0, None), -12.0, 5.0, [0.0, -300.0, -350.0], "cylinder:diameter=140,tilt=-12,lift=5"),
+        (MirrorShape::Cone(130.0, 200.0), 0.0, 0.0, [0.0, -600.0, 0.0], "cone:radius=130,height=200"),
+        (
+            MirrorShape::Cone(130.0, 200.0),
+            6.0,
+            -9.0,
+            [20.0, -600.0, -60.0],
+            "cone:radius=130,height=200,tilt=6,lift=-9",
+        ),
+        (MirrorShape::Sphere(250.0), 0.0, 0.0, [-40.0, -300.0, -600.0], "sphere:radius=250"),
+    ];
+    for (shape, tilt, lift, eye, text) in cases {
+        let anchor =
+            if matches!(shape, MirrorShape::Cylinder(..)) { Point::new(50.0, 100.0) } else { Point::new(50.0, 50.0) };
+        let at = format!("{},{}", anchor.x + eye[0], anchor.y + eye[1]);
+        let distance = (-eye[2]).to_string();
+        // Straight above the mirror there is no distance.
+        let mut args = vec![("mirror", text), ("foot", "70,-30")];
+        if eye[2] < 0.0 {
+            args.extend([("distance", &*distance), ("eye", &at)]);
+        } else {
+            args.push(("eye-height", "600"));
+        }
+        let m = ENTRY.build_from(&Args::from_pairs(&args), &frame).unwrap_or_else(|e| panic!("{text}: {e}")).map;
+        let back = m.inverse().unwrap();
+        // The picture is square to the line from the eye to its middle.
+        let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+        let unit = |a: Space| a.map(|v| v / dot(a, a).sqrt());
+        let mut middle: Space = match shape {
+            MirrorShape::Sphere(r) => [0.0, -r, 0.0],
+            _ => [0.0; 3],
+        };
+        let sight = unit(std::array::from_fn(|i| middle[i] - eye[i]));
+        let right = if sight[2].hypot(sight[0]) < 1e-9 { [1.0, 0.0, 0.0] } else { unit([sight[2], 0.0, -sight[0]]) };
+        let down = [
+            sight[1] * right[2] - sight[2] * right[1],
+            sight[2] * right[0] - sight[0] * right[2],
+            sight[0] * right[1] - sight[1] * right[0],
+        ];
+        let mut raised = lift;
+        if let MirrorShape::Sphere(r) = shape {
+            raised -= 0.5 * r * (1.0 + (0.5 * sight[1].asin()).sin());
+        }
+        middle = std::array::from_fn(|i| middle[i] - down[i] * raised);
+        let mut seen = 0;
+        for p in grid() {
+            let at: Space =
+                std::array::from_fn(|i| middle[i] + right[i] * (p.x - anchor.x) + down[i] * (p.y - anchor.y));
+            // At the tip of a cone there is no direction.
+            if matches!(shape, MirrorShape::Cone(..)) && p.distance(Point::new(50.0, 50.0)) < 25.0 {
+                continue;
+            }
+            let want = traced(shape, tilt, eye, at).unwrap();
+            let want = Point::new(70.0 + want[0], -30.0 - want[2]);
+            let got = m.point(p);
+            let size = want.to_vec2().hypot().max(100.0);
+            assert!(got.distance(want) < 1e-9 * size, "{text} {p:?}: {got:?} {want:?}");
+            let p2 = back.point(got);
+            assert!(p2.distance(p) < 1e-7, "{text} {p:?}: {p2:?}");
+            seen += 1;
+        }
+        assert!(seen > 80);
+    }
+    // An eye at infinity is the limit of far ones.
+    let far = |d: f64| {
+        let v = [0.2, -1.0, 1.1].map(|v: f64| v / (0.04f64 + 1.0 + 1.21).sqrt());
+        let (eye, distance) = (format!("{},{}", 50.0 + v[0] * d, 100.0 + v[1] * d), (v[2] * d).to_string());
+        let all = [("mirror", "cylinder:radius=80,tilt=-12"), ("distance", &*distance), ("eye", &*eye)];
+        build(&all).unwrap().map.point((30.0, 20.0).into())
+    };
+    let at = build(&[("mirror", "cylinder:radius=80,tilt=-12"), ("eye", "inf:0.2,-1,1.1")]).unwrap().map;
+    assert!(limit(far).distance(at.point((30.0, 20.0).into())) < 1e-7);
 }

@@ -1,0 +1,447 @@
+//! Mirrors: drawings on a table that look right in a mirror which stands on it.
+//!
+//! Space is measured from the middle F of the mirror's foot: x to the right, y down, z away from the viewer; the table is y = 0, and
+//! its point (x, z) is drawn at F' + (x, −z), F' being the foot's place on the page. The artwork appears in a plane through a point Q
+//! of the mirror's axis, square to the line from the eye O to Q: at a cylinder Q is F and the artwork stands on it, at a cone it is
+//! centred on F; at a sphere it is centred below the middle, halfway down the part that reflects the table.
+//!
+//! The ray d from O through the point P of the picture meets the mirror at H, the nearer root of a quadratic. With the mirror's
+//! normal n there, it leaves along r = d − 2(d·n)/(n·n)·n, and meets the table at H − r·H_y/r_y. A cylinder or cone with the axis a
+//! and the radius R(s) = R − g·s at s = (q − F)·a is |q − F − s·a|² = R(s)², its normal q − F − s·a + g·R(s)·a.
+//!
+//! The inverse has no closed form (at a sphere it is Alhazen's problem); it is sought by Newton's
+//! method over the picture.
+
+use super::scene::{Eye, Scene};
+use super::surface::{Space, cross, dot, length, minus, picture_axes};
+use crate::error::{Error, show};
+use crate::map::{Cost, Crease, Creases, Formula, Jet, Level, Map, Real};
+use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A mirror that stands on the table in which the artwork appears. Lengths in user units, angles in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Mirror {
+    /// The shape.
+    pub shape: MirrorShape,
+    /// Angle by which the axis leans away from the viewer.
+    pub tilt: f64,
+    /// Length by which the artwork appears higher.
+    pub lift: f64,
+    /// Place of the foot's middle on the page; below the artwork's middle if `None`.
+    pub at: Option<Point>,
+}
+
+/// The shape of a mirror.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum MirrorShape {
+    /// An upright cylinder: radius, and height if it is known.
+    Cylinder(f64, Option<f64>),
+    /// A cone that stands on its base: radius of the base and height.
+    Cone(f64, f64),
+    /// A sphere that lies on the table: radius.
+    Sphere(f64),
+}
+
+impl Mirror {
+    /// Creates an upright mirror.
+    #[must_use]
+    pub fn new(shape: MirrorShape) -> Self {
+        Self { shape, tilt: 0.0, lift: 0.0, at: None }
+    }
+
+    setters! {
+        /// Leans the axis away from the viewer, degrees.
+        tilt(tilt: f64);
+        /// Lets the artwork appear higher.
+        lift(lift: f64);
+        /// Places the middle of the foot on the page.
+        at(at: impl Into<Point>) => at: Some(at.into());
+    }
+
+    fn text(self) -> String {
+        match self.shape {
+            MirrorShape::Cylinder(r, _) => format!("cylinder:radius={r}"),
+            MirrorShape::Cone(r, h) => format!("cone:radius={r},height={h}"),
+            MirrorShape::Sphere(r) => format!("sphere:radius={r}"),
+        }
+    }
+
+    fn wrong(self, problem: impl Into<String>) -> Error {
+        Error::usage("mirror", self.text(), problem)
+    }
+
+    fn radius(self) -> f64 {
+        let (MirrorShape::Cylinder(r, _) | MirrorShape::Cone(r, _) | MirrorShape::Sphere(r)) = self.shape;
+        r
+    }
+
+    /// Returns the loss of radius per unit along the axis.
+    fn slope(self) -> f64 {
+        if let MirrorShape::Cone(r, h) = self.shape { r / h } else { 0.0 }
+    }
+
+    fn height(self) -> Option<f64> {
+        match self.shape {
+            MirrorShape::Cylinder(_, h) => h,
+            MirrorShape::Cone(_, h) => Some(h),
+            MirrorShape::Sphere(r) => Some(2.0 * r),
+        }
+    }
+
+    /// Returns the direction of the axis, upwards.
+    fn axis(self) -> Space {
+        let t = self.tilt.to_radians();
+        [0.0, -t.cos(), t.sin()]
+    }
+
+    /// Returns the point of the artwork that appears at Q.
+    pub(super) fn anchor(self, frame: Rect) -> Point {
+        match self.shape {
+            MirrorShape::Cylinder(..) => Point::new(frame.center().x, frame.y1),
+            _ => frame.center(),
+        }
+    }
+}
+
+/// A mirror, its eye and the picture in it.
+#[derive(Debug, Clone)]
+pub(super) struct Reflection {
+    mirror: Mirror,
+    /// The eye in space, or the direction towards it.
+    eye: Space,
+    infinite: bool,
+    /// The middle Q of the picture, its point in the artwork, and its directions right and down.
+    middle: Space,
+    anchor: Point,
+    axes: [Space; 2],
+    /// The foot on the page.
+    pub(super) foot: Point,
+    domain: Rect,
+}
+
+/// Distance of a ray from a cone's tip, relative to the radius of its base, at which reflections end.
+const TIP: f64 = 2e-3;
+
+impl Reflection {
+    pub(super) fn new(mirror: Mirror, scene: &Scene) -> Result<Self, Error> {
+        let r = mirror.radius();
+        let all = [r, mirror.height().unwrap_or(r)];
+        if !all.iter().all(|v| (1e-9..1e9).contains(v)) {
+            return Err(mirror.wrong("has a size that is not positive"));
+        }
+        if mirror.tilt.is_nan() || mirror.tilt.abs() > 60.0 || !mirror.lift.is_finite() {
+            return Err(mirror.wrong("leans too far; tilt runs from -60 to 60"));
+        }
+        let anchor = mirror.anchor(scene.frame);
+        let foot = mirror.at.unwrap_or(anchor);
+        let (eye, infinite) = match scene.eye {
+            Eye::At(at, distance) => ([at.x - anchor.x, at.y - anchor.y, -distance], false),
+            Eye::Infinite(towards) => (towards, true),
+        };
+        if eye[1] >= 0.0 {
+            let problem = "is not above the table on which the mirror stands; give it a height (`eye-height`)";
+            return Err(Error::usage("eye", "", problem));
+        }
+        let mut out =
+            Self { mirror, eye, infinite, middle: [0.0; 3], anchor, axes: [[0.0; 3]; 2], foot, domain: scene.frame };
+        if !infinite && out.off(eye) <= 0.0 {
+            let problem = "contains the eye; move the eye away (`distance`, `eye-height`) or make the mirror smaller";
+            return Err(mirror.wrong(problem));
+        }
+        let mut lift = mirror.lift;
+        if let MirrorShape::Sphere(r) = mirror.shape {
+            out.middle = [0.0, -r, 0.0];
+            // A ray that falls by e is level again after a reflection where the sphere rises by e/2.
+            let to = out.sight();
+            lift -= 0.5 * r * (1.0 + (0.5 * (to[1] / length(to)).asin()).sin());
+        }
+        let forward = out.sight().map(|v| v / length(out.sight()));
+        out.axes = picture_axes(forward);
+        for i in 0..3 {
+            out.middle[i] -= out.axes[1][i] * lift;
+        }
+        Ok(out)
+    }
+
+    /// Returns the line of sight to the middle.
+    fn sight(&self) -> Space {
+        if self.infinite { self.eye.map(|v| -v) } else { minus(self.middle, self.eye) }
+    }
+
+    /// Positive outside the mirror.
+    fn off(&self, q: Space) -> f64 {
+        if let MirrorShape::Sphere(r) = self.mirror.shape {
+            return q[0] * q[0] + (q[1] + r).powi(2) + q[2] * q[2] - r * r;
+        }
+        let s = dot(q, self.mirror.axis());
+        let radius = self.mirror.radius() - self.mirror.slope() * s;
+        if self.mirror.height().is_some_and(|h| s > h) { 1.0 } else { dot(q, q) - s * s - radius * radius }
+    }
+
+    /// Returns a point of the picture in space.
+    fn picture<S: Real>(&self, x: S, y: S) -> [S; 3] {
+        let (u, v) = (x - self.anchor.x, y - self.anchor.y);
+        std::array::from_fn(|i| u * self.axes[0][i] + v * self.axes[1][i] + self.middle[i])
+    }
+
+    /// Follows the ray through (x, y): the place on the mirror, the direction after it, the discriminant, and s there.
+    fn bounce<S: Real>(&self, x: S, y: S) -> Bounce<S> {
+        let dot = |a: [S; 3], b: [S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let p = self.picture(x, y);
+        // Rays start near the mirror, since a far eye would cost digits.
+        let reach = 8.0 * (self.mirror.radius() + self.mirror.height().unwrap_or(0.0) + self.domain.height());
+        let d: [S; 3] = std::array::from_fn(|i| if self.infinite { S::from(-self.eye[i]) } else { p[i] - self.eye[i] });
+        let n = dot(d, d).sqrt();
+        let d = d.map(|v| v / n);
+        let back = if self.infinite || n.value() > reach { S::from(reach) } else { n };
+        let from: [S; 3] = std::array::from_fn(|i| p[i] - d[i] * back);
+        let (a, g) = (self.mirror.axis().map(S::from), self.mirror.slope());
+        let centre = if let MirrorShape::Sphere(r) = self.mirror.shape { -r } else { 0.0 };
+        let o = [from[0], from[1] - centre, from[2]];
+        let is_sphere = centre != 0.0;
+        let (os, ds) = if is_sphere { (S::from(0.0), S::from(0.0)) } else { (dot(o, a), dot(d, a)) };
+        let radius = -os * g + self.mirror.radius();
+        let qa = dot(d, d) - ds * ds * (1.0 + g * g);
+        let qb = dot(o, d) - os * ds + radius * ds * g;
+        let qc = dot(o, o) - os * os - radius * radius;
+        let disc = qb * qb - qa * qc;
+        let k = qc / (disc.sqrt() - qb);
+        let w: [S; 3] = std::array::from_fn(|i| o[i] + d[i] * k);
+        let s = os + ds * k;
+        let radius = -s * g + self.mirror.radius();
+        let n: [S; 3] = std::array::from_fn(|i| if is_sphere { w[i] } else { w[i] - a[i] * s + a[i] * radius * g });
+        let turn = dot(d, n) / dot(n, n) * 2.0;
+        let r = std::array::from_fn(|i| d[i] - n[i] * turn);
+        Bounce { hit: [w[0], w[1] + centre, w[2]], along: r, disc, s, ahead: k, facing: -dot(d, n) }
+    }
+
+    /// Returns the place on the table, x and z.
+    fn table<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let b = self.bounce(x, y);
+        let t = -b.hit[1] / b.along[1];
+        (b.hit[0] + b.along[0] * t, b.hit[2] + b.along[2] * t)
+    }
+
+    /// Returns the reason why a point of the artwork is not seen in the mirror, and a number that is not positive then.
+    pub(super) fn fault(&self, p: Point) -> (f64, &'static str) {
+        let b: Bounce<f64> = self.bounce(p.x, p.y);
+        let r = self.mirror.radius();
+        let top = self.mirror.height().map_or(1.0, |h| (h - b.s) / r);
+        let tip = match self.mirror.shape {
+            MirrorShape::Cone(r, h) => {
+                let (at, p) = (self.mirror.axis().map(|v| v * h), self.picture(p.x, p.y));
+                let ray = if self.infinite { self.eye } else { minus(p, self.eye) };
+                length(cross(minus(at, p), ray)) / (length(ray) * r) - TIP
+            }
+            _ => 1.0,
+        };
+        let all = [
+            (
+                tip,
+                "the eye sees the cone's tip, where the mirror has no direction; leave a hole in the artwork there, or move it (`lift`)",
+            ),
+            (
+                b.disc / (r * r),
+                "the ray misses the mirror; make the artwork smaller (`picture-width`) or the mirror larger",
+            ),
+            (b.ahead / r, "the mirror begins behind the eye; move the eye away (`distance`)"),
+            (
+                if matches!(self.mirror.shape, MirrorShape::Sphere(_)) { 1.0 } else { top },
+                "the ray passes over the mirror's top; make the mirror higher, or the artwork smaller (`picture-width`)",
+            ),
+            (b.facing, "the mirror hides itself: the eye sees its back; move the eye or lessen the tilt"),
+            (
+                -b.hit[1] / r,
+                "the mirror is under the table there and hides itself; make the artwork smaller (`picture-width`), lift it (`lift`), or lessen the tilt",
+            ),
+            (
+                b.along[1],
+                "the mirror reflects no table, but what is above it; lower the artwork (`lift`), raise the eye, or tilt the mirror towards it",
+            ),
+        ];
+        let undefined = all.iter().find(|f| f.0.is_nan() || f.0 <= 0.0);
+        *undefined.unwrap_or_else(|| all.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&all[0]))
+    }
+
+    /// Returns the level of the mirror's highest point that shows the artwork, along its axis.
+    pub(super) fn needed_height(&self) -> f64 {
+        super::surface::samples(self.domain).map(|p| self.bounce(p.x, p.y).s).fold(0.0, f64::max)
+    }
+
+    /// Refuses a mirror that does not show all of the artwork, but for a cone's tip inside of it, which it returns.
+    pub(super) fn check(&self) -> Result<Option<Point>, Error> {
+        let mut tip = None;
+        for p in super::surface::samples(self.domain) {
+            match self.fault(p) {
+                (v, _) if v > 0.0 => {}
+                (_, why) if why.contains("tip") => tip = Some(p),
+                (_, why) => {
+                    return Err(self.mirror.wrong(format!("does not show the artwork's box: at {} {why}", show(p))));
+                }
+            }
+        }
+        Ok(tip)
+    }
+
+    /// Returns a place on the table for a point in space.
+    pub(super) fn on_page(&self, [x, _, z]: Space) -> Point {
+        self.foot + Vec2::new(x, -z)
+    }
+
+    /// Returns the outline of the foot on the page; of a sphere, its outline from above.
+    pub(super) fn footprint(&self) -> BezPath {
+        /// Corners of the outline of a tilted mirror.
+        const CORNERS: u32 = 360;
+        let r = self.mirror.radius();
+        if self.mirror.tilt == 0.0 || matches!(self.mirror.shape, MirrorShape::Sphere(_)) {
+            return Circle::new(self.foot, r).to_path(1e-4 * r);
+        }
+        let (a, g) = (self.mirror.axis(), self.mirror.slope());
+        let mut path = BezPath::new();
+        for k in 0..CORNERS {
+            let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(CORNERS)).sin_cos();
+            let c = sin * a[2];
+            let reach = r / ((1.0 - c * c).sqrt() + g * c);
+            let p = self.on_page([reach * cos, 0.0, reach * sin]);
+            if k == 0 { path.move_to(p) } else { path.line_to(p) }
+        }
+        path.close_path();
+        path
+    }
+
+    /// Returns the distance of the eye in front of the foot and its height, and its place on the page; `None` at infinity.
+    pub(super) fn eye(&self) -> Option<(Point, [f64; 2])> {
+        let [x, y, z] = self.eye;
+        (!self.infinite).then(|| (self.on_page([x, 0.0, z]), [x.hypot(z), -y]))
+    }
+
+    /// Returns the drawing on the table in space, the picture in the mirror, and a point of the mirror at (angle, share of its height).
+    pub(super) fn in_space(&self, what: Part, p: Point) -> Option<Space> {
+        match what {
+            Part::Table => {
+                let (x, z) = self.table(p.x, p.y);
+                (self.fault(p).0 > 0.0).then_some([x, 0.0, z])
+            }
+            Part::Picture => Some(self.picture(p.x, p.y)),
+            Part::Mirror(height) => {
+                let (sin, cos) = (2.0 * PI * p.x).sin_cos();
+                if let MirrorShape::Sphere(r) = self.mirror.shape {
+                    let (up, out) = (PI * p.y).sin_cos();
+                    return Some([r * up * cos, -r - r * out, r * up * sin]);
+                }
+                let (a, s) = (self.mirror.axis(), p.y * height);
+                let r = self.mirror.radius() - self.mirror.slope() * s;
+                // Across the axis: x, and the direction that is square to both.
+                let across = [0.0, a[2], -a[1]];
+                Some(std::array::from_fn(|i| a[i] * s + r * (if i == 0 { cos } else { sin * across[i] })))
+            }
+        }
+    }
+
+    /// Returns the height of the mirror, or as much as is needed.
+    pub(super) fn height(&self) -> f64 {
+        self.mirror.height().unwrap_or_else(|| 1.1 * self.needed_height())
+    }
+}
+
+/// A part of a mirror's scene in space.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Part {
+    /// The drawing on the table.
+    Table,
+    /// The picture in the mirror.
+    Picture,
+    /// The mirror, this high.
+    Mirror(f64),
+}
+
+/// A ray at the mirror.
+struct Bounce<S> {
+    hit: [S; 3],
+    along: [S; 3],
+    disc: S,
+    s: S,
+    ahead: S,
+    facing: S,
+}
+
+impl Formula for Reflection {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        let (x, z) = self.table(x, y);
+        (x + self.foot.x, -z + self.foot.y)
+    }
+
+    fn creases(&self, out: &mut Creases) {
+        let own = self.clone();
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.fault(p).0))));
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(Back::new(self.clone())))
+    }
+}
+
+/// The inverse. A mirror that bulges everywhere shows each place of the table once, so that every solution is the one.
+struct Back {
+    of: Reflection,
+    /// Places of the artwork, and their images.
+    starts: Vec<[Point; 2]>,
+}
+
+impl Back {
+    fn new(of: Reflection) -> Self {
+        const SIDE: u32 = 24;
+        let r = of.domain;
+        let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE);
+        let place = |k: u32| {
+            let (u, v) = (at(k % SIDE), at(k / SIDE));
+            Point::new(r.x0 + u * r.width(), r.y0 + v * r.height())
+        };
+        let starts = (0..SIDE * SIDE).map(place).filter(|p| of.fault(*p).0 > 0.0).map(|p| [p, Map::point(&of, p)]);
+        Self { starts: starts.collect(), of }
+    }
+
+    /// Damped Newton steps from the nearest of the places.
+    fn solve(&self, q: Point) -> Option<Jet> {
+        const STEPS: usize = 60;
+        const TRIES: usize = 4;
+        let reach = 1e-9 * (self.of.domain.width() + self.of.domain.height());
+        let within = self.of.domain.inflate(reach, reach);
+        let mut starts: Vec<(f64, Point)> = self.starts.iter().map(|[p, image]| (image.distance(q), *p)).collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.into_iter().take(TRIES).find_map(|(mut off, mut p)| {
+            for _ in 0..STEPS {
+                let jet = Map::jet(&self.of, p);
+                let gap = q - jet.p;
+                let step = Vec2::new(gap.cross(jet.dy), jet.dx.cross(gap)) / jet.det();
+                let halved = (0..12).map(|k| p + step * 0.5_f64.powi(k));
+                let better = halved.map(|p| (Map::point(&self.of, p).distance(q), p)).find(|(next, _)| *next < off);
+                let Some((next, to)) = better else { break };
+                (off, p) = (next, to);
+            }
+            let jet = Map::jet(&self.of, p);
+            let size = (q - self.of.foot).hypot() + self.of.mirror.radius();
+            let found = jet.p.distance(q) <= 1e-10 * size && within.contains(p) && self.of.fault(p).0 > 0.0;
+            let det = jet.det();
+            found.then(|| Jet { p, dx: Vec2::new(jet.dy.y, -jet.dx.y) / det, dy: Vec2::new(-jet.dy.x, jet.dx.x) / det })
+        })
+    }
+}
+
+impl Map for Back {
+    fn jet(&self, q: Point) -> Jet {
+        self.solve(q).unwrap_or(Jet::UNDEFINED)
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Some(Arc::new(self.of.clone()))
+    }
+
+    fn cost(&self) -> Cost<'_> {
+        Cost::new(64.0)
+    }
+}

@@ -1,0 +1,111 @@
+//! Builds anamorphoses in mirrors.
+
+use super::mirror::{Part, Reflection};
+use super::scene::{self, Eye, measured};
+use super::{Anamorph, Look, Mirror, direction, far_away};
+use crate::deform::entry::{Built, InSpace, Place, Role, SightMark};
+use crate::error::Error;
+use crate::map::{AffineMap, Chain, Map};
+use kurbo::{Affine, Point, Rect, Shape, Vec2};
+use std::sync::Arc;
+
+impl Anamorph {
+    /// Builds the map onto the table under a mirror.
+    pub(super) fn reflected(&self, mirror: Mirror) -> Result<Built, Error> {
+        let others = [
+            ("onto", self.onto.is_some()),
+            ("view", self.look != Look::Unrolled),
+            (self.net.as_ref().and_then(|n| n.pushes.first()).map_or("reference", |p| p.param()), self.net.is_some()),
+            ("length", self.length.is_some()),
+            ("local", self.local),
+        ];
+        if let Some((name, _)) = others.iter().find(|o| o.1) {
+            return Err(Error::usage(
+                name,
+                "",
+                "does not go with `mirror`, whose drawing lies on the table; omit one of them",
+            ));
+        }
+        let eye = match (self.eye, self.distance, self.eye_height) {
+            (Eye::Infinite(towards), None, None) => Eye::Infinite(direction(towards)?),
+            (Eye::Infinite(_), ..) => {
+                return Err(Error::usage("eye", "", "is at infinity; omit `distance` and `eye-height`"));
+            }
+            // Straight above the mirror.
+            (Eye::At(foot, _), None, Some(_)) => Eye::At(foot, 0.0),
+            (Eye::At(foot, _), Some(distance), _) => Eye::At(foot, distance),
+            (Eye::At(..), None, None) => {
+                let hint =
+                    "the eye's distance in front of the mirror, or `eye-height` alone for an eye straight above it";
+                return Err(Error::missing("distance", hint));
+            }
+        };
+        let mut scene = self.scene(eye)?;
+        if let (Eye::At(_, distance), Some(height)) = (eye, self.eye_height) {
+            scene.eye = Eye::At(mirror.anchor(scene.frame) - Vec2::new(0.0, height), distance);
+        }
+        let cast = Reflection::new(mirror, &scene)?;
+        let tip = cast.check()?;
+        let map: Arc<dyn Map> = Arc::new(cast.clone());
+        let mut built =
+            Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
+        let units = self.units_per_px;
+        built.note(scene.size(&*map, units));
+        let needed = cast.needed_height();
+        if needed > 0.0 {
+            built.note(format!("the mirror shows it up to {} above its foot", measured(needed, units)));
+        }
+        if tip.is_some() {
+            built.warn("the cone's tip shows inside the artwork's box: what covers it lacks the outer edge; leave a hole there");
+        }
+        let scale = scene.scale;
+        let fault = cast.clone();
+        built.undefined = Some(Arc::new(move |p| {
+            let (v, why) = fault.fault(scale * p);
+            (v.is_nan() || v <= 0.0).then(|| why.to_owned())
+        }));
+        let all = scene.extent(&*map).union(cast.footprint().bounding_box());
+        built.space = Some(InSpace { files: self.files.clone(), ..in_space(&cast, scale, all) });
+        built.sight = self.sight_mark.then(|| sight(&cast, eye, all, units));
+        built.overlay(Role::Base, self.frame.to_path(0.1));
+        if let Some(path) = scene.outline(&*map) {
+            built.overlay(Role::Target, path);
+        }
+        Ok(built)
+    }
+}
+
+/// Returns the drawing on the table in space, and besides the table, the mirror, and the artwork as the eye sees it.
+fn in_space(cast: &Reflection, scale: Affine, all: Rect) -> InSpace {
+    let part = |what: Part, scale: Affine| -> Place {
+        let cast = cast.clone();
+        Arc::new(move |p| cast.in_space(what, scale * p).filter(|q| q.iter().all(|v| v.is_finite())))
+    };
+    let (room, foot) = (all.inflate(0.05 * all.width(), 0.05 * all.height()), cast.foot);
+    // The sheet lies a hair under the drawing.
+    let hair = 1e-3 * cast.height();
+    let sheet: Place = Arc::new(move |p: Point| Some([p.x - foot.x, hair, foot.y - p.y]));
+    let besides = vec![
+        ("table", Some(room), sheet),
+        ("mirror", Some(Rect::new(0.0, 0.0, 1.0, 1.0)), part(Part::Mirror(cast.height()), Affine::IDENTITY)),
+        ("seen", None, part(Part::Picture, scale)),
+    ];
+    InSpace { place: part(Part::Table, scale), besides, files: Vec::new() }
+}
+
+/// Marks the eye's place on the table, and the mirror's foot.
+fn sight(cast: &Reflection, eye: Eye, all: Rect, units: [f64; 2]) -> SightMark {
+    let (at, words) = match (cast.eye(), eye) {
+        (Some((at, [distance, height])), _) => {
+            let [distance, height] = [distance, height].map(|v| measured(v, units));
+            let here = format!("eye {height} above this mark");
+            let there = format!("eye {height} above the table, {distance} from the mirror's middle");
+            (at, [here, there])
+        }
+        (None, Eye::Infinite([x, y, z])) => (cast.foot + Vec2::new(x, -z) * 1e9, far_away(-y)),
+        (None, Eye::At(..)) => (cast.foot, far_away(1.0)),
+    };
+    let mut sight = scene::mark(at, words, all, units);
+    sight.path.extend(cast.footprint());
+    sight
+}
