@@ -179,8 +179,8 @@ impl Square {
         self.g.iter().flatten().copied()
     }
 
-    /// The inverse of the mean Jacobian, as two rows, and the smallest and largest of ∂/∂u and ∂/∂v of the two combinations with it.
-    fn straightened(&self) -> Option<([Vec2; 2], [[[f64; 2]; 2]; 2])> {
+    /// The inverse of the mean Jacobian, as two rows, and `true` if the Jacobian of the combinations with it is diagonally dominant.
+    fn straightened(&self) -> Option<([Vec2; 2], bool)> {
         let (m, n) = ((self.g[0].len() - 1) as f64, (self.g.len() - 1) as f64);
         let across = |k: f64, g: &[Vec<Vec2>]| {
             g.iter().flat_map(|r| r.windows(2)).map(|w| (w[1] - w[0]) * k).collect::<Vec<Vec2>>()
@@ -189,14 +189,11 @@ impl Square {
         let [du, dv] = slopes.each_ref().map(|s| s.iter().fold(Vec2::ZERO, |a, b| a + *b) / s.len() as f64);
         let det = du.cross(dv);
         let rows = [Vec2::new(dv.y, -dv.x) / det, Vec2::new(-du.y, du.x) / det];
-        let range = |row: Vec2, slopes: &[Vec2]| {
-            slopes
-                .iter()
-                .map(|s| row.dot(*s))
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
+        let is_dominant = |k: usize| {
+            let least = slopes[k].iter().map(|s| rows[k].dot(*s)).fold(f64::INFINITY, f64::min);
+            slopes[1 - k].iter().all(|s| rows[k].dot(*s).abs() < least)
         };
-        let ranges = rows.map(|row| [range(row, &slopes[0]), range(row, &slopes[1])]);
-        (rows[0].is_finite() && rows[1].is_finite()).then_some((rows, ranges))
+        (rows[0].is_finite() && rows[1].is_finite()).then(|| (rows, is_dominant(0) && is_dominant(1)))
     }
 
     fn has_no_zero(&self) -> bool {
@@ -217,9 +214,7 @@ impl Square {
         if self.is_narrow() {
             return Some(chart.source(center)).filter(|_| chart.is_regular(center));
         }
-        let (_, [[uu, uv], [vu, vv]]) = self.straightened()?;
-        let dominant = |own: [f64; 2], other: [f64; 2]| own[0] > other[0].abs().max(other[1].abs());
-        if !dominant(uu, uv) || !dominant(vv, vu) {
+        if !self.straightened()?.1 {
             return None;
         }
         let (mut p, mut last) = (chart.source(center), f64::INFINITY);

@@ -66,6 +66,16 @@ impl BendMap {
         (at, along / along.hypot())
     }
 
+    /// Returns the first level of the algorithm on every piece with handles, if there are any.
+    pub(super) fn first_level(&self, heights: [f64; 2]) -> Option<BezPath> {
+        let ribbon = |p: &Arc<SkeletonPiece>| match &p.strip {
+            Strip::Ribbon { ribbon, .. } => ribbon.first_level(heights),
+            _ => Vec::new(),
+        };
+        let all: BezPath = self.pieces.iter().flat_map(ribbon).flatten().collect();
+        (!all.elements().is_empty()).then_some(all)
+    }
+
     /// Returns an affine map if the skeleton is one straight line.
     pub(super) fn simplest(&self) -> Arc<dyn Map> {
         match &self.pieces[..] {

@@ -28,8 +28,8 @@ use crate::anchors;
 use crate::error::{Error, show};
 use crate::outline::Outline;
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, NamedText, Settings, choice, is_spiral, parameters};
-use kurbo::{Affine, BezPath, Point, Rect, Vec2};
-use map::{BendMap, MAX_DEGREE, Strip, ToStrip};
+use kurbo::{Affine, Point, Rect, Vec2};
+use map::{BendMap, MAX_DEGREE, ToStrip};
 use skeleton::{Corner, Joined, Skeleton};
 use spline::Spline;
 use std::sync::Arc;
@@ -173,20 +173,12 @@ impl Bend {
     /// not fit the skeleton.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        let sub = anchors::only_subpath(&self.along, "a single connected run of them")?;
-        let (closed, given) = (sub.closed, self.points()?);
-        let parts = match (self.spline, self.interpolate) {
-            (None, false) => skeleton::drawn(sub),
-            (None, true) => Spline::Through.parts(&sub, given, self.unit())?,
-            (Some(degree), false) => Spline::Near(degree).parts(&sub, given, self.unit())?,
-            (Some(n), true) => return Err(Error::usage("spline", n.to_string(), "cannot go with `interpolate`")),
-        };
         let rect = self.frame;
-        let skeleton = Skeleton::new((parts, closed, &self.along.name), self.is_as_drawn(), self.reverse)?;
+        let skeleton = self.skeleton()?;
         let size = rect.width().hypot(rect.height()).max(skeleton.length);
         self.check_together()?;
         let skeleton = self.measured(skeleton, size)?;
-        let (length, cage) = (skeleton.length, skeleton.path(1e-4 * size));
+        let (length, closed, cage) = (skeleton.length, skeleton.closed, skeleton.path(1e-4 * size));
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
         let Joined { pieces, corners, notes, warning } = self.joined(skeleton)?;
 
@@ -248,15 +240,21 @@ impl Bend {
         }
         built.overlay(Role::Cage, cage);
         let heights = self.heights(1.0).map(|d| d / self.unit());
-        let ribbons = map
-            .pieces
-            .iter()
-            .filter_map(|p| if let Strip::Ribbon { ribbon, .. } = &p.strip { Some(ribbon) } else { None });
-        let tool: BezPath = ribbons.flat_map(|r| r.first_level(heights)).flatten().collect();
-        if !tool.elements().is_empty() {
-            built.overlay(Role::Cage, tool);
-        }
+        map.first_level(heights).into_iter().for_each(|tool| built.overlay(Role::Cage, tool));
         Ok(built)
+    }
+
+    /// Lays the skeleton.
+    fn skeleton(&self) -> Result<Skeleton, Error> {
+        let sub = anchors::only_subpath(&self.along, "a single connected run of them")?;
+        let (closed, given) = (sub.closed, self.points()?);
+        let parts = match (self.spline, self.interpolate) {
+            (None, false) => skeleton::drawn(sub),
+            (None, true) => Spline::Through.parts(&sub, given, self.unit())?,
+            (Some(degree), false) => Spline::Near(degree).parts(&sub, given, self.unit())?,
+            (Some(n), true) => return Err(Error::usage("spline", n.to_string(), "cannot go with `interpolate`")),
+        };
+        Skeleton::new((parts, closed, &self.along.name), self.is_as_drawn(), self.reverse)
     }
 
     /// The height that v = 1 means; for artwork without height any will do.
@@ -503,7 +501,6 @@ stretch makes the artwork longer by --factor, swell scales its height in the mid
         Law::Identity(&[("along", "0,50 25,50 50,50 75,50 100,50"), ("interpolate", "true"), ("by", "parameter")]),
         Law::Identity(&[("along", "0,50 50,50 100,50"), ("spline", "2"), ("by", "parameter"), ("stretch", "fit")]),
         Law::Area(&[("preset", "stretch"), ("factor", "1.5")], 1.5),
-        Law::KeepsLinesAlong(&[("preset", "taper"), ("factor", "2")], (1.0, 0.0)),
         Law::KeepsLinesAlong(&[("preset", "swell")], (0.0, 1.0)),
         Law::Same(
             &[("along", "0,60 30,20 70,90 100,50"), ("spline", "3"), ("by", "parameter"), ("reverse", "true")],
