@@ -458,7 +458,7 @@ mod tests {
     #[test]
     fn the_error_is_under_control() {
         for (length, most) in [(300.0, 1e-10), (10.0, 1e-9), (1.0, 1e-7), (0.1, 1e-6)] {
-            let k = std::f64::consts::TAU / length;
+            let k = TAU / length;
             let f = |p: Point| Point::new(p.x + (k * p.y).sin() / k, p.y * 2.0 + 0.5 * (k * p.x).cos() / k);
             let ps: Vec<Point> = (0..50).map(|i| Point::new(3.7 * f64::from(i), 90.0 - 1.9 * f64::from(i))).collect();
             let found = differences(&ps, 100.0, |ps, out| {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The guides. They name their pictures by relative paths.
-const GUIDES: [&str; 8] = [
+const GUIDES: [&str; 9] = [
     "README.md",
     "docs/lettering.md",
     "docs/paths.md",
@@ -17,6 +17,7 @@ const GUIDES: [&str; 8] = [
     "docs/lettering-on-paths.md",
     "docs/nodes.md",
     COMPARISON,
+    "docs/papers.md",
 ];
 /// The guide of small pictures in tables.
 const COMPARISON: &str = "docs/which.md";
