@@ -66,7 +66,7 @@ impl Anamorph {
         }));
         let all = scene.extent(&*map).union(cast.footprint().bounding_box());
         built.space = Some(InSpace { files: self.files.clone(), ..in_space(&cast, scale, all) });
-        built.sight = self.sight_mark.then(|| sight(&cast, eye, all, units));
+        built.sight = self.sight_mark.then(|| Box::new(sight(&cast, eye, all, units)));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
