@@ -83,7 +83,7 @@ fn a_face_looks_right_in_its_mirror() {
     ];
     expect_code(0, &words.map(str::to_owned));
     let result = fs::read(&out).unwrap();
-    let (drawn, source) = (Picture::new(&result, 0.8), Picture::new(&fs::read(&face).unwrap(), 1.0));
+    let (drawn, source) = (Picture::new(&result, 2.0), Picture::new(&fs::read(&face).unwrap(), 4.0));
     let (eye, radius) = ([0.0, 1200.0, 1600.0], 120.0);
     // The picture is square to the line from the eye to the foot; the artwork is 168 units wide, its bottom at 248 under its middle.
     let forward = eye.map(|v: f64| -v / 2000.0);
@@ -168,7 +168,7 @@ fn a_photograph_of_an_old_drawing_is_restored() {
     };
     run(face.to_str().unwrap(), &there, &["--frame", "16,8,168,240"]);
     run(&there, &back, &["--inverse", "--frame", "16,8,168,240"]);
-    let [a, b] = [fs::read(&face).unwrap(), fs::read(&back).unwrap()].map(|svg| Picture::new(&svg, 1.0));
+    let [a, b] = [fs::read(&face).unwrap(), fs::read(&back).unwrap()].map(|svg| Picture::new(&svg, 4.0));
     let (mut same, mut all) = (0, 0);
     for i in 0..84 {
         for j in 0..119 {

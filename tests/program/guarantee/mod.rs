@@ -33,7 +33,7 @@ struct Maps {
 }
 
 /// Deformations that need no more than a drawing, with parameters that put creases on symmetrical artwork.
-const MORE: [(&str, &[(&str, &str)]); 22] = [
+const MORE: [(&str, &[(&str, &str)]); 24] = [
     ("bend", &[("along", "M20,170C180,60 356,60 516,170"), ("stretch", "fit")]),
     ("bend", &[("along", "M60,190A400,400 0 0 1 604,190"), ("stretch", "scale")]),
     ("bend", &[("along", "0,0 100,80 200,-40 300,60 400,0"), ("spline", "3"), ("stretch", "scale")]),
@@ -56,6 +56,8 @@ const MORE: [(&str, &[(&str, &str)]); 22] = [
     ("polar", &[]),
     ("swirl", &[("angle", "200")]),
     ("bulge", &[("amount", "60%")]),
+    ("anamorph", &[("mirror", "cylinder:radius=80%"), ("distance", "300%"), ("eye-height", "300%")]),
+    ("anamorph", &[("eye", "inf:0.2,-0.3,1"), ("onto", "cylinder:radius=90%")]),
 ];
 
 /// All deformations with the parameters that show them, those above, chains of two, and inverses.

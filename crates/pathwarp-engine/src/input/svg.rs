@@ -280,7 +280,7 @@ impl SvgArtwork {
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
-        let sight = built.steps.last().and_then(|s| s.sight.clone()).filter(|_| k == 0);
+        let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| k == 0);
         let warp = warp.with_line(request.line.clone()).with_sight(sight);
         let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
         if self.paths.is_none() {

@@ -310,7 +310,7 @@ pub struct Built {
     /// The surface in space that the artwork lies on, for deformations onto surfaces.
     pub space: Option<InSpace>,
     /// Marks beside the result that say where to look from.
-    pub sight: Option<SightMark>,
+    pub sight: Option<Box<SightMark>>,
     /// Explains why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
     /// Explains how the map failed after it was built, for maps that can fail.

@@ -409,8 +409,6 @@ impl Back {
     fn solve(&self, q: Point) -> Option<Jet> {
         const STEPS: usize = 60;
         const TRIES: usize = 4;
-        let reach = 1e-9 * (self.of.domain.width() + self.of.domain.height());
-        let within = self.of.domain.inflate(reach, reach);
         let mut starts: Vec<(f64, Point)> = self.starts.iter().map(|[p, image]| (image.distance(q), *p)).collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         starts.into_iter().take(TRIES).find_map(|(mut off, mut p)| {
@@ -425,7 +423,7 @@ impl Back {
             }
             let jet = Map::jet(&self.of, p);
             let size = (q - self.of.foot).hypot() + self.of.mirror.radius();
-            let found = jet.p.distance(q) <= 1e-10 * size && within.contains(p) && self.of.fault(p).0 > 0.0;
+            let found = jet.p.distance(q) <= 1e-10 * size && self.of.fault(p).0 > 0.0;
             let det = jet.det();
             found.then(|| Jet { p, dx: Vec2::new(jet.dy.y, -jet.dx.y) / det, dy: Vec2::new(-jet.dy.x, jet.dx.x) / det })
         })

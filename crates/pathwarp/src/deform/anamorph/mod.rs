@@ -310,7 +310,7 @@ impl Anamorph {
             } else {
                 "eye far away in this direction"
             };
-            built.sight = Some(scene::mark(at, ["eye".into(), there.into()], all, self.units_per_px));
+            built.sight = Some(Box::new(scene::mark(at, ["eye".into(), there.into()], all, self.units_per_px)));
         }
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
@@ -358,7 +358,7 @@ impl Anamorph {
             (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
         built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
-        built.sight = self.sighted(&cast, &scene, &*map)?;
+        built.sight = self.sighted(&cast, &scene, &*map)?.map(Box::new);
         if let Some(Self { look: Look::From([x, y, z]), .. }) = own {
             built.note(format!(
                 "such a surface cannot be laid flat: the drawing is the view from {x:.4},{y:.4},{z:.4} (`view`)"
@@ -478,7 +478,7 @@ which is the artwork itself; --view the view from elsewhere.\n\n\
 In a mirror (--mirror): the artwork appears in a mirror that stands on a table, from the eye at --distance in front of it and \
 --eye-height above the table (without --distance straight above it). The result is the drawing on the table, seen from above with the \
 viewer at the bottom; lay it out with --sight-mark, which draws the mirror's foot:\n  \
-cylinder:diameter=60mm  the artwork stands in it; note: its height follows from --explain\n  \
+cylinder:diameter=60mm  the artwork stands in it; --explain says how high it must be\n  \
 cone:diameter=60mm,height=80mm  seen from above, around it; leave a hole in the middle for the tip\n  \
 sphere:diameter=80mm    the artwork appears below its middle\n\
 Add `,lift=10mm` to raise the artwork, `,tilt=10` to lean a cylinder or cone away from you.\n\n\

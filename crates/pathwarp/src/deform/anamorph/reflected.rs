@@ -59,14 +59,9 @@ impl Anamorph {
             built.warn("the cone's tip shows inside the artwork's box: what covers it lacks the outer edge; leave a hole there");
         }
         let scale = scene.scale;
-        let fault = cast.clone();
-        built.undefined = Some(Arc::new(move |p| {
-            let (v, why) = fault.fault(scale * p);
-            (v.is_nan() || v <= 0.0).then(|| why.to_owned())
-        }));
         let all = scene.extent(&*map).union(cast.footprint().bounding_box());
         built.space = Some(InSpace { files: self.files.clone(), ..in_space(&cast, scale, all) });
-        built.sight = self.sight_mark.then(|| sight(&cast, eye, all, units));
+        built.sight = self.sight_mark.then(|| Box::new(sight(&cast, eye, all, units)));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
