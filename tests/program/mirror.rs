@@ -121,7 +121,8 @@ fn a_face_looks_right_in_its_mirror() {
     the_mesh_shows_all(&fs::read_to_string(&mesh).unwrap(), radius);
 }
 
-/// Table, mirror and what the eye sees, besides the drawing itself.
+/// Table, mirror and what the eye sees, besides the drawing itself. The size of a page in px is a number of single precision, and so are
+/// its millimetres.
 fn the_mesh_shows_all(obj: &str, radius: f64) {
     let mut name = "";
     let mut counts = [0; 4];
@@ -139,13 +140,13 @@ fn the_mesh_shows_all(obj: &str, radius: f64) {
             "table" => assert!(v[1] < 0.0 && v[1] > -1.0, "{v:?}"),
             "mirror" => {
                 counts[1] += 1;
-                assert!((v[0].hypot(v[2]) - radius).abs() < 1e-9 * radius && v[1] > -1e-9, "{v:?}");
+                assert!((v[0].hypot(v[2]) - radius).abs() < 1e-7 * radius && v[1] > -1e-9, "{v:?}");
             }
             "mouth" if counts[1] == 0 => assert!(v[1].abs() < 1e-9, "{v:?}"),
             // In the plane square to the line of sight.
             "mouth" => {
                 counts[2] += 1;
-                assert!((v[1] * 0.6 + v[2] * 0.8).abs() < 1e-9 * radius, "{v:?}");
+                assert!((v[1] * 0.6 + v[2] * 0.8).abs() < 1e-7 * radius, "{v:?}");
             }
             _ => {}
         }
