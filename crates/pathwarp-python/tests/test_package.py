@@ -29,7 +29,7 @@ def test_the_catalogue_is_the_command_lines(cli):
     assert arc == Deformation("arc", bend=0.4) and arc != Deformation("flag", bend=0.4)
     signature = inspect.signature(deform.shaper)
     assert signature.parameters["shaper"].default is None and "reverse_shaper" in signature.parameters
-    assert inspect.signature(deform.bend).parameters["along"].default is inspect.Parameter.empty
+    assert inspect.signature(deform.projective).parameters["target"].default is inspect.Parameter.empty
     assert "four" in deform.shaper.__doc__ and "style" not in inspect.signature(deform.arc).parameters
 
 

@@ -59,7 +59,7 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-engine", &below_engine);
     allowed("pathwarp-editor", &["pathwarp", "pathwarp-engine", "pathwarp-raster", "pathwarp-svg", "pathwarp-text"]);
     for name in ["pathwarp-c", "pathwarp-python"] {
-        allowed(name, &["pathwarp", "pathwarp-engine"]);
+        allowed(name, &["pathwarp", "pathwarp-engine", "pathwarp-plugin"]);
     }
     let below_cli = [&below_engine[..], &["pathwarp-editor", "pathwarp-engine", "pathwarp-plugin"]].concat();
     allowed("pathwarp-cli", &below_cli);

@@ -57,17 +57,34 @@ fn every_block_of_commands_runs() {
     assert!(run >= 50, "{run} blocks");
 }
 
-/// The page of what does nearly the same has its commands in tables.
+/// The pages of what does nearly the same, and of the papers' figures, have their commands in tables.
 #[test]
-fn every_command_of_the_comparison_runs() {
+fn every_command_in_a_table_runs() {
     let dir = tempfile::tempdir().unwrap();
-    let page = fs::read_to_string(root().join("docs/which.md")).unwrap();
-    let commands: Vec<&str> = page.split('`').filter(|code| code.contains(" -o out.svg")).collect();
-    assert!(commands.len() > 25);
-    for command in commands {
-        let said = paste(dir.path(), command);
-        assert!(is_quiet(&said), "{command}: {said}");
+    for (page, least) in [("docs/which.md", 25), ("docs/papers.md", 25)] {
+        let page = fs::read_to_string(root().join(page)).unwrap();
+        let commands: Vec<&str> = page.split('`').filter(|code| code.contains(" -o out.")).collect();
+        assert!(commands.len() > least);
+        for command in commands {
+            let said = paste(dir.path(), command);
+            assert!(is_quiet(&said), "{command}: {said}");
+        }
     }
+}
+
+/// Words of the papers, and those that only the help of a deformation has.
+#[test]
+fn help_knows_words_of_the_papers() {
+    let words = "base|target|anchor|16 points|inner points|completion|infinity|Koppinen|FFD|Bernstein|freeze|continuity|weight|EFFD|\
+                 direct manipulation|monoid|Cremona|preimage|moving line|implicit|general position|backward mapping|de Casteljau|\
+                 handle|skeleton|taper|swell|Barr|B-spline|Coons|Bézier|anamorphosis|AFFD|collineation|stereographic|Ames room|\
+                 viewpoint|dilation|tetrahedron|NURBS|trimmed|Steiner|catoptric|hyperpatch";
+    for word in words.split('|') {
+        assert!(expect_code(0, &["help", word]).0.contains("pathwarp"), "{word}");
+    }
+    expect_code(2, &["help", "no word of any paper"]);
+    assert!(expect_code(0, &["help", "Wolberg"]).0.contains("bilinear — "));
+    assert!(expect_code(0, &["help", "catoptric"]).0.contains("--mirror"));
 }
 
 #[test]

@@ -56,7 +56,10 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         let free: Vec<&'static str> = free.filter(|name| !guides.iter().any(|(p, _)| p == *name)).copied().collect();
         guides.extend(free.into_iter().zip(topmost.map(|o| o.id.clone())));
     }
-    if let Some(p) = open.iter().find(|p| p.needed && !guides.iter().any(|(name, _)| *name == p.name)) {
+    // What usually has a guide needs one, unless the dialog says something else instead.
+    let usual = info.guides.params.first().filter(|_| info.guides.usual > 0 && wanted.is_none() && !otherwise());
+    let is_needed = |p: &Param| p.needed || p.default.is_none() && usual == Some(&p.name);
+    if let Some(p) = open.iter().find(|p| is_needed(p) && !guides.iter().any(|(name, _)| *name == p.name)) {
         return Err(missing(p, call));
     }
     let ids: HashSet<&str> = guides.iter().map(|(_, id)| id.as_str()).collect();
@@ -83,7 +86,8 @@ fn labelled(info: &Info, open: &[&Param], objects: &[Object], selected: &[&Objec
 
 /// Returns `true` for a parameter without a default that says where things are.
 fn is_alternative(p: &Param) -> bool {
-    p.default.is_none() && (p.repeat || matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_)))
+    let says_where = matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_) | Kind::Choice(_));
+    p.default.is_none() && (p.repeat || says_where)
 }
 
 fn missing(p: &Param, call: &Call) -> Failure {

@@ -24,8 +24,9 @@ const UNION: f64 = 0.1;
 /// Fraction of the tolerance that an expansion may take before it is repeated.
 const MISSED: f64 = 0.5;
 
-/// Finest tolerance of an expansion, in user units. Rounding is coarser.
+/// Finest tolerance of an expansion: in user units, and as a share of the largest coordinate, so that rounding is smaller.
 const FINEST: f64 = 1e-9;
+const FINEST_SHARE: f64 = 64.0 * f64::EPSILON;
 
 /// Index that stands for the whole drawing in place of a contour.
 const DRAWING: usize = usize::MAX;
@@ -148,7 +149,10 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
             t.pieces.iter().flat_map(|piece| one(&piece.of(own), &piece.places, piece.first())).collect()
         }
     };
-    let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(FINEST);
+    let extent =
+        own.bounding_box().map_or(0.0, |b| [b.x0, b.x1, b.y0, b.y1].map(f64::abs).into_iter().fold(0.0, f64::max));
+    let least = FINEST.max(FINEST_SHARE * extent);
+    let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(least);
     let largest = |each: &[(usize, Outline)]| each.iter().map(|(_, o)| largest_stretch(t, o)).fold(0.0, f64::max);
     let (mut assumed, allowed) = (stretch, t.allowed_of(DRAWING));
     let mut each = expanded(&|i| fine(i, assumed));
