@@ -34,6 +34,9 @@ pub(crate) struct Warper {
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 
+/// The name of a deformation, its parameters with their values, and whether it is inverted.
+type TypedStep = (String, Vec<(String, Vec<String>)>, bool);
+
 #[pymethods]
 impl Warper {
     /// A deformation by its name. Plug-ins are those in the files `plugins`, and those of the user's folder.
@@ -108,7 +111,7 @@ impl Warper {
 
     /// The deformations with their values, and whether each is inverted.
     #[getter]
-    fn typed(&self) -> Vec<(String, Vec<(String, Vec<String>)>, bool)> {
+    fn typed(&self) -> Vec<TypedStep> {
         let step = |s: &Step| {
             let values = s.args.iter().map(|(name, values)| (name.to_owned(), values.to_vec()));
             (s.deformation.clone(), values.collect(), s.inverse)

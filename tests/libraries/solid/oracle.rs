@@ -355,7 +355,8 @@ fn splines_with_handles_at_their_points() {
 /// is drawn in pieces whose polygon is straight there (equation 5).
 #[test]
 fn default_handles_leave_no_kinks() {
-    let zigzag: Vec<P> = (0..9).map(|i| [10.0 * i as f64, 40.0 * (i % 2) as f64, 25.0 * (i % 3) as f64]).collect();
+    let zigzag: Vec<P> =
+        (0..9).map(|i| [10.0 * f64::from(i), 40.0 * f64::from(i % 2), 25.0 * f64::from(i % 3)]).collect();
     let drawn = "0,0,0 10,20,5 20,20,10 30,0,10 35,-10,10 50,-9,20 50,0,30 50,18,50 40,20,40 30,5,60";
     let distances: Vec<f64> = zigzag.windows(2).map(|p| norm(minus(p[1], p[0])).sqrt()).collect();
     let whole: f64 = distances.iter().sum();

@@ -139,7 +139,7 @@ artwork's height; a smaller `width` helps too",
         for (spine, table) in std::mem::take(&mut self.spines) {
             match spine.curve {
                 Curve::Seg(Seg::Arc(a)) => {
-                    self.spines.extend(a.to_cubics(tolerance).map(|c| measured(Curve::Seg(Seg::Cubic(c)))))
+                    self.spines.extend(a.to_cubics(tolerance).map(|c| measured(Curve::Seg(Seg::Cubic(c)))));
                 }
                 Curve::Seg(Seg::Quad(q)) if several && (q.p1 - q.p0).dot(q.p2 - q.p1) < 0.0 => {
                     self.spines.push((Spine::new(Curve::Seg(Seg::Cubic(q.raise()))), table));
