@@ -62,6 +62,7 @@ static int32_t nested(void *data, const double *from, double *to, size_t count) 
 /* Functions as maps: their values, ends of curves, inverses, chains, failures, and which thread calls them. */
 static void functions(const char *page) {
     char *error, *bent;
+    pathwarp_status status;
     int calls = 0;
     pathwarp_warper *map, *back, *both;
     const pathwarp_function whole = {wave, wave_jets, wave_back, NULL, 14, 0, &calls}, plain = {.points = wave, .data = &calls};
@@ -96,9 +97,12 @@ static void functions(const char *page) {
     pathwarp_string_free(error);
     check(pathwarp_warp_path(map, "M0,0 H9", &bent, NULL, &error) == PATHWARP_INPUT && strstr(error, "failed with 17"), "its failure on a path");
     pathwarp_string_free(error), pathwarp_free(map);
-    refused(pathwarp_new_function(NULL, &map, &error), error, "function is NULL");
-    refused(pathwarp_new_function(&none, &map, &error), error, "function.points is NULL");
-    refused(pathwarp_new_function(&creased, &map, &error), error, "line A B C");
+    status = pathwarp_new_function(NULL, &map, &error);
+    refused(status, error, "function is NULL");
+    status = pathwarp_new_function(&none, &map, &error);
+    refused(status, error, "function.points is NULL");
+    status = pathwarp_new_function(&creased, &map, &error);
+    refused(status, error, "line A B C");
 
     pathwarp_warper *inner;
     check(!pathwarp_new("swirl", NULL, NULL, 0, &inner, &error) && !pathwarp_set_option(inner, "frame", "0,0,9,9", &error), "inner");
@@ -115,12 +119,12 @@ static void others(void) {
     uint8_t *result;
     size_t length;
     check(!pathwarp_new("offset", names, values, 1, &edit, &error), "an edit");
-    check(!pathwarp_warp_path(edit, "M0,0 H9 V9 H0 Z", &bent, NULL, &error) && strstr(bent, "A"), "round corners");
+    check(!pathwarp_warp_path(edit, "M0,0 H9 V9 H0 Z", &bent, NULL, &error) && strpbrk(bent, "AC"), "round corners");
     pathwarp_string_free(bent), pathwarp_free(edit);
     check(!pathwarp_text("Word", NULL, 20, &result, &length, &error) && length > 500, "words");
     check(!memcmp(result, "<svg", 4), "words are a drawing");
     pathwarp_bytes_free(result, length);
-    check(pathwarp_text("Word", "no such family", 20, &result, &length, &error) == PATHWARP_INPUT, "an unknown font");
+    check(pathwarp_text("Word", "no such family", 20, &result, &length, &error) == PATHWARP_USAGE, "an unknown font");
     pathwarp_string_free(error);
     check(!pathwarp_from_recipe("pathwarp = 1\n[[step]]\ndeformation = \"arc\"\n", "", &preset, &error), "a preset in a recipe");
     check(!pathwarp_new("arc", NULL, NULL, 0, &arc, &error), "arc");
