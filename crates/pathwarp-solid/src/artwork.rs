@@ -92,10 +92,10 @@ pub fn filled(
     scene(&[(shapes.to_vec(), space)], tolerance, budget)
 }
 
-/// Does the same with shapes on several surfaces, in one file.
+/// Writes filled shapes on several surfaces as one mesh in OBJ.
 ///
 /// # Errors
-/// As [`filled`].
+/// A point has no image on its surface, or a shape needs too many triangles.
 pub fn scene(
     groups: &[(Vec<NamedShape<'_>>, &SurfaceFn<'_>)],
     tolerance: f64,

@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 /// The work of a point, in evaluations of the map with all that a fit does.
 const POINT: f64 = 0.25;
-/// The same for a point with all its preimages.
+/// The work of a point with all its preimages, in the same evaluations.
 const ALL: f64 = 5000.0;
 
 pub(super) fn map_command(registry: &Registry) -> Command {

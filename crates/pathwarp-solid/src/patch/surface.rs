@@ -61,7 +61,7 @@ impl Surface {
         self.size() == self.degree.map(|d| d + 1)
     }
 
-    /// Whether all rows of control points are the same up to rounding: a curve.
+    /// Returns `true` if all rows of control points are the same up to rounding, so that the surface is a curve.
     #[must_use]
     pub fn is_curve(&self) -> bool {
         const SAME: f64 = 1e-12;

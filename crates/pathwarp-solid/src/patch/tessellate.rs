@@ -89,7 +89,7 @@ fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
     if parts.iter().all(|p| p.as_ref().is_some_and(Vec::is_empty)) { vec![None; pieces.len()] } else { parts }
 }
 
-/// Whether an odd number of polygons surrounds a place.
+/// Returns `true` if an odd number of polygons surrounds a point.
 fn surrounded(polygons: &Polygons, [x, y]: [f64; 2]) -> bool {
     let crosses = |(a, b): (&[f64; 2], &[f64; 2])| {
         (a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])

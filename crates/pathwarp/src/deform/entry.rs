@@ -469,7 +469,7 @@ pub type Place = Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>;
 pub struct InSpace {
     /// Takes a point of the source to the surface: x right, y down, z away, user units. `None` if the ray misses the surface.
     pub place: Place,
-    /// What a mesh shows besides: by name the places of a rectangle, or of the artwork itself.
+    /// Further parts of the scene that a mesh shows, by name: a rectangle, or the artwork itself, laid elsewhere.
     pub besides: Vec<(&'static str, Option<Rect>, Place)>,
     /// Files requested by the parameters.
     pub files: Vec<SpaceFile>,

@@ -1,7 +1,7 @@
 //! Joints of strips F = C + v·S (+ w·T in space): the conditions of Y.-K. Chang and A. Rockwood, *A generalized de Casteljau approach to 3D
 //! free-form deformation* (SIGGRAPH 1994), equations 4 and 5.
 
-/// How lines along a skeleton meet at a joint of its pieces.
+/// A joint of a skeleton's pieces, and the turns of lines beside the skeleton there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     place: String,

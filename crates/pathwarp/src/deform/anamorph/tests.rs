@@ -594,7 +594,7 @@ fn traced(shape: MirrorShape, tilt: f64, eye: Space, p: Space) -> Option<Space> 
     let add = |a: Space, b: Space, k: f64| -> Space { std::array::from_fn(|i| a[i] + b[i] * k) };
     let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let axis = [0.0, -tilt.to_radians().cos(), tilt.to_radians().sin()];
-    // How far a point is outside, and the gradient of that.
+    // The distance of a point from the inside, and its gradient.
     let outside = |q: Space| -> (f64, Space) {
         match shape {
             MirrorShape::Sphere(r) => {

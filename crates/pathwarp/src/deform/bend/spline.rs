@@ -15,7 +15,7 @@ use crate::map::bspline;
 use crate::outline::Subpath;
 use kurbo::{Point, Vec2};
 
-/// How the anchors of a path make a skeleton.
+/// The way in which the anchors of a path make a skeleton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Spline {
     /// They are control points of a uniform B-spline of this degree.
