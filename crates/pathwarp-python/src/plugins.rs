@@ -1,11 +1,12 @@
 //! Plug-ins that are programs: those of the user's folder, and those in files.
 
 use crate::errors::usage;
-use pathwarp::deform::{Deformation as _, Registry};
+use pathwarp::deform::{Deformation, Registry};
 use pathwarp_engine::option_names;
 use pathwarp_plugin::{Broken, Reserved};
 use pyo3::prelude::*;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Returns the deformations with the plug-ins in `files`, and those of the user's folder if one of `names` is not built in.
 pub(crate) fn registry(py: Python<'_>, files: &[PathBuf], names: &[&str]) -> PyResult<Registry> {
@@ -30,9 +31,8 @@ pub(crate) fn registry(py: Python<'_>, files: &[PathBuf], names: &[&str]) -> PyR
         if let Some(broken) = found.broken.iter().find(is_wanted) {
             return Err(usage(py, &broken.fault.of(&broken.path).to_string()));
         }
-        let lacks = |p: &pathwarp_plugin::Plugin| registry.get(p.info().name).is_none();
-        registry =
-            found.plugins.into_iter().filter(lacks).collect::<Vec<_>>().into_iter().fold(registry, Registry::with);
+        let installed = found.plugins.into_iter().map(|p| Arc::new(p) as Arc<dyn Deformation>);
+        registry = registry.joined(&Registry::new(installed.collect()));
     }
     Ok(registry)
 }

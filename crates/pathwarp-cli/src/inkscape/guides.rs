@@ -56,7 +56,7 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         let free: Vec<&'static str> = free.filter(|name| !guides.iter().any(|(p, _)| p == *name)).copied().collect();
         guides.extend(free.into_iter().zip(topmost.map(|o| o.id.clone())));
     }
-    // What usually has a guide needs one, unless the dialog says something else instead.
+    // A deformation that usually has a guide needs one, unless the dialog says something else instead.
     let usual = info.guides.params.first().filter(|_| info.guides.usual > 0 && wanted.is_none() && !otherwise());
     let is_needed = |p: &Param| p.needed || p.default.is_none() && usual == Some(&p.name);
     if let Some(p) = open.iter().find(|p| is_needed(p) && !guides.iter().any(|(name, _)| *name == p.name)) {

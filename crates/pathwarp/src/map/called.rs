@@ -38,7 +38,7 @@ pub trait Callee: Send + Sync {
     /// Answers for the values at `points` and the jets at `others`, neither of them empty.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// The callee failed.
     fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
         Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, others)?])
     }
@@ -168,17 +168,27 @@ fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     }
 }
 
+/// Returns the jet at a point by a batch of one.
+fn single_jet(map: &impl Map, p: Point) -> Jet {
+    let mut out = [Jet::UNDEFINED];
+    map.jets(&[p], &mut out);
+    out[0]
+}
+
+/// Returns the image of a point by a batch of one.
+fn single_point(map: &impl Map, p: Point) -> Point {
+    let mut out = [p];
+    map.points(&[p], &mut out);
+    out[0]
+}
+
 impl Map for Called {
     fn jet(&self, p: Point) -> Jet {
-        let mut out = [Jet::UNDEFINED];
-        self.jets(&[p], &mut out);
-        out[0]
+        single_jet(self, p)
     }
 
     fn point(&self, p: Point) -> Point {
-        let mut out = [p];
-        self.points(&[p], &mut out);
-        out[0]
+        single_point(self, p)
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
@@ -294,9 +304,7 @@ impl Beside {
 
 impl Map for Beside {
     fn jet(&self, p: Point) -> Jet {
-        let mut out = [Jet::UNDEFINED];
-        self.jets(&[p], &mut out);
-        out[0]
+        single_jet(self, p)
     }
 
     fn point(&self, p: Point) -> Point {
@@ -305,10 +313,10 @@ impl Map for Beside {
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         let ps: Vec<Point> = ps.iter().map(|p| self.moved(*p)).collect();
-        if self.map.abilities.jacobian {
-            return self.map.jets(&ps, out);
-        }
         self.map.jets(&ps, out);
+        if self.map.abilities.jacobian {
+            return;
+        }
         for (p, out) in ps.iter().zip(out) {
             if let Some(directions) = self.directions(*p) {
                 *out = self.one_sided(*p, directions);
@@ -336,15 +344,11 @@ struct Inverse(Called);
 
 impl Map for Inverse {
     fn jet(&self, p: Point) -> Jet {
-        let mut out = [Jet::UNDEFINED];
-        self.jets(&[p], &mut out);
-        out[0]
+        single_jet(self, p)
     }
 
     fn point(&self, p: Point) -> Point {
-        let mut out = [p];
-        self.points(&[p], &mut out);
-        out[0]
+        single_point(self, p)
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {

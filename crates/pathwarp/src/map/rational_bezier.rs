@@ -89,7 +89,7 @@ impl RationalBezier {
         row.first().map_or(Point::ORIGIN, |p| Point::new(p[0] / p[2], p[1] / p[2]))
     }
 
-    /// The same curve with as few control points as its homogeneous coordinates allow: those of a degree that was raised drop out.
+    /// Returns this curve with as few control points as its homogeneous coordinates allow: a degree that was raised is lowered again.
     #[must_use]
     pub fn reduced(mut self) -> Self {
         /// Rounding of the leading coefficient, as a share of its terms.

@@ -154,8 +154,8 @@ impl Birational {
         self.pieces.iter().map(|p| &p.rows)
     }
 
-    /// The same points with weights kᵢ·gʲ·wᵢⱼ, all the freedom that leaves the map birational: k₁/k₀ spaces it across the rows, g along
-    /// them. For rows of one Bézier piece; `None` for others, or if a weight is not finite and positive.
+    /// Returns the net of these points with weights kᵢ·gʲ·wᵢⱼ, all the freedom that leaves the map birational: k₁/k₀ spaces it across
+    /// the rows, g along them. For rows of one Bézier piece; `None` for others, or if a weight is not finite and positive.
     #[must_use]
     pub fn respaced(&self, k: [f64; 2], g: f64) -> Option<Self> {
         let [BirationalPiece { rows: [a, b], .. }] = self.pieces.as_slice() else { return None };

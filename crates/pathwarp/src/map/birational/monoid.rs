@@ -49,7 +49,7 @@ impl ImplicitLine {
         Self { through: from, normal: Vec2::new(-d.y, d.x) }
     }
 
-    /// The same line with values scaled by `k`.
+    /// Returns this line with its values scaled by `k`.
     #[must_use]
     pub(super) fn scaled(self, k: f64) -> Self {
         Self { normal: self.normal * k, ..self }
@@ -189,13 +189,13 @@ impl Monoid {
         Some(Self { points: points.to_vec(), weights, h, first, last })
     }
 
-    /// The same curve with weights gⁱ·wᵢ, which changes only the speed of t.
+    /// Returns this curve with weights gⁱ·wᵢ, which changes only the speed of t.
     #[must_use]
     pub(super) fn paced(&self, g: f64) -> Option<Self> {
         Self::between(&self.points, self.first, self.last.scaled(g))
     }
 
-    /// The same curve with all weights multiplied by `k`.
+    /// Returns this curve with all weights multiplied by `k`.
     #[must_use]
     pub(super) fn weighted(mut self, k: f64) -> Self {
         self.weights.iter_mut().chain(&mut self.h).for_each(|w| *w *= k);
