@@ -297,6 +297,11 @@ impl Codes {
         self.number(code, value, FINE)
     }
 
+    /// A number by as many digits as tell it from all others.
+    pub(crate) fn shortest(&mut self, code: u16, value: f64) -> &mut Self {
+        self.number(code, value, value.to_string().len())
+    }
+
     /// A point with x, y and z.
     pub(crate) fn point(&mut self, code: u16, p: Point) -> &mut Self {
         self.length(code, p.x).length(code + 10, p.y).length(code + 20, 0.0)

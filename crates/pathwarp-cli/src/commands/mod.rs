@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod convert;
 mod edit;
+mod exact;
 mod gimp_paths;
 mod install;
 mod map;

@@ -8,6 +8,7 @@ mod pdf;
 
 pub use exported::Exported;
 pub use kerf::KerfReport;
+pub use pathwarp_dxf::{MAX_DEGREE, Spline, write_splines};
 
 use crate::failure::Failure;
 use crate::format::Format;
