@@ -12,6 +12,7 @@
 pub mod artwork;
 pub mod check;
 pub mod deform;
+mod hull;
 mod lattice;
 pub mod map;
 pub mod mesh;
@@ -22,5 +23,6 @@ mod settings;
 
 pub use crate::settings::Box3;
 pub use glam;
+pub use hull::HullMap;
 pub use lattice::{Lattice3, LatticeMap3};
 pub use settings::{Extent, Frame3, Settings3};

@@ -4,7 +4,7 @@ use crate::ending::Status;
 use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::Outline;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Class, CreaseKind, Creases, Map, RationalBezier, exact_images};
+use pathwarp::map::{Class, Map, RationalBezier, exact_images};
 use pathwarp::param::{Args, Frame, Param, Settings};
 use pathwarp_engine::export::{MAX_DEGREE, Spline, write_splines};
 use pathwarp_engine::failure::Failure;
@@ -65,13 +65,12 @@ impl Curves {
 
     /// The bounding box: of paths, or of the control points.
     pub(super) fn bounds(&self) -> Rect {
-        let points = |all: &[Surface]| {
-            let all: Vec<Point> = all.iter().flat_map(|s| &s.points).map(|p| Point::new(p.x, p.y)).collect();
-            Outline::from_points(&all, false).bounding_box()
-        };
         let bounds = match self {
             Self::Path(path) => path.bounding_box(),
-            Self::Nurbs(all) => points(all),
+            Self::Nurbs(all) => {
+                let points = all.iter().flat_map(|s| &s.points).map(|p| Point::new(p.x, p.y));
+                Outline::from_points(&points.collect::<Vec<_>>(), false).bounding_box()
+            }
         };
         bounds.unwrap_or(Rect::ZERO)
     }
@@ -223,23 +222,20 @@ fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: Vec<[f64
 
 /// The image of a rational Bézier curve that no crease crosses. Errors call it `what`.
 fn image(map: &dyn Map, points: &[DVec4], what: &str) -> Result<RationalBezier, String> {
-    /// Places at which creases are looked for, and rounding there as a share of the largest level.
+    /// Places at which the image is compared with the map, and rounding there relative to the coordinates.
     const PLACES: u32 = 64;
-    const NOISE: f64 = 1e-12;
+    const ROUNDING: f64 = 1e-9;
     let curve = RationalBezier { points: points.iter().map(|p| [p.x, p.y, p.w]).collect() };
-    let mut creases = Creases::default();
-    map.creases(&mut creases);
-    for crease in creases.items() {
-        let at = |i| crease.level.at(curve.eval(f64::from(i) / f64::from(PLACES)));
-        let (low, high) = (0..=PLACES).map(at).fold((0.0, 0.0), |(l, h): (f64, f64), v| (l.min(v), h.max(v)));
-        let edge = crease.kind == CreaseKind::Edge && high <= 0.0;
-        if edge || low.min(0.0).abs().min(high) > NOISE * (high - low) {
-            return Err(format!("{what} meets a crease of the map or the end of its domain; cut it there"));
-        }
-    }
     let branch = map.branch(curve.eval(0.5));
     let image = branch.as_deref().map_or_else(|| map.image(&curve), |m| m.image(&curve));
-    image.map(RationalBezier::reduced).ok_or_else(|| no_image(what))
+    let image = image.ok_or_else(|| no_image(what))?.reduced();
+    let holds = |i| {
+        let t = f64::from(i) / f64::from(PLACES);
+        let (source, wanted) = (curve.eval(t), map.point(curve.eval(t)));
+        image.eval(t).distance(wanted) <= ROUNDING * (source.to_vec2().hypot() + wanted.to_vec2().hypot())
+    };
+    let crossed = || format!("{what} meets a crease of the map or the end of its domain; cut it there");
+    (0..=PLACES).all(holds).then_some(image).ok_or_else(crossed)
 }
 
 fn far(contour: usize) -> String {
