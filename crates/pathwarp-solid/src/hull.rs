@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// Extended free-form deformation of space.
 #[derive(Debug, Clone)]
-pub struct HullMap {
+pub(crate) struct HullMap {
     region: Box3,
     cells: [usize; 3],
     hull: Arc<LatticeMap3>,
@@ -33,7 +33,7 @@ impl HullMap {
     ///
     /// # Errors
     /// [`Error::Usage`] for a hull that folds or is flat.
-    pub fn new(hull: &Lattice3, moved: &Lattice3) -> Result<Self, Error> {
+    pub(crate) fn new(hull: &Lattice3, moved: &Lattice3) -> Result<Self, Error> {
         /// Places along each axis at which the hull's orientation is compared.
         const PLACES: u32 = 12;
         let region = hull.region();
@@ -41,15 +41,13 @@ impl HullMap {
         let at = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
         let places =
             (0..PLACES.pow(3)).map(|n| DVec3::new(at(n % PLACES), at(n / PLACES % PLACES), at(n / PLACES.pow(2))));
-        let mut turns = places.map(|t| x.jet(region.min + t * region.size())).map(|j| (j.p, j.det()));
-        let first = turns.next().map_or(0.0, |(_, det)| det);
-        match turns.find(|(_, det)| !(det * first > 0.0)) {
-            Some((p, _)) => {
-                let problem = format!("is flat or folds at {}; put its control points in order", show(p));
-                Err(Error::usage("hull", "", problem))
-            }
-            None => Ok(Self::between(x, y, region, hull.cells())),
+        let mut jets = places.map(|t| x.jet(region.min + t * region.size()));
+        let first = jets.next().map_or(0.0, |j| j.det());
+        if let Some(j) = jets.find(|j| !(j.det() * first > 0.0)) {
+            let problem = format!("is flat or folds at {}; put its control points in order", show(j.p));
+            return Err(Error::usage("hull", "", problem));
         }
+        Ok(Self::between(x, y, region, hull.cells()))
     }
 
     fn between(hull: Arc<LatticeMap3>, moved: Arc<LatticeMap3>, region: Box3, cells: [usize; 3]) -> Self {
@@ -59,13 +57,8 @@ impl HullMap {
         Self { region, cells, hull, moved, inner }
     }
 
-    /// The local coordinates of a point, if it is in the hull.
-    #[must_use]
-    pub fn local(&self, p: DVec3) -> Option<DVec3> {
-        self.within_hull(p).map(|u| u.p)
-    }
-
-    fn within_hull(&self, p: DVec3) -> Option<Jet3> {
+    /// The local coordinates of a point in the hull, and their derivatives.
+    pub(crate) fn local(&self, p: DVec3) -> Option<Jet3> {
         /// Rounding of local coordinates.
         const ROUNDING: f64 = 1e-12;
         self.inner.solve(p).filter(|u| self.depth(u.p) >= -ROUNDING)
@@ -79,7 +72,7 @@ impl HullMap {
 
 impl Map3 for HullMap {
     fn jet(&self, p: DVec3) -> Jet3 {
-        match self.within_hull(p) {
+        match self.local(p) {
             Some(local) => local.then(&self.moved.jet(local.p)),
             None => Jet3::identity(p),
         }

@@ -23,6 +23,5 @@ mod settings;
 
 pub use crate::settings::Box3;
 pub use glam;
-pub use hull::HullMap;
 pub use lattice::{Lattice3, LatticeMap3};
 pub use settings::{Extent, Frame3, Settings3};

@@ -165,17 +165,13 @@ struct Contour {
 }
 
 impl Contour {
-    /// The images as one spline of their highest degree; `None` if a weight stays zero or negative in small parts, too.
+    /// The images as one spline of their highest degree; `None` if a weight is not positive.
     fn joined(&self) -> Option<Surface> {
-        /// Parts of a curve with positive denominator have positive weights, if they are small enough.
-        const HALVINGS: u32 = 16;
-        let mut parts = Vec::new();
-        for image in &self.images {
-            positive(image, HALVINGS, &mut parts)?;
-        }
+        let parts = &self.images;
         let degree = parts.iter().map(RationalBezier::degree).max()?.max(1);
         let mut points: Vec<[f64; 3]> = Vec::with_capacity(degree * parts.len() + 1);
-        for part in &parts {
+        for part in parts {
+            part.hull()?;
             let own = part.raised(degree).points;
             // A curve with its homogeneous points multiplied by a number is the same one, so that weights meet at joints.
             let last = points.pop().unwrap_or([0.0, 0.0, 1.0]);
@@ -190,20 +186,6 @@ impl Contour {
         let knots = (0..=parts.len()).flat_map(|k| std::iter::repeat_n(k as f64, degree + ends(k))).collect();
         Some(spline(&self.name, [degree, points.len()], knots, points))
     }
-}
-
-/// Adds a curve, or its parts, with positive weights.
-fn positive(curve: &RationalBezier, halvings: u32, out: &mut Vec<RationalBezier>) -> Option<()> {
-    if curve.hull().is_some_and(|h| h.iter().all(|p| p.is_finite())) {
-        out.push(curve.clone());
-        return Some(());
-    }
-    let [a, b] = curve.halves();
-    // An end at infinity is one in every part.
-    let ends = [&a, &b].map(|c| c.points.last().is_some_and(|p| p[2] > 0.0) && c.points[0][2] > 0.0);
-    let left = halvings.checked_sub(1).filter(|_| ends == [true; 2])?;
-    positive(&a, left, out)?;
-    positive(&b, left, out)
 }
 
 /// The curve with these homogeneous points as a surface of two equal rows.
@@ -239,9 +221,8 @@ fn image(map: &dyn Map, points: &[DVec4], what: &str) -> Result<RationalBezier, 
 }
 
 fn far(contour: usize) -> String {
-    format!(
-        "contour {contour} goes to infinity, or has places where the map is not defined; move control points or the eye"
-    )
+    let advice = "cut it into shorter curves, or warp its drawing with -o out.dxf, which fits curves";
+    format!("contour {contour} has control points beyond infinity, for which a spline has no weights: {advice}")
 }
 
 fn no_image(what: &str) -> String {

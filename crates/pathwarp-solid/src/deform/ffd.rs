@@ -392,6 +392,11 @@ cells control points. Default with --spline: 4x4x4."),
 --move 3,1,1:30%,20%,0 -o out.obj",
             },
             Example {
+                what: "Give a pot a waist, by a ring of control points around it",
+                command: "solid ffd samples/solid/teapot.obj --hull samples/solid/ring.json --move 0,2,2:0,0,40 --move 1,2,2:-160,0,40 \
+--move 2,2,2:-80,0,-120 --move 3,2,2:80,0,-120 --move 4,2,2:160,0,40 --move 5,2,2:0,0,40 -o out.obj",
+            },
+            Example {
                 what: "Take one place of a model elsewhere and hold another, with a finer box that is saved for use again",
                 command: "solid ffd samples/solid/teapot.obj --spline --cells 3 --pin 95%,60%,50%:110%,90%,50% --pin 50%,0%,50%:50%,0%,50% \
 --save-lattice out.json -o out.obj",
@@ -436,6 +441,8 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     }
     let (mut built, lattice) = ffd.build_with_lattice()?;
     if let Some(hull) = hull {
+        // Those of a curved hull are far from what they show.
+        built.guides.clear();
         built.map = Arc::new(HullMap::new(&hull, &lattice)?);
     }
     if let Some(name) = s.last("save-lattice") {
@@ -447,10 +454,15 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
 /// Reads the lattice of `hull`, with which other parameters make no sense.
 pub(super) fn hull(s: &Settings3<'_>, others: &[&str]) -> Result<Option<Lattice3>, Error> {
     let Some(named) = s.file_if("hull")? else { return Ok(None) };
-    if let Some(name) = others.iter().find(|n| s.flat().given(n)) {
-        return Err(Error::usage(name, s.words(name).join(" "), "cannot go with `hull`, which is a whole lattice"));
-    }
+    alone(s, "hull", others)?;
     Ok(Some(read(&named.name, &named.text, s.bounds())?.0))
+}
+
+/// Refuses parameters beside a file with a whole lattice.
+fn alone(s: &Settings3<'_>, file: &str, others: &[&str]) -> Result<(), Error> {
+    let Some(name) = others.iter().find(|n| s.flat().given(n)) else { return Ok(()) };
+    let problem = format!("cannot go with `{file}`, which is a whole box of points");
+    Err(Error::usage(name, s.words(name).join(" "), problem))
 }
 
 /// Reads the initial lattice. The flag is `true` if a file specifies its region.
@@ -458,12 +470,7 @@ fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {
     let region = s.box_if("region")?;
     let frame = s.bounds();
     if let Some(named) = s.file_if("lattice")? {
-        for name in ["degree", "spline", "cells"] {
-            if s.flat().given(name) {
-                let problem = "cannot go with `lattice`, which is a whole box of points";
-                return Err(Error::usage(name, s.words(name).join(" "), problem));
-            }
-        }
+        alone(s, "lattice", &["degree", "spline", "cells"])?;
         let (lattice, has_region) = read(&named.name, &named.text, region.unwrap_or(frame))?;
         return Ok(match region {
             Some(r) => (lattice.on(r), true),

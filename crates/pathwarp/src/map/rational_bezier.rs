@@ -138,19 +138,6 @@ impl RationalBezier {
         Self { points }
     }
 
-    /// The curve up to t = 1/2 and from there.
-    #[must_use]
-    pub fn halves(&self) -> [Self; 2] {
-        let (mut row, mut left, mut right) = (self.points.clone(), Vec::new(), Vec::new());
-        while let (Some(first), Some(last)) = (row.first(), row.last()) {
-            left.push(*first);
-            right.push(*last);
-            row = row.windows(2).map(|w| [0, 1, 2].map(|k| f64::midpoint(w[0][k], w[1][k]))).collect();
-        }
-        right.reverse();
-        [Self { points: left }, Self { points: right }]
-    }
-
     /// The curve whose homogeneous control points are `f` of these: the exact image for linear `f`.
     #[must_use]
     pub fn mapped(&self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Self {

@@ -56,12 +56,7 @@ impl Push3 {
     fn text(self, reference: &Reference3) -> String {
         match self {
             Self::By(n, _) | Self::Away(n, _) | Self::To(n, _) => {
-                let count = match reference {
-                    Reference3::Tetrahedron(..) | Reference3::Prism(..) => 4,
-                    Reference3::Tetrahedra(..) => 1,
-                    _ => 3,
-                };
-                n[..count].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
+                n[..reference.indices()].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
             Self::Prescribe(p, by) => format!("{}:{by}", show(p)),
         }
@@ -204,7 +199,9 @@ impl Anamorph3 {
         if let Reference3::Spline(..) | Reference3::Hull(_) = self.reference {
             let lattice = self.lattice(DVec3::ZERO);
             let local = match self.reference {
-                Reference3::Hull(_) => HullMap::new(&lattice, &lattice).ok().and_then(|hull| hull.local(p)),
+                Reference3::Hull(_) => {
+                    HullMap::new(&lattice, &lattice).ok().and_then(|hull| hull.local(p)).map(|u| u.p)
+                }
                 _ => Some(p),
             };
             local
@@ -802,16 +799,10 @@ fn nodes_pushed(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>,
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
-            let (node, value) = match reference {
-                Reference3::Tetrahedron(..) | Reference3::Prism(..) => s.flat().node_in::<4>(name, word)?,
-                Reference3::Tetrahedra(..) => {
-                    let ([i], value) = s.flat().node_in::<1>(name, word)?;
-                    ([i, 0, 0, 0], value)
-                }
-                _ => {
-                    let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
-                    ([i, j, k, 0], value)
-                }
+            let (node, value) = match reference.indices() {
+                4 => s.flat().node_in::<4>(name, word)?,
+                1 => s.flat().node_in::<1>(name, word).map(|([i], value)| ([i, 0, 0, 0], value))?,
+                _ => s.flat().node_in::<3>(name, word).map(|([i, j, k], value)| ([i, j, k, 0], value))?,
             };
             out.push(match name {
                 "push" => Push3::By(node, s.flat().number_in(name, value)?),

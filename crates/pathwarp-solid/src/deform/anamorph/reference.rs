@@ -224,10 +224,8 @@ impl Reference3 {
 
     /// Returns the bounding box.
     pub(super) fn bounds(&self) -> Box3 {
-        let corners = |all: &[DVec3]| {
-            let (min, max) = all.iter().fold((all[0], all[0]), |(a, b), p| (a.min(*p), b.max(*p)));
-            Box3 { min, max }
-        };
+        let corners =
+            |all: &[DVec3]| Box3::around(all.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         match self {
             Self::Tetrahedron(c, _) => corners(c),
             Self::Triangle(c, _) => corners(c),
@@ -285,6 +283,15 @@ impl Reference3 {
             Self::Spline(_, degree, cells) => [0, 1, 2].map(|a| degree[a] + cells[a] - 1),
             Self::Hull(lattice) => lattice.size().map(|n| n - 1),
             _ => [0; 3],
+        }
+    }
+
+    /// Returns how many numbers a control point has.
+    pub(super) fn indices(&self) -> usize {
+        match self {
+            Self::Tetrahedron(..) | Self::Prism(..) => 4,
+            Self::Tetrahedra(..) => 1,
+            _ => 3,
         }
     }
 
