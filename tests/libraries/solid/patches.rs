@@ -155,7 +155,7 @@ fn anamorphoses_over_every_reference() {
         let [u, v, w] = p.clone().map(|c| c / q(128.0));
         let rest = Q::ONE - &u - &v;
         let delta = Q::ONE
-            + (Q::ONE / q(1.6) - Q::ONE) * v * bernstein(2, 1, &w)
+            + (Q::ONE / q(1.6) - Q::ONE) * u * bernstein(2, 1, &w)
             + (Q::ONE / q(0.8) - Q::ONE) * rest * bernstein(2, 2, &w);
         radial(&p, eye, &delta)
     });
