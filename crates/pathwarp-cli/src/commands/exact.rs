@@ -51,8 +51,8 @@ impl Curves {
                 let all = json::read(&bytes).map_err(|e| Failure::file(file, e))?;
                 let is_flat = |s: &Surface| s.is_curve() && s.points.iter().all(|p| p.z == 0.0);
                 let Some(i) = all.iter().position(|s| !is_flat(s)) else { return Ok(Some(Self::Nurbs(all))) };
-                let problem =
-                    format!("{} is not a curve in the plane z = 0; `pathwarp solid` deforms it", named(&all, i));
+                let what = named(&all, i);
+                let problem = format!("{what} is not in the plane z = 0; `pathwarp solid` deforms it");
                 return Err(Failure::file(file, problem));
             }
         }
@@ -82,9 +82,8 @@ impl Curves {
         let bytes = match target.map(|file| file.extension().unwrap_or_default().to_ascii_lowercase()) {
             None => self.text(map).map_err(wrong)?,
             Some(format) if format == "json" => {
-                let all = self.splines(map).map_err(wrong)?;
-                checked(&all, patch::MAX_DEGREE).map_err(wrong)?;
-                json::write(&all).map_err(Failure::Output)?
+                let all = self.splines(map).and_then(|all| checked(&all, patch::MAX_DEGREE).map(|()| all));
+                json::write(&all.map_err(wrong)?).map_err(Failure::Output)?
             }
             Some(format) if format == "dxf" => {
                 let mut all = self.splines(map).map_err(wrong)?;
@@ -127,11 +126,8 @@ impl Curves {
                 for (i, s) in all.iter().enumerate() {
                     let (pieces, what) = (s.pieces().0, named(all, i));
                     let images = pieces.iter().map(|p| image(map, &p.points[..=p.degree[0]], &what));
-                    out.push(Contour {
-                        name: s.name.clone(),
-                        images: images.collect::<Result<_, _>>()?,
-                        closed: false,
-                    });
+                    let images = images.collect::<Result<_, _>>()?;
+                    out.push(Contour { name: s.name.clone(), images, closed: false });
                 }
             }
         }
