@@ -26,7 +26,7 @@ const OUT: &str = "out";
 
 /// `--exact`, and the file that its result goes to.
 pub(super) fn args() -> [Arg; 2] {
-    let exact = Arg::new(EXACT.name).long(EXACT.name).value_name(super::PATHREF).help(EXACT.help);
+    let exact = Arg::new(EXACT.name).long(EXACT.name).value_name("PATHREF").help(EXACT.help);
     let out = Arg::new(OUT).short('o').long(OUT).value_name("OUT").value_parser(value_parser!(PathBuf));
     [
         exact.allow_hyphen_values(true).conflicts_with_all(["points", "jacobian", "all"]),

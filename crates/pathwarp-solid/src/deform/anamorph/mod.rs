@@ -541,6 +541,7 @@ static ABOUT: About3 = About3 {
 everywhere else the model is distorted: Ames rooms, sculptures that come together at one spot, reliefs.\n\n\
 Control points of a reference (--reference) are pushed along their rays, and the model follows:\n  \
 four points: a tetrahedron, whose control points I,J,K,L add up to the degree. At degree 1 planes stay plane.\n  \
+six points: a pentahedron, three corners and those opposite. I,J,K add up to the degree, and L counts along the edges.\n  \
 two points: a box with control points I,J,K from the left, bottom and back; if it is flat, a sheet.\n  \
 three points: a triangle as a sheet, control points I,J,K. All points of a ray through a sheet are moved by one factor.\n\n\
 With --local nothing outside the reference moves: leave the control points of the face where the model leaves the reference in \
