@@ -43,7 +43,7 @@ impl HullMap {
             (0..PLACES.pow(3)).map(|n| DVec3::new(at(n % PLACES), at(n / PLACES % PLACES), at(n / PLACES.pow(2))));
         let mut jets = places.map(|t| x.jet(region.min + t * region.size()));
         let first = jets.next().map_or(0.0, |j| j.det());
-        if let Some(j) = jets.find(|j| !(j.det() * first > 0.0)) {
+        if let Some(j) = jets.find(|j| (j.det() * first).is_nan() || j.det() * first <= 0.0) {
             let problem = format!("is flat or folds at {}; put its control points in order", show(j.p));
             return Err(Error::usage("hull", "", problem));
         }

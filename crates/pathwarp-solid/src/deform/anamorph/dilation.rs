@@ -75,7 +75,8 @@ impl Simplex {
         let mut out = Self { degree: n + m, terms: Vec::new() };
         for ([i, j, k, l], delta) in values {
             let c = delta * choose(n, i) * choose(n - i, j) * choose(m, l);
-            let power = |e: usize| ([i, j, k, l + e], c * choose(m - l, e) * if e % 2 == 0 { 1.0 } else { -1.0 });
+            let power =
+                |e: usize| ([i, j, k, l + e], c * choose(m - l, e) * if e.is_multiple_of(2) { 1.0 } else { -1.0 });
             out.terms.extend((0..=m - l).map(power));
         }
         out
