@@ -18,7 +18,7 @@ pub struct Options {
     /// Largest allowed Hausdorff distance between the source and the output, both ways.
     pub tolerance: f64,
     /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
-    pub prove: bool,
+    pub certify: bool,
     /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: those for which no smooth curve can stand
     /// within the tolerance, such as squares with sides of some ten tolerances, but neither stairs of pixels nor noise nor facets. Joints
     /// of other curves are smooth up to half a degree by default.
@@ -99,13 +99,13 @@ impl Options {
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
         let (best, evaluations) = (false, MAX_EVALUATIONS);
-        Self { tolerance, prove: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
+        Self { tolerance, certify: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
     }
 
-    /// Sets [`Options::prove`].
+    /// Sets [`Options::certify`].
     #[must_use]
-    pub fn with_prove(self, prove: bool) -> Self {
-        Self { prove, ..self }
+    pub fn with_certify(self, certify: bool) -> Self {
+        Self { certify, ..self }
     }
 
     /// Sets [`Options::corner`].

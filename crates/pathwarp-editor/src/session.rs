@@ -368,7 +368,7 @@ impl Session {
     pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
         let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
-        let from = inverse_over(&step.map, frame.rect).point(at);
+        let from = inverse_over(step.map.clone(), frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
         Ok((step.map.point(from).distance(at) <= near).then_some(from))
     }

@@ -35,7 +35,7 @@ fn the_report_has_an_entry_for_every_piece() {
     let simple = simplify(&path, &Options::new(0.05)).unwrap();
     assert_eq!(simple.report.pieces[0].assurance, Assurance::Exact);
     let circle = kurbo::Shape::to_path(&kurbo::Circle::new((0.0, 0.0), 100.0), 1e-12);
-    let proven = simplify(&circle, &Options::new(0.05).with_prove(true)).unwrap();
+    let proven = simplify(&circle, &Options::new(0.05).with_certify(true)).unwrap();
     assert!(proven.report.pieces.iter().all(|p| p.assurance >= Assurance::Certified));
     assert!(proven.report.pieces.iter().any(|p| p.assurance == Assurance::Certified));
 }

@@ -5,7 +5,7 @@
 //!
 //! # Writing a map
 //!
-//! [`from_fn`] makes a map from a closure.
+//! [`from_fn`] makes a map from a closure. References, boxes and [`Arc`]s of maps are maps.
 //!
 //! Implement [`Formula`]: one function from (x, y) to (x, y), generic over the number type ([`Real`]). Run on `f64` it gives
 //! values, run on [`Dual`] numbers it gives derivatives. Implement [`Map`] itself if derivatives have a cheaper closed form; only
@@ -86,7 +86,7 @@ pub use real::{Dual, Real};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use local::Local;
-pub(crate) use newton::INVERSE_WORK;
+pub(crate) use newton::{INVERSE_WORK, inverse_of};
 pub(crate) use patch::{Patch, powers};
 pub(crate) use preimages::Polynomials;
 pub(crate) use quotient::{Plane, Quotient, source_coordinates};
@@ -319,64 +319,70 @@ impl dyn Map + '_ {
 
 /// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
 macro_rules! forward {
-    () => {
-        fn jet(&self, p: Point) -> Jet {
+    ($jet:ident $point:ident $jets:ident $points:ident $enclose:ident) => {
+        fn $jet(&self, p: Point) -> Jet {
             (**self).jet(p)
         }
-        fn point(&self, p: Point) -> Point {
+        fn $point(&self, p: Point) -> Point {
             (**self).point(p)
         }
-        fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        fn $jets(&self, ps: &[Point], out: &mut [Jet]) {
             (**self).jets(ps, out);
         }
-        fn points(&self, ps: &[Point], out: &mut [Point]) {
+        fn $points(&self, ps: &[Point], out: &mut [Point]) {
             (**self).points(ps, out);
         }
         fn class(&self) -> Class {
-            (**self).class()
+            Map::class(&**self)
         }
         fn creases(&self, out: &mut Creases) {
-            (**self).creases(out);
+            Map::creases(&**self, out);
         }
         fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-            (**self).branch(inside)
+            Map::branch(&**self, inside)
         }
         fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-            (**self).image(curve)
+            Map::image(&**self, curve)
         }
         fn denominator(&self, p: Point) -> f64 {
-            (**self).denominator(p)
+            Map::denominator(&**self, p)
         }
         fn inverse(&self) -> Option<Arc<dyn Map>> {
-            (**self).inverse()
+            Map::inverse(&**self)
         }
         fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-            (**self).preimages(q)
+            Map::preimages(&**self, q)
         }
         fn cost(&self) -> Cost<'_> {
-            (**self).cost()
+            Map::cost(&**self)
         }
-        fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+        fn $enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
             (**self).enclose(along)
         }
         fn detail(&self, area: Rect) -> Option<f64> {
-            (**self).detail(area)
+            Map::detail(&**self, area)
         }
     };
 }
 
 impl<M: Map + ?Sized> Map for Arc<M> {
-    forward!();
+    forward!(jet point jets points enclose);
 }
 
-/// Other pointers are maps only if they point to `dyn Map`: every [`Formula`] is a map, and any crate may implement `Formula` for a
-/// reference or a box of its own type.
-impl Map for &(dyn Map + '_) {
-    forward!();
+/// A reference or a box is a map by being a formula: any crate may implement [`Formula`] for those of its own types, which rules out that
+/// they are maps beside it.
+impl<M: Map + ?Sized> Formula for &M {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        S::image(*self, [x, y])
+    }
+    forward!(dual value duals values enclosed);
 }
 
-impl Map for Box<dyn Map + '_> {
-    forward!();
+impl<M: Map + ?Sized> Formula for Box<M> {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        S::image(&**self, [x, y])
+    }
+    forward!(dual value duals values enclosed);
 }
 
 impl fmt::Debug for dyn Map + '_ {
@@ -508,7 +514,7 @@ mod tests {
         let expected: Vec<Point> = ps.iter().map(|p| OnlyJet.jet(*p).p).collect();
         let shared: Arc<dyn Map> = Arc::new(OnlyJet);
         let mut out = vec![Point::ORIGIN; ps.len()];
-        for map in [&OnlyJet as &dyn Map, &shared] {
+        for map in [&OnlyJet as &dyn Map, &shared, &&OnlyJet, &Box::new(OnlyJet)] {
             map.points(&ps, &mut out);
             assert_eq!(out, expected);
         }

@@ -172,7 +172,7 @@ pub fn simplified(
     let mut fitted = |segs: Vec<Seg>, closed: bool, tolerance: f64| -> Result<BezPath, GeometryError> {
         let arcs = if segs.iter().any(|g| matches!(g, Seg::Arc(_))) { ARCS * tolerance } else { 0.0 };
         let source = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs, closed }] }.to_bez_path(arcs);
-        let options = bezierfit::Options::new(tolerance - arcs).with_prove(options.certify).with_nodes(nodes);
+        let options = bezierfit::Options::new(tolerance - arcs).with_certify(options.certify).with_nodes(nodes);
         let fitted = bezierfit::simplify(&source, &corner.map_or(options, |c| options.with_corner(c)))?;
         report.add(PathReport::fitted(&fitted.report, tolerance));
         Ok(fitted.path)

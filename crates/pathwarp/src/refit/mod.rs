@@ -10,6 +10,7 @@
 //! `docs/refitting.md` derives the method.
 
 mod borders;
+mod curve;
 mod limits;
 mod merge;
 mod options;
@@ -23,6 +24,7 @@ mod source;
 
 pub use bezierfit::{Assurance, Nodes};
 pub use borders::{Borders, simplified};
+pub use curve::warp_curve;
 pub(crate) use limits::ARCS;
 pub use options::{Options, suited};
 pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
