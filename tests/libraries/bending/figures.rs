@@ -138,7 +138,7 @@ fn figures(outlines: &[Outline], options: impl Fn(f64) -> Options) -> [[usize; 2
             let counted = Counted { map: map.as_ref(), calls: AtomicUsize::new(0) };
             for outline in outlines {
                 let w = warp_path(outline, &counted, &options(tolerance)).unwrap();
-                assert!(w.report.over_budget.is_empty(), "{tolerance}: {outline:?}");
+                assert!(w.report.unresolved.is_empty(), "{tolerance}: {outline:?}");
                 pieces += w.report.segments_out;
             }
             calls += counted.calls.into_inner();

@@ -61,7 +61,7 @@ impl Found {
         let off = off(&outline, map, &warped, samples);
         let r = &warped.report;
         let says = || format!("{what} on {d}, merge {merge}: {off} is {:?} {}", r.assurance, r.max_error);
-        if !r.over_budget.is_empty() {
+        if !r.unresolved.is_empty() {
             self.warned.push(says());
         } else if off <= TOLERANCE * (1.0 + 1e-6) && r.assurance >= Assurance::Checked {
             self.right += 1;

@@ -35,7 +35,7 @@ fn maps() -> [Box<dyn Map>; 4] {
 
 /// Every subpath of the result against the image of its own.
 fn assert_within(line: &Outline, w: &RefittedPath, map: &dyn Map, tolerance: f64) {
-    assert!(w.report.max_error <= tolerance && w.report.over_budget.is_empty());
+    assert!(w.report.max_error <= tolerance && w.report.unresolved.is_empty());
     let out = Outline::from(&w.path);
     assert_eq!(out.subpaths.len(), line.subpaths.len());
     for (from, to) in line.subpaths.iter().zip(out.subpaths) {

@@ -348,7 +348,9 @@ impl Preset<'_> {
     fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
-        let options = WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone()));
+        let options = WarpOptions::new(
+            refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone()),
+        );
         Ok(doc.warp(&built.map, &options)?)
     }
 }

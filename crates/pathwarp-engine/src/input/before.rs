@@ -209,7 +209,10 @@ impl Wanted {
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
             let painted = document.painted_box(&selection);
             let Planned { edit, line, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
-            let refit = refit::Options::new(tolerance).with_suited(suited).with_budget(document.budget().clone());
+            let refit = refit::Options::new(tolerance)
+                .with_nodes(refit::Nodes::Source)
+                .with_suited(suited)
+                .with_budget(document.budget().clone());
             let warp = WarpOptions::new(refit)
                 .with_selection(selection)
                 .with_text(options.text)

@@ -152,7 +152,7 @@ impl<'a> PartTask<'a> {
         }
         let [error, share] = self.digits.errors(&spans, &warped.spans);
         report.max_error = report.max_error.max(error - self.rounding);
-        let missed = if report.unresolved.is_some() { report.max_error / self.finest } else { 0.0 };
+        let missed = if report.resolution.is_some() { report.max_error / self.finest } else { 0.0 };
         report.share = share.max(missed);
         let data = self.digits.path_data(&path, outline, &spans, &warped.spans);
         Ok(BentPath { path, data: Some(data), report })

@@ -45,7 +45,7 @@ use std::sync::Arc;
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
 ///
-/// Sets [`PathReport::unresolved`] if coordinates are so large that their rounding exceeds the tolerance.
+/// Sets [`PathReport::resolution`] if coordinates are so large that their rounding exceeds the tolerance.
 ///
 /// # Errors
 /// [`GeometryError::Tolerance`] if a tolerance is not a positive, finite number, [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
