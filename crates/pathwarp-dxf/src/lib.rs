@@ -28,7 +28,8 @@ pub use model::{Curves, Options, Shape};
 
 use entities::Pen;
 use file::{Codes, Layers};
-use pathwarp::budget::{Budget, Exceeded, cost};
+use pathwarp::budget::{Budget, Exceeded};
+use pathwarp::engine::cost;
 
 /// Returns a DXF file with the outlines of these shapes.
 ///

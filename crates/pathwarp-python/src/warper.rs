@@ -8,7 +8,7 @@ use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::map::{Abilities, Callee};
+use pathwarp::engine::{Abilities, Callee};
 use pathwarp::recipe::Step;
 use pathwarp::refit::Assurance;
 use pathwarp_engine::input::hatching;

@@ -9,8 +9,9 @@
 
 use pathwarp::Outline;
 use pathwarp::deform::{Style, Warp};
+use pathwarp::engine::KnownShapes;
 use pathwarp::map::Map;
-use pathwarp::refit::{KnownShapes, Nodes, Options};
+use pathwarp::refit::{Nodes, Options};
 use pathwarp_oracle::{Bicubic, Rational};
 use std::hint::black_box;
 use std::sync::Arc;

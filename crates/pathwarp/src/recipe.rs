@@ -100,6 +100,7 @@ pub struct BuiltRecipe {
 
 /// A part of the artwork that the same steps hold for.
 #[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
 pub struct Portion<'a> {
     /// The indices of those steps, in order.
     pub steps: Vec<usize>,
@@ -109,6 +110,7 @@ pub struct Portion<'a> {
 
 /// A recipe whose steps hold for parts of the artwork, with every parameter settled.
 #[derive(Debug, Clone)]
+#[doc(hidden)]
 pub struct BuiltParts {
     /// All steps in order, for artwork that all of them hold for.
     pub whole: BuiltRecipe,

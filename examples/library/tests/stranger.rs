@@ -1,9 +1,10 @@
 //! What programs do that know kurbo and not pathwarp: each checked against formulas.
 
+use pathwarp::engine::KnownShapes;
 use pathwarp::kurbo::{Affine, BezPath, Circle, Ellipse, ParamCurve, Point, Rect, RoundedRect, Shape, Vec2};
 use pathwarp::map::{AffineMap, Chain, Map, NewtonInverse, from_fn, from_fn_with};
 use pathwarp::outline::Seg;
-use pathwarp::refit::{self, KnownShapes, Nodes, Options};
+use pathwarp::refit::{self, Nodes, Options};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions};
 use std::sync::Arc;

@@ -1,9 +1,10 @@
 //! Shapes that come again, as letters do: their cubics are carried from place to place, and stay within the tolerance.
 
 use pathwarp::Outline;
+use pathwarp::engine::KnownShapes;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
-use pathwarp::refit::{KnownShapes, Nodes, Options, RefittedPath, warp_path};
+use pathwarp::refit::{Nodes, Options, RefittedPath, warp_path};
 use pathwarp_oracle::{Bicubic, Rational, Ripple};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,9 +1,10 @@
 //! Reports: exact images are reported as exact, and places at which the work budget ran out are listed.
 
 use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::engine::RESOLUTION;
 use pathwarp::kurbo::{Affine, ParamCurve, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Formula, Homography, Jet, Map, Real};
-use pathwarp::refit::{Assurance, Nodes, Options, RESOLUTION, warp_path};
+use pathwarp::refit::{Assurance, Nodes, Options, warp_path};
 use pathwarp::{GeometryError, Outline, Seg};
 use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Bicubic, Run, distance, far};

@@ -13,7 +13,8 @@ use pathwarp::map::AffineMap;
 use pathwarp::param::{Frame, Length, Settings};
 use pathwarp::recipe::Step;
 use pathwarp::refit;
-use pathwarp_svg::{CutLine, Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::engine::CutLine;
+use pathwarp_svg::{Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
 use std::collections::HashSet;
 use std::sync::Arc;
 

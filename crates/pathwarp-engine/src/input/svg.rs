@@ -25,9 +25,10 @@ use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
 use pathwarp_raster::Picture;
+use pathwarp_svg::engine::{LetterPlaces, LetteringFrame};
 use pathwarp_svg::{
-    Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, Structure, Warning, WarpOptions, WarpedDocument,
+    Document, Edit, Filters, Gradients, Images, Origin, PageFit, Painter, ReadOptions, Selection, ShapeReport, Strokes,
+    Structure, Warning, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;

@@ -61,6 +61,7 @@ pub trait Formula: Send + Sync {
     }
 
     /// See [`Map::cost`].
+    #[doc(hidden)]
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }

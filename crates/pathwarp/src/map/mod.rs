@@ -34,11 +34,12 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-mod batches;
+pub(crate) mod batches;
 mod bicubic;
 mod birational;
+#[doc(hidden)]
 pub mod bspline;
-mod called;
+pub(crate) mod called;
 mod chain;
 mod coons;
 mod crease;
@@ -46,7 +47,7 @@ pub(crate) mod curves;
 mod enclosure;
 mod formula;
 mod homography;
-mod joint;
+pub(crate) mod joint;
 mod lattice;
 mod local;
 mod newton;
@@ -63,11 +64,10 @@ use kurbo::{Affine, Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;
 
-pub use batches::Gathered;
+pub(crate) use batches::{Batches, Cost, Gathered, Images, Searches};
 pub(crate) use bicubic::complete_net;
 pub use bicubic::{BicubicNet, Net};
 pub use birational::{Birational, BirationalInverse, Monoid, Rows};
-pub use called::{Abilities, Ask, Called, Callee};
 pub use chain::Chain;
 pub use coons::{Coons, Sides};
 pub use crease::{Crease, CreaseKind, Creases, Field, Level};
@@ -76,7 +76,7 @@ pub use enclosure::Enclosure;
 pub(crate) use enclosure::along;
 pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
-pub use joint::Joint;
+pub(crate) use joint::Joint;
 pub use lattice::{Lattice, LatticeMap};
 pub use newton::{NewtonInverse, inverse_over};
 pub use preimages::preimages;
@@ -160,6 +160,7 @@ pub trait Map: Send + Sync {
     }
 
     /// The cost of an evaluation, for [`budget`](crate::budget). A map whose work grows with its number of parts says so here.
+    #[doc(hidden)]
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
@@ -213,97 +214,31 @@ pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
     map.detail(area).or_else(told)
 }
 
-/// The cost of evaluating a map.
-#[derive(Clone, Copy)]
-pub struct Cost<'a> {
-    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
-    pub work: f64,
-    /// The cost of a single jet, as Newton's method asks for it. With many parts, a jet takes longer alone than in a batch.
-    pub jet: f64,
-    /// Set if each call is expensive and each point cheap, as when another program is asked.
-    pub batches: Option<&'a dyn Batches>,
-    /// Set if the map searches for its values, as inverses do, and may take more than `work`.
-    pub searches: Option<&'a dyn Searches>,
-}
-
-/// A map that searches for its values.
-pub trait Searches {
-    /// The same map, which charges to `budget` what its searches take beyond [`Cost::work`], and finds nothing once that is used up.
-    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
-}
-
-impl<'a> Cost<'a> {
-    /// The cost of a bicubic net.
-    pub const NET: Self = Self::new(1.0);
-
-    /// The cost of a map whose evaluation takes `work`.
-    #[must_use]
-    pub const fn new(work: f64) -> Self {
-        const SINGLY: f64 = 3.0;
-        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
-    }
-
-    setters! {
-        /// The same cost for a map that should be asked in batches.
-        batched(by: &'a dyn Batches) => batches: Some(by);
-        /// The same cost for a map that searches.
-        searching(by: &'a dyn Searches) => searches: Some(by);
-    }
-}
-
-impl fmt::Debug for Cost<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
-    }
-}
-
-/// Points, and a slot for the result at each.
-pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
-
-/// A map whose calls are expensive and whose points are cheap. Its [`cost`](Map::cost) says so, and callers then collect the points they
-/// need.
-pub trait Batches: Map {
-    /// Maps some points and computes the jets at others, in one call where possible.
-    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
-        self.points(ps, images);
-        self.jets(qs, jets);
-    }
-
-    /// Returns `true` if each derivative is a difference of several values. Callers then use values where they can.
-    fn differentiates(&self) -> bool {
-        false
-    }
-
-    /// Returns `true` if the map caches results, so that announcing points to [`prepare`](Self::prepare) pays.
-    fn remembers(&self) -> bool {
-        false
-    }
-
-    /// Announces the points whose values, and those whose jets, will be asked for next.
-    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
-}
-
 /// Shorthands for parts of the cost and the class.
 impl dyn Map + '_ {
     /// See [`Cost::work`].
+    #[doc(hidden)]
     #[must_use]
     pub fn work(&self) -> f64 {
         self.cost().work
     }
 
     /// The same map with its searches charged to `budget`; `None` if it does not search.
+    #[doc(hidden)]
     #[must_use]
     pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
         self.cost().searches.map(|s| s.within(budget))
     }
 
     /// Returns `true` if calls are expensive and points cheap; see [`Batches`].
+    #[doc(hidden)]
     #[must_use]
     pub fn prefers_batches(&self) -> bool {
         self.cost().batches.is_some()
     }
 
     /// Announces the points whose values, and those whose jets, will be asked for next. Only maps that cache results listen.
+    #[doc(hidden)]
     pub fn prepare(&self, points: &[Point], jets: &[Point]) {
         if let Some(batches) = self.cost().batches {
             batches.prepare(points, jets);

@@ -9,7 +9,7 @@
 //!
 //! `docs/refitting.md` derives the method.
 
-mod borders;
+pub(crate) mod borders;
 mod curve;
 mod limits;
 mod merge;
@@ -17,18 +17,17 @@ mod options;
 mod overview;
 mod path;
 mod repeats;
-mod report;
+pub(crate) mod report;
 mod segment;
-mod shared;
+pub(crate) mod shared;
 mod source;
 
 pub use bezierfit::{Assurance, Nodes};
-pub use borders::{Borders, simplified};
+pub use borders::simplified;
 pub use curve::warp_curve;
 pub(crate) use limits::ARCS;
 pub use options::{Options, suited};
-pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
-pub use shared::{SharedEdges, Span};
+pub use report::{PathReport, RefittedPath};
 
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Jet, Map};
@@ -36,6 +35,7 @@ use crate::outline::{Outline, Seg};
 use kurbo::Point;
 use merge::MergeMemory;
 use repeats::Shapes;
+use shared::SharedEdges;
 use std::sync::Arc;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
@@ -88,7 +88,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
 ///
 /// ```
-/// use pathwarp::{Outline, map::Formula, map::Real, refit::{KnownShapes, Nodes, Options}};
+/// use pathwarp::{Outline, engine::KnownShapes, map::Formula, map::Real, refit::{Nodes, Options}};
 ///
 /// struct Square;
 /// impl Formula for Square {
@@ -100,6 +100,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// let known = KnownShapes::among(&drawing, &Square, &options);
 /// assert!(known.warp_path(&drawing[7], &Square, &options).unwrap().report.max_error <= 0.1);
 /// ```
+#[doc(hidden)]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KnownShapes(Arc<Shapes>);
 

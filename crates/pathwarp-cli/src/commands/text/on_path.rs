@@ -21,7 +21,7 @@ use pathwarp_engine::input::{self, PlainArtwork};
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::session::Session;
-use pathwarp_svg::{SetGroup, SetPath};
+use pathwarp_svg::engine::{SetGroup, SetPath};
 use pathwarp_text::{Cluster, OutlinedText};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
