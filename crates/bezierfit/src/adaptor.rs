@@ -28,7 +28,6 @@ impl<C: ParamCurveFit> Source for Kurbo<C> {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        /// Breaks at most, of a curve that finds one in every part of it.
         const MOST: usize = 10_000;
         let (mut out, mut parts) = (Vec::new(), vec![0.0..1.0]);
         while let Some(Range { start, end }) = parts.pop().filter(|_| out.len() < MOST) {

@@ -93,6 +93,16 @@ pub enum Pieces {
     Exactly(usize),
 }
 
+macro_rules! setters {
+    ($($name:ident($field:ident: $type:ty) => $value:expr;)*) => {$(
+        #[doc = concat!("Sets [`Options::", stringify!($field), "`].")]
+        #[must_use]
+        pub fn $name(self, $field: $type) -> Self {
+            Self { $field: $value, ..self }
+        }
+    )*};
+}
+
 impl Options {
     /// Within `tolerance`, measured.
     #[must_use]
@@ -102,46 +112,14 @@ impl Options {
         Self { tolerance, certify: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
     }
 
-    /// Sets [`Options::certify`].
-    #[must_use]
-    pub fn with_certify(self, certify: bool) -> Self {
-        Self { certify, ..self }
-    }
-
-    /// Sets [`Options::corner`].
-    #[must_use]
-    pub fn with_corner(self, corner: f64) -> Self {
-        Self { corner: Some(corner), ..self }
-    }
-
-    /// Sets [`Options::nodes`].
-    #[must_use]
-    pub fn with_nodes(self, nodes: Nodes) -> Self {
-        Self { nodes, ..self }
-    }
-
-    /// Sets [`Options::degree`].
-    #[must_use]
-    pub fn with_degree(self, degree: Degree) -> Self {
-        Self { degree, ..self }
-    }
-
-    /// Sets [`Options::pieces`].
-    #[must_use]
-    pub fn with_pieces(self, pieces: Pieces) -> Self {
-        Self { pieces, ..self }
-    }
-
-    /// Sets [`Options::best`].
-    #[must_use]
-    pub fn with_best(self, best: bool) -> Self {
-        Self { best, ..self }
-    }
-
-    /// Sets [`Options::evaluations`].
-    #[must_use]
-    pub fn with_evaluations(self, evaluations: usize) -> Self {
-        Self { evaluations, ..self }
+    setters! {
+        with_certify(certify: bool) => certify;
+        with_corner(corner: f64) => Some(corner);
+        with_nodes(nodes: Nodes) => nodes;
+        with_degree(degree: Degree) => degree;
+        with_pieces(pieces: Pieces) => pieces;
+        with_best(best: bool) => best;
+        with_evaluations(evaluations: usize) => evaluations;
     }
 
     /// Refuses what makes no sense.

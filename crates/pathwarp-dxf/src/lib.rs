@@ -28,8 +28,7 @@ pub use model::{Curves, Options, Shape};
 
 use entities::Pen;
 use file::{Codes, Layers};
-use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, cost};
 
 /// Returns a DXF file with the outlines of these shapes.
 ///

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::{advice, edges, meter};
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
-use pathwarp::engine::{Batches, Cost, cost};
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
+use pathwarp::engine::{Batches, Cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Jet, Map, NewtonInverse};
 use pathwarp_raster::{

@@ -4,7 +4,7 @@ use crate::file::{File, deflated};
 use crate::group;
 use crate::stream::Stream;
 use kurbo::{Affine, Rect};
-use pathwarp::engine::cost;
+use pathwarp::budget::cost;
 use pathwarp_raster::{Error, Picture, Pixmap, header_size};
 use pdf_writer::{Filter, Finish as _, Name, Ref};
 use std::sync::Arc;

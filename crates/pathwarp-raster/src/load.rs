@@ -8,8 +8,7 @@
 
 use crate::error::Error;
 use crate::picture::header_size;
-use pathwarp::budget::{Budget, Exceeded, Limit, Limits};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
 use std::collections::HashMap;
 use std::sync::Arc;
 use tiny_skia::{PathSegment, Rect, Transform};

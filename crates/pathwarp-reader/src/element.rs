@@ -3,8 +3,7 @@
 
 use crate::names::{Name, State, Svg};
 use crate::sheet::{Declaration, Rules};
-use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, cost};
 use roxmltree::Node;
 use selectors::OpaqueElement;
 use selectors::attr::{AttrSelectorOperation, CaseSensitivity, NamespaceConstraint};

@@ -2,8 +2,7 @@
 
 use memchr::{memchr, memchr_iter, memchr2_iter, memchr3, memmem};
 use pathwarp::Error;
-use pathwarp::budget::{Budget, Exceeded, Limit};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use roxmltree::Node;
 use std::collections::{HashMap, HashSet};
 

@@ -21,8 +21,7 @@ use crate::source::select::{self, Division, Selection, candidates, is_named, mat
 use crate::source::tree::undrawn;
 use crate::write;
 use crate::write::input::WriteInput;
-use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, cost};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::{AffineMap, Map};
 use pathwarp::param::Letter;

@@ -78,7 +78,6 @@ pub mod solve;
 /// share, maps of other languages. It may change in any release.
 #[doc(hidden)]
 pub mod engine {
-    pub use crate::budget::{cost, is_over};
     pub use crate::map::batches::{Batches, Cost, Gathered, Images, Searches};
     pub use crate::map::bspline;
     pub use crate::map::called::{Abilities, Ask, Called, Callee};

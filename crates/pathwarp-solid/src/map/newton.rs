@@ -13,8 +13,7 @@
 use crate::map::{Jet3, Map3};
 use crate::settings::Box3;
 use glam::{DMat3, DVec3};
-use pathwarp::budget::{Budget, Search};
-use pathwarp::engine::is_over;
+use pathwarp::budget::{Budget, Search, is_over};
 use std::fmt;
 use std::sync::Arc;
 

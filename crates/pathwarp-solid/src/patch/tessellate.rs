@@ -5,8 +5,7 @@ use super::trims::Trims;
 use crate::map::{Chain3, Map3};
 use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
-use pathwarp::budget::{Budget, Exceeded};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, cost};
 use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.

@@ -4,7 +4,7 @@
 use super::pictures::PictureError;
 use super::task::PartTask;
 use crate::source::mesh::{MeshGradient, coons};
-use pathwarp::engine::cost;
+use pathwarp::budget::cost;
 use pathwarp::kurbo::Point;
 use pathwarp::map::{Jet, Map};
 

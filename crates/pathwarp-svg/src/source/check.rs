@@ -2,8 +2,7 @@
 
 use super::elements::is_shape;
 use memchr::{memchr2, memmem};
-use pathwarp::budget::{Budget, Exceeded, Limit};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp::{Error, Outline, Seg};
 use pathwarp_reader::LARGEST;
 use simplecss::DeclarationTokenizer;

@@ -4,8 +4,7 @@
 use super::elements::declarations;
 use super::fonts::{self, listing, load_unnamed};
 use base64::Engine as _;
-use pathwarp::budget::{Budget, Exceeded, Limit};
-use pathwarp::engine::cost;
+use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp_text::GlyphWork;
 use std::collections::BTreeMap;
 use std::io::Read as _;

@@ -127,45 +127,11 @@ impl<F: Formula> Map for F {
         self.values(ps, out);
     }
 
-    fn class(&self) -> Class {
-        Formula::class(self)
-    }
-
-    fn creases(&self, out: &mut Creases) {
-        Formula::creases(self, out);
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Formula::branch(self, inside)
-    }
-
-    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        Formula::image(self, curve)
-    }
-
-    fn denominator(&self, p: Point) -> f64 {
-        Formula::denominator(self, p)
-    }
-
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Formula::inverse(self)
-    }
-
-    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-        Formula::preimages(self, q)
-    }
-
-    fn cost(&self) -> Cost<'_> {
-        Formula::cost(self)
-    }
-
     fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
         self.enclosed(along)
     }
 
-    fn detail(&self, area: Rect) -> Option<f64> {
-        Formula::detail(self, area)
-    }
+    forward_common!(self => Formula, self);
 }
 
 /// A map from a closure that gives the image of a point. Its derivatives are differences of values, good to nine digits or so where the map

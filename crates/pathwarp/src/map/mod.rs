@@ -34,6 +34,61 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
+/// Forwards the methods that a [`Map`] and a [`Formula`] have in common.
+macro_rules! forward_common {
+    ($self:ident => $trait:ident, $to:expr) => {
+        fn class(&$self) -> Class {
+            $trait::class($to)
+        }
+        fn creases(&$self, out: &mut Creases) {
+            $trait::creases($to, out);
+        }
+        fn branch(&$self, inside: Point) -> Option<Arc<dyn Map>> {
+            $trait::branch($to, inside)
+        }
+        fn image(&$self, curve: &RationalBezier) -> Option<RationalBezier> {
+            $trait::image($to, curve)
+        }
+        fn denominator(&$self, p: Point) -> f64 {
+            $trait::denominator($to, p)
+        }
+        fn inverse(&$self) -> Option<Arc<dyn Map>> {
+            $trait::inverse($to)
+        }
+        fn preimages(&$self, q: Point) -> Option<Vec<Point>> {
+            $trait::preimages($to, q)
+        }
+        fn cost(&$self) -> Cost<'_> {
+            $trait::cost($to)
+        }
+        fn detail(&$self, area: Rect) -> Option<f64> {
+            $trait::detail($to, area)
+        }
+    };
+}
+
+/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+macro_rules! forward {
+    ($jet:ident $point:ident $jets:ident $points:ident $enclose:ident) => {
+        fn $jet(&self, p: Point) -> Jet {
+            (**self).jet(p)
+        }
+        fn $point(&self, p: Point) -> Point {
+            (**self).point(p)
+        }
+        fn $jets(&self, ps: &[Point], out: &mut [Jet]) {
+            (**self).jets(ps, out);
+        }
+        fn $points(&self, ps: &[Point], out: &mut [Point]) {
+            (**self).points(ps, out);
+        }
+        fn $enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+            (**self).enclose(along)
+        }
+        forward_common!(self => Map, &**self);
+    };
+}
+
 pub(crate) mod batches;
 mod bicubic;
 mod birational;
@@ -250,54 +305,6 @@ impl dyn Map + '_ {
     pub fn rational_degree(&self) -> Option<RationalDegree> {
         self.class().degree()
     }
-}
-
-/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
-macro_rules! forward {
-    ($jet:ident $point:ident $jets:ident $points:ident $enclose:ident) => {
-        fn $jet(&self, p: Point) -> Jet {
-            (**self).jet(p)
-        }
-        fn $point(&self, p: Point) -> Point {
-            (**self).point(p)
-        }
-        fn $jets(&self, ps: &[Point], out: &mut [Jet]) {
-            (**self).jets(ps, out);
-        }
-        fn $points(&self, ps: &[Point], out: &mut [Point]) {
-            (**self).points(ps, out);
-        }
-        fn class(&self) -> Class {
-            Map::class(&**self)
-        }
-        fn creases(&self, out: &mut Creases) {
-            Map::creases(&**self, out);
-        }
-        fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-            Map::branch(&**self, inside)
-        }
-        fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-            Map::image(&**self, curve)
-        }
-        fn denominator(&self, p: Point) -> f64 {
-            Map::denominator(&**self, p)
-        }
-        fn inverse(&self) -> Option<Arc<dyn Map>> {
-            Map::inverse(&**self)
-        }
-        fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-            Map::preimages(&**self, q)
-        }
-        fn cost(&self) -> Cost<'_> {
-            Map::cost(&**self)
-        }
-        fn $enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
-            (**self).enclose(along)
-        }
-        fn detail(&self, area: Rect) -> Option<f64> {
-            Map::detail(&**self, area)
-        }
-    };
 }
 
 impl<M: Map + ?Sized> Map for Arc<M> {

@@ -425,16 +425,6 @@ impl Searches for NewtonInverse {
 
 /// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
 /// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
-///
-/// ```
-/// use pathwarp::kurbo::{Point, Rect};
-/// use pathwarp::map::{Map, from_fn, inverse_over};
-/// use std::sync::Arc;
-///
-/// let wave = Arc::new(from_fn(|p| Point::new(p.x, p.y + (p.x / 20.0).sin() * 5.0)));
-/// let back = inverse_over(wave.clone(), Rect::new(0.0, 0.0, 100.0, 100.0));
-/// assert!(back.point(wave.point(Point::new(30.0, 40.0))).distance(Point::new(30.0, 40.0)) < 1e-9);
-/// ```
 #[must_use]
 pub fn inverse_over(map: impl Map + 'static, area: Rect) -> Arc<dyn Map> {
     inverse_of(&(Arc::new(map) as Arc<dyn Map>), area)

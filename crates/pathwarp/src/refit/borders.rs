@@ -152,15 +152,6 @@ impl Nodes {
 ///
 /// # Errors
 /// A coordinate is not finite.
-///
-/// ```
-/// use pathwarp::{Outline, refit::{Options, simplified}};
-///
-/// let stairs = Outline::from_svg("M0,0H1V1H2V2H3V3H4V4H5V5H6V6H7V7H8V8")?;
-/// let line = simplified(&stairs, None, &Options::new(1.0), &[])?;
-/// assert_eq!(line.path.to_svg(), "M0,0 L8,8");
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
 pub fn simplified(
     outline: &Outline,
     corner: Option<f64>,

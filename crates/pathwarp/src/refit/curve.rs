@@ -10,8 +10,8 @@ const SAMPLES: usize = 256;
 /// Fits the image of a curve under a map: of a closure from a parameter, 0 to 1, to a point and a derivative, of kurbo's curves as
 /// [`Segment`](bezierfit::Segment), [`PathSource`](bezierfit::PathSource) and [`Kurbo`](bezierfit::Kurbo), or of any other [`Source`].
 ///
-/// Creases are found where the curve crosses them, unless it does so twice within a 256th of its parameter. [`warp_path`](super::warp_path)
-/// is for drawings: it knows of lines and arcs, of closed paths, and what the map does between samples.
+/// Creases are found where the curve crosses them, unless it does so twice within a 256th of its parameter. Paths and segments, which
+/// [`warp_path`](super::warp_path) takes as outlines, need no such care there.
 ///
 /// # Errors
 /// As [`bezierfit::fit`]; places are those in the source.
@@ -40,15 +40,12 @@ fn crossings(curve: &dyn Source, level: &Level, out: &mut Vec<f64>) {
     let side = |t: f64| level.at(curve.eval(t).0) > 0.0;
     for i in 0..SAMPLES {
         let [mut from, mut to] = [i, i + 1].map(|i| i as f64 / SAMPLES as f64);
-        let first = side(from);
-        if first == side(to) {
-            continue;
-        }
-        while to - from > f64::EPSILON {
+        let (first, last) = (side(from), side(to));
+        while first != last && to - from > f64::EPSILON {
             let t = 0.5 * (from + to);
             *(if side(t) == first { &mut from } else { &mut to }) = t;
         }
-        out.push(to);
+        out.extend((first != last).then_some(to));
     }
 }
 

@@ -86,20 +86,6 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// for those again, and none waits for another.
 ///
 /// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
-///
-/// ```
-/// use pathwarp::{Outline, engine::KnownShapes, map::Formula, map::Real, refit::{Nodes, Options}};
-///
-/// struct Square;
-/// impl Formula for Square {
-///     fn f<S: Real>(&self, x: S, y: S) -> (S, S) { (x, y + x * x * 0.01) }
-/// }
-/// let ring = |x: f64| Outline::from_svg(&format!("M{x} 0A5 5 0 0 1 {} 0A5 5 0 0 1 {x} 0Z", x + 10.0)).unwrap();
-/// let drawing: Vec<Outline> = (0..400).map(|i| ring(f64::from(i) / 10.0)).collect();
-/// let options = Options::new(0.1).with_nodes(Nodes::Fewest);
-/// let known = KnownShapes::among(&drawing, &Square, &options);
-/// assert!(known.warp_path(&drawing[7], &Square, &options).unwrap().report.max_error <= 0.1);
-/// ```
 #[doc(hidden)]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KnownShapes(Arc<Shapes>);
