@@ -21,6 +21,9 @@
 //! every deformation must obey; [`fold`] finds places where a map turns the plane over; [`distance`] measures how far two paths are
 //! apart.
 //!
+//! An application needs these, with [`edit`], [`map`] and [`budget`]. Who writes a deformation implements [`map::Map`] or
+//! [`map::Formula`], and [`deform::Deformation`] with [`param`]. A third part, `engine`, is for pathwarp's own crates, and hidden here.
+//!
 //! # Features
 //!
 //! - `serde` (default): reads JSON. Without it there are no warp styles and text shapes ([`deform::Warp`], [`deform::WordArt`]),
