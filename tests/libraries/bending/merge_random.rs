@@ -80,7 +80,7 @@ fn waves() -> impl Strategy<Value = Waves> {
 
 fn holds(segs: &[Seg], map: &dyn Map, tolerance: f64, certify: bool) -> Result<(), TestCaseError> {
     let path = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs: segs.to_vec(), closed: false }] };
-    let off = Options::new(tolerance).with_certify(certify);
+    let off = Options::new(tolerance).with_nodes(Nodes::Source).with_certify(certify);
     let separate = warp_path(&path, map, &off).unwrap();
     for nodes in [Nodes::Fewest, Nodes::Auto, Nodes::Extremes] {
         let w = warp_path(&path, map, &off.clone().with_nodes(nodes)).unwrap();

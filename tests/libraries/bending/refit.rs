@@ -358,8 +358,9 @@ fn reversed_edges_become_the_same_curves_reversed() {
     let back = Outline { subpaths: outline.subpaths.iter().map(Subpath::reversed).collect() };
     for (name, map) in &maps() {
         for tolerance in [1.0, 0.01] {
-            let a = warp_path(&outline, map.as_ref(), &Options::new(tolerance)).unwrap();
-            let b = warp_path(&back, map.as_ref(), &Options::new(tolerance)).unwrap();
+            let options = Options::new(tolerance).with_nodes(Nodes::Source);
+            let a = warp_path(&outline, map.as_ref(), &options).unwrap();
+            let b = warp_path(&back, map.as_ref(), &options).unwrap();
             let mut seen: Vec<CubicBez> = pathwarp_oracle::cubics(&b.path);
             for c in pathwarp_oracle::cubics(&a.path) {
                 let mirrored = CubicBez::new(c.p3, c.p2, c.p1, c.p0);

@@ -54,7 +54,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     )
     .unwrap();
     for tolerance in [10.0, 1.0, 0.01] {
-        let w = warp_path(&outline, &map, &Options::new(tolerance)).unwrap();
+        let w = warp_path(&outline, &map, &Options::new(tolerance).with_nodes(Nodes::Source)).unwrap();
         let out = pathwarp_oracle::cubics(&w.path);
         // In the order of the path.
         let mut nodes = out.iter().map(|c| c.p3);
