@@ -17,7 +17,8 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_engine::framed::is_framed;
-use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
+use pathwarp_svg::engine::DrawingPart;
+use pathwarp_svg::{ReadOptions, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -368,7 +369,7 @@ impl Session {
     pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
         let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
-        let from = inverse_over(&step.map, frame.rect).point(at);
+        let from = inverse_over(step.map.clone(), frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
         Ok((step.map.point(from).distance(at) <= near).then_some(from))
     }

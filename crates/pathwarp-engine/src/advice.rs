@@ -6,7 +6,8 @@ use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Kind;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, ShapeReport, Skipped, UnreadImages, Warning};
+use pathwarp_svg::engine::{LetteringFrameError, UnreadImages};
+use pathwarp_svg::{ShapeReport, Skipped, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The error of edits of a picture.

@@ -1,8 +1,9 @@
 //! Requests, answers and descriptions of built maps, which the binary and the text form of the protocol share.
 
 use crate::fault::Fault;
+use pathwarp::engine::Ask;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Ask, Crease, CreaseKind, Creases, Level};
+use pathwarp::map::{Crease, CreaseKind, Creases, Level};
 
 /// Returns the command of the text protocol that asks so.
 pub(crate) fn word(ask: Ask) -> &'static str {

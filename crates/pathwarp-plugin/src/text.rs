@@ -2,8 +2,9 @@
 
 use crate::answer::{BuildAnswer, CreaseAnswer, word};
 use crate::fault::{Fault, beginning};
+use pathwarp::engine::Ask;
 use pathwarp::kurbo::Point;
-use pathwarp::map::{Ask, Creases};
+use pathwarp::map::Creases;
 use std::fmt::Write as _;
 
 /// Encodes the request to build a map from `lines`.

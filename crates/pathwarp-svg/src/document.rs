@@ -116,7 +116,8 @@ impl Document {
         if away <= FAR * side || self.drawing.specified_area().is_none() {
             return Ok(None);
         }
-        let refit = refit::Options::new(FINE * side).with_budget(self.budget().clone());
+        let refit =
+            refit::Options::new(FINE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options =
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
@@ -135,7 +136,7 @@ impl Document {
             return Ok(None);
         }
         let tolerance = FINE / stretch(self.user_to_px());
-        let refit = refit::Options::new(tolerance).with_budget(self.budget().clone());
+        let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options = WarpOptions::new(refit).with_on_error(OnError::Skip).with_page(PageFit::None);
         Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))
     }

@@ -13,7 +13,8 @@ use pathwarp::map::AffineMap;
 use pathwarp::param::{Frame, Length, Settings};
 use pathwarp::recipe::Step;
 use pathwarp::refit;
-use pathwarp_svg::{CutLine, Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::engine::CutLine;
+use pathwarp_svg::{Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -209,7 +210,10 @@ impl Wanted {
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
             let painted = document.painted_box(&selection);
             let Planned { edit, line, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
-            let refit = refit::Options::new(tolerance).with_suited(suited).with_budget(document.budget().clone());
+            let refit = refit::Options::new(tolerance)
+                .with_nodes(refit::Nodes::Source)
+                .with_suited(suited)
+                .with_budget(document.budget().clone());
             let warp = WarpOptions::new(refit)
                 .with_selection(selection)
                 .with_text(options.text)

@@ -25,9 +25,10 @@ use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
 use pathwarp_raster::Picture;
+use pathwarp_svg::engine::{LetterPlaces, LetteringFrame};
 use pathwarp_svg::{
-    Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, Structure, Warning, WarpOptions, WarpedDocument,
+    Document, Edit, Filters, Gradients, Images, Origin, PageFit, Painter, ReadOptions, Selection, ShapeReport, Strokes,
+    Structure, Warning, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -202,7 +203,8 @@ impl SvgArtwork {
     /// A result, all of it scaled and moved.
     fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
         let doc = Document::read(svg.as_bytes(), &self.name, &bending(&self.read))?;
-        let refit = refit::Options::new(own.refit.tolerance).with_budget(doc.budget().clone());
+        let refit =
+            refit::Options::new(own.refit.tolerance).with_nodes(Nodes::Source).with_budget(doc.budget().clone());
         let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
         let options = options.with_structure(own.structure).with_clones(own.clones);
         Ok(doc.warp(&AffineMap(to), &options)?.svg)

@@ -348,7 +348,7 @@ fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
     art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| domain.contains(g.eval(f64::from(i) / 100.0)))));
     let mut pieces = 0;
     for (art, samples) in &art {
-        let w = match refit::warp_path(art, map, &refit::Options::new(TOLERANCE)) {
+        let w = match refit::warp_path(art, map, &refit::Options::new(TOLERANCE).with_nodes(refit::Nodes::Source)) {
             Ok(w) => w,
             Err(e) => {
                 check.fault(format!("refitting its demo fails: {e}"));
@@ -358,7 +358,7 @@ fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
         pieces += w.report.segments_out;
         let segs: Vec<_> = w.path.segments().collect();
         let off = art.segs().find_map(|seg| away(map, seg, &segs, *samples, TOLERANCE));
-        if let (Some((p, off)), true) = (off, w.report.over_budget.is_empty()) {
+        if let (Some((p, off)), true) = (off, w.report.unresolved.is_empty()) {
             check.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
         }
         if !w.path.bounding_box().is_finite() {

@@ -4,7 +4,8 @@ use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, Settings};
 use pathwarp_engine::failure::Failure;
-use pathwarp_svg::{ReadOptions, family_styles};
+use pathwarp_svg::ReadOptions;
+use pathwarp_svg::engine::family_styles;
 use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, features, variations};
 
 /// The size of the em, and the unit that it and the whole page have.
