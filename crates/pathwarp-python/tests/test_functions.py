@@ -281,7 +281,7 @@ def test_mistakes_are_told_by_their_kind():
         (lambda x, y: (x, y + np.maximum(0, 20 - np.hypot(x - 50, y - 40)) / 5), "creases", "at circle 50 40 20"),
         (lambda x, y: (x + (x > 50) * 9, y), "creases", "jumps by 9 at 50"),
         (lambda x, y: (np.nan * x, y), "values", "has no value at any of 81 places"),
-        (lambda x, y: (7, 7), "values", "sends all points to one, so"),
+        (lambda x, y: (7, 7), "values", "sends all points to one, or"),
         (lambda x, y: ((x + np.sin(y)).astype(np.float32), y), "values", "x' has the digits of single precision"),
         (lambda x, y: (x, np.round(y + np.sin(x), 3)), "values", "y' is rounded to 3 decimals"),
         (lambda x, y: (x + np.random.default_rng().random(x.shape), y), "values", "gives two answers for the point 3.7,4.3"),
@@ -307,7 +307,7 @@ def test_mistakes_are_told_by_their_kind():
 
 
 def test_outlines_of_paths_are_of_their_kind():
-    assert pathwarp.outline("M0,0 H40", width=10) == "M0,-5 L40,-5 L40,5 L0,5 Z"
+    assert pathwarp.outline("M0,0 H40", width=10) == "M0,5 L40,5 L40,-5 L0,-5 Z"
     ring = pathwarp.outline(svgpathtools.parse_path("M10,50 A40,40 0 1 1 90,50 A40,40 0 1 1 10,50 Z"), width=4, tolerance=0.01)
     radii = {round(abs(p - (50 + 50j)), 1) for p in (segment.point(0.3) for segment in ring)}
     assert isinstance(ring, svgpathtools.Path) and radii == {38.0, 42.0}

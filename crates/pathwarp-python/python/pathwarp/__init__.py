@@ -174,7 +174,7 @@ def outline(
 
         >>> import pathwarp
         >>> pathwarp.outline("M0,0 H40", width=10)
-        'M0,-5 L40,-5 L40,5 L0,5 Z'
+        'M0,5 L40,5 L40,-5 L0,-5 Z'
     """
     if not _inputs.is_path(shapes):
         if width is not None:

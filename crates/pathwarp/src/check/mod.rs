@@ -189,9 +189,8 @@ fn parameters(info: &Info) -> Check {
 pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
     let tested = Tested::new(built, frame);
     if let Some(fault) = tested.two_answers(&[]) {
-        let mut check = Check::new("values");
-        check.fault(fault);
-        done(check.unless_failed(built));
+        let detail = format!("{} points", tested.samples.len());
+        done(Check { detail, faults: vec![fault], ..Check::new("values") }.unless_failed(built));
         return false;
     }
     let mut is_smooth = true;
@@ -379,16 +378,22 @@ fn refitting(t: &Tested<'_>) -> Check {
     const SAMPLES: u32 = 12;
     let mut check = Check::new("refitting");
     let (map, frame) = (t.map, t.frame);
+    check.detail = "a circle and 12 lines".to_owned();
+    // Within the domain, so that short lines are in it.
+    let mean = t.samples.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / t.samples.len().max(1) as f64;
+    let from_mean = |p: &Point| (p.to_vec2() - mean).hypot();
+    let inner = t.samples.iter().copied().min_by(|a, b| from_mean(a).total_cmp(&from_mean(b)));
+    let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
     let hundredth = 0.01 * frame.size().to_vec2().hypot();
     // A hundredth of a unit in the box of checks.
     let tolerance = hundredth / 2_f64.sqrt() * 0.01;
     let declared = detail_in(map, frame);
     let size = declared.unwrap_or(f64::INFINITY).clamp(0.01 * hundredth, hundredth);
-    let circle = Circle::new(frame.center(), 0.3 * frame.width().min(frame.height()));
+    let circle = Circle::new(center, 0.3 * frame.width().min(frame.height()));
     let mut art = vec![(Outline::from(&circle.to_path(1e-9)), 101)];
     art.extend(DETAILS.iter().enumerate().map(|(i, n)| {
         let half = Vec2::from_angle(0.618 * i as f64) * (0.5 * size * f64::from(*n));
-        (Outline::from_points(&[frame.center() - half, frame.center() + half], false), SAMPLES * n + 97)
+        (Outline::from_points(&[center - half, center + half], false), SAMPLES * n + 97)
     }));
     let all = art.len();
     art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| t.contains(g.eval(f64::from(i) / 100.0)))));
@@ -534,14 +539,16 @@ fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
 
 /// Checks a law, and returns the number of samples that were skipped.
 fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
-    let values = match *law {
-        Law::Same(a, b) | Law::Undoes(a, b) => vec![a, b],
-        Law::Identity(a)
-        | Law::KeepsLines(a)
-        | Law::KeepsLinesAlong(a, _)
-        | Law::FixedOutside(a, _)
-        | Law::Area(a, _)
-        | Law::KeepsAngles(a) => vec![a],
+    // The keys are those of the entry of a plug-in.
+    let (key, values) = match *law {
+        Law::Identity(a) => ("identity", vec![a]),
+        Law::Same(a, b) => ("same", vec![a, b]),
+        Law::KeepsLines(a) => ("keeps-lines", vec![a]),
+        Law::KeepsLinesAlong(a, _) => ("keeps-lines-along", vec![a]),
+        Law::FixedOutside(a, _) => ("fixed-outside", vec![a]),
+        Law::Area(a, _) => ("area", vec![a]),
+        Law::KeepsAngles(a) => ("keeps-angles", vec![a]),
+        Law::Undoes(a, b) => ("undoes", vec![a, b]),
     };
     let mut built = Vec::with_capacity(values.len());
     for pairs in &values {
@@ -578,12 +585,11 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
     };
     let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);
     let more = Vec::from_iter(seen.get());
-    let nothing = || (tried.get() == 0).then(|| "has no value at any place, so the law says nothing".to_owned());
     // Values after a failure mean nothing, and neither do those that change.
     if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
         check.fault(format!("{}: {e}", written(pairs)));
-    } else if let Some(nothing) = nothing() {
-        check.fault(format!("{} {nothing}", written(values[0])));
+    } else if tried.get() == 0 {
+        check.fault(format!("{key} {}: the map has no value at any place", written(values[0])));
     } else if let Some(fault) = fault {
         let changed = tested.two_answers(&more).map(|fault| (values[0], fault));
         let changed = changed.or_else(|| Some((*values.last()?, later.two_answers(&more)?)));

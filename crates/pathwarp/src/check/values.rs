@@ -23,7 +23,8 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
     let mut jets = vec![Jet::default(); count];
     t.map.jets(&t.samples, &mut jets);
     // Derivatives that are computed from values miss some digits of narrow waves.
-    let near = if t.map.cost().batches.is_some_and(Batches::differentiates) { 1e-2 } else { 1e-5 };
+    let own = !t.map.cost().batches.is_some_and(Batches::differentiates);
+    let near = if own { 1e-5 } else { 1e-2 };
     let mut outside = t.outside;
     let mut slopes = Slopes::default();
     let mut bad: [Vec<Point>; 3] = [const { Vec::new() }; 3];
@@ -50,7 +51,7 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
         check.fault(format!("{words} at {} of {count} places, such as {}", places.len(), place(places[0])));
         check.places.extend(places);
     }
-    check.faults.extend(slopes.faults());
+    check.faults.extend(slopes.faults(own));
     let places = match slopes.mirrored {
         0 => String::new(),
         n if n == slopes.compared => "; it mirrors, as one does that swaps x and y".to_owned(),
@@ -90,9 +91,8 @@ struct Slopes {
     wrong: [(usize, Option<String>); 4],
     /// Places where they would be wrong if they were transposed, too.
     not_transposed: usize,
-    /// Places whose neighbours have images on one curve, or at one point.
+    /// Places around which all images lie on one curve, or at one point.
     flat: usize,
-    pointed: usize,
     mirrored: usize,
 }
 
@@ -110,17 +110,22 @@ impl Slopes {
         self.not_transposed += usize::from([0, 2, 1, 3].iter().zip(found).any(|(k, v)| off(own[*k], v)));
         self.compared += 1;
         self.flat += usize::from(dx.cross(dy).abs() <= 1e-7 * dx.hypot() * dy.hypot() + 1e-14);
-        self.pointed += usize::from(dx.hypot().max(dy.hypot()) < 1e-9);
         self.mirrored += usize::from(dx.cross(dy) < 0.0);
     }
 
-    fn faults(&self) -> Vec<String> {
+    /// Describes what is wrong; `own` says that the map gives derivatives itself.
+    fn faults(&self, own: bool) -> Vec<String> {
         if self.compared > 0 && self.flat == self.compared {
             let to =
                 if self.pointed == self.flat { "sends all points to one" } else { "sends all points to one curve" };
             return vec![format!("{to}, so artwork has no area after it")];
         }
-        if self.wrong.iter().any(|(n, _)| *n > 0) && self.not_transposed == 0 {
+        let worst = self.wrong.iter().map(|(n, _)| *n).max().unwrap_or(0);
+        if worst > 0 && !own {
+            let why = "its features are so small that derivatives computed from values are wrong";
+            return vec![format!("{why} at {worst} of {} places; give derivatives, too", self.compared)];
+        }
+        if worst > 0 && self.not_transposed == 0 {
             return vec![format!("its derivatives are transposed: {} and {} change places", ENTRIES[1], ENTRIES[2])];
         }
         let wrong = self.wrong.iter().zip(ENTRIES);

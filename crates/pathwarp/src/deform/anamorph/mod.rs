@@ -72,7 +72,7 @@ parameters! {
         length: Option<f64> = length("length", Axis::Y).within(1e-6, 1e9).slider(10.0, 40000.0);
         /// The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above.
         param = new("onto", Kind::Text("SURFACE"));
-        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as below.
+        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as above.
         param = new("mirror", Kind::Text("SHAPE"));
         /// Place of the mirror's foot on the page, such as on the photograph of a drawing that --inverse restores. Default: below
         /// the artwork's middle.
@@ -87,11 +87,11 @@ parameters! {
         param = new("reference", Kind::Text("X,Y X,Y [X,Y]"));
         /// Degree of the net: control points along a side, less one; MxN across and down a box.
         param = new("degree", Kind::Text("N|MxN")).default("1");
-        /// Takes a control point to this many times its distance from the eye; may be given many times.
+        /// Takes a control point to this many times its distance from the eye.
         param = new("push", Kind::Text("I,J[,K]:FACTOR")).repeated();
-        /// Takes a control point this much further from the eye, or nearer if negative; may be given many times.
+        /// Takes a control point this much further from the eye, or nearer if negative.
         param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
-        /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
+        /// Takes a control point to the point of its ray nearest to here (eye in the drawing).
         param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
         /// Takes this point to so many times its distance from the eye (a length further from an eye at infinity), by pushing the control point nearest to it that is not on
         /// a fixed side: the first side of a triangle, the edge of a box if --local.
@@ -240,7 +240,7 @@ impl Anamorph {
                 match eye {
                     Eye::At(..) => {
                         let height = measured(height, units);
-                        let here = format!("eye {height} straight above this mark");
+                        let here = format!("eye {height} straight above the round mark");
                         (at, [here, format!("eye {height} above the sheet{HERE}")])
                     }
                     Eye::Infinite(_) => (at, far_away(height)),
@@ -254,7 +254,7 @@ impl Anamorph {
                     false => Point::new(foot.x + (r.middle.x - foot.x) * k, foot.y),
                 };
                 let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
-                let here = format!("eye {} in front of this mark", measured(apart, units));
+                let here = format!("eye {} in front of the round mark", measured(apart, units));
                 let there = format!("eye {} in front of the surface{HERE}", measured(apart, units));
                 (map.point(front), [here, there])
             }
@@ -511,7 +511,7 @@ flat for a triangle of degree 1, otherwise shown with --view.")
         },
         Example {
             what: "A word that shows in a mirror, 60 mm thick, with marks for the mirror and the eye",
-            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit page -o out.svg",
+            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit a4 -o out.svg",
         },
         Example {
             what: "A relief that is right in a parallel projection from above on the left",
