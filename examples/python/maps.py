@@ -4,5 +4,5 @@ import numpy as np
 
 
 def breeze(x, y):
-    """Rows that drift apart towards the right. Units are px, y down."""
-    return x + 9 * np.sin(y / 30), y + x / 15 * np.sin(x / 50 + y / 90)
+    """Rows in a breeze that grows towards the right. Units are px, y down."""
+    return x + 9 * np.sin(y / 40), y + x / 16 * np.sin(x / 60 + y / 200)

@@ -28,17 +28,19 @@ class Samples(BasePen):
     def __init__(self, glyphs=None):
         super().__init__(glyphs)
         self.points = []
-        self.lengths = 0
 
     def _moveTo(self, p):
-        self.points.append(p)
+        self.first = p
+
+    def _closePath(self):
+        self._lineTo(self.first)
 
     def _lineTo(self, p):
-        t = np.linspace(0, 1, 41)[:, None]
+        t = np.linspace(0, 1, 201)[:, None]
         self.points += list(np.array(self._getCurrentPoint()) * (1 - t) + np.array(p) * t)
 
     def _curveToOne(self, b, c, d):
-        t = np.linspace(0, 1, 101)[:, None]
+        t = np.linspace(0, 1, 201)[:, None]
         a, b, c, d = map(np.array, (self._getCurrentPoint(), b, c, d))
         self.points += list(a * (1 - t) ** 3 + 3 * b * t * (1 - t) ** 2 + 3 * c * t**2 * (1 - t) + d * t**3)
 
@@ -66,7 +68,7 @@ def test_letters_become_a_ufo(tmp_path, monkeypatch, capsys):
         assert stored.width == source["hmtx"][name][0] and stored.unicodes == [ord(letter)]
         # Both ways: nothing lacks, and nothing is elsewhere. Half a unit is the tolerance, the rest the distance of samples.
         image = np.column_stack(melt(*np.array(before.points).T))
-        assert farthest(image, np.array(after.points)) < 6 and farthest(np.array(after.points), image) < 6
+        assert farthest(image, np.array(after.points)) < 3 and farthest(np.array(after.points), image) < 3
 
 
 def test_a_figure_is_bent_and_has_few_nodes(tmp_path, monkeypatch, capsys):

@@ -136,7 +136,7 @@ def test_a_function_in_a_file_is_a_map(circle, tmp_path):
     bent = execute(f"read --no-crop {circle} pathwarp {maps}:breeze")
     # Each vertex, and each middle between two, is near the image of the circle by the formula.
     x, y = exact_circle().T
-    image = x + 9 * np.sin(y / 30) + 1j * (y + x / 15 * np.sin(x / 50 + y / 90))
+    image = x + 9 * np.sin(y / 40) + 1j * (y + x / 16 * np.sin(x / 60 + y / 200))
     (line,) = bent.layers[1]
     assert max(abs(image - p).min() for p in np.concatenate([line, (line[1:] + line[:-1]) / 2])) < 0.02 * MM
     for words, told in (
