@@ -116,9 +116,7 @@ impl Slopes {
     /// Describes what is wrong; `own` says that the map gives derivatives itself.
     fn faults(&self, own: bool) -> Vec<String> {
         if self.compared > 0 && self.flat == self.compared {
-            let to =
-                if self.pointed == self.flat { "sends all points to one" } else { "sends all points to one curve" };
-            return vec![format!("{to}, so artwork has no area after it")];
+            return vec!["sends all points to one, or to one curve, so artwork has no area after it".to_owned()];
         }
         let worst = self.wrong.iter().map(|(n, _)| *n).max().unwrap_or(0);
         if worst > 0 && !own {
