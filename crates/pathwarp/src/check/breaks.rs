@@ -164,18 +164,13 @@ impl Curve {
 
 /// The line or circle through the most of some points, at least four; `None` if there is none.
 fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
-    /// Points that curves are drawn through.
-    const TRIED: usize = 24;
-    let spread = points.len().div_ceil(TRIED).max(1);
-    let tried: Vec<Point> = points.iter().step_by(spread).copied().collect();
+    // Curves are drawn through 24 of them.
+    let tried: Vec<Point> = points.iter().step_by(points.len().div_ceil(24).max(1)).copied().collect();
     let count = |c: &Curve| points.iter().filter(|p| c.distance(**p) < near).count();
     let mut best: Option<(usize, Curve)> = None;
     let mut consider = |curve: Option<Curve>| {
-        let Some(curve) = curve else { return };
-        let n = count(&curve);
-        if n >= 4 && best.is_none_or(|(most, _)| n > most) {
-            best = Some((n, curve));
-        }
+        let counted = curve.map(|c| (count(&c), c)).filter(|(n, _)| *n >= 4);
+        best = counted.filter(|(n, _)| best.is_none_or(|(most, _)| *n > most)).or(best);
     };
     for (i, a) in tried.iter().enumerate() {
         for (j, b) in tried.iter().enumerate().skip(i + 1) {

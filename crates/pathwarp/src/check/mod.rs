@@ -380,9 +380,7 @@ fn refitting(t: &Tested<'_>) -> Check {
     let (map, frame) = (t.map, t.frame);
     check.detail = "a circle and 12 lines".to_owned();
     // Within the domain, so that short lines are in it.
-    let mean = t.samples.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2()) / t.samples.len().max(1) as f64;
-    let from_mean = |p: &Point| (p.to_vec2() - mean).hypot();
-    let inner = t.samples.iter().copied().min_by(|a, b| from_mean(a).total_cmp(&from_mean(b)));
+    let inner = t.samples.get(t.samples.len() / 2).copied();
     let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
     let hundredth = 0.01 * frame.size().to_vec2().hypot();
     // A hundredth of a unit in the box of checks.
@@ -508,9 +506,10 @@ fn cases(entry: &dyn Deformation) -> Check {
                     check.fault(format!("{args}: {failure}"));
                 } else if off.is_nan() || off > case.tolerance {
                     let changed = Tested::new(&built, frame().rect).two_answers(&[at]);
-                    let (at, got, to) = (place(at), place(got), place(to));
-                    let differs = || format!("takes {at} to {got}, {} away from {to}", number(off));
-                    check.fault(format!("{args} {}", changed.unwrap_or_else(differs)));
+                    let [at, got, to] = [at, got, to].map(place);
+                    let fault =
+                        changed.unwrap_or_else(|| format!("takes {at} to {got}, {} away from {to}", number(off)));
+                    check.fault(format!("{args} {fault}"));
                 }
             }
             Err(e) => check.fault(format!("{args} does not build: {e}")),

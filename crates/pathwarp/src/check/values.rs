@@ -126,12 +126,10 @@ impl Slopes {
         if worst > 0 && self.not_transposed == 0 {
             return vec![format!("its derivatives are transposed: {} and {} change places", ENTRIES[1], ENTRIES[2])];
         }
-        let wrong = self.wrong.iter().zip(ENTRIES);
-        wrong
-            .filter_map(|((n, first), entry)| {
-                Some(format!("{entry} is wrong at {n} of {} places: {}", self.compared, first.as_ref()?))
-            })
-            .collect()
+        let told = |((n, first), entry): (&(usize, Option<String>), &str)| {
+            Some(format!("{entry} is wrong at {n} of {} places: {}", self.compared, first.as_ref()?))
+        };
+        self.wrong.iter().zip(ENTRIES).filter_map(told).collect()
     }
 }
 
