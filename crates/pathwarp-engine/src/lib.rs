@@ -50,4 +50,5 @@ pub mod units;
 
 pub use embed::{
     Details, Drawing, Error, ErrorKind, Path, PointMap, Warper, lettering_drawing, option_names, option_words, preset,
+    reserved_names,
 };

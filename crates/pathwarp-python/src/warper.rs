@@ -188,6 +188,13 @@ impl Warper {
         Ok(out)
     }
 
+    /// Checks the map: for each check its name, what was checked, and what is wrong.
+    fn check(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String, Vec<String>)>> {
+        let warper = self.engine.clone();
+        let checked = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).check())?;
+        Ok(self.done(py, checked)?.into_iter().map(|c| (c.name, c.detail, c.faults)).collect())
+    }
+
     /// Bends a path: its data and report.
     fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
         let (warper, data) = (self.engine.clone(), data.to_owned());

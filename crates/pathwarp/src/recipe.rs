@@ -413,6 +413,19 @@ impl BuiltRecipe {
         self.map.spending(&Arc::new(Budget::new(Limits::none())))
     }
 
+    /// Returns the steps as one deformation, without copies and letters.
+    #[must_use]
+    pub fn as_one(&self) -> Built {
+        let map = self.unlimited();
+        let (values, state) = (map.clone(), self.clone());
+        let mut built = Built::new(Arc::new(map));
+        if self.steps.iter().any(|s| s.undefined.is_some()) {
+            built.undefined = Some(Arc::new(move |p| (!values.point(p).is_finite()).then(String::new)));
+        }
+        built.failure = Some(Arc::new(move || state.failure()));
+        built
+    }
+
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
     /// `None` if nothing of the artwork is in the map's domain.
     #[must_use]

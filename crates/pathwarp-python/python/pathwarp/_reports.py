@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
-from typing import List, Literal, Optional, Tuple, TypedDict
+from typing import List, Literal, NamedTuple, Optional, Tuple, TypedDict
 
 Assurance = Literal["exact", "certified", "checked", "sampled"]
+
+
+class Check(NamedTuple):
+    """One check of a map."""
+
+    name: str
+    detail: str
+    """What was checked."""
+    faults: List[str]
+    """What is wrong; empty if nothing is."""
+
+    def __str__(self) -> str:
+        return "\n    ".join([f"{'FAIL' if self.faults else 'ok  '} {self.name}: {self.detail}", *self.faults])
 
 
 class PathReport(TypedDict):
