@@ -12,6 +12,7 @@ use pathwarp::param::Args;
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::bitmap::{background, encode};
+use pathwarp_engine::caption::{captioned, is_caption};
 use pathwarp_engine::edits::EDITS;
 use pathwarp_engine::export::Exported;
 use pathwarp_engine::failure::Failure;
@@ -50,6 +51,8 @@ struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
     shown: Option<SvgArtwork>,
+    /// The drawing with the captions that were asked for last.
+    captioned: Option<(Vec<Step>, Document)>,
     /// A bitmap of a large drawing in its place, once small pictures were asked for.
     sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
@@ -76,6 +79,7 @@ impl EditedArtwork {
         Self {
             svg,
             shown,
+            captioned: None,
             sketch: None,
             registry: Arc::clone(registry),
             given,
@@ -216,9 +220,9 @@ fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
     let exclude = saved.recipe.steps.first().map(|s| s.exclude.clone()).unwrap_or_default();
     edits.iter_mut().for_each(|s| s.exclude.clone_from(&exclude));
-    // Once, edits alone stood beside a step that moves nothing.
+    // Words alone are saved with a step that moves nothing; once, edits alone were.
     let is_still = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
-    let is_alone = !edits.is_empty() && matches!(&*saved.recipe.steps, [only] if is_still(only));
+    let is_alone = matches!(&*saved.recipe.steps, [only] if is_still(only));
     saved.recipe.steps.splice(0..usize::from(is_alone), edits);
     Ok(())
 }
@@ -285,6 +289,19 @@ fn bent(
 impl Artwork for EditedArtwork {
     fn document(&self) -> &Document {
         self.svg.document()
+    }
+
+    fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String> {
+        let captions: Vec<Step> = recipe.steps.iter().filter(|s| is_caption(s)).cloned().collect();
+        if captions.is_empty() {
+            return Ok(self.svg.document());
+        }
+        if self.captioned.as_ref().is_none_or(|(of, _)| *of != captions) {
+            let set = captioned(self.svg.document(), &captions, self.svg.reading(), &self.options);
+            let (document, _) = self.said(set)?;
+            self.captioned = Some((captions, document));
+        }
+        Ok(self.captioned.as_ref().map_or_else(|| self.svg.document(), |(_, document)| document))
     }
 
     fn reading(&self) -> &ReadOptions {

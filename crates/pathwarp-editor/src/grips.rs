@@ -9,6 +9,7 @@ use pathwarp::map::Lattice;
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Outline, Seg};
+use pathwarp_engine::caption::CAPTION;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -33,6 +34,11 @@ pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe)
         json!({ "frame": rect(frame.rect), "params": params })
     });
     steps.collect()
+}
+
+/// The handles of a caption in this frame.
+pub(crate) fn of_caption(args: &Args, frame: &Frame) -> Value {
+    json!({ "frame": rect(frame.rect), "params": of_step(&CAPTION, args, frame) })
 }
 
 /// A box as x, y, width, height.

@@ -3,7 +3,7 @@
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
 use crate::draft::{self, Draft, Kept, Moment, NO_FOLDER};
-use crate::grips::{grips, rect, with_net_of};
+use crate::grips::{grips, of_caption, rect, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
@@ -14,8 +14,10 @@ use crate::{presets, saving};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Map as _, inverse_over};
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::map::{Map, inverse_over};
+use pathwarp::param::Args;
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+use pathwarp_engine::caption::{self, is_caption};
 use pathwarp_engine::framed::is_framed;
 use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
 use serde_json::{Value, json};
@@ -169,8 +171,10 @@ impl Session {
         let (old_steps, mut steps) = (self.kept.now.steps.clone(), Vec::new());
         let frames = self.frames(&old_steps)?;
         for (step, from) in old_steps.into_iter().zip(frames) {
-            let Some(step) = other.for_own_parts(step) else { continue };
-            let to = other.frame_of(&steps, &step.select)?;
+            // A step for letters that have gone waits until they are back.
+            let waits = self.present(std::slice::from_ref(&step)).0.is_empty()
+                || other.present(std::slice::from_ref(&step)).0.is_empty();
+            let to = if waits { from } else { other.frame_of(&steps, &step.select)? };
             steps.push(presets::laid(other.host.registry(), step, from, to));
         }
         let mut kept = self.kept.clone();
@@ -178,17 +182,40 @@ impl Session {
         self.redraw(other, kept)
     }
 
-    /// A step of other words for those of its parts that this drawing has, too; `None` if it has none of them.
-    fn for_own_parts(&self, mut step: PageStep) -> Option<PageStep> {
-        let document = self.opened.artwork.document();
+    /// The steps for the parts that the drawing has, and the places of those that have none of theirs, which are left out.
+    fn present(&mut self, given: &[PageStep]) -> (Vec<PageStep>, Vec<usize>) {
+        let mut out = given.to_vec();
+        if given.iter().all(|s| s.select.is_empty() && s.exclude.is_empty()) {
+            return (out, Vec::new());
+        }
+        // A caption that is wrong is reported where the drawing is bent.
+        let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return (out, Vec::new()) };
         let is_here = |selector: &String| {
             let select = vec![selector.clone()];
             document.check_selection(&Selection { select, ..Selection::default() }).is_ok()
         };
-        let is_of_all = step.select.is_empty();
-        step.select.retain(is_here);
-        step.exclude.retain(is_here);
-        (is_of_all || !step.select.is_empty()).then_some(step)
+        for step in &mut out {
+            step.select.retain(is_here);
+            step.exclude.retain(is_here);
+        }
+        let is_gone = |i: &usize| out[*i].select.is_empty() && !given[*i].select.is_empty();
+        let gone: Vec<usize> = (0..given.len()).filter(is_gone).collect();
+        let present = (0..given.len()).zip(out).filter(|(i, _)| !gone.contains(i)).map(|(_, step)| step);
+        (present.collect(), gone)
+    }
+
+    /// The recipe of steps, as far as their parts are there.
+    fn recipe(&mut self, given: &[PageStep]) -> Recipe {
+        recipe(&self.present(given).0)
+    }
+
+    /// The recipe that results are made by. Words need no step, and then nothing moves.
+    fn finishing(&mut self) -> Recipe {
+        let mut given = self.recipe(&self.kept.now.steps.clone());
+        if given.steps.is_empty() {
+            given.steps.push(Step::new("affine", Args::new()));
+        }
+        given
     }
 
     /// A session like this one for the drawing `svg`, which is to be the content of `file`.
@@ -267,8 +294,9 @@ impl Session {
     /// The drawing under these steps; `draft` is the tolerance while something is dragged.
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
-        let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
-        let about = self.about(self.firsts(given), &bent);
+        let (present, gone) = self.present(given);
+        let bent = self.opened.artwork.bend(&recipe(&present), fineness)?;
+        let about = self.about(given, &gone, &bent);
         let reading = self.opened.artwork.reading().clone();
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
@@ -285,13 +313,24 @@ impl Session {
         given.iter().take_while(is_first).count()
     }
 
-    fn about(&self, firsts: usize, bent: &Bent) -> Value {
-        let mut grips = grips(self.host.registry(), &bent.resolved, &bent.built);
-        // What comes before bending has no handles.
-        let frame = rect(self.opened.artwork.frame());
-        grips.splice(0..0, (0..firsts).map(|_| json!({ "frame": frame, "params": {} })));
+    fn about(&self, given: &[PageStep], gone: &[usize], bent: &Bent) -> Value {
+        let artwork = &self.opened.artwork;
+        let mut bending = grips(self.host.registry(), &bent.resolved, &bent.built).into_iter();
+        let frame = rect(artwork.frame());
+        // Of what comes before bending, captions alone have handles.
+        let first = |step: &PageStep| {
+            let of = &recipe(std::slice::from_ref(step)).steps[0];
+            is_caption(of).then(|| of_caption(&of.args, &caption::frame(artwork.document())))
+        };
+        let firsts = self.firsts(given);
+        let of_step = |(i, step): (usize, &PageStep)| {
+            let own = if gone.contains(&i) { None } else if i < firsts { first(step) } else { bending.next() };
+            own.unwrap_or_else(|| json!({ "frame": frame, "params": {} }))
+        };
+        let grips: Vec<Value> = given.iter().enumerate().map(of_step).collect();
         let mut about = json!({
             "grips": grips,
+            "gone": gone,
             "guides": guides(&bent.built),
             "warnings": bent.warnings,
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
@@ -313,7 +352,8 @@ impl Session {
         let visible = visible(&given, shown);
         let picture = self.bend(visible, None)?;
         if visible.len() < given.len() {
-            self.opened.artwork.settle(&recipe(&given))?;
+            let all = self.recipe(&given);
+            self.opened.artwork.settle(&all)?;
         }
         if given != self.kept.now.steps {
             self.kept.go_on(given);
@@ -360,26 +400,30 @@ impl Session {
 
     /// The stretch of these steps over the artwork's box.
     pub(crate) fn stretch(&mut self, given: &[PageStep]) -> Result<Value, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
         Ok(stretch(&built.map, self.opened.artwork.frame()))
     }
 
     /// The place that the last of these steps takes to `at`, if there is one.
     pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
         let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
         let from = inverse_over(&step.map, frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
         Ok((step.map.point(from).distance(at) <= near).then_some(from))
     }
 
-    /// The last of these steps with other values of what says how many control points its net has; it bends as before.
+    /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can, and
+    /// then the second value says how far it has moved what.
     pub(crate) fn renet(
         &mut self,
         given: &[PageStep],
         values: BTreeMap<String, Vec<String>>,
-    ) -> Result<PageStep, String> {
-        let (resolved, built) = self.opened.artwork.settle(&recipe(given))?;
+    ) -> Result<(PageStep, f64), String> {
+        let present = self.recipe(given);
+        let (resolved, built) = self.opened.artwork.settle(&present)?;
         let mut after = given.last().cloned().ok_or("there is no step")?;
         after.args.extend(values);
         let entry = self.host.registry().get(&after.deformation);
@@ -394,7 +438,13 @@ impl Session {
             }
         }
         after.args.retain(|_, values| !values.is_empty());
-        Ok(after)
+        let all = given.iter().take(given.len() - 1).chain([&after]).cloned().collect::<Vec<_>>();
+        let all = self.recipe(&all);
+        let (_, new) = self.opened.artwork.settle(&all)?;
+        let (Some(old), Some(new), Some(frame)) = (built.steps.last(), new.steps.last(), built.frames.last()) else {
+            return Ok((after, 0.0));
+        };
+        Ok((after, apart(&old.map, &new.map, frame.rect)))
     }
 
     /// The first values of a deformation after these steps.
@@ -416,7 +466,8 @@ impl Session {
         }
         let still = PageStep { deformation: "affine".into(), select: select.to_vec(), ..PageStep::default() };
         let steps = [given, &[still]].concat();
-        let (_, built) = self.opened.artwork.settle(&recipe(&steps))?;
+        let steps = self.recipe(&steps);
+        let (_, built) = self.opened.artwork.settle(&steps)?;
         built.frames.last().map(|f| f.rect).ok_or_else(|| "the parts have no box".into())
     }
 
@@ -429,24 +480,28 @@ impl Session {
     }
 
     /// The parts of the drawing, for a list.
-    pub(crate) fn parts(&self) -> Value {
-        let parts = self.opened.artwork.document().parts().into_iter().take(MOST_PARTS);
+    pub(crate) fn parts(&mut self) -> Result<Value, String> {
+        let document = self.opened.artwork.captioned(&recipe(&self.kept.now.steps))?;
+        let parts = document.parts().into_iter().take(MOST_PARTS);
         let part = |p: DrawingPart| json!({ "name": p.name, "selector": p.selector, "label": p.label, "element": p.element, "depth": p.depth });
-        parts.map(part).collect()
+        Ok(parts.map(part).collect())
     }
 
     /// The box that each of these steps refers to.
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
-        let firsts = std::iter::repeat_n(self.opened.artwork.frame(), self.firsts(given));
-        Ok(firsts.chain(built.frames.iter().map(|f| f.rect)).take(given.len()).collect())
+        let (present, gone) = self.present(given);
+        let (_, built) = self.opened.artwork.settle(&recipe(&present))?;
+        let (firsts, mut bending) = (self.firsts(given), built.frames.iter().map(|f| f.rect));
+        let own = |i: usize| if i < firsts || gone.contains(&i) { None } else { bending.next() };
+        Ok((0..given.len()).map(own).map(|own| own.unwrap_or_else(|| self.opened.artwork.frame())).collect())
     }
 
     /// The frame of a step after these.
     fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
         let artwork = &self.opened.artwork;
-        let image = (!given.is_empty()).then(|| built.image_box(artwork.outlines().into_iter())).flatten();
+        let image = (!given.steps.is_empty()).then(|| built.image_box(artwork.outlines().into_iter())).flatten();
         Ok(image.unwrap_or_else(|| artwork.frame()))
     }
 
@@ -482,7 +537,8 @@ impl Session {
     pub(crate) fn thumbnail(&mut self, given: &[PageStep]) -> Result<String, String> {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
-        let bent = self.opened.artwork.bend(&recipe(given), Fineness::Small(tolerance))?;
+        let given = self.recipe(given);
+        let bent = self.opened.artwork.bend(&given, Fineness::Small(tolerance))?;
         Picture::small(&bent.svg, self.opened.artwork.reading())
     }
 
@@ -584,7 +640,7 @@ impl Session {
 
     /// The result in the format of the file `to`, where it `stays` unless that is elsewhere, and what it cannot hold.
     fn finished(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
-        let given = recipe(&self.kept.now.steps);
+        let given = self.finishing();
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
@@ -616,9 +672,9 @@ impl Session {
 
     /// The command line that writes the result as *Save* does, under a name or the usual one; and the drawing's file if it was written
     /// for that.
-    pub(crate) fn command_line(&self, target: &Target) -> Result<Value, String> {
+    pub(crate) fn command_line(&mut self, target: &Target) -> Result<Value, String> {
         let to = self.place(target)?;
-        let (given, mut options) = (recipe(&self.kept.now.steps), self.opened.artwork.options());
+        let (given, mut options) = (self.finishing(), self.opened.artwork.options());
         let (source, before, written) = self.source()?;
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {
@@ -640,6 +696,16 @@ impl Session {
         };
         Ok(json!({ "text": text, "written": written }))
     }
+}
+
+/// The largest distance between two images of a place in a box, over a grid of them.
+fn apart(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
+    /// Places along a side.
+    const PLACES: u32 = 25;
+    let share = |k: u32| f64::from(k) / f64::from(PLACES - 1);
+    let places = (0..PLACES * PLACES).map(|k| (share(k % PLACES), share(k / PLACES)));
+    let at = places.map(|(x, y)| Point::new(r.x0 + x * r.width(), r.y0 + y * r.height()));
+    at.map(|p| a.point(p).distance(b.point(p))).filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
 /// The folder of a file, for people.

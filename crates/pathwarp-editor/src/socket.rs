@@ -96,7 +96,7 @@ impl Page {
                 *self.shared.target() = target;
                 Ok(json!({}))
             }
-            Request::Parts => Ok(json!({ "parts": session.parts() })),
+            Request::Parts => Ok(json!({ "parts": session.parts()? })),
             Request::Bend { steps, draft } => {
                 let shown = session.bend(&steps, draft)?;
                 self.show(shown)
@@ -161,7 +161,10 @@ impl Page {
             Request::Preimage { steps, at } => {
                 Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
             }
-            Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
+            Request::Renet { steps, values } => {
+                let (step, moved) = session.renet(&steps, values)?;
+                Ok(json!({ "step": step, "moved": moved }))
+            }
             Request::CommandLine { to } => session.command_line(&to),
         }
     }

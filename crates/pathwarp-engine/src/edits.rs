@@ -1,13 +1,15 @@
 //! Edits: steps at the beginning of a recipe that change shapes without bending them. The options `simplify` and `outset` stand for the usual
 //! ones.
 
+use crate::caption::CAPTION;
 use crate::failure::Failure;
 use pathwarp::deform::{ByHand, Info};
 use pathwarp::param::{Axis, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 
-/// The edits. Each has the name of its command.
-pub static EDITS: [Info; 5] = [
+/// The edits. Each has the name of its command. Captions come before the others wherever they stand among them.
+pub static EDITS: [Info; 6] = [
+    CAPTION,
     Info::new("simplify", "give paths the fewest nodes within a distance")
         .group("Before bending")
         .params(&[
