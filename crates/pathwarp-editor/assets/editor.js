@@ -386,8 +386,13 @@
   function paramName({ name, label }) {
     return label ?? words(name);
   }
+  function isCaption({ deformation }) {
+    return deformation === "caption";
+  }
+  var LONGEST = 30;
   function stepName(step2, deformation) {
     if (!deformation) return words(step2.deformation);
+    if (isCaption(step2)) return `“${(step2.args.words ?? []).join(" ").slice(0, LONGEST)}”`;
     const preset = deformation.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
     const variant = deformation.variants.find(({ param }) => step2.args[param]);
     return preset ? words(preset) : variant?.label ?? called(deformation);
@@ -774,8 +779,8 @@
             const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
             ends.forEach(([seg, own, other], i) => {
               if (seg?.length !== 6) return;
-              const moved = similarity(turns ? at(other) : null, from, to);
-              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved([seg[k], seg[k + 1]]));
+              const moved2 = similarity(turns ? at(other) : null, from, to);
+              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved2([seg[k], seg[k + 1]]));
             });
             if (n === 0) sub.start = to;
             if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
@@ -1065,6 +1070,7 @@
   var DRAFT = 0.35;
   var DRAFTED = "pathwarp-drafted";
   var KEYS = 500;
+  var SEEN = 0.05;
   var NET = /* @__PURE__ */ new Set(["degree", "cells", "spline"]);
   var App = class {
     catalogue = [];
@@ -1081,6 +1087,8 @@
     /** Selectors of the parts that no step bends. */
     locks = [];
     grips = [];
+    /** The places of steps for parts that the drawing lacks. */
+    gone = [];
     handles = null;
     /** A path of the drawing that was a guide until its line was dragged just now. */
     released = null;
@@ -1375,7 +1383,7 @@
     /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
     async prepared(deformation) {
       const others = this.isProposal ? [] : this.steps;
-      const known = others.findIndex((s2) => s2.deformation === deformation);
+      const known = others.findIndex((s2) => s2.deformation === deformation && !isCaption(s2));
       if (known >= 0) return this.choosing(known);
       const step2 = await this.opening(deformation, []);
       if (!step2) return;
@@ -1386,6 +1394,21 @@
       this.tell("steps");
       this.dropHandles();
       await this.proposed();
+    }
+    /** Puts words after those that there are, before all else. Returns their step, which is kept as soon as it is committed. */
+    caption(args) {
+      return this.inTurn(async () => {
+        const step2 = await this.opening("caption", []);
+        if (!step2) return null;
+        Object.assign(step2.args, args);
+        const others = this.isProposal ? [] : this.steps;
+        this.selected = others.filter(isCaption).length;
+        this.steps = others.toSpliced(this.selected, 0, step2);
+        this.tell("steps");
+        this.dropHandles();
+        await this.refresh();
+        return step2;
+      });
     }
     /** Changes the list of steps. */
     arrange(steps, selected) {
@@ -1453,6 +1476,9 @@
     async renet(values) {
       const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
       if (!answer?.step) return this.tell("steps");
+      const [a, b] = this.state?.toPx ?? [1, 0];
+      const mm = (answer.moved ?? 0) * Math.hypot(a, b) * 25.4 / 96;
+      if (mm >= SEEN) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
       this.steps = this.steps.map((s2, i) => i === this.selected ? answer.step : s2);
       this.tell("steps");
       this.dropHandles();
@@ -1470,6 +1496,7 @@
       this.warnings = answer.warnings ?? [];
       this.summary = answer.summary ?? null;
       if (answer.grips) this.grips = answer.grips;
+      if (answer.gone) this.gone = answer.gone;
       this.screen.show(answer);
       if (!this.isDragging) this.takeHandles();
       this.tell("report");
@@ -1534,11 +1561,88 @@
       await this.commit();
       return true;
     }
+    /** The place in the drawing that the visible steps take to this one, or this one if there is none. */
+    async source(at) {
+      for (let k = this.visible.length; k > 0; k--) {
+        const steps = this.visible.slice(0, k);
+        if (this.isFirst(steps[k - 1]) || this.gone.includes(k - 1)) continue;
+        at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+      }
+      return at;
+    }
     /** The place in the artwork that the step takes to this one. */
     async preimage(at) {
       const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
       if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
       return answer?.at ?? null;
+    }
+  };
+
+  // src/caption.ts
+  var BELOW = 14;
+  var Caption = class {
+    constructor(app2, stage2, sketching2) {
+      this.app = app2;
+      this.stage = stage2;
+      this.sketching = sketching2;
+      this.text.addEventListener("input", () => this.typed());
+      this.text.addEventListener("blur", () => this.done());
+      this.text.addEventListener("keydown", (e) => {
+        if (e.key === "Escape") this.text.blur();
+      });
+      stage2.svg.addEventListener("dblclick", () => {
+        if (app2.step && isCaption(app2.step)) this.open(app2.step, (app2.step.args.words ?? []).join("\n"));
+      });
+    }
+    app;
+    stage;
+    sketching;
+    box = byId("caption-box");
+    text = byId("caption-text");
+    step = null;
+    before = "";
+    /** Asks for the place of words with these values. */
+    begin(args) {
+      this.sketching.begin("point", async (value) => {
+        const [x, y] = await this.app.source(value.split(",").map(Number));
+        const step2 = await this.app.caption({ ...args, at: [`${short(x)},${short(y)}`] });
+        if (step2) this.open(step2, (args.words ?? []).join("\n"), "");
+      });
+    }
+    open(step2, text, before2 = text) {
+      [this.step, this.before, this.text.value] = [step2, before2, text];
+      this.box.hidden = false;
+      this.place();
+      this.text.focus();
+      this.text.select();
+    }
+    /** Puts the field below the words. */
+    place() {
+      const at = this.stage.handle("at")?.get();
+      if (this.box.hidden || !at) return;
+      const [x, y] = this.stage.camera.toScreen(at);
+      const { clientWidth, clientHeight } = this.stage.svg;
+      const within2 = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
+      this.box.style.left = `${within2(x, clientWidth - this.box.offsetWidth)}px`;
+      this.box.style.top = `${within2(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+    }
+    typed() {
+      this.text.rows = this.text.value.split("\n").length;
+      if (!this.step || this.text.value.trim() === "") return;
+      this.step.args.words = this.text.value.split("\n");
+      this.app.draft(performance.now());
+      this.app.tell("values");
+    }
+    /** Keeps what was typed; where nothing was, the words go. */
+    done() {
+      const { app: app2, step: step2, text, before: before2 } = this;
+      const at = step2 ? app2.steps.indexOf(step2) : -1;
+      this.step = null;
+      this.box.hidden = true;
+      if (at < 0) return;
+      if (text.value.trim() !== "") return text.value === before2 ? void 0 : void app2.commit();
+      if (before2 === "" && app2.state) void app2.load(app2.state);
+      else void app2.arrange(app2.steps.toSpliced(at, 1), at);
     }
   };
 
@@ -1979,11 +2083,14 @@
     /** The names of what is not shown; the file has it all the same. */
     hidden = /* @__PURE__ */ new Set();
     shown = "";
+    file = "";
     async load() {
-      const { drawing = "" } = this.app.state ?? {};
-      if (drawing === this.shown) return;
-      this.shown = drawing;
-      this.hidden.clear();
+      const { drawing = "", file = "", steps = [] } = this.app.state ?? {};
+      const shown2 = JSON.stringify([drawing, ...steps.filter(isCaption)]);
+      if (shown2 === this.shown) return;
+      this.shown = shown2;
+      if (file !== this.file) this.hidden.clear();
+      this.file = file;
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
       this.all = answer?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
@@ -2021,15 +2128,21 @@
     }
     clicked(name, adds) {
       const part = this.all.find((p) => p.name === name);
-      const isLocked = part && this.app.locks.some((lock) => this.all.some((p) => p.selector === lock && (p === part || this.inside(p).includes(part))));
-      if (part && !isLocked) return this.toggle(part, adds);
-      if (!adds) void this.app.scope([]);
+      if (part) this.toggle(part, adds);
+      else if (!adds) void this.app.scope([]);
+    }
+    /** A part is locked or hidden, by itself or with a group around it. */
+    isOut(part) {
+      const isOut = ({ name, selector }) => this.hidden.has(name) || this.app.locks.includes(selector);
+      return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
     }
     /** Chooses a part alone, or adds it to the others, or takes it from them. */
-    toggle({ selector }, adds) {
+    toggle(part, adds) {
       const { chosen } = this.app;
+      const { selector } = part;
       const others = chosen.filter((s2) => s2 !== selector);
       const isChosen = others.length < chosen.length;
+      if (!isChosen && this.isOut(part)) return;
       if (!adds) void this.app.scope(isChosen && others.length === 0 ? [] : [selector]);
       else void this.app.scope(isChosen ? others : [...others, selector]);
     }
@@ -2282,6 +2395,7 @@
   // src/selection.ts
   var AROUND = 16;
   var ABOVE = 26;
+  var EDGE = 6;
   var Selection = class {
     keys = /* @__PURE__ */ new Set();
     layer = s("g", { class: "selection", visibility: "hidden" });
@@ -2329,6 +2443,11 @@
       this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle2},${y0}V${y0 - ABOVE}`);
       const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE] };
       for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+    }
+    /** A place is in the box or on its edge. */
+    holds([x, y]) {
+      const [[x0, y0], [x1, y1]] = this.box;
+      return this.isMany && x > x0 - EDGE && x < x1 + EDGE && y > y0 - EDGE && y < y1 + EDGE;
     }
     /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */
     transform(part, from) {
@@ -2818,7 +2937,15 @@
         if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
       }
       this.light(null);
-      this.onPart(name, e.shiftKey);
+      if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
+    }
+    /** A part that is not shown has this place. */
+    isHiddenAt(e) {
+      const { away } = this;
+      this.hideParts(/* @__PURE__ */ new Set());
+      const isThere = this.named(e, ".art *") !== null;
+      this.hideParts(away);
+      return isThere;
     }
     /** The elements of parts in the picture. */
     ofParts(names) {
@@ -3030,6 +3157,7 @@
       if (knob && bends) this.drag(e, knob);
       else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickedPart(e));
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
+      else if (bends && !e.shiftKey && stage2.selection.holds(stage2.point(e))) this.transform(e, moved(stage2.point(e)), () => stage2.select([]));
       else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
@@ -3101,7 +3229,7 @@
         if (adds) stage2.selection.toggle(handle.key);
         stage2.select(adds ? Array.from(stage2.selection.keys) : [handle.key]);
       };
-      if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+      if (several && !adds) return this.transform(e, moved([x, y]), clicked);
       const grabbed = stage2.camera.toScreen(handle.get());
       const mover = modes2.mover(handles, handle);
       knob.classList.add("held");
@@ -3158,7 +3286,7 @@
       if (!handles || !pull) return false;
       const [x, y] = stage2.point(e);
       if (pull.ends.length > 1 && pull.ends.every((key) => stage2.selection.keys.has(key))) {
-        this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+        this.transform(e, moved([x, y]));
         return true;
       }
       const puller = modes2.puller(handles, pull);
@@ -3212,6 +3340,7 @@
       for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
     }
   };
+  var moved = ([x, y]) => (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y];
 
   // src/presets.ts
   var Presets = class {
@@ -3321,7 +3450,7 @@
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
       const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-      const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+      const note = isCaption(app2.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
     }
     /** Somebody has moved the view, and may have meant to bend the artwork. */
@@ -3448,7 +3577,7 @@
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state) return;
-      if (state.steps.length === 0) return toast(NOTHING);
+      if (state.steps.length === 0) return this.open();
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
@@ -3458,7 +3587,7 @@
       if (!await this.app.settle()) return;
       const { state } = this.app;
       if (!state || state.program || this.dialog.open) return;
-      if (state.steps.length === 0) return toast(NOTHING);
+      if (state.steps.length === 0 && !state.words) return toast(NOTHING);
       this.name.value = state.target;
       this.choose("svg");
       if (!state.photograph) this.recall();
@@ -3570,6 +3699,98 @@
     }
   };
 
+  // src/words.ts
+  var BUNDLED = "Noto Sans (bundled)";
+  var LARGEST = 2e3;
+  var WordsDialog = class {
+    constructor(app2) {
+      this.app = app2;
+      byId("words").addEventListener("click", () => void this.open());
+      byId("words-place").addEventListener("click", () => {
+        this.dialog.close();
+        const { value } = this.text;
+        this.onPlace({ ...value.trim() && !this.app.state?.words && { words: value.split("\n") }, ...this.font && { font: [this.font] } });
+      });
+      byId("words-cancel").addEventListener("click", () => this.dialog.close());
+      this.search.addEventListener("input", () => this.list());
+      this.fonts.addEventListener("change", () => this.font = this.fonts.value === BUNDLED ? null : this.fonts.value);
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.set();
+      });
+      app2.listen((change) => {
+        if (change === "state") this.show();
+      });
+    }
+    app;
+    dialog = byId("words-dialog");
+    text = byId("words-text");
+    search = byId("words-search");
+    fonts = byId("words-font");
+    size = byId("words-size");
+    spacing = byId("words-spacing");
+    message = byId("words-message");
+    families = null;
+    font = null;
+    /** Words are to be put on the drawing, with these values. */
+    onPlace = () => {
+    };
+    show() {
+      const { state } = this.app;
+      byId("words").textContent = state?.words ? "Edit words…" : "Words…";
+      byId("words-set").textContent = state?.words ? "Set words" : "New drawing";
+      byId("words-place").classList.toggle("primary", !state?.words);
+      byId("words-set").classList.toggle("primary", !!state?.words);
+      if (state?.program) byId("words").hidden = true;
+    }
+    async open() {
+      if (!await this.app.settle()) return;
+      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+      this.families ??= answer?.families ?? [];
+      const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
+      [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
+      this.font = font;
+      this.list();
+      const isMissing = font !== null && !this.families.includes(font);
+      this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
+      this.dialog.showModal();
+      this.text.focus();
+    }
+    /** The families that fit what was typed, each in its own letters. */
+    list() {
+      const wanted = this.search.value.trim().toLowerCase();
+      const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
+      this.fonts.replaceChildren(...all.map((name) => {
+        const option = h("option", { value: name }, name);
+        if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
+        return option;
+      }));
+      this.fonts.value = this.font ?? BUNDLED;
+      this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+    }
+    async set() {
+      const { app: app2 } = this;
+      const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
+      if (this.text.value.trim() === "") return this.say("Type some words first");
+      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
+      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+      try {
+        const words2 = { text: this.text.value, font: this.font, size, spacing };
+        await app2.enter(async () => {
+          const answer = await app2.connection.ask({ do: "set-words", words: words2 });
+          this.dialog.close();
+          if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
+          return answer;
+        });
+      } catch (e) {
+        this.say(inWords(reason(e)));
+      }
+    }
+    say(text) {
+      this.message.textContent = text;
+    }
+  };
+
   // src/settings.ts
   var OF_ARTWORK = [0, 100];
   var BOTH_WAYS = [-100, 100];
@@ -3612,7 +3833,7 @@
       this.onOther();
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
-      const main = params.filter((p) => isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
+      const main = params.filter((p) => isCaption(step2) && p.kind !== "point" || isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
       const more = params.filter((p) => !main.includes(p));
       const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : void 0;
       this.box.replaceChildren(
@@ -3663,9 +3884,33 @@
           });
           return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
         }
-        default:
-          return h("div", { class: "field", title }, label, this.text(p, id));
+        default: {
+          if (p.notation === "FAMILY") return h("div", { class: "field", title }, label, this.family(p, id));
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, p.notation === "COLOUR" && this.colour(p)), this.text(p, id));
+        }
       }
+    }
+    colour(p) {
+      const input = h("input", { type: "color", "aria-label": `${paramName(p)}, chosen` });
+      input.addEventListener("input", () => this.app.setSoon(p.name, [input.value]));
+      this.refreshers.push(() => input.value = /^#[0-9a-f]{6}$/i.test(this.current(p)) ? this.current(p) : "#000000");
+      return input;
+    }
+    /** The fonts that are installed. */
+    family(p, id) {
+      const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
+      select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
+      const show2 = () => {
+        const value = this.current(p);
+        if (!Array.from(select.options).some((o) => o.value === value)) select.append(h("option", { value }, value));
+        select.value = value;
+      };
+      this.refreshers.push(show2);
+      void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+        select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
+        show2();
+      });
+      return select;
     }
     flag(p, id, title) {
       const box = h("input", { type: "checkbox", id, role: "switch" });
@@ -3839,7 +4084,7 @@
       slider.addEventListener("dblclick", () => app2.set(values(0)[0], reset(), true));
     }
     slider(p, id, label, title) {
-      const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] : scale(p);
+      const [unit, range] = this.app.isFirst(this.app.step) && p.kind === "length" ? ["%", p.slider] : scale(p);
       const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
       this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
       this.refreshers.push(() => {
@@ -3912,7 +4157,8 @@
   var HINTS = {
     line: "Drag from the start of the line to its end",
     path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
-    circle: "Drag from the centre of the circle to its edge"
+    circle: "Drag from the centre of the circle to its edge",
+    point: "Click where the words begin"
   };
   var NEAR = 8;
   var [FROM, TO] = [90, 450];
@@ -3954,6 +4200,7 @@
         e.stopPropagation();
         e.preventDefault();
         const at = place2(e);
+        if (kind === "point") return done(text(at));
         if (kind === "path" && points.length > 2 && isNear(at, points[0])) return done(path(true));
         if (points.length === 0 || !isNear(at, points[points.length - 1])) points.push(at);
         this.show(kind, points, at);
@@ -3999,6 +4246,7 @@
       this.app = app2;
       app2.listen((change) => {
         if (change === "steps" || change === "state") this.build();
+        if (change === "report" && app2.gone.join() !== this.gone) this.build();
       });
       this.add.addEventListener("click", () => this.append());
     }
@@ -4006,6 +4254,8 @@
     list = byId("steps");
     /** Where a row has been moved to. */
     moved = null;
+    /** The steps on show whose letters are gone. */
+    gone = "";
     note = byId("steps-note");
     add = byId("add-step");
     /** Asks for the shape of a further step, or no longer does. */
@@ -4019,6 +4269,7 @@
     build() {
       const { app: app2 } = this;
       const { steps, selected, appends } = app2;
+      this.gone = app2.gone.join();
       const focused = this.list.contains(document.activeElement) ? document.activeElement : null;
       const kind = focused?.dataset.kind ?? "";
       const row = Array.from(this.list.children).indexOf(focused?.closest("li"));
@@ -4038,9 +4289,10 @@
       const title = stepName(step2, app2.deformation(step2.deformation));
       const count = step2.select?.length ?? 0;
       const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
-      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope);
+      const gone = app2.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
+      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope, gone);
       choose.addEventListener("click", () => void app2.select(i));
-      const moved = (to) => {
+      const moved2 = (to) => {
         const others = steps.filter((_, k) => k !== i);
         others.splice(to, 0, step2);
         this.moved = to;
@@ -4056,8 +4308,8 @@
         "li",
         { class: i === selected ? "chosen" : "" },
         choose,
-        steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
-        steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
+        steps.length > 1 && button("up", `Move ${title} up`, () => moved2(i - 1), i <= first),
+        steps.length > 1 && button("down", `Move ${title} down`, () => moved2(i + 1), i < first || i === steps.length - 1),
         !app2.isProposal && button("close", `Remove ${title}`, remove)
       );
     }
@@ -4200,87 +4452,6 @@
     }
   };
 
-  // src/words.ts
-  var BUNDLED = "Noto Sans (bundled)";
-  var LARGEST = 2e3;
-  var WordsDialog = class {
-    constructor(app2) {
-      this.app = app2;
-      byId("words").addEventListener("click", () => void this.open());
-      byId("words-cancel").addEventListener("click", () => this.dialog.close());
-      this.search.addEventListener("input", () => this.list());
-      this.fonts.addEventListener("change", () => this.font = this.fonts.value === BUNDLED ? null : this.fonts.value);
-      this.dialog.querySelector("form").addEventListener("submit", (e) => {
-        e.preventDefault();
-        void this.set();
-      });
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
-    }
-    app;
-    dialog = byId("words-dialog");
-    text = byId("words-text");
-    search = byId("words-search");
-    fonts = byId("words-font");
-    size = byId("words-size");
-    spacing = byId("words-spacing");
-    message = byId("words-message");
-    families = null;
-    font = null;
-    show() {
-      const { state } = this.app;
-      byId("words").textContent = state?.words ? "Edit words…" : "Words…";
-      if (state?.program) byId("words").hidden = true;
-    }
-    async open() {
-      if (!await this.app.settle()) return;
-      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
-      this.families ??= answer?.families ?? [];
-      const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
-      [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
-      this.font = font;
-      this.list();
-      const isMissing = font !== null && !this.families.includes(font);
-      this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
-      this.dialog.showModal();
-      this.text.focus();
-    }
-    /** The families that fit what was typed, each in its own letters. */
-    list() {
-      const wanted = this.search.value.trim().toLowerCase();
-      const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
-      this.fonts.replaceChildren(...all.map((name) => {
-        const option = h("option", { value: name }, name);
-        if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
-        return option;
-      }));
-      this.fonts.value = this.font ?? BUNDLED;
-      this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
-    }
-    async set() {
-      const { app: app2 } = this;
-      const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
-      if (this.text.value.trim() === "") return this.say("Type some words first");
-      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
-      try {
-        const words2 = { text: this.text.value, font: this.font, size, spacing };
-        await app2.enter(async () => {
-          const answer = await app2.connection.ask({ do: "set-words", words: words2 });
-          this.dialog.close();
-          if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
-          return answer;
-        });
-      } catch (e) {
-        this.say(inWords(reason(e)));
-      }
-    }
-    say(text) {
-      this.message.textContent = text;
-    }
-  };
-
   // src/main.ts
   var ZOOM = 1.25;
   var app = new App();
@@ -4296,13 +4467,15 @@
   new Place(app, stage);
   new Opening(app);
   new Target(app, stage);
-  new WordsDialog(app);
   new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
   stage.onZoom = () => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
+    caption.place();
   };
   var sketching = new Sketching(app, stage);
+  var caption = new Caption(app, stage, sketching);
+  new WordsDialog(app).onPlace = (args) => caption.begin(args);
   settings.onDraw = (kind, take) => {
     closeSheets();
     sketching.begin(kind, take);

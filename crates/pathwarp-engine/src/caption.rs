@@ -20,13 +20,13 @@ pub const CAPTION: Info = Info::new("caption", "set words on the drawing")
     .by_hand(ByHand {
         label: Some("Words"),
         labels: &[("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
-        neutral: &[("text", "Words")],
-        showing: &[("text", "Words"), ("align", "center"), ("fill", "#c30"), ("size", "30%")],
+        neutral: &[("words", "Words")],
+        showing: &[("words", "Words"), ("align", "center"), ("fill", "#c30"), ("size", "30%")],
         ..ByHand::NONE
     });
 
 const PARAMS: [Param; 10] = [
-    Param::new("text", Kind::Text("WORDS"), "The words. Given several times, each is a line.").needed().repeated(),
+    Param::new("words", Kind::Text("WORDS"), "The words. Given several times, each is a line.").needed().repeated(),
     Param::new("at", Kind::Point, "The place of the first line's baseline: its left end, middle or right end, as --align says.")
         .default("50%,50%"),
     Param::length("size", Axis::Y, "Size of the letters' em.").within(1e-9, 1e6).slider(0.0, 50.0).default("10%"),
@@ -91,9 +91,9 @@ pub fn captioned(
 
 /// Sets a caption. Returns it with the point that comes to lie at its place.
 fn set(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<(OutlinedText, Point), Failure> {
-    let lines = s.texts("text").join("\n");
+    let lines = s.texts("words").join("\n");
     if lines.trim().is_empty() {
-        return Err(Failure::usage("--text: a caption needs words"));
+        return Err(Failure::usage("--words: a caption needs words"));
     }
     let (weight, italic) = (s.choice("weight")?, s.flag("italic")?);
     let weight = WEIGHTS.iter().find(|(name, _)| *name == weight).map_or(REGULAR, |(_, w)| *w);

@@ -182,8 +182,8 @@ pub(super) fn caption_command() -> Command {
              of the first caption is called caption-1, and its letters caption-1-1, caption-1-2 and so on, for --select.",
         ))
         .after_help(
-            "Examples:\n  A name below a badge:\n    pathwarp caption badge.svg --text Fjord --at 50%,105% --align center -o named.svg\n  Two \
-             lines, and then a flag of all:\n    pathwarp caption badge.svg --text 'The Old' --text Bakery --weight bold --fill '#c30' -o flag.svg + \
+            "Examples:\n  A name below a badge:\n    pathwarp caption badge.svg --words Fjord --at 50%,105% --align center -o named.svg\n  Two \
+             lines, and then a flag of all:\n    pathwarp caption badge.svg --words 'The Old' --words Bakery --weight bold --fill '#c30' -o flag.svg + \
              warp --style flag",
         )
 }

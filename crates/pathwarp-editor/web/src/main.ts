@@ -1,6 +1,7 @@
 // The page: puts the parts together, with the buttons and keys that belong to none of them.
 
 import { App } from "./app";
+import { Caption } from "./caption";
 import { byId, isTyping } from "./dom";
 import { Gallery } from "./gallery";
 import { Ground } from "./ground";
@@ -36,13 +37,15 @@ new Parts(app, stage, modes);
 new Place(app, stage);
 new Opening(app);
 new Target(app, stage);
-new WordsDialog(app);
 new Pointing(app, stage, modes).onPan = () => report.panned();
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
 stage.onZoom = () => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
+  caption.place();
 };
 const sketching = new Sketching(app, stage);
+const caption = new Caption(app, stage, sketching);
+new WordsDialog(app).onPlace = (args) => caption.begin(args);
 settings.onDraw = (kind, take) => {
   closeSheets();
   sketching.begin(kind, take);

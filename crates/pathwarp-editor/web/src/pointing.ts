@@ -77,6 +77,7 @@ export class Pointing {
     if (knob && bends) this.drag(e, knob);
     else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickedPart(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
+    else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, moved(stage.point(e)), () => stage.select([]));
     else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
@@ -151,7 +152,7 @@ export class Pointing {
       if (adds) stage.selection.toggle(handle.key);
       stage.select(adds ? Array.from(stage.selection.keys) : [handle.key]);
     };
-    if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+    if (several && !adds) return this.transform(e, moved([x, y]), clicked);
     const grabbed = stage.camera.toScreen(handle.get());
     const mover = modes.mover(handles, handle);
     knob.classList.add("held");
@@ -211,7 +212,7 @@ export class Pointing {
     const [x, y] = stage.point(e);
     // A line that is selected moves as a whole.
     if (pull.ends.length > 1 && pull.ends.every((key) => stage.selection.keys.has(key))) {
-      this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+      this.transform(e, moved([x, y]));
       return true;
     }
     const puller = modes.puller(handles, pull);
@@ -267,3 +268,6 @@ export class Pointing {
     for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
   }
 }
+
+/** Moves places as the pointer moves. */
+const moved = ([x, y]: XY) => (to: XY) => ([px, py]: XY): XY => [px + to[0] - x, py + to[1] - y];

@@ -1,5 +1,6 @@
 // The state of things in words: hints over the canvas, figures and problems at the foot, and the end of the program.
 
+import { isCaption } from "./names";
 import type { App } from "./app";
 import { byId } from "./dom";
 import { toast } from "./toast";
@@ -76,7 +77,7 @@ export class Report {
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
     const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-    const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+    const note = isCaption(app.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
     show("note", app.isProposal && has ? `${note}, or choose a shape` : note);
   }
 

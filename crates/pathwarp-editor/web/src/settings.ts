@@ -3,10 +3,11 @@
 import type { App } from "./app";
 import { byId, h } from "./dom";
 import { asked, evaluate, Field, type Quantity } from "./fields";
-import { capital, paramName, words } from "./names";
+import { capital, isCaption, paramName, words } from "./names";
 import { bring } from "./opening";
 import type { Sketch } from "./sketch";
 import type { Adjust, Param } from "./types";
+import { BUNDLED } from "./words";
 import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
 /** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
@@ -18,7 +19,7 @@ const COARSE = 20;
 const SIDE_BY_SIDE = 3;
 
 /** What is done to draw a line. */
-const SKETCHES: Record<Sketch, string> = {
+const SKETCHES: Record<"line" | "path" | "circle", string> = {
   line: "Drag from its start to its end on the drawing",
   path: "Click its points on the drawing; a double click, Enter or the first point ends it",
   circle: "Drag from its centre to its edge on the drawing",
@@ -54,7 +55,7 @@ export class Settings {
     this.onOther();
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
-    const main = params.filter((p) => isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
+    const main = params.filter((p) => (isCaption(step) && p.kind !== "point") || isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
     const more = params.filter((p) => !main.includes(p));
     const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : undefined;
     this.box.replaceChildren(
@@ -101,8 +102,35 @@ export class Settings {
         });
         return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
       }
-      default: return h("div", { class: "field", title }, label, this.text(p, id));
+      default: {
+        if (p.notation === "FAMILY") return h("div", { class: "field", title }, label, this.family(p, id));
+        return h("div", { class: "field", title }, h("div", { class: "row" }, label, p.notation === "COLOUR" && this.colour(p)), this.text(p, id));
+      }
     }
+  }
+
+  private colour(p: Param): HTMLElement {
+    const input = h("input", { type: "color", "aria-label": `${paramName(p)}, chosen` });
+    input.addEventListener("input", () => this.app.setSoon(p.name, [input.value]));
+    this.refreshers.push(() => (input.value = /^#[0-9a-f]{6}$/i.test(this.current(p)) ? this.current(p) : "#000000"));
+    return input;
+  }
+
+  /** The fonts that are installed. */
+  private family(p: Param, id: string): HTMLElement {
+    const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
+    select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
+    const show = () => {
+      const value = this.current(p);
+      if (!Array.from(select.options).some((o) => o.value === value)) select.append(h("option", { value }, value));
+      select.value = value;
+    };
+    this.refreshers.push(show);
+    void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+      select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
+      show();
+    });
+    return select;
   }
 
   private flag(p: Param, id: string, title: string): HTMLElement {
@@ -289,7 +317,7 @@ export class Settings {
   }
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
-    const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] as const : scale(p);
+    const [unit, range] = this.app.isFirst(this.app.step) && p.kind === "length" ? ["%", p.slider] as const : scale(p);
     const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
     this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
     this.refreshers.push(() => {

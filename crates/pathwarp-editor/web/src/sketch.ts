@@ -7,13 +7,14 @@ import { toast } from "./toast";
 import type { XY } from "./types";
 import { arc, short } from "./values";
 
-export type Sketch = "line" | "path" | "circle";
+export type Sketch = "line" | "path" | "circle" | "point";
 
 /** What is to be done, in words. */
 const HINTS: Record<Sketch, string> = {
   line: "Drag from the start of the line to its end",
   path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
   circle: "Drag from the centre of the circle to its edge",
+  point: "Click where the words begin",
 };
 
 /** Presses that are nearer are clicks on the same point, in px. */
@@ -58,6 +59,7 @@ export class Sketching {
       e.stopPropagation();
       e.preventDefault();
       const at = place(e);
+      if (kind === "point") return done(text(at));
       if (kind === "path" && points.length > 2 && isNear(at, points[0]!)) return done(path(true));
       if (points.length === 0 || !isNear(at, points[points.length - 1]!)) points.push(at);
       this.show(kind, points, at);

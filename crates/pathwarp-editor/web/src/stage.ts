@@ -436,7 +436,16 @@ export class Stage {
       if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
     }
     this.light(null);
-    this.onPart(name, e.shiftKey);
+    if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
+  }
+
+  /** A part that is not shown has this place. */
+  private isHiddenAt(e: PointerEvent): boolean {
+    const { away } = this;
+    this.hideParts(new Set());
+    const isThere = this.named(e, ".art *") !== null;
+    this.hideParts(away);
+    return isThere;
   }
 
   /** The elements of parts in the picture. */

@@ -9,12 +9,16 @@ export class Steps {
   private list = byId("steps");
   /** Where a row has been moved to. */
   private moved: number | null = null;
+  /** The steps on show whose letters are gone. */
+  private gone = "";
   private note = byId("steps-note");
   private add = byId<HTMLButtonElement>("add-step");
 
   constructor(private app: App) {
     app.listen((change) => {
       if (change === "steps" || change === "state") this.build();
+      // Which steps wait for their letters is known with the picture.
+      if (change === "report" && app.gone.join() !== this.gone) this.build();
     });
     this.add.addEventListener("click", () => this.append());
   }
@@ -31,6 +35,7 @@ export class Steps {
   private build(): void {
     const { app } = this;
     const { steps, selected, appends } = app;
+    this.gone = app.gone.join();
     const focused = this.list.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
     const kind = focused?.dataset.kind ?? "";
     const row = Array.from(this.list.children).indexOf(focused?.closest("li") as Element);
@@ -52,7 +57,8 @@ export class Steps {
     const title = stepName(step, app.deformation(step.deformation));
     const count = step.select?.length ?? 0;
     const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
-    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope);
+    const gone = app.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
+    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope, gone);
     choose.addEventListener("click", () => void app.select(i));
     const moved = (to: number) => {
       const others = steps.filter((_, k) => k !== i);

@@ -158,6 +158,8 @@ export interface Answer {
   error?: string;
   picture?: Picture;
   grips?: StepGrips[];
+  /** The places of steps for parts that the drawing lacks. */
+  gone?: number[];
   guides?: string[];
   warnings?: string[];
   /** Characters that no font has. */
@@ -169,6 +171,8 @@ export interface Answer {
   catalogue?: Deformation[];
   svg?: string;
   step?: Step;
+  /** How far a net with other points bends from where it did, in user units. */
+  moved?: number;
   at?: XY | null;
   text?: string;
   /** The target as it was kept, with its content as base64. */

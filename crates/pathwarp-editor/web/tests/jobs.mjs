@@ -82,7 +82,7 @@ const openedAgain = async (editor, file, work) => {
 const setWords = async (page, button, fields) => {
   await page.getByRole("button", { name: button }).click();
   for (const [name, text] of Object.entries(fields)) await page.getByRole("textbox", { name }).fill(text);
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: button === "Words…" ? "New drawing" : "Set words" }).click();
   await page.getByRole("dialog").waitFor({ state: "hidden" });
   await quiet(page);
 };
