@@ -1402,6 +1402,7 @@
         if (!step2) return null;
         Object.assign(step2.args, args);
         const others = this.isProposal ? [] : this.steps;
+        this.isProposal = false;
         this.selected = others.filter(isCaption).length;
         this.steps = others.toSpliced(this.selected, 0, step2);
         this.tell("steps");

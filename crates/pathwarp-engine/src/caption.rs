@@ -19,7 +19,7 @@ pub const CAPTION: Info = Info::new("caption", "set words on the drawing")
     .params(&PARAMS)
     .by_hand(ByHand {
         label: Some("Words"),
-        labels: &[("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
+        labels: &[("at", "Place"), ("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
         neutral: &[("words", "Words")],
         showing: &[("words", "Words"), ("align", "center"), ("fill", "#c30"), ("size", "30%")],
         ..ByHand::NONE

@@ -194,7 +194,7 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
   await page.getByRole("textbox", { name: "Spacing" }).fill("10");
   const fonts = await page.getByRole("listbox", { name: "Font" }).locator("option").allTextContents();
   if (fonts.length > 1) await page.getByRole("listbox", { name: "Font" }).selectOption({ index: fonts.length - 1 });
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
   await quiet(page);
   check((await paths(page)) !== bent && (await page.locator("#steps").textContent()).includes("Bend"), "the bend is gone, or the words are as before");
   await backAndForth(page, 3);
@@ -208,6 +208,103 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
     await becomes(page2, picture, "the words cannot be undone");
     await page2.getByText("Saved as sign.svg").waitFor();
   });
+});
+
+/** Puts words on the drawing at a share of the sheet, and types them. */
+const typed = async (page, button, [x, y], words) => {
+  await page.getByRole("button", { name: button }).click();
+  await page.getByRole("button", { name: "Place on the drawing" }).click();
+  const sheet = await page.locator("#stage .sheet").boundingBox();
+  await page.mouse.click(sheet.x + x * sheet.width, sheet.y + y * sheet.height);
+  await page.getByRole("textbox", { name: "Words on the drawing" }).waitFor();
+  await page.keyboard.type(words);
+  await page.keyboard.press("Escape");
+  await quiet(page);
+};
+/** The pixels of a picture that have a colour, as their number and the box around them in shares of the picture. */
+const coloured = (page, file, [r, g, b]) => page.evaluate(async ([data, wanted]) => {
+  const image = new Image();
+  image.src = `data:image/jpeg;base64,${data}`;
+  await image.decode();
+  const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
+  const found = [];
+  for (let i = 0; i < pixels.length; i += 4) if (wanted.every((v, k) => Math.abs(pixels[i + k] - v) < 60)) found.push(i / 4);
+  const [xs, ys] = [found.map((i) => (i % image.width) / image.width), found.map((i) => Math.floor(i / image.width) / image.height)];
+  const ends = (all) => [all.reduce((a, v) => Math.min(a, v), 1), all.reduce((a, v) => Math.max(a, v), 0)];
+  return { count: found.length, x: ends(xs), y: ends(ys), width: image.width, height: image.height };
+}, [readFileSync(file).toString("base64"), [r, g, b]]);
+
+/** A caption is typed on a photograph, both are bent, and go out as JPEG and PDF; the saved file has the caption as words. */
+export const job_captioned_photograph = () => {
+  const photograph = execFileSync(program, ["render", sample("badge.svg"), "--width", "300", "--background", "#8ac", "--format", "jpg", "-o", "-"]);
+  return job("captioned", "badge.svg", async (page, dir, editor) => {
+    writeFileSync(join(dir, "seaside.jpg"), photograph);
+    await given(page, "Open…", join(dir, "seaside.jpg"));
+    await page.getByRole("heading", { name: "seaside.jpg" }).waitFor();
+    await quiet(page);
+    await typed(page, "Words…", [0.5, 0.95], "Seaside");
+    await page.getByRole("textbox", { name: "Colour", exact: true }).fill("#ff00ff");
+    await page.keyboard.press("Enter");
+    await press(page, "1. “Seaside”");
+    await page.getByRole("radio", { name: "Center" }).locator("..").click();
+    await page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" });
+    await quiet(page);
+    await saved(page, "JPEG", "level.jpg");
+    const level = await coloured(page, join(dir, "level.jpg"), [255, 0, 255]);
+    check(level.width === 300 && level.count > 500, `${level.count} pixels are of the caption's colour`);
+    check(Math.abs(level.x[0] + level.x[1] - 1) < 0.04, `it is centred at ${(level.x[0] + level.x[1]) / 2}`);
+    check(level.y[1] > 0.92 && level.y[1] < 0.98 && level.y[0] > 0.84, `it stands from ${level.y[0]} to ${level.y[1]}`);
+    await press(page, "Flag");
+    await field(page, "Bend", "20");
+    await saved(page, "JPEG", "bent.jpg");
+    const bent = await coloured(page, join(dir, "bent.jpg"), [255, 0, 255]);
+    const rise = (of) => (of.y[1] - of.y[0]) * of.height;
+    check(bent.count > 500 && rise(bent) > 1.3 * rise(level), `the caption rises over ${rise(bent)} px, level over ${rise(level)}`);
+    await saved(page, "PDF", "bent.pdf");
+    const pdf = readFileSync(join(dir, "bent.pdf"), "latin1");
+    check(pdf.startsWith("%PDF") && pdf.includes("/Image"), "the PDF has no photograph");
+    await backAndForth(page, 6);
+    await saved(page, "SVG Can", "seaside.svg");
+    const picture = await paths(page);
+    await openedAgain(editor, join(dir, "seaside.svg"), async (page2) => {
+      await becomes(page2, picture, "opened again, it is another drawing");
+      await press(page2, "1. “Seaside”");
+      await page2.getByRole("textbox", { name: "Words", exact: true }).fill("Seaside 1962");
+      await page2.keyboard.press("Tab");
+      await press(page2, "2. Flag");
+      check((await paths(page2)).length > picture.length, "the words cannot be changed");
+      await press(page2, "Undo");
+      await becomes(page2, picture, "the words cannot be undone");
+    });
+  });
+};
+
+/** Three lines in a heart: no letter leaves it, and each line fills it. */
+export const job_heart = () => job("heart", "logo.svg", async (page) => {
+  await setWords(page, "Words…", { Text: "LOVE\nMUSIC\nALWAYS" });
+  await press(page, "Heart shape");
+  const { count, off, rows } = await page.evaluate(() => {
+    const heart = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    heart.setAttribute("d", Array.from(document.querySelectorAll("#stage .guides .line.path"), (l, i) => l.getAttribute("d").replace(/^M/, i === 0 ? "M" : "L")).join(" "));
+    document.querySelector("#stage").append(heart);
+    heart.style.strokeWidth = "6px";
+    heart.style.stroke = "#000";
+    const { x, y } = document.querySelector("#stage").getBoundingClientRect();
+    const letters = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"));
+    const points = letters.map((letter) => {
+      const [length, to] = [letter.getTotalLength(), letter.getScreenCTM()];
+      return Array.from({ length: 60 }, (_, i) => letter.getPointAtLength((i / 60) * length).matrixTransform(to)).map((p) => new DOMPoint(p.x - x, p.y - y));
+    });
+    const out = points.flat().filter((p) => !heart.isPointInFill(p) && !heart.isPointInStroke(p));
+    heart.remove();
+    return { count: letters.length, off: out.length, rows: new Set(letters.map((l) => l.parentElement)).size };
+  });
+  check(count === 15 && rows === 3, `${count} letters in ${rows} lines`);
+  check(off === 0, `${off} places of letters are outside of the heart`);
+  await backAndForth(page, 1);
 });
 
 /** A photograph with a caption: both follow the flag, are saved, and are there again. */
@@ -306,7 +403,7 @@ export const job_linked_photograph = () => {
   }, card);
 };
 
-/** Twenty steps of every kind are undone and redone, each with the picture that it had, with the page loaded anew on the way there and back. */
+/** Thirty steps of every kind are undone and redone, each with the picture that it had, with the page loaded anew on the way there and back. */
 export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page, dir, editor) => {
   await setWords(page, "Words…", { Text: "Harbour" });
   const corner = async () => at(page, (await page.locator(".knob.node").last().getAttribute("aria-label")));
@@ -317,6 +414,12 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
   const between = async (a, b) => {
     const [[ax, ay], [bx, by]] = [await at(page, a), await at(page, b)];
     return [(ax + bx) / 2, (ay + by) / 2];
+  };
+  const caption = async (name, change) => {
+    await page.getByRole("list").getByRole("button", { name: new RegExp(`^[0-9]+\\. ${name}$`) }).click();
+    await quiet(page);
+    await change();
+    await quiet(page);
   };
   const steps = [
     () => press(page, "Bend"),
@@ -358,6 +461,20 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
       await quiet(page);
     },
     () => press(page, "Remove Perspective"),
+    () => typed(page, "Edit words…", [0.1, 0.9], "Since"),
+    () => caption("“Since”", () => field(page, "Colour", "#c30")),
+    () => caption("“Since”", () => page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" })),
+    () => caption("“Since”", () => page.getByRole("switch", { name: "Italic" }).locator("..").click()),
+    () => typed(page, "Edit words…", [0.6, 0.1], "1887"),
+    () => caption("“1887”", async () => pull(page, await at(page, "Place"), [-20, 10])),
+    () => caption("“1887”", () => field(page, "Size", "20")),
+    () => caption("“1887”", async () => {
+      await page.mouse.dblclick(...(await at(page, "Place")));
+      await page.keyboard.type("1887\nand on");
+      await page.keyboard.press("Escape");
+    }),
+    () => caption("“1887 and on”", () => page.getByRole("radio", { name: "Right" }).locator("..").click()),
+    () => caption("“1887 and on”", () => field(page, "Line spacing", "90")),
   ];
   // All steps are seen while the last one is being changed.
   const last = async () => {

@@ -257,12 +257,12 @@ export const flat_artwork_is_seen = () => within(`<svg xmlns="http://www.w3.org/
   check((await paths(page)) === line, "undone, it is another drawing");
 });
 
-/** Steps for letters that other words do not have are gone with them, and come back with them; a preset is for no part of another drawing. */
-export const parts_go_with_their_words = () => within("lettering.svg", async (page) => {
+/** Steps for letters that other words do not have wait until they are back, eyes and locks stay; a preset is for no part of another drawing. */
+export const parts_go_with_their_words = () => within("lettering.svg", async (page, dir) => {
   const setWords = async (text) => {
     await page.getByRole("button", { name: /words…$/i }).click();
     await page.getByRole("textbox", { name: "Text" }).fill(text);
-    await page.getByRole("button", { name: "Set words" }).click();
+    await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
     await page.getByRole("dialog").waitFor({ state: "hidden" });
     await quiet(page);
   };
@@ -270,14 +270,23 @@ export const parts_go_with_their_words = () => within("lettering.svg", async (pa
   await choose(page, "Flag");
   await page.click("#parts-list summary");
   await press(page, "Lock: Path “u”");
+  await press(page, "Hide here: Path “a”");
   await page.getByRole("button", { name: "Add step", exact: true }).click();
   await choose(page, "Arch");
   await press(page, "Path “b”");
   const bent = await paths(page);
   await setWords("Ho");
-  check((await page.locator("#steps li").allTextContents()).join() === "1. Flag" && !(await page.isVisible("#problem")), await page.textContent("#steps"));
+  await page.locator("#steps li", { hasText: "2. Arch one part (its letter is gone)" }).waitFor();
+  check((await page.locator("#steps li").count()) === 2 && !(await page.isVisible("#problem")), await page.textContent("#steps"));
+  await savedAsCopied(page, dir);
+  await setWords("Harbour");
+  check((await paths(page)) === bent, "the step does not work again");
+  check((await page.getAttribute('[aria-label="Lock: Path “u”"]', "aria-pressed")) === "true", "the lock is open");
+  check((await page.getAttribute('[aria-label="Hide here: Path “a”"]', "aria-pressed")) === "true", "what was hidden is not");
   await press(page, "Undo");
-  await page.locator("#steps li").nth(1).waitFor();
+  await page.locator("#steps li", { hasText: "gone" }).waitFor();
+  await press(page, "Undo");
+  await page.locator("#steps li", { hasText: "gone" }).waitFor({ state: "hidden" });
   check((await paths(page)) === bent, "the letters do not come back");
   await page.click("#keep-preset");
   await page.fill("#preset-name", "Two letters");
@@ -333,3 +342,28 @@ export const the_view_moves_while_parts_are_picked = () => within(SQUARES, async
   await clicked(page, 2);
   check((await paths(page)) !== picture, "a click does not pick");
 }, { hasTouch: true });
+
+/** A click on what is locked or hidden does nothing: neither is that bent, nor everything. */
+export const what_is_locked_or_hidden_is_not_picked = () => within(SQUARES, async (page) => {
+  const before = await each(page);
+  await press(page, "Pick parts");
+  await choose(page, "Flag");
+  await clicked(page, 1);
+  await press(page, "Lock: Rectangle");
+  const [first] = await page.locator("#parts .lock").evaluateAll((all) => all.map((b) => b.ariaPressed));
+  check(first === "true", "it is not locked");
+  const hidden = await page.locator("#stage .art:not([visibility=hidden]) path").nth(2).boundingBox();
+  await page.locator("#parts .eye").nth(3).click();
+  await quiet(page);
+  const bent = await paths(page);
+  const undone = await page.evaluate(() => document.querySelector("#steps").textContent);
+  await clicked(page, 0);
+  await page.mouse.click(hidden.x + 5, hidden.y + hidden.height / 2);
+  await quiet(page);
+  check((await paths(page)) === bent && (await page.textContent("#steps")) === undone, "the step bends something else");
+  check(moved(before, await each(page)) === "1", `${moved(before, await each(page))} are bent instead of the second`);
+  // A place that nothing covers still means everything.
+  await page.mouse.click(hidden.x + 5, hidden.y + hidden.height + 60);
+  await quiet(page);
+  check((await page.textContent("#parts-scope")) === "This step bends everything.", "it does not bend everything");
+});
