@@ -466,10 +466,10 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
     () => caption("“Since”", () => page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" })),
     () => caption("“Since”", () => page.getByRole("switch", { name: "Italic" }).locator("..").click()),
     () => typed(page, "Edit words…", [0.6, 0.1], "1887"),
-    () => caption("“1887”", async () => pull(page, await at(page, "Place"), [-20, 10])),
+    () => caption("“1887”", async () => pull(page, await at(page, "At"), [-20, 10])),
     () => caption("“1887”", () => field(page, "Size", "20")),
     () => caption("“1887”", async () => {
-      await page.mouse.dblclick(...(await at(page, "Place")));
+      await page.mouse.dblclick(...(await at(page, "At")));
       await page.keyboard.type("1887\nand on");
       await page.keyboard.press("Escape");
     }),
