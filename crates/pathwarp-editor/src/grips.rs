@@ -9,7 +9,7 @@ use pathwarp::map::Lattice;
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Outline, Seg};
-use pathwarp_engine::caption::CAPTION;
+use pathwarp_engine::edits::CAPTION;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;

@@ -324,7 +324,13 @@ impl Session {
         };
         let firsts = self.firsts(given);
         let of_step = |(i, step): (usize, &PageStep)| {
-            let own = if gone.contains(&i) { None } else if i < firsts { first(step) } else { bending.next() };
+            let own = if gone.contains(&i) {
+                None
+            } else if i < firsts {
+                first(step)
+            } else {
+                bending.next()
+            };
             own.unwrap_or_else(|| json!({ "frame": frame, "params": {} }))
         };
         let grips: Vec<Value> = given.iter().enumerate().map(of_step).collect();
@@ -415,13 +421,9 @@ impl Session {
         Ok((step.map.point(from).distance(at) <= near).then_some(from))
     }
 
-    /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can, and
-    /// then the second value says how far it has moved what.
-    pub(crate) fn renet(
-        &mut self,
-        given: &[PageStep],
-        values: BTreeMap<String, Vec<String>>,
-    ) -> Result<(PageStep, f64), String> {
+    /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can;
+    /// and how far it then moves what.
+    pub(crate) fn renet(&mut self, given: &[PageStep], values: BTreeMap<String, Vec<String>>) -> Result<Value, String> {
         let present = self.recipe(given);
         let (resolved, built) = self.opened.artwork.settle(&present)?;
         let mut after = given.last().cloned().ok_or("there is no step")?;
@@ -440,11 +442,12 @@ impl Session {
         after.args.retain(|_, values| !values.is_empty());
         let all = given.iter().take(given.len() - 1).chain([&after]).cloned().collect::<Vec<_>>();
         let all = self.recipe(&all);
-        let (_, new) = self.opened.artwork.settle(&all)?;
-        let (Some(old), Some(new), Some(frame)) = (built.steps.last(), new.steps.last(), built.frames.last()) else {
-            return Ok((after, 0.0));
-        };
-        Ok((after, apart(&old.map, &new.map, frame.rect)))
+        // Values that are wrong are reported when they are committed.
+        let new = self.opened.artwork.settle(&all).ok();
+        let new = new.as_ref().and_then(|(_, new)| new.steps.last());
+        let both = built.steps.last().zip(built.frames.last()).zip(new);
+        let moved = both.map_or(0.0, |((old, frame), new)| apart(&old.map, &new.map, frame.rect));
+        Ok(json!({ "step": after, "moved": moved }))
     }
 
     /// The first values of a deformation after these steps.

@@ -161,10 +161,7 @@ impl Page {
             Request::Preimage { steps, at } => {
                 Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
             }
-            Request::Renet { steps, values } => {
-                let (step, moved) = session.renet(&steps, values)?;
-                Ok(json!({ "step": step, "moved": moved }))
-            }
+            Request::Renet { steps, values } => session.renet(&steps, values),
             Request::CommandLine { to } => session.command_line(&to),
         }
     }

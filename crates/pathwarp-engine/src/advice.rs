@@ -10,8 +10,7 @@ use pathwarp_svg::{LetteringFrameError, ShapeReport, Skipped, UnreadImages, Warn
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The error of edits of a picture.
-pub(crate) const NO_PATHS_TO_EDIT: &str =
-    "edits (caption, simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
+pub(crate) const NO_PATHS_TO_EDIT: &str = "edits (caption, simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
 
 /// The warning about characters that no font has.
 pub fn missing_letters(chars: &[char]) -> String {

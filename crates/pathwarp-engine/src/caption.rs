@@ -1,54 +1,17 @@
 //! Captions: words that are set on a drawing before all other edits, so that a recipe has them as words.
 
 use crate::advice;
+use crate::edits::CAPTION;
 use crate::failure::Failure;
 use crate::lettering::{REGULAR, bundled, find_font, laid_out_with_installed, read_font};
 use crate::options::CommonOptions;
 use crate::units::units_per_px;
 use crate::weights::{WEIGHTS, Wanted, with_variations};
-use pathwarp::deform::{ByHand, Info};
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::param::{Axis, Frame, Kind, Param, Settings};
+use pathwarp::param::{Frame, Settings};
 use pathwarp::recipe::Step;
 use pathwarp_svg::{Document, ReadOptions, Selection, lettering_group};
 use pathwarp_text::{Align, Font, OutlinedText, TextStyle};
-
-/// The edit that sets a caption.
-pub const CAPTION: Info = Info::new("caption", "set words on the drawing")
-    .group("Before bending")
-    .params(&PARAMS)
-    .by_hand(ByHand {
-        label: Some("Words"),
-        labels: &[("at", "Place"), ("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
-        neutral: &[("words", "Words")],
-        showing: &[("words", "Words"), ("align", "center"), ("fill", "#c30"), ("size", "30%")],
-        ..ByHand::NONE
-    });
-
-const PARAMS: [Param; 10] = [
-    Param::new("words", Kind::Text("WORDS"), "The words. Given several times, each is a line.").needed().repeated(),
-    Param::new("at", Kind::Point, "The place of the first line's baseline: its left end, middle or right end, as --align says.")
-        .default("50%,50%"),
-    Param::length("size", Axis::Y, "Size of the letters' em.").within(1e-9, 1e6).slider(0.0, 50.0).default("10%"),
-    Param::new("font", Kind::Text("FAMILY"), "An installed family, or a font file. Default: the bundled Noto Sans."),
-    Param::new(
-        "weight",
-        Kind::Choice(&["thin", "extralight", "light", "regular", "medium", "semibold", "bold", "extrabold", "black"]),
-        "Weight within the family; a bolder one is made where the family lacks it.",
-    )
-    .default("regular"),
-    Param::flag("italic", "Use the family's italic, or slant the letters where it has none."),
-    Param::new("fill", Kind::Text("COLOUR"), "Colour, as in CSS.").default("black"),
-    Param::new("align", Kind::Choice(&["left", "center", "right"]), "Alignment of the lines.").default("left"),
-    Param::number("letter-spacing", "Space added between letters, as a share of the size.")
-        .within(-1e3, 1e3)
-        .slider(-0.2, 1.0)
-        .default("0%"),
-    Param::number("line-height", "Distance between baselines, as a share of the size.")
-        .within(0.0, 1e3)
-        .slider(0.5, 3.0)
-        .default("120%"),
-];
 
 /// Returns `true` if a step sets a caption.
 pub fn is_caption(step: &Step) -> bool {
@@ -79,7 +42,7 @@ pub fn captioned(
     }
     let (mut groups, mut warnings) = (String::new(), Vec::new());
     for (step, k) in steps.iter().zip(1..) {
-        let settings = Settings::new(&PARAMS, &step.args, &frame)?;
+        let settings = Settings::new(CAPTION.params, &step.args, &frame)?;
         settings.check_values()?;
         let (text, origin) = set(&settings, read, options)?;
         let fill = settings.texts("fill").last().copied().unwrap_or("black");

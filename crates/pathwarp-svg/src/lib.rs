@@ -111,6 +111,4 @@ pub use source::links::Relinking;
 pub use source::read::{ReadOptions, Turned, compressed};
 pub use source::select::{Division, Elements, Selection};
 pub use source::shaping::fallback_fonts;
-pub use write::lettering::{
-    LetteringOptions, SetGroup, SetPath, lettering_group, write_lettering, write_set_groups,
-};
+pub use write::lettering::{LetteringOptions, SetGroup, SetPath, lettering_group, write_lettering, write_set_groups};
