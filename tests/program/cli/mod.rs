@@ -6,6 +6,7 @@ mod chains;
 mod circles;
 mod commands;
 mod common;
+mod captions;
 mod contour;
 mod documentation;
 mod edits_first;

@@ -246,9 +246,7 @@ export const job_captioned_photograph = () => {
     await page.getByRole("heading", { name: "seaside.jpg" }).waitFor();
     await quiet(page);
     await typed(page, "Words…", [0.5, 0.95], "Seaside");
-    await page.getByRole("textbox", { name: "Colour", exact: true }).fill("#ff00ff");
-    await page.keyboard.press("Enter");
-    await press(page, "1. “Seaside”");
+    await field(page, "Colour", "#ff00ff");
     await page.getByRole("radio", { name: "Center" }).locator("..").click();
     await page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" });
     await quiet(page);
@@ -272,8 +270,10 @@ export const job_captioned_photograph = () => {
     await openedAgain(editor, join(dir, "seaside.svg"), async (page2) => {
       await becomes(page2, picture, "opened again, it is another drawing");
       await press(page2, "1. “Seaside”");
-      await page2.getByRole("textbox", { name: "Words", exact: true }).fill("Seaside 1962");
+      await page2.getByRole("textbox", { name: "Words", exact: true }).click({ clickCount: 3 });
+      await page2.keyboard.type("Seaside 1962");
       await page2.keyboard.press("Tab");
+      await quiet(page2);
       await press(page2, "2. Flag");
       check((await paths(page2)).length > picture.length, "the words cannot be changed");
       await press(page2, "Undo");

@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { check, choose, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
+import { check, choose, drag, edit, folder, keep, keys, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function within(drawing, test, options = {}) {
   const dir = folder(drawing.includes("<") ? { "art.svg": drawing } : { "art.svg": sample(drawing) });
@@ -366,4 +366,57 @@ export const what_is_locked_or_hidden_is_not_picked = () => within(SQUARES, asyn
   await page.mouse.click(hidden.x + 5, hidden.y + hidden.height + 60);
   await quiet(page);
   check((await page.textContent("#parts-scope")) === "This step bends everything.", "it does not bend everything");
+});
+
+/** Words on a bent drawing stand where they are put; a step holds for one of their letters, waits while that is gone, and the copied command
+ * line gives the same bytes; with nothing typed, nothing is there. */
+export const captions_have_letters_as_parts = () => within(SQUARES, async (page, dir) => {
+  const place = async (x, y) => {
+    await page.click("#words");
+    await press(page, "Place on the drawing");
+    await page.mouse.click(x, y);
+    await page.locator("#caption-text").waitFor();
+  };
+  await choose(page, "Turn and scale");
+  const { x, y, width, height } = await page.locator("#stage .sheet").boundingBox();
+  await place(x + 10, y + 10);
+  await page.keyboard.press("Escape");
+  await page.locator("#caption-text").waitFor({ state: "hidden" });
+  await quiet(page);
+  check((await page.locator("#steps li").count()) === 1, "words that were not typed are there");
+  await drag(page, (await keys(page)).at(-1), -60, 40);
+  await place(x + 0.3 * width, y + 0.7 * height);
+  await page.keyboard.type("HHH");
+  await page.keyboard.press("Escape");
+  await quiet(page);
+  await press(page, "2. Turn and scale");
+  const off = await page.$$eval("#stage .art:not([visibility=hidden]) path", (all, [x, y]) => {
+    const letter = all.at(-3);
+    const [length, to] = [letter.getTotalLength(), letter.getScreenCTM()];
+    const points = Array.from({ length: 400 }, (_, i) => letter.getPointAtLength((i / 400) * length).matrixTransform(to));
+    return Math.min(...points.map((p) => Math.hypot(p.x - x, p.y - y)));
+  }, [x + 0.3 * width, y + 0.7 * height]);
+  check(off < 8, `the first letter stands ${off} px beside the place that was clicked`);
+  const before = await each(page);
+  await press(page, "Add step");
+  await choose(page, "Flag");
+  await press(page, "Pick parts");
+  await clicked(page, 5);
+  const bent = await each(page);
+  check(moved(before, bent) === "5", `${moved(before, bent)} are bent instead of the second letter`);
+  await savedAsCopied(page, dir);
+  const words = async (text) => {
+    await press(page, "1. “HHH”".replace("HHH", await page.locator("#steps li").first().textContent().then((t) => /“(.*)”/.exec(t)[1])));
+    await page.locator("#set-words").click({ clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press("Tab");
+    await quiet(page);
+    await page.locator("#steps .step").last().click();
+    await quiet(page);
+  };
+  await words("H");
+  await page.locator("#steps li", { hasText: "(its letter is gone)" }).waitFor();
+  check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  await words("HHH");
+  check((await each(page)).join() === bent.join(), "the step does not work again");
 });
