@@ -293,6 +293,8 @@ impl Artwork for EditedArtwork {
 
     fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String> {
         let captions: Vec<Step> = recipe.steps.iter().filter(|s| is_caption(s)).cloned().collect();
+        // Selectors are looked for again and again.
+        self.svg.renew_budget();
         if captions.is_empty() {
             return Ok(self.svg.document());
         }
@@ -301,7 +303,13 @@ impl Artwork for EditedArtwork {
             let (document, _) = self.said(set)?;
             self.captioned = Some((captions, document));
         }
-        Ok(self.captioned.as_ref().map_or_else(|| self.svg.document(), |(_, document)| document))
+        Ok(match &mut self.captioned {
+            Some((_, document)) => {
+                document.renew_budget();
+                document
+            }
+            None => self.svg.document(),
+        })
     }
 
     fn reading(&self) -> &ReadOptions {

@@ -420,3 +420,26 @@ export const captions_have_letters_as_parts = () => within(SQUARES, async (page,
   await words("HHH");
   check((await each(page)).join() === bent.join(), "the step does not work again");
 });
+
+/** Words without a step are saved in any format, with the bytes of the copied command line, and are words without a step when they are opened again. */
+export const words_alone_are_saved = () => within("lettering.svg", async (page, dir) => {
+  await page.click("#words");
+  await page.fill("#words-text", "Word");
+  await press(page, "New drawing");
+  await page.getByRole("heading", { name: "word.svg" }).waitFor();
+  await quiet(page);
+  const level = await each(page);
+  await savedAsCopied(page, dir);
+  await page.click("#save-as");
+  await page.getByRole("radio", { name: /^PDF/ }).check();
+  await page.fill("#save-name", "word.pdf");
+  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
+  await page.getByText("Saved word.pdf").waitFor();
+  check(readFileSync(join(dir, "word.pdf"), "latin1").startsWith("%PDF"), "it is no PDF");
+  await page.setInputFiles("#open-file", join(dir, "own.svg"));
+  await page.getByRole("heading", { name: "own.svg" }).waitFor();
+  await quiet(page);
+  check((await page.textContent("#words")) === "Edit words…" && (await page.isDisabled("#undo")), "they are no words any more");
+  const off = (await each(page)).filter((d, i) => d !== level[i]);
+  check(off.length === 0, `opened again, ${off.length} letters are others`);
+});
