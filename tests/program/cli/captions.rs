@@ -3,6 +3,7 @@
 use super::common::text;
 use crate::support::pathwarp_in;
 use pathwarp::kurbo::{BezPath, Rect, Shape as _};
+use resvg::usvg;
 use std::path::Path;
 
 fn run(args: &[&str], input: &str) -> (Option<i32>, String, String) {

@@ -20,7 +20,7 @@ const FLAGS = [
 ];
 
 /** The last resort, in ms: what has not happened by then never will, however busy a machine is. */
-const LAST_RESORT = 60000;
+const LAST_RESORT = 1000000;
 
 /** Waits for a promise that a hang would never keep. */
 export const awaited = (promise, what) => Promise.race([promise, new Promise((_, fail) => setTimeout(() => fail(new Error(`${what}: never`)), LAST_RESORT))]);

@@ -197,12 +197,17 @@ impl Wanted {
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Places shift.
-        let text = if self.names_places() { source.with_ids().into() } else { source.source().to_vec() };
-        let mut document = Document::read(&text, name, read)?;
+        let named = self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
         let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
-        if !captions.is_empty() {
-            (document, warnings) = captioned(&document, &captions, read, options)?;
-        }
+        let mut document = match named {
+            named if !captions.is_empty() => {
+                let (document, lacking) = captioned(named.as_ref().unwrap_or(source), &captions, read, options)?;
+                warnings.extend(lacking);
+                document
+            }
+            Some(named) => named,
+            None => Document::read(source.source(), name, read)?,
+        };
         self.steps.iter().try_for_each(|s| document.check_selection(s))?;
         for step in &edits {
             let selection = self.concerned(&document, step);
