@@ -1,6 +1,7 @@
 //! Drawings in the editor, on the engine.
 
 use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use crate::names::Names;
 use crate::picture as page;
 use crate::words::Words;
 use base64::Engine as _;
@@ -56,6 +57,7 @@ struct EditedArtwork {
     given: Given,
     options: CommonOptions,
     flags: Arc<Flags>,
+    names: Arc<Names>,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
     /// The folder of the drawing, where its results go.
@@ -68,31 +70,24 @@ impl EditedArtwork {
     fn new(
         svg: SvgArtwork,
         shown: Option<SvgArtwork>,
-        registry: &Arc<Registry>,
         given: Given,
         options: CommonOptions,
-        flags: &Arc<Flags>,
+        folder: &Path,
+        host: &EngineHost,
     ) -> Self {
         Self {
             svg,
             shown,
             sketch: None,
-            registry: Arc::clone(registry),
+            registry: Arc::clone(&host.registry),
             given,
             options,
-            flags: Arc::clone(flags),
-            plugins: Vec::new(),
-            folder: PathBuf::new(),
+            flags: Arc::clone(&host.flags),
+            names: Arc::clone(&host.names),
+            plugins: host.plugins.clone(),
+            folder: folder.to_owned(),
             framed: None,
         }
-    }
-
-    fn with_plugins(self, options: &[(String, String)]) -> Self {
-        Self { plugins: options.to_vec(), ..self }
-    }
-
-    fn in_folder(self, folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), ..self }
     }
 
     /// Makes the sketch of a large drawing, unless there is one.
@@ -206,7 +201,7 @@ impl EditedArtwork {
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 
@@ -302,7 +297,9 @@ impl Artwork for EditedArtwork {
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bent(recipe, fineness);
-        self.said(bent)
+        let mut bent = self.said(bent)?;
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        Ok(bent)
     }
 
     fn written(
@@ -313,7 +310,8 @@ impl Artwork for EditedArtwork {
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
-        self.said(written)
+        let (bytes, warnings) = self.said(written)?;
+        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -343,6 +341,7 @@ pub struct EngineHost {
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
     flags: Arc<Flags>,
+    names: Arc<Names>,
 }
 
 impl fmt::Debug for EngineHost {
@@ -356,7 +355,8 @@ impl EngineHost {
     #[must_use]
     pub fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
-        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+        let names = Names::of(registry.entries().iter().map(|e| e.info()).chain(&EDITS));
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags, names: Arc::new(names) }
     }
 
     /// Names plug-ins in command lines by these options.
@@ -396,13 +396,12 @@ impl EngineHost {
         let svg = SvgArtwork::read(source, file, &options, None)?;
         let named = svg.document().with_ids();
         let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
-        let artwork = EditedArtwork::new(svg, shown.transpose()?, &self.registry, given, options, &self.flags);
-        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, folder, self);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 

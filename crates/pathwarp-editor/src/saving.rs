@@ -18,7 +18,7 @@ pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
     /// Longest name, in letters.
     const LONGEST: usize = 40;
     let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
-    let name: String = text.trim().to_lowercase().chars().map(plain).take(LONGEST).collect();
+    let name: String = text.trim().chars().map(plain).take(LONGEST).collect();
     let words: Vec<&str> = name.split('-').filter(|word| !word.is_empty()).collect();
     free(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
 }

@@ -17,7 +17,7 @@ use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Map as _, inverse_over};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp_engine::framed::is_framed;
-use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
+use pathwarp_svg::{Document, DrawingPart, ReadOptions, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -268,7 +268,7 @@ impl Session {
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
-        let about = self.about(self.firsts(given), &bent);
+        let about = self.about(given, &bent);
         let reading = self.opened.artwork.reading().clone();
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
@@ -279,21 +279,36 @@ impl Session {
         Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
-    /// The number of steps that come before bending.
-    fn firsts(&self, given: &[PageStep]) -> usize {
-        let is_first = |s: &&PageStep| self.host.first().iter().any(|i| i.name == s.deformation);
-        given.iter().take_while(is_first).count()
+    /// A drawing of a file, as it is.
+    pub(crate) fn drawn(&self, name: &str, bytes: &str) -> Result<Picture, String> {
+        let wrong = |e: &dyn std::fmt::Display| format!("{name}: {e}");
+        let content = STANDARD.decode(bytes).map_err(|e| wrong(&e))?;
+        let reading = self.opened.artwork.reading();
+        let document = Document::read(&content, name, reading).map_err(|e| wrong(&e))?;
+        Picture::of(document.text(), DECIMALS, reading)
     }
 
-    fn about(&self, firsts: usize, bent: &Bent) -> Value {
-        let mut grips = grips(self.host.registry(), &bent.resolved, &bent.built);
-        // What comes before bending has no handles.
-        let frame = rect(self.opened.artwork.frame());
-        grips.splice(0..0, (0..firsts).map(|_| json!({ "frame": frame, "params": {} })));
+    /// Returns `true` for a step that comes before bending.
+    fn is_first(&self, step: &PageStep) -> bool {
+        self.host.first().iter().any(|i| i.name == step.deformation)
+    }
+
+    /// For each step what `of_bending` has for those that bend, in order; what comes before bending and what is hidden has `other`.
+    fn spread<T: Clone>(&self, given: &[PageStep], of_bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
+        let mut of_bending = of_bending.into_iter();
+        let rests = |s: &PageStep| s.hidden || self.is_first(s);
+        let one = |s| if rests(s) { None } else { of_bending.next() };
+        given.iter().map(one).map(|found| found.unwrap_or_else(|| other.clone())).collect()
+    }
+
+    fn about(&self, given: &[PageStep], bent: &Bent) -> Value {
+        let grips = grips(self.host.registry(), &bent.resolved, &bent.built);
+        let without = json!({ "frame": rect(self.opened.artwork.frame()), "params": {} });
+        let grips = self.spread(given, grips, &without);
         let mut about = json!({
             "grips": grips,
             "guides": guides(&bent.built),
-            "warnings": bent.warnings,
+            "warnings": bent.warnings.iter().map(|w| self.said(w)).collect::<Vec<_>>(),
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
         });
         if let Some(s) = &bent.summary {
@@ -438,8 +453,7 @@ impl Session {
     /// The box that each of these steps refers to.
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
         let (_, built) = self.opened.artwork.settle(&recipe(given))?;
-        let firsts = std::iter::repeat_n(self.opened.artwork.frame(), self.firsts(given));
-        Ok(firsts.chain(built.frames.iter().map(|f| f.rect)).take(given.len()).collect())
+        Ok(self.spread(given, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
     }
 
     /// The frame of a step after these.
@@ -525,6 +539,13 @@ impl Session {
         if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
     }
 
+    /// What is said about the drawing to the user: its file has another name if a program waits for it.
+    pub(crate) fn said(&self, text: &str) -> String {
+        let Purpose::Program { drawing, .. } = &self.purpose else { return text.to_owned() };
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        text.replace(&*self.file.to_string_lossy(), drawing).replace(&*name, drawing)
+    }
+
     fn refuse_for_program(&self, what: &str) -> Result<(), String> {
         self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
     }
@@ -558,10 +579,11 @@ impl Session {
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, lost) = self.finished(&to, true, &target.picture)?;
+        let (bytes, mut lost) = self.finished(&to, true, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
+        lost.extend(self.kept.now.steps.iter().any(|s| s.hidden).then(|| "hidden steps are not in the file".to_owned()));
         if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.now.clone()));
             self.draft.remove();

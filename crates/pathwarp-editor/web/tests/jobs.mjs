@@ -93,7 +93,7 @@ export const job_arch = () => job("arch", "lettering.svg", async (page, dir) => 
   await field(page, "Bend", "30");
   check((await page.getByRole("textbox", { name: "Bend", exact: true }).inputValue()) === "30", "it is not 30");
   await backAndForth(page, 2);
-  await given(page, "Target", sample("badge.svg"));
+  await given(page, "Background", sample("badge.svg"));
   for (const [name, mm] of [["Width", "185"], ["X", "-2"], ["Y", "-32"]]) await field(page, new RegExp(`^${name} +mm`), mm);
   await saved(page, "PNG", "word.png");
   await saved(page, "PDF", "word.pdf");
