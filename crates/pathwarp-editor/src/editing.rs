@@ -42,6 +42,8 @@ enum Version {
     File,
     /// The drawing with an id for every element.
     Page,
+    /// The same with large pictures in few pixels, while something is dragged.
+    Light,
     /// The drawing, or a bitmap of a large one.
     Small,
 }
@@ -51,6 +53,8 @@ struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
     shown: Option<SvgArtwork>,
+    /// The drawing of the page with large pictures in few pixels, once something was dragged; inside, `None` if there are none.
+    light: Option<Option<SvgArtwork>>,
     /// A bitmap of a large drawing in its place, once small pictures were asked for.
     sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
@@ -78,6 +82,7 @@ impl EditedArtwork {
         Self {
             svg,
             shown,
+            light: None,
             sketch: None,
             registry: Arc::clone(&host.registry),
             given,
@@ -119,6 +124,19 @@ impl EditedArtwork {
         Ok(())
     }
 
+    /// Makes the version with pictures in few pixels, unless that has been tried.
+    fn lighten(&mut self) -> Result<(), Failure> {
+        if self.light.is_none() {
+            let document = self.shown.as_ref().unwrap_or(&self.svg).document();
+            let with_pictures = Relinking { embed: true, ..Relinking::default() };
+            let embedded = with_pictures.of(document.text(), self.svg.reading())?;
+            let light = page::lightened(embedded.as_deref().unwrap_or(document.text()), self.svg.reading());
+            let read = |text: String| SvgArtwork::read(text.as_bytes(), Path::new("drawing.svg"), &self.options, None);
+            self.light = Some(light.map(read).transpose()?);
+        }
+        Ok(())
+    }
+
     /// Looks up files, and applies `work` to a version of the drawing and the session with these steps.
     fn with_steps<T>(
         &mut self,
@@ -128,10 +146,11 @@ impl EditedArtwork {
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, sketch, registry, given, options, framed, .. } = self;
+        let Self { svg, shown, light, sketch, registry, given, options, framed, .. } = self;
         let (svg, framed) = match version {
             Version::File => (svg, framed),
             Version::Page => (shown.as_mut().unwrap_or(svg), framed),
+            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
             Version::Small => match sketch {
                 // Its frame is another.
                 Some(sketch) => (sketch, &mut None),
@@ -146,11 +165,16 @@ impl EditedArtwork {
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let version = if let Fineness::Small(_) = fineness {
-            self.draw_sketch()?;
-            Version::Small
-        } else {
-            Version::Page
+        let version = match fineness {
+            Fineness::Small(_) => {
+                self.draw_sketch()?;
+                Version::Small
+            }
+            Fineness::Draft(_) => {
+                self.lighten()?;
+                Version::Light
+            }
+            Fineness::Exact => Version::Page,
         };
         self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }

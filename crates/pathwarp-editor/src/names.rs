@@ -72,7 +72,8 @@ fn option(text: &str, from: usize) -> Option<Range<usize>> {
     text[from..].match_indices("--").map(|(at, _)| from + at).find_map(|at| {
         let begins = text[..at].chars().next_back().is_none_or(|c| c.is_whitespace() || "(`'“".contains(c));
         let rest = &text[at + 2..];
-        let length = rest.find(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-').unwrap_or(rest.len());
+        let length =
+            rest.find(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-').unwrap_or(rest.len());
         (begins && rest.starts_with(|c: char| c.is_ascii_lowercase())).then(|| at..at + 2 + length)
     })
 }
@@ -107,10 +108,22 @@ mod tests {
         let names = names(&registry);
         for (told, plain) in [
             ("--reverse-shaper: is a flag", "“Reverse shaper”: is a flag"),
-            ("the corners are in doubt: `--keep verticals` would do", "the corners are in doubt: “Keep” verticals would do"),
-            ("the DXF holds the middle of a stroke (--strokes outline, when warping, gives its edges)", "the DXF holds the middle of a stroke"),
-            ("too much work; allow a larger --tolerance, or, if you trust the file, raise the limit with --limit work=9", "too much work"),
-            ("`a` is absolute; name it relative to the recipe, or allow it with --allow-external", "`a` is absolute; name it relative to the recipe"),
+            (
+                "the corners are in doubt: `--keep verticals` would do",
+                "the corners are in doubt: “Keep” verticals would do",
+            ),
+            (
+                "the DXF holds the middle of a stroke (--strokes outline, when warping, gives its edges)",
+                "the DXF holds the middle of a stroke",
+            ),
+            (
+                "too much work; allow a larger --tolerance, or, if you trust the file, raise the limit with --limit work=9",
+                "too much work",
+            ),
+            (
+                "`a` is absolute; name it relative to the recipe, or allow it with --allow-external",
+                "`a` is absolute; name it relative to the recipe",
+            ),
             ("--frame: there is no drawing", "“Frame”: there is no drawing"),
             ("a--b.svg: is no drawing", "a--b.svg: is no drawing"),
         ] {

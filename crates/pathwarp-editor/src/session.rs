@@ -583,7 +583,9 @@ impl Session {
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
-        lost.extend(self.kept.now.steps.iter().any(|s| s.hidden).then(|| "hidden steps are not in the file".to_owned()));
+        lost.extend(
+            self.kept.now.steps.iter().any(|s| s.hidden).then(|| "hidden steps are not in the file".to_owned()),
+        );
         if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.now.clone()));
             self.draft.remove();

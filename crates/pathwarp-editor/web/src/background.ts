@@ -269,6 +269,7 @@ export class Background {
     const closed = app.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
     if (!file || !closed) return;
     const choose = (value: string) => void app.choose("envelope", { envelope: [value] }, closed.label);
+    this.show(false);
     if (!this.isDrawing) return this.onRound(choose);
     if (outlines.childElementCount === 0) {
       const bytes = await base64(file);

@@ -67,14 +67,14 @@ export class Steps {
     choose.addEventListener("click", () => {
       if (!this.isDragged) void app.select(i);
     });
-    choose.addEventListener("pointerdown", (e) => this.drag(e, choose, i, first, (to) => moved(to)));
+    choose.addEventListener("pointerdown", (e) => this.drag(e, i, first, moved));
     const moved = (to: number) => {
       const others = steps.filter((_, k) => k !== i);
       others.splice(to, 0, step);
       this.moved = to;
       void app.arrange(others, to);
     };
-    const change = (change: Partial<Step>, at = i) => void app.arrange(steps.map((s, k) => (k === i ? { ...s, ...change } : s)), at);
+    const hide = () => void app.arrange(steps.map((s, k) => (k === i ? { ...s, hidden: !step.hidden || undefined } : s)), selected);
     const button = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, action: () => void, disabled = false) => {
       const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
       b.addEventListener("click", action);
@@ -83,7 +83,7 @@ export class Steps {
     const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
       "li", { class: `${i === selected ? "chosen" : ""} ${step.hidden ? "hidden" : ""}` }, choose,
-      !app.isProposal && button("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, () => change({ hidden: !step.hidden || undefined })),
+      !app.isProposal && button("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
       steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
       steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
       !app.isProposal && button("close", `Remove ${title}`, remove),
@@ -118,7 +118,7 @@ export class Steps {
   }
 
   /** Follows a pointer that moves a row among those that may change places. */
-  private drag(e: PointerEvent, row: HTMLElement, i: number, first: number, moved: (to: number) => void): void {
+  private drag(e: PointerEvent, i: number, first: number, moved: (to: number) => void): void {
     // Fingers scroll the list.
     if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
     const rows = Array.from(this.list.children);
@@ -143,6 +143,5 @@ export class Steps {
         if (to !== i && end === "pointerup") moved(to);
       }, stop);
     }
-    row.focus();
   }
 }

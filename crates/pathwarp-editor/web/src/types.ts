@@ -104,6 +104,8 @@ export interface Grip {
   /** Centre, radius, and the angles in degrees at which a circle or an arc begins and ends. */
   circle?: [number, number, number, number, number];
   value?: number;
+  /** A surface as typed, with its lengths in units of the drawing. */
+  surface?: { text: string; sizes: [string, number][] };
 }
 
 export interface StepGrips {
