@@ -14,6 +14,9 @@ const OF_ARTWORK: [number, number] = [0, 100];
 const BOTH_WAYS: [number, number] = [-100, 100];
 /** Arrow keys change values of this range by 1. */
 const COARSE = 20;
+/** What surprises about some deformations. */
+const NOTES: Record<string, string> = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
+
 const MM = 96 / 25.4;
 /** Choices of up to this many words are shown side by side. */
 const SIDE_BY_SIDE = 3;
@@ -60,7 +63,7 @@ export class Settings {
     const more = params.filter((p) => !main.includes(p));
     const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : undefined;
     this.box.replaceChildren(
-      h("p", { class: "about" }, sentence(deformation.title)),
+      h("p", { class: "about" }, sentence(deformation.title), NOTES[deformation.name] ?? ""),
       ...main.map((p) => this.control(p)),
       more.length > 0 ? h("details", { class: "more" }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))) : "",
     );
@@ -130,7 +133,8 @@ export class Settings {
       const least = app.tooSmall(p.name);
       long.hidden = least === null;
       if (least === null) return;
-      grow.dataset.mm = String(Math.ceil(10 * least / unit) / 10);
+      // With a gap between its end and its beginning.
+      grow.dataset.mm = String(Math.ceil((10.6 * least) / unit) / 10);
       note.textContent = "The artwork is longer than this circle, and overlaps itself.";
       grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
     });

@@ -246,7 +246,7 @@ export const job_badge_over_a_sign = () => {
 };
 
 /** A sticker: a flag with its cut line 3 mm outside and the bleed beyond that, as SVG and PDF. */
-export const job_sticker = () => job("sticker", "logo.svg", async (page, dir) => {
+export const job_sticker = () => job("sticker", "badge.svg", async (page, dir) => {
   await press(page, "Flag");
   await press(page, "Add step");
   await press(page, "Contour");
