@@ -1,6 +1,7 @@
 //! Drawings in the editor, on the engine.
 
 use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use crate::names::Names;
 use crate::picture as page;
 use crate::words::Words;
 use base64::Engine as _;
@@ -42,6 +43,8 @@ enum Version {
     File,
     /// The drawing with an id for every element.
     Page,
+    /// The same with large pictures in few pixels, while something is dragged.
+    Light,
     /// The drawing, or a bitmap of a large one.
     Small,
 }
@@ -53,12 +56,15 @@ struct EditedArtwork {
     shown: Option<SvgArtwork>,
     /// The drawing with the captions that were asked for last.
     captioned: Option<(Vec<Step>, Document)>,
+    /// The drawing of the page with large pictures in few pixels, once something was dragged; inside, `None` if there are none.
+    light: Option<Option<SvgArtwork>>,
     /// A bitmap of a large drawing in its place, once small pictures were asked for.
     sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
     flags: Arc<Flags>,
+    names: Arc<Names>,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
     /// The folder of the drawing, where its results go.
@@ -71,32 +77,26 @@ impl EditedArtwork {
     fn new(
         svg: SvgArtwork,
         shown: Option<SvgArtwork>,
-        registry: &Arc<Registry>,
         given: Given,
         options: CommonOptions,
-        flags: &Arc<Flags>,
+        folder: &Path,
+        host: &EngineHost,
     ) -> Self {
         Self {
             svg,
             shown,
             captioned: None,
+            light: None,
             sketch: None,
-            registry: Arc::clone(registry),
+            registry: Arc::clone(&host.registry),
             given,
             options,
-            flags: Arc::clone(flags),
-            plugins: Vec::new(),
-            folder: PathBuf::new(),
+            flags: Arc::clone(&host.flags),
+            names: Arc::clone(&host.names),
+            plugins: host.plugins.clone(),
+            folder: folder.to_owned(),
             framed: None,
         }
-    }
-
-    fn with_plugins(self, options: &[(String, String)]) -> Self {
-        Self { plugins: options.to_vec(), ..self }
-    }
-
-    fn in_folder(self, folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), ..self }
     }
 
     /// Makes the sketch of a large drawing, unless there is one.
@@ -128,6 +128,19 @@ impl EditedArtwork {
         Ok(())
     }
 
+    /// Makes the version with pictures in few pixels, unless that has been tried.
+    fn lighten(&mut self) -> Result<(), Failure> {
+        if self.light.is_none() {
+            let document = self.shown.as_ref().unwrap_or(&self.svg).document();
+            let with_pictures = Relinking { embed: true, ..Relinking::default() };
+            let embedded = with_pictures.of(document.text(), self.svg.reading())?;
+            let light = page::lightened(embedded.as_deref().unwrap_or(document.text()), self.svg.reading());
+            let read = |text: String| SvgArtwork::read(text.as_bytes(), Path::new("drawing.svg"), &self.options, None);
+            self.light = Some(light.map(read).transpose()?);
+        }
+        Ok(())
+    }
+
     /// Looks up files, and applies `work` to a version of the drawing and the session with these steps.
     fn with_steps<T>(
         &mut self,
@@ -137,10 +150,11 @@ impl EditedArtwork {
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, sketch, registry, given, options, framed, .. } = self;
+        let Self { svg, shown, light, sketch, registry, given, options, framed, .. } = self;
         let (svg, framed) = match version {
             Version::File => (svg, framed),
             Version::Page => (shown.as_mut().unwrap_or(svg), framed),
+            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
             Version::Small => match sketch {
                 // Its frame is another.
                 Some(sketch) => (sketch, &mut None),
@@ -155,11 +169,16 @@ impl EditedArtwork {
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let version = if let Fineness::Small(_) = fineness {
-            self.draw_sketch()?;
-            Version::Small
-        } else {
-            Version::Page
+        let version = match fineness {
+            Fineness::Small(_) => {
+                self.draw_sketch()?;
+                Version::Small
+            }
+            Fineness::Draft(_) => {
+                self.lighten()?;
+                Version::Light
+            }
+            Fineness::Exact => Version::Page,
         };
         self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }
@@ -210,7 +229,7 @@ impl EditedArtwork {
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 
@@ -327,7 +346,9 @@ impl Artwork for EditedArtwork {
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bent(recipe, fineness);
-        self.said(bent)
+        let mut bent = self.said(bent)?;
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        Ok(bent)
     }
 
     fn written(
@@ -338,7 +359,8 @@ impl Artwork for EditedArtwork {
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
-        self.said(written)
+        let (bytes, warnings) = self.said(written)?;
+        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -368,6 +390,7 @@ pub struct EngineHost {
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
     flags: Arc<Flags>,
+    names: Arc<Names>,
 }
 
 impl fmt::Debug for EngineHost {
@@ -381,7 +404,8 @@ impl EngineHost {
     #[must_use]
     pub fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
-        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+        let names = Names::of(registry.entries().iter().map(|e| e.info()).chain(&EDITS));
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags, names: Arc::new(names) }
     }
 
     /// Names plug-ins in command lines by these options.
@@ -421,13 +445,12 @@ impl EngineHost {
         let svg = SvgArtwork::read(source, file, &options, None)?;
         let named = svg.document().with_ids();
         let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
-        let artwork = EditedArtwork::new(svg, shown.transpose()?, &self.registry, given, options, &self.flags);
-        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, folder, self);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 

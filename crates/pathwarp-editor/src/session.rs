@@ -19,7 +19,7 @@ use pathwarp::param::Args;
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_engine::caption::{self, is_caption};
 use pathwarp_engine::framed::is_framed;
-use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
+use pathwarp_svg::{Document, DrawingPart, ReadOptions, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -172,8 +172,7 @@ impl Session {
         let frames = self.frames(&old_steps)?;
         for (step, from) in old_steps.into_iter().zip(frames) {
             // A step for letters that have gone waits until they are back.
-            let waits = self.present(std::slice::from_ref(&step)).0.is_empty()
-                || other.present(std::slice::from_ref(&step)).0.is_empty();
+            let waits = self.waits(&step) || other.waits(&step);
             let to = if waits { from } else { other.frame_of(&steps, &step.select)? };
             steps.push(presets::laid(other.host.registry(), step, from, to));
         }
@@ -182,31 +181,35 @@ impl Session {
         self.redraw(other, kept)
     }
 
-    /// The steps for the parts that the drawing has, and the places of those that have none of theirs, which are left out.
-    fn present(&mut self, given: &[PageStep]) -> (Vec<PageStep>, Vec<usize>) {
+    /// The steps for the parts that the drawing has; those that have none of theirs are hidden.
+    fn present(&mut self, given: &[PageStep]) -> Vec<PageStep> {
         let mut out = given.to_vec();
         if given.iter().all(|s| s.select.is_empty() && s.exclude.is_empty()) {
-            return (out, Vec::new());
+            return out;
         }
         // A caption that is wrong is reported where the drawing is bent.
-        let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return (out, Vec::new()) };
+        let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return out };
         let is_here = |selector: &String| {
             let select = vec![selector.clone()];
             document.check_selection(&Selection { select, ..Selection::default() }).is_ok()
         };
         for step in &mut out {
+            let is_of_all = step.select.is_empty();
             step.select.retain(is_here);
             step.exclude.retain(is_here);
+            step.hidden |= step.select.is_empty() && !is_of_all;
         }
-        let is_gone = |i: &usize| out[*i].select.is_empty() && !given[*i].select.is_empty();
-        let gone: Vec<usize> = (0..given.len()).filter(is_gone).collect();
-        let present = (0..given.len()).zip(out).filter(|(i, _)| !gone.contains(i)).map(|(_, step)| step);
-        (present.collect(), gone)
+        out
+    }
+
+    /// Returns `true` if the drawing has none of the parts that a step is for.
+    fn waits(&mut self, step: &PageStep) -> bool {
+        !step.hidden && self.present(std::slice::from_ref(step)).iter().all(|s| s.hidden)
     }
 
     /// The recipe of steps, as far as their parts are there.
     fn recipe(&mut self, given: &[PageStep]) -> Recipe {
-        recipe(&self.present(given).0)
+        recipe(&self.present(given))
     }
 
     /// The recipe that results are made by. Words need no step, and then nothing moves.
@@ -294,9 +297,9 @@ impl Session {
     /// The drawing under these steps; `draft` is the tolerance while something is dragged.
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
-        let (present, gone) = self.present(given);
+        let present = self.present(given);
         let bent = self.opened.artwork.bend(&recipe(&present), fineness)?;
-        let about = self.about(given, &gone, &bent);
+        let about = self.about(given, &present, &bent);
         let reading = self.opened.artwork.reading().clone();
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
@@ -307,38 +310,48 @@ impl Session {
         Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
-    /// The number of steps that come before bending.
-    fn firsts(&self, given: &[PageStep]) -> usize {
-        let is_first = |s: &&PageStep| self.host.first().iter().any(|i| i.name == s.deformation);
-        given.iter().take_while(is_first).count()
+    /// A drawing of a file, as it is.
+    pub(crate) fn drawn(&self, name: &str, bytes: &str) -> Result<Picture, String> {
+        let wrong = |e: &dyn std::fmt::Display| format!("{name}: {e}");
+        let content = STANDARD.decode(bytes).map_err(|e| wrong(&e))?;
+        let reading = self.opened.artwork.reading();
+        let document = Document::read(&content, name, reading).map_err(|e| wrong(&e))?;
+        Picture::of(document.text(), DECIMALS, reading)
     }
 
-    fn about(&self, given: &[PageStep], gone: &[usize], bent: &Bent) -> Value {
+    /// Returns `true` for a step that comes before bending.
+    fn is_first(&self, step: &PageStep) -> bool {
+        self.host.first().iter().any(|i| i.name == step.deformation)
+    }
+
+    /// For each step what `of_bending` has for those that bend, in order; what comes before bending and what is hidden has `other`.
+    fn spread<T: Clone>(&self, given: &[PageStep], of_bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
+        let mut of_bending = of_bending.into_iter();
+        let rests = |s: &PageStep| s.hidden || self.is_first(s);
+        let one = |s| if rests(s) { None } else { of_bending.next() };
+        given.iter().map(one).map(|found| found.unwrap_or_else(|| other.clone())).collect()
+    }
+
+    /// What a page shows about a drawing under these steps, of which those `present` have their parts.
+    fn about(&self, given: &[PageStep], present: &[PageStep], bent: &Bent) -> Value {
         let artwork = &self.opened.artwork;
-        let mut bending = grips(self.host.registry(), &bent.resolved, &bent.built).into_iter();
-        let frame = rect(artwork.frame());
-        // Of what comes before bending, captions alone have handles.
-        let first = |step: &PageStep| {
-            let of = &recipe(std::slice::from_ref(step)).steps[0];
-            is_caption(of).then(|| of_caption(&of.args, &caption::frame(artwork.document())))
-        };
-        let firsts = self.firsts(given);
-        let of_step = |(i, step): (usize, &PageStep)| {
-            let own = if gone.contains(&i) {
-                None
-            } else if i < firsts {
-                first(step)
-            } else {
-                bending.next()
-            };
-            own.unwrap_or_else(|| json!({ "frame": frame, "params": {} }))
-        };
-        let grips: Vec<Value> = given.iter().enumerate().map(of_step).collect();
+        let grips = grips(self.host.registry(), &bent.resolved, &bent.built);
+        let without = json!({ "frame": rect(artwork.frame()), "params": {} });
+        let mut grips = self.spread(present, grips, &without);
+        for (step, grips) in given.iter().zip(&mut grips) {
+            // Of what comes before bending, captions alone have handles.
+            if let [caption] = &*recipe(std::slice::from_ref(step)).steps
+                && is_caption(caption)
+            {
+                *grips = of_caption(&caption.args, &caption::frame(artwork.document()));
+            }
+        }
+        let gone: Vec<usize> = (0..given.len()).filter(|&i| present[i].hidden && !given[i].hidden).collect();
         let mut about = json!({
             "grips": grips,
             "gone": gone,
             "guides": guides(&bent.built),
-            "warnings": bent.warnings,
+            "warnings": bent.warnings.iter().map(|w| self.said(w)).collect::<Vec<_>>(),
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
         });
         if let Some(s) = &bent.summary {
@@ -492,11 +505,9 @@ impl Session {
 
     /// The box that each of these steps refers to.
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
-        let (present, gone) = self.present(given);
+        let present = self.present(given);
         let (_, built) = self.opened.artwork.settle(&recipe(&present))?;
-        let (firsts, mut bending) = (self.firsts(given), built.frames.iter().map(|f| f.rect));
-        let own = |i: usize| if i < firsts || gone.contains(&i) { None } else { bending.next() };
-        Ok((0..given.len()).map(own).map(|own| own.unwrap_or_else(|| self.opened.artwork.frame())).collect())
+        Ok(self.spread(&present, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
     }
 
     /// The frame of a step after these.
@@ -584,6 +595,13 @@ impl Session {
         if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
     }
 
+    /// What is said about the drawing to the user: its file has another name if a program waits for it.
+    pub(crate) fn said(&self, text: &str) -> String {
+        let Purpose::Program { drawing, .. } = &self.purpose else { return text.to_owned() };
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        text.replace(&*self.file.to_string_lossy(), drawing).replace(&*name, drawing)
+    }
+
     fn refuse_for_program(&self, what: &str) -> Result<(), String> {
         self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
     }
@@ -617,10 +635,13 @@ impl Session {
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, lost) = self.finished(&to, true, &target.picture)?;
+        let (bytes, mut lost) = self.finished(&to, true, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
+        lost.extend(
+            self.kept.now.steps.iter().any(|s| s.hidden).then(|| "hidden steps are not in the file".to_owned()),
+        );
         if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.now.clone()));
             self.draft.remove();

@@ -2,7 +2,7 @@
 
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
-import { toast } from "./toast";
+import { hush, toast } from "./toast";
 import { inWords, reason, showWrong } from "./fields";
 import { Handles } from "./handles";
 import { isCaption } from "./names";
@@ -318,6 +318,7 @@ export class App {
 
   /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
   private inTurn<T>(work: () => Promise<T>): Promise<T> {
+    hush();
     const done = this.turns.then(() => this.flush()).then(work);
     this.turns = done.catch(() => undefined);
     return done;
@@ -478,7 +479,7 @@ export class App {
       return null;
     }
     this.fail(null);
-    return inWords(problem);
+    return inWords(problem, true);
   }
 
   /** Gives the net of the step more or fewer control points; it bends as before. */
@@ -496,6 +497,14 @@ export class App {
 
   grip(name: string): Grip | undefined {
     return this.grips[this.selected]?.params[name];
+  }
+
+  /** The radius that a circle would need for the artwork not to be longer than it; `null` if it is long enough, or the artwork stretched. */
+  tooSmall(name: string): number | null {
+    const [circle, frame, step] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
+    if (!circle || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step?.args[other])) return null;
+    const least = frame[2] / (Math.abs(circle[4] - circle[3]) * (Math.PI / 180));
+    return circle[2] < least && Math.abs(Math.abs(circle[4] - circle[3]) - 360) < 1e-6 ? least : null;
   }
 
   private take(answer: Answer): void {

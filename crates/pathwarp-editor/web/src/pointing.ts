@@ -4,6 +4,7 @@ import type { App } from "./app";
 import type { Modes } from "./modes";
 import { REACH, type Stage } from "./stage";
 import { together, type Part } from "./selection";
+import { hush } from "./toast";
 import type { XY } from "./types";
 
 /** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
@@ -107,6 +108,7 @@ export class Pointing {
   private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void, clicked: () => void = () => {}): void {
     const { app } = this;
     const start = this.stage.point(e);
+    hush();
     void app.flush();
     const step = app.step!;
     const before = structuredClone(step);
@@ -115,6 +117,7 @@ export class Pointing {
     const stop = () => {
       app.isDragging = false;
       app.hold = null;
+      this.stage.tell(null);
       done();
     };
     const abandon = this.follow(e, {

@@ -133,7 +133,7 @@ export class Saving {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (!state || state.program || this.dialog.open) return;
-    if (state.steps.length === 0 && !state.words) return toast(NOTHING);
+    if (state.steps.length === 0 && !state.words) return void toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
     if (!state.photograph) this.recall();
