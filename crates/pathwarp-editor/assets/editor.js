@@ -1631,7 +1631,7 @@
     async source(at) {
       for (let k = this.visible.length; k > 0; k--) {
         const steps = this.visible.slice(0, k);
-        if (this.isFirst(steps[k - 1]) || this.gone.includes(k - 1)) continue;
+        if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
         at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
       }
       return at;

@@ -425,13 +425,16 @@ impl Session {
     }
 
     /// The place that the last of these steps takes to `at`, if there is one.
-    pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
+    pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Value, String> {
         let given = self.recipe(given);
         let (_, built) = self.opened.artwork.settle(&given)?;
-        let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
+        let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else {
+            return Ok(json!({ "at": [at.x, at.y] }));
+        };
         let from = inverse_over(&step.map, frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
-        Ok((step.map.point(from).distance(at) <= near).then_some(from))
+        let from = (step.map.point(from).distance(at) <= near).then_some([from.x, from.y]);
+        Ok(json!({ "at": from }))
     }
 
     /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can;
@@ -639,9 +642,12 @@ impl Session {
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
         }
-        lost.extend(
-            self.kept.now.steps.iter().any(|s| s.hidden).then(|| "hidden steps are not in the file".to_owned()),
-        );
+        let given = self.kept.now.steps.clone();
+        if self.present(&given).iter().any(|s| s.hidden) {
+            let waits = given.iter().all(|s| !s.hidden);
+            let which = if waits { "steps whose letters are gone" } else { "hidden steps" };
+            lost.push(format!("{which} are not in the file"));
+        }
         if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.now.clone()));
             self.draft.remove();

@@ -159,9 +159,7 @@ impl Page {
                 Ok(json!({ "presets": session.presets()? }))
             }
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
-            Request::Preimage { steps, at } => {
-                Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
-            }
+            Request::Preimage { steps, at } => session.preimage(&steps, at.into()),
             Request::Renet { steps, values } => session.renet(&steps, values),
             Request::CommandLine { to } => session.command_line(&to),
         }

@@ -2,11 +2,11 @@
 
 mod badges;
 mod batches;
+mod captions;
 mod chains;
 mod circles;
 mod commands;
 mod common;
-mod captions;
 mod contour;
 mod documentation;
 mod edits_first;

@@ -259,7 +259,7 @@ export const a_selection_is_moved_by_its_box = () => within(async (page) => {
   };
   await selected();
   const box = async () => {
-    const { x, y, width, height } = await page.locator("#stage .selection path").boundingBox();
+    const { x, y, width, height } = await page.locator("#stage .selection > path.line").last().boundingBox();
     // The handle that turns stands above.
     return { x, y: y + 26, width, height: height - 26 };
   };
@@ -267,9 +267,9 @@ export const a_selection_is_moved_by_its_box = () => within(async (page) => {
   await dragged([inside.x + inside.width * 0.4, inside.y + inside.height * 0.75], 25, 40);
   const edge = await box();
   await dragged([edge.x + edge.width * 0.3, edge.y + edge.height + 2], -15, 20);
-  check((await page.getAttribute("#stage .selection", "visibility")) === "visible", "the selection is lost");
+  check((await page.locator("#stage .selection").last().getAttribute("visibility")) === "visible", "the selection is lost");
   const again = await box();
   await page.mouse.click(again.x + again.width * 0.4, again.y + again.height * 0.75);
   await quiet(page);
-  check((await page.getAttribute("#stage .selection", "visibility")) === "hidden", "a click does not let go");
+  check((await page.locator("#stage .selection").last().getAttribute("visibility")) === "hidden", "a click does not let go");
 });

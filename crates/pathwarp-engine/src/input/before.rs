@@ -197,7 +197,8 @@ impl Wanted {
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Places shift.
-        let named = self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
+        let named =
+            self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
         let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
         let mut document = match named {
             named if !captions.is_empty() => {
