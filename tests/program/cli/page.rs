@@ -392,3 +392,36 @@ fn lines_of_a_preview_are_moved_back_with_the_result() {
     let near = square.inflate(12.0, 12.0);
     assert!(square.width() > 100.0 && lines.width() > 100.0 && near.union(lines) == near, "{lines} around {square}");
 }
+
+/// A millimetre is a millimetre on a sheet, whatever the units of the drawing, and the artwork lies in its middle.
+#[test]
+fn a_sheet_of_paper_holds_the_artwork_in_its_true_size() {
+    // The box is 200 × 180 units around 120, 120; 3.7795… units are a millimetre without other scale.
+    let px = 96.0 / 25.4;
+    for (root, fit, sides, per_mm) in [
+        ("viewBox='0 0 240 240'", "a4", [297.0, 210.0], px),
+        ("viewBox='0 0 240 240' width='120mm' height='120mm'", "a3", [420.0, 297.0], 2.0),
+        ("viewBox='0 0 240 240' width='480'", "letter", [279.4, 215.9], px / 2.0),
+        ("width='100%' style='height:80mm'", "tabloid", [431.8, 279.4], px),
+    ] {
+        let (page, said) = moved(root, BOX, &format!("affine --move-y 0 --fit {fit}"));
+        let parts: Vec<&str> = page.split('|').collect();
+        let view: Vec<f64> = parts[0].split(' ').map(|v| v.parse().unwrap()).collect();
+        let [w, h] = sides.map(|s| s * per_mm);
+        let want = [120.0 - 0.5 * w, 120.0 - 0.5 * h, w, h];
+        assert!(view.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-5 * w), "{root}: {page}, not {want:?}");
+        assert_eq!(parts[1..], sides.map(|s| format!("{s}mm")), "{root}");
+        assert_eq!(said, "", "{root}");
+    }
+    let (code, svg, said) = run(
+        "affine --scale-x 4 --scale-y 10 --fit a4",
+        &format!("{ROOT} viewBox='0 0 240 240' width='120mm' height='120mm'>{BOX}</svg>"),
+    );
+    // 400 mm × 900 mm, upright: 95 and 301.5 mm too much on each side, of which the second is more beside 297.
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!([root_attr(&svg, "width"), root_attr(&svg, "height")], ["210mm", "297mm"].map(|v| Some(v.to_owned())));
+    assert!(said.contains("past the page by up to 603 units (102 %; left, top, right, bottom)"), "{said}");
+    let (code, _, said) =
+        run("affine --fit a4 --page-width 10cm", &format!("{ROOT} viewBox='0 0 240 240'>{BOX}</svg>"));
+    assert!(code == Some(2) && said.contains("a sheet of paper has its own size"), "{said}");
+}

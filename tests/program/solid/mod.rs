@@ -419,3 +419,41 @@ fn a_preview_shows_both_sides_of_both() {
     }
     assert_eq!(picture.pixel(2, 2).unwrap().red(), 255);
 }
+
+/// The rod of a sighting hole surrounds the ray from the eye through the middle of the model, before and behind all of the result.
+#[test]
+fn a_sighting_hole_lies_on_the_ray_of_the_eye() {
+    let dir = tempfile::tempdir().unwrap();
+    let cube = "v 0 0 0\nv 60 0 0\nv 60 60 30\nv 0 60 30\nf 1 2 3 4\n";
+    let line = ["anamorph", "--eye", "10,20,300", "--degree", "1", "--push", "1,1,1:1.5", "--sight-hole", "rod.obj"];
+    let result = Model::read(&ok(dir.path(), &line, cube));
+    let text = fs::read_to_string(dir.path().join("rod.obj")).unwrap();
+    let rod = Model::read(&text);
+    // From (10, 20, 300) to the middle (30, 30, 15) of the box.
+    let (eye, way) = ([10.0, 20.0, 300.0], [20.0, 10.0, -285.0]);
+    let length = f64::sqrt(way.iter().map(|v| v * v).sum());
+    let along = |p: &[f64; 3]| (0..3).map(|i| (p[i] - eye[i]) * way[i]).sum::<f64>() / length;
+    let radius = 0.01 * f64::sqrt(60.0 * 60.0 * 2.0 + 30.0 * 30.0);
+    for p in &rod.vertices {
+        let square: f64 = (0..3).map(|i| (p[i] - eye[i]).powi(2)).sum();
+        assert!(((square - along(p).powi(2)).sqrt() - radius).abs() < 1e-9, "{p:?}");
+    }
+    let depths: Vec<f64> = rod.vertices.iter().map(along).collect();
+    let (near, far) =
+        (depths.iter().copied().fold(f64::INFINITY, f64::min), depths.iter().copied().fold(0.0, f64::max));
+    assert!(result.vertices.iter().map(along).all(|d| d > near && d < far));
+    // Its faces look outwards: six times its volume by tetrahedra is that of a prism with 24 sides.
+    let faces: Vec<Vec<usize>> = text
+        .lines()
+        .filter_map(|l| l.strip_prefix("f "))
+        .map(|l| l.split(' ').map(|w| w.parse::<usize>().unwrap() - 1).collect())
+        .collect();
+    let det = |[a, b, c]: [[f64; 3]; 3]| -> f64 {
+        (0..3).map(|i| a[i] * (b[(i + 1) % 3] * c[(i + 2) % 3] - b[(i + 2) % 3] * c[(i + 1) % 3])).sum()
+    };
+    let corner = |k: usize| rod.vertices[k];
+    let six: f64 =
+        faces.iter().flat_map(|f| (1..f.len() - 1).map(|k| det([corner(f[0]), corner(f[k]), corner(f[k + 1])]))).sum();
+    let area = 12.0 * radius * radius * (std::f64::consts::TAU / 24.0).sin();
+    assert!((six / 6.0 / (area * (far - near)) - 1.0).abs() < 1e-9, "{six}");
+}

@@ -16,7 +16,7 @@ use crate::options::CommonOptions;
 use pathwarp::kurbo::Size;
 use pathwarp::param::LengthUnit;
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
-use pathwarp_svg::{Document, ReadOptions, compressed};
+use pathwarp_svg::{Document, PageFit, ReadOptions, compressed};
 use std::path::Path;
 
 /// Writes a document in another format.
@@ -54,6 +54,10 @@ pub fn drawing(
         return Err(Failure::usage(format!("--kerf is for a DXF; {advice}")));
     }
     let resizes = options.page_width.is_some() || options.page_height.is_some();
+    if resizes && matches!(options.page, PageFit::Sheet(_)) {
+        let advice = "--page-width and --page-height scale it; omit them, or --fit";
+        return Err(Failure::usage(format!("a sheet of paper has its own size; {advice}")));
+    }
     let write: Option<Writer> = match format {
         Format::Pdf => Some(pdf::write),
         Format::Dxf => Some(dxf::write),

@@ -47,6 +47,7 @@ impl PictureArtwork {
             (options.embed_recipe, "embed-recipe"),
             (options.preview.is_some(), "preview"),
             (options.page == PageFit::Shrink, "fit shrink"),
+            (matches!(options.page, PageFit::Sheet(_)), "fit with a sheet of paper"),
             (options.page_width.is_some() || options.page_height.is_some(), "page-width"),
             (options.kerf.is_some(), "kerf"),
         ] {

@@ -343,9 +343,14 @@ pub static OPTIONS: &[CommonOption] = &[
                 ("grow", |o| o.page = PageFit::Grow),
                 ("page", |o| o.page = PageFit::PageWithMargin),
                 ("shrink", |o| o.page = PageFit::Shrink),
+                ("a3", |o| o.page = PageFit::Sheet([297.0, 420.0])),
+                ("a4", |o| o.page = PageFit::Sheet([210.0, 297.0])),
+                ("letter", |o| o.page = PageFit::Sheet([215.9, 279.4])),
+                ("tabloid", |o| o.page = PageFit::Sheet([279.4, 431.8])),
             ]),
             "Page: leave it unchanged (none), grow it to hold the warped artwork, make it the bounding box of the artwork with the \
-             margin of the original (page), or scale the result back into it (shrink). auto grows it, to whole units and with its margin, \
+             margin of the original (page), scale the result back into it (shrink), or make it a sheet of paper \
+             (a3, a4, letter, tabloid), upright or on its side, with the artwork in its true size in the middle. auto grows it, to whole units and with its margin, \
              where artwork leaves it, and says so; the pages of icons (square, up to 64 px), of paper sizes, of batches, and those that \
              steps refer to stay, with a warning if artwork extends past them",
         )

@@ -97,7 +97,7 @@ pub enum Filters {
 }
 
 /// Treatment of the page.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub enum PageFit {
     /// Leave it unchanged.
@@ -118,6 +118,9 @@ pub enum PageFit {
     Shrink,
     /// Move the page to the origin, with its size unchanged.
     Origin,
+    /// Set the page to a sheet of paper with these sides in mm, in its true size, upright or on its side as the warped artwork needs,
+    /// which lies in its middle.
+    Sheet([f64; 2]),
 }
 
 /// Treatment of patterns.

@@ -212,7 +212,12 @@ impl Drawing {
 
     /// A millimetre in root user units, if the file specifies the size of its page in physical units.
     pub(crate) fn millimetre(&self) -> Option<f64> {
-        self.is_measured().then(|| self.dpi / MM_PER_INCH / stretch(self.scene().to_px))
+        self.is_measured().then(|| self.units_per_mm())
+    }
+
+    /// Root user units in a millimetre, at the drawing's dots per inch if the file specifies no physical size.
+    pub(crate) fn units_per_mm(&self) -> f64 {
+        self.dpi / MM_PER_INCH / stretch(self.scene().to_px)
     }
 
     /// Returns `true` if the file specifies the size of its page in physical units.

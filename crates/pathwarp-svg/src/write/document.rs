@@ -104,7 +104,7 @@ fn flattened(
     }
     let mut out =
         String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
-    let page = change.map_or_else(Vec::new, |change| page::attributes(input.source, change));
+    let page = change.map_or_else(Vec::new, |change| page::attributes(input, change));
     for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
         let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
         if let Some(v) = new.or_else(|| source.attr(0, name)) {

@@ -6,7 +6,7 @@ use crate::bend::line::Line;
 use crate::bend::outcome::{Notes, Skipped};
 use crate::scene::geometry::stretch;
 use crate::source::markup::Tag;
-use crate::source::number::{rectangle, single};
+use crate::source::number::{path_data, rectangle, single};
 use pathwarp::deform::SightMark;
 use pathwarp::kurbo::{Point, Rect, Shape};
 use std::fmt::Write as _;
@@ -49,22 +49,26 @@ pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
     [beneath, above]
 }
 
-/// The box of the marks that say where to look from.
+/// The box of the marks that say where to look from, with some room around them.
 pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
     /// The width of a letter, as a share of its height.
     const LETTER: f64 = 0.6;
     let ((at, text), size) = (&sight.label, sight.size);
-    let text = Rect::new(at.x, at.y - size, at.x + LETTER * size * text.chars().count() as f64, at.y + 0.3 * size);
-    sight.path.bounding_box().union(text)
+    let half = 0.5 * LETTER * size * text.chars().count() as f64;
+    let text = Rect::new(at.x - half, at.y - size, at.x + half, at.y + 0.3 * size);
+    sight.path.bounding_box().union(text).inflate(size, size)
 }
 
 /// The layer of the marks that say where to look from.
 fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
-    let path = w.markup.element("path").with("d", &sight.path.to_svg());
+    let path = w.markup.element("path").with("d", &path_data(&sight.path, 4));
     let path = path.with("style", &format!("fill:none;stroke:#000;stroke-width:{}", single(0.04 * sight.size)));
     let (at, text) = &sight.label;
     let label = w.markup.element("text").with("x", &single(at.x)).with("y", &single(at.y));
-    let label = label.with("style", &format!("font-family:sans-serif;font-size:{}px;fill:#000", single(sight.size)));
+    let label = label.with(
+        "style",
+        &format!("font-family:sans-serif;font-size:{}px;text-anchor:middle;fill:#000", single(sight.size)),
+    );
     let group = w.markup.element("g").with("id", &w.defs.new_id("sight-mark"));
     group.around(&(path.empty() + &label.around(text))) + "\n"
 }

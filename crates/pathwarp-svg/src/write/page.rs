@@ -13,8 +13,7 @@ use crate::scene::model::{Group, Node, PartRole};
 use crate::source::elements::ElementId;
 use crate::source::number::{rectangle, short};
 use crate::source::select::Selection;
-use crate::source::text::SourceText;
-use pathwarp::kurbo::{Affine, Point, Rect};
+use pathwarp::kurbo::{Affine, Point, Rect, Size};
 use std::collections::BTreeSet;
 use svgtypes::LengthUnit;
 
@@ -47,8 +46,17 @@ fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
             let margin = margin(input, page);
             artwork(input, None)?.inflate(margin, margin)
         }
+        PageFit::Sheet(sides) => sheet(input, sides)?,
     };
     (shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite() && shown != page).then_some(shown)
+}
+
+/// A sheet of paper with sides in mm around the artwork, turned as the artwork needs.
+fn sheet(input: &WriteInput<'_>, [a, b]: [f64; 2]) -> Option<Rect> {
+    let all = artwork(input, None)?;
+    let is_wide = all.width() > all.height();
+    let sides = if is_wide { (a.max(b), a.min(b)) } else { (a.min(b), a.max(b)) };
+    Some(Rect::from_center_size(all.center(), Size::from(sides) * input.drawing.units_per_mm()))
 }
 
 /// The page of [`PageFit::Auto`]. `None` if it stays.
@@ -126,9 +134,15 @@ fn moved(input: &WriteInput<'_>) -> bool {
 }
 
 /// Returns new attributes of the root for a [`change`] of the page.
-pub(super) fn attributes(source: &SourceText, (page, shown): (Rect, Rect)) -> Vec<(&'static str, String)> {
+pub(super) fn attributes(input: &WriteInput<'_>, (page, shown): (Rect, Rect)) -> Vec<(&'static str, String)> {
+    let source = input.source;
     let view = rectangle(shown).map(|side| side.1).join(" ");
     let mut out = vec![("viewBox", view)];
+    if matches!(input.options.page, PageFit::Sheet(_)) {
+        let sides = [("width", shown.width()), ("height", shown.height())];
+        out.extend(sides.map(|(name, side)| (name, format!("{}mm", short(side / input.drawing.units_per_mm())))));
+        return out;
+    }
     let sides = [("width", shown.width(), page.width()), ("height", shown.height(), page.height())];
     for (name, after, before) in sides {
         let Some(l) = page_length(source, name) else { continue };
@@ -147,8 +161,14 @@ pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
     Some((input.drawing.visible_area(), adapted(input)?))
 }
 
-/// Measures the overhang over a page that is not adapted, compared to the original.
+/// Measures the overhang over a sheet of paper, or over a page that is not adapted, compared to the original.
 pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
+    if let PageFit::Sheet(sides) = input.options.page {
+        let (all, page) = (artwork(input, None)?, sheet(input, sides)?);
+        let [x, y] = [page.x0 - all.x0, page.y0 - all.y0].map(|v| v.max(0.0));
+        let share = (x / page.width()).max(y / page.height());
+        return (share > VISIBLE).then_some(Overhang { by: [x, y, x, y], share });
+    }
     // Measuring needs every outline, so skip it if nothing has moved.
     if input.options.page != PageFit::None || !moved(input) || input.drawing.specified_area().is_none() {
         return None;

@@ -455,7 +455,7 @@ pub struct SavedFile {
 pub struct SightMark {
     /// Lines: the place of the eye or an arrow towards it, and the foot of a mirror.
     pub path: BezPath,
-    /// The beginning of a line of text, and the text.
+    /// The middle of the baseline of a line of text, and the text.
     pub label: (Point, String),
     /// The height of the text.
     pub size: f64,

@@ -12,6 +12,7 @@
 
 mod dilation;
 mod reference;
+mod sight;
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
 use crate::lattice::{Lattice3, LatticeMap3};
@@ -553,13 +554,15 @@ length with its unit further, by the \
 control point that has most influence there and is not on the fixed face (the first three corners of a tetrahedron).")
             .repeated(),
             Param::flag("local", "Leave everything outside the reference in place."),
+            Param::new("sight-hole", Kind::Save, "Save a rod on the ray from the eye through the middle of the model (OBJ). Cut out of the \
+printed result, as a negative volume of the slicer, it leaves a hole through which the eye finds its place."),
         ])
         .demo(&[("eye", "50,60,400"), ("degree", "2x1x1"), ("push", "1,1,0:1.6 0,0,1:0.8")])
         .examples(&[
             Example {
-                what: "Stretch a model away from the eye: a perspective collineation",
+                what: "Stretch a model away from the eye: a perspective collineation, with the rod of a sighting hole",
                 command: "solid anamorph samples/solid/teapot.obj --eye 50%,60%,600% --reference '0%,0%,100% 100%,0%,100% 0%,100%,100% 50%,50%,-50%' \
---push 0,0,0,1:160% -o out.obj",
+--push 0,0,0,1:160% --sight-hole out-hole.obj -o out.obj",
             },
             Example {
                 what: "Bend a model to and fro along its rays",
@@ -646,6 +649,14 @@ const LOCAL: Pairs = &[
 
 /// Reads the deformation from text.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
+    let (eye, mut built) = (eye(s)?, built(s)?);
+    let rod = s.last("sight-hole").map(|name| sight::rod(eye, &s.bounds(), &built, name));
+    built.saves.extend(rod);
+    Ok(built)
+});
+
+/// Builds the map for these settings.
+fn built(s: &Settings3<'_>) -> Result<Built3, Error> {
     let eye = eye(s)?;
     let listed = |name: &str| -> Result<Vec<DVec3>, Error> {
         let words = s.words(name).into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
@@ -698,7 +709,7 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
         pushes.extend(prescribed(s)?);
     }
     pushes.into_iter().fold(Anamorph3::new(eye, reference).local(local), Anamorph3::push).build()
-});
+}
 
 /// Reads the eye.
 fn eye(s: &Settings3<'_>) -> Result<Eye3, Error> {

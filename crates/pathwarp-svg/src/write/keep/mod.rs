@@ -52,7 +52,7 @@ pub(super) fn write(
     keeper::let_go(&mut k, &warped);
     keeper::remove_unfit(&mut k, &warped);
     if let Some(change) = change {
-        for (name, value) in page::attributes(input.source, change) {
+        for (name, value) in page::attributes(input, change) {
             if name == "viewBox" {
                 k.edits.set_attr(0, name, value);
             } else {

@@ -240,7 +240,7 @@ impl Anamorph {
                 match eye {
                     Eye::At(..) => {
                         let height = measured(height, units);
-                        let here = format!("eye {height} straight above this mark");
+                        let here = format!("eye {height} straight above the round mark");
                         (at, [here, format!("eye {height} above the sheet{HERE}")])
                     }
                     Eye::Infinite(_) => (at, far_away(height)),
@@ -254,7 +254,7 @@ impl Anamorph {
                     false => Point::new(foot.x + (r.middle.x - foot.x) * k, foot.y),
                 };
                 let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
-                let here = format!("eye {} in front of this mark", measured(apart, units));
+                let here = format!("eye {} in front of the round mark", measured(apart, units));
                 let there = format!("eye {} in front of the surface{HERE}", measured(apart, units));
                 (map.point(front), [here, there])
             }
@@ -511,7 +511,7 @@ flat for a triangle of degree 1, otherwise shown with --view.")
         },
         Example {
             what: "A word that shows in a mirror, 60 mm thick, with marks for the mirror and the eye",
-            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit page -o out.svg",
+            command: "anamorph samples/lettering.svg --mirror cylinder:diameter=60mm --picture-width 50mm --distance 40cm --eye-height 30cm --sight-mark --fit a4 -o out.svg",
         },
         Example {
             what: "A relief that is right in a parallel projection from above on the left",

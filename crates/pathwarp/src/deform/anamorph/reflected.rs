@@ -93,7 +93,7 @@ fn sight(cast: &Reflection, eye: Eye, all: Rect, units: [f64; 2]) -> SightMark {
     let (at, words) = match (cast.eye(), eye) {
         (Some((at, [distance, height])), _) => {
             let [distance, height] = [distance, height].map(|v| measured(v, units));
-            let here = format!("eye {height} above this mark");
+            let here = format!("eye {height} above the round mark");
             let there = format!("eye {height} above the table, {distance} from the mirror's middle");
             (at, [here, there])
         }

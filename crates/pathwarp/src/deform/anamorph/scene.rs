@@ -79,9 +79,7 @@ pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_p
     const SMALLEST: f64 = 0.003;
     const SHARE: f64 = 0.012;
     let size = (SMALLEST * METRE * units_per_px[0]).max(SHARE * (all.width() + all.height()));
-    /// Half the width of a letter, as a share of its height.
-    const HALF: f64 = 0.25;
-    let under = |at: Point, text: &str| at + Vec2::new(-HALF * size * text.chars().count() as f64, 3.0 * size);
+    let under = |at: Point| at + Vec2::new(0.0, 3.0 * size);
     let mut path = BezPath::new();
     let mut line = |a: Point, b: Point| {
         path.move_to(a);
@@ -93,7 +91,9 @@ pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_p
             line(at - v, at + v);
         }
         path.extend(Circle::new(at, size).path_elements(1e-3 * size));
-        return SightMark { path, label: (under(at, &here), here), size };
+        // Words do not stand on the artwork.
+        let label = if all.contains(at) { Point::new(at.x, all.y1 + 2.0 * size) } else { under(at) };
+        return SightMark { path, label: (label, here), size };
     }
     let way = (at - all.center()) / (at - all.center()).hypot();
     // Where the way leaves the box.
@@ -108,7 +108,7 @@ pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_p
         Some(there) => format!("{there}, {} from the tail of the arrow", measured((at - from).hypot(), units_per_px)),
         None => there,
     };
-    SightMark { path, label: (under(if to.y > from.y { to } else { from }, &text), text), size }
+    SightMark { path, label: (under(if to.y > from.y { to } else { from }), text), size }
 }
 
 impl Scene {
