@@ -67,8 +67,8 @@ struct EditedArtwork {
     names: Arc<Names>,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
-    /// The folder of the drawing, where its results go.
-    folder: PathBuf,
+    /// The drawing's file, beside which its results go.
+    file: PathBuf,
     /// The frame of the last picture.
     framed: Option<Framed>,
 }
@@ -79,7 +79,7 @@ impl EditedArtwork {
         shown: Option<SvgArtwork>,
         given: Given,
         options: CommonOptions,
-        folder: &Path,
+        file: &Path,
         host: &EngineHost,
     ) -> Self {
         Self {
@@ -94,9 +94,14 @@ impl EditedArtwork {
             flags: Arc::clone(&host.flags),
             names: Arc::clone(&host.names),
             plugins: host.plugins.clone(),
-            folder: folder.to_owned(),
+            file: file.to_owned(),
             framed: None,
         }
+    }
+
+    /// The folder of the drawing.
+    fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
     }
 
     /// Makes the sketch of a large drawing, unless there is one.
@@ -124,7 +129,7 @@ impl EditedArtwork {
             4.0 * PIXELS,
             STANDARD.encode(png)
         );
-        self.sketch = Some(SvgArtwork::read(svg.as_bytes(), Path::new("sketch.svg"), &self.options, None)?);
+        self.sketch = Some(SvgArtwork::read(svg.as_bytes(), &self.file, &self.options, None)?);
         Ok(())
     }
 
@@ -135,7 +140,7 @@ impl EditedArtwork {
             let with_pictures = Relinking { embed: true, ..Relinking::default() };
             let embedded = with_pictures.of(document.text(), self.svg.reading())?;
             let light = page::lightened(embedded.as_deref().unwrap_or(document.text()), self.svg.reading());
-            let read = |text: String| SvgArtwork::read(text.as_bytes(), Path::new("drawing.svg"), &self.options, None);
+            let read = |text: String| SvgArtwork::read(text.as_bytes(), &self.file, &self.options, None);
             self.light = Some(light.map(read).transpose()?);
         }
         Ok(())
@@ -185,7 +190,7 @@ impl EditedArtwork {
 
     /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
     fn finished(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
-        let folder = self.folder.clone();
+        let folder = self.folder().to_owned();
         self.with_steps(recipe, Version::File, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
             let text = || {
@@ -376,7 +381,7 @@ impl Artwork for EditedArtwork {
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
         let told = on_a_line(recipe, &self.given);
-        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)))
+        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, self.folder())))
     }
 }
 
@@ -445,7 +450,7 @@ impl EngineHost {
         let svg = SvgArtwork::read(source, file, &options, None)?;
         let named = svg.document().with_ids();
         let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
-        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, folder, self);
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, file, self);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 

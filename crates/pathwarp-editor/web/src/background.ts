@@ -41,7 +41,7 @@ export class Background {
   private knobs = ["nw", "ne", "se", "sw", "turn"].map((part) => s("g", { class: `part ${part}` },
     s("title", {}, part === "turn" ? "Turn the background" : "Scale the background"), s("circle", { r: 16, class: "reach" }),
     part === "turn" ? s("circle", { r: 6, class: "body" }) : s("rect", { x: -5, y: -5, width: 10, height: 10, class: "body" })));
-  private frame = s("g", { class: "selection", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
+  private frame = s("g", { class: "lie", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
   private button = byId<HTMLButtonElement>("background");
   private box = byId("background-box");
   private chosen = byId<HTMLInputElement>("background-file");

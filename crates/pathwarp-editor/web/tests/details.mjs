@@ -1,10 +1,11 @@
 // Details: messages and their causes, names of controls, values during a drag, steps in their list, circles, surfaces.
+import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { becomes, check, choose, edit, folder, keep, middle, open, paths, quiet, sample } from "./harness.mjs";
+import { becomes, check, choose, edit, emptyFolder, folder, keep, middle, open, paths, program, quiet, sample } from "./harness.mjs";
 
-async function within(drawing, work, options = {}, content = sample(drawing)) {
-  const dir = folder({ [drawing]: content });
+async function within(drawing, work, options = {}, content = () => sample(drawing)) {
+  const dir = folder({ [drawing]: content() });
   const editor = await edit(`${dir}/${drawing}`);
   const page = await open(editor.address, options);
   try {
@@ -159,3 +160,31 @@ export const a_surface_is_pulled = () => within("badge.svg", async (page) => {
   for (const _ of [1, 2]) await press(page, "Redo");
   await becomes(page, after, "redo does not lead back");
 });
+
+/** A photograph follows the pointer in few pixels, and is sharp when it is lifted. */
+export const a_photograph_is_dragged_in_few_pixels = () => within("photograph.png", async (page) => {
+  const pixels = () => page.evaluate(async () => {
+    const image = document.querySelector("#stage .art:not([visibility=hidden]) image");
+    const shown = Object.assign(new Image(), { src: image.getAttribute("href") ?? image.getAttribute("xlink:href") });
+    await shown.decode();
+    return shown.naturalWidth;
+  });
+  await choose(page, "Flag");
+  const sharp = await pixels();
+  const [x, y] = await middle(page, "bend");
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y + 30, { steps: 4 });
+  await page.waitForFunction(() => document.querySelector("#view").getAttribute("aria-busy") === "false");
+  const dragged = await pixels();
+  await page.mouse.up();
+  await quiet(page);
+  check(sharp >= 1000 && dragged <= 600 && (await pixels()) >= 1000, `${sharp} pixels, ${dragged} while it was dragged, then ${await pixels()}`);
+}, {}, photograph);
+
+/** The file of a photograph of 1,200 pixels. */
+function photograph() {
+  const file = join(emptyFolder(), "photograph.png");
+  execFileSync(program, ["render", sample("badge.svg"), "--width", "1200", "--background", "#8ac", "-o", file]);
+  return file;
+}

@@ -195,7 +195,7 @@ export const job_badge_over_a_sign = () => {
     const before = await shown();
     check(before[0], "Fit does not show all of the background");
     const knob = async (name) => {
-      const { x, y, width, height } = await page.locator(`.selection .part.${name}:visible .body`).first().boundingBox();
+      const { x, y, width, height } = await page.locator(`.lie .part.${name} .body`).boundingBox();
       return [x + width / 2, y + height / 2];
     };
     await pull(page, [before[1] + before[3] / 2, before[2] + before[3] / 3], [30, -20]);

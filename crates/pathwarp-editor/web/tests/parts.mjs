@@ -204,6 +204,7 @@ export const a_background_is_fitted_to = () => within("lettering.svg", async (pa
   await page.click("#save");
   await page.locator("#toast.on", { hasText: "Saved art-bent.svg" }).waitFor();
   check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the background is in the result");
+  await press(page, "Background");
   await press(page, "Remove background");
   check(!(await image.isVisible()), "it is still there");
 });
