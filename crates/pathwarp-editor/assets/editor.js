@@ -1864,7 +1864,7 @@
       s("circle", { r: 16, class: "reach" }),
       part === "turn" ? s("circle", { r: 6, class: "body" }) : s("rect", { x: -5, y: -5, width: 10, height: 10, class: "body" })
     ));
-    frame = s("g", { class: "selection", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
+    frame = s("g", { class: "lie", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
     button = byId("background");
     box = byId("background-box");
     chosen = byId("background-file");
