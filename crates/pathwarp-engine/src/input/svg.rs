@@ -6,6 +6,7 @@ use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use super::gimp::GimpPaths;
 use crate::bitmap::Bender;
+use crate::caption::is_caption;
 use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
@@ -479,7 +480,10 @@ impl Artwork for SvgArtwork {
             return Ok(());
         }
         let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
-        let wanted = Wanted::new(self.document(), edits, self.selection.clone(), steps)?;
+        if self.paths.is_some() && edits.iter().any(is_caption) {
+            return Err(Failure::usage("GIMP's paths have no fills; caption is for drawings"));
+        }
+        let wanted = Wanted::new(edits, self.selection.clone(), steps);
         if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
             return Ok(());
         }
