@@ -1,7 +1,7 @@
 //! A DXF's text: group codes, colours, layers, and the parts of a file around its entities.
 
 use crate::model::{Options, Shape};
-use pathwarp::decimal::push_trimmed;
+use pathwarp::engine::decimal::push_trimmed;
 use pathwarp::kurbo::Point;
 use std::collections::HashMap;
 use std::fmt::Write as _;

@@ -10,9 +10,9 @@ use crate::settings::{Box3, Settings3, show};
 use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info, SavedFile};
+use pathwarp::engine::solve::{misses, smallest_change};
 use pathwarp::param::{Kind, Param};
 use pathwarp::setters;
-use pathwarp::solve::{misses, smallest_change};
 use serde::Deserialize;
 use std::sync::Arc;
 

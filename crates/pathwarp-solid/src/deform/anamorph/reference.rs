@@ -5,7 +5,7 @@ use crate::lattice::Lattice3;
 use crate::settings::{Box3, show};
 use glam::{DVec3, DVec4};
 use pathwarp::Error;
-use pathwarp::map::bspline;
+use pathwarp::engine::bspline;
 use std::collections::BTreeMap;
 
 /// The eye of an anamorphosis.
