@@ -142,7 +142,7 @@ impl Curves {
                 let points = s.points[..n].iter().zip(&s.weights).map(|(p, w)| [p.x * w, p.y * w, *w]).collect();
                 let image = map.image(&RationalBezier { points })?;
                 image.hull()?;
-                Some(spline(&s.name, [s.degree[0], n], s.knots[0].clone(), image.points))
+                Some(spline(&s.name, [s.degree[0], n], s.knots[0].clone(), &image.points))
             });
             if let Some(all) = linear.collect() {
                 return Ok(all);
@@ -180,12 +180,12 @@ impl Contour {
         }
         let ends = |joint: usize| usize::from(joint == 0 || joint == parts.len());
         let knots = (0..=parts.len()).flat_map(|k| std::iter::repeat_n(k as f64, degree + ends(k))).collect();
-        Some(spline(&self.name, [degree, points.len()], knots, points))
+        Some(spline(&self.name, [degree, points.len()], knots, &points))
     }
 }
 
 /// The curve with these homogeneous points as a surface of two equal rows.
-fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: Vec<[f64; 3]>) -> Surface {
+fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: &[[f64; 3]]) -> Surface {
     let row: Vec<DVec3> = points.iter().map(|[x, y, w]| DVec3::new(x / w, y / w, 0.0)).collect();
     let weights: Vec<f64> = points.iter().take(n).map(|p| p[2]).collect();
     Surface {
