@@ -1,6 +1,6 @@
 //! Curves of kurbo's fitter as sources, and sources as such curves.
 
-use crate::source::Source;
+use crate::source::{ONE_SIDED_STEP, Source};
 use kurbo::{CurveFitSample, ParamCurveFit, Point, Vec2};
 use std::ops::Range;
 
@@ -43,7 +43,8 @@ impl<C: ParamCurveFit> Source for Kurbo<C> {
 impl<S: Source> ParamCurveFit for Kurbo<S> {
     fn sample_pt_tangent(&self, t: f64, sign: f64) -> CurveFitSample {
         let (p, d) = self.0.eval(t);
-        let tangent = self.0.end(t).map_or(d, |end| if sign < 0.0 { end.into } else { end.away });
+        let beside = if self.0.breaks().contains(&t) { ONE_SIDED_STEP.copysign(sign) } else { 0.0 };
+        let tangent = self.0.end(t + beside).map_or(d, |end| if sign < 0.0 { end.into } else { end.away });
         CurveFitSample { p, tangent }
     }
 

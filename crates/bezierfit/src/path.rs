@@ -160,16 +160,16 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn fit_points(points: impl IntoIterator<Item = impl Into<Point>>, options: &Options) -> Result<Fitted, Error> {
-    let points: Vec<Point> = points.into_iter().map(Into::into).collect();
-    let mut path = BezPath::from_vec(points.iter().map(|p| PathEl::LineTo(*p)).collect());
-    if let Some(first) = path.elements_mut().first_mut() {
-        *first = PathEl::MoveTo(points[0]);
+    let mut elements: Vec<PathEl> = points.into_iter().map(|p| PathEl::LineTo(p.into())).collect();
+    if let Some(PathEl::LineTo(start)) = elements.first().copied() {
+        elements[0] = PathEl::MoveTo(start);
+        if let [_, _, .., last] = &mut elements[..]
+            && *last == PathEl::LineTo(start)
+        {
+            *last = PathEl::ClosePath;
+        }
     }
-    if points.len() > 2 && points[0] == points[points.len() - 1] {
-        path.pop();
-        path.close_path();
-    }
-    simplify(&path, options)
+    simplify(&BezPath::from_vec(elements), options)
 }
 
 fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {

@@ -125,5 +125,7 @@ pub mod engine {
     pub use crate::source::read::{Turned, compressed};
     pub use crate::source::select::Division;
     pub use crate::source::shaping::fallback_fonts;
-    pub use crate::write::lettering::{LetteringOptions, SetGroup, SetPath, lettering_group, write_lettering, write_set_groups};
+    pub use crate::write::lettering::{
+        LetteringOptions, SetGroup, SetPath, lettering_group, write_lettering, write_set_groups,
+    };
 }

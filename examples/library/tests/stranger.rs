@@ -118,14 +118,16 @@ fn impossible_tolerances_are_errors_of_their_own() {
     );
 }
 
-/// A formula made of maps that are none, on numbers with derivatives: x ↦ F(F(x)).
+/// A formula may use a map that is none itself, and has its derivatives: those of F(F(p)).
 #[test]
 fn a_map_within_a_formula_keeps_its_derivatives() {
+    use pathwarp::map::{Formula, Real};
     struct Twice<M>(M);
-    impl<M: Map> pathwarp::map::Formula for Twice<M> {
-        fn f<S: pathwarp::map::Real>(&self, x: S, y: S) -> (S, S) {
-            let (x, y) = (&self.0).f(x, y);
-            (&self.0).f(x, y)
+    impl<M: Map> Formula for Twice<M> {
+        fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+            let map = &self.0;
+            let (x, y) = Formula::f(&map, x, y);
+            Formula::f(&map, x, y)
         }
     }
     let p = Point::new(3.0, 4.0);
@@ -156,7 +158,7 @@ fn one_curve_goes_under_a_map() {
     assert_eq!(folded.path.segments().count(), 2);
     let corner = folded.path.segments().next().unwrap().eval(1.0);
     assert!(corner.distance(Point::new(40.0, 30.0)) < 1e-9);
-    let pole = from_fn(|p| Point::new(1.0 / (p.x - 150.0), p.y));
-    let Err(pathwarp::fit::Error::NotFinite(e)) = refit::warp_curve(&line, &pole, &options) else { panic!("no error") };
-    assert!(e.at.distance(Point::new(150.0, 30.0)) < 1.0, "{e:?}");
+    let half = from_fn(|p| Point::new(p.x, (150.0 - p.x).sqrt()));
+    let Err(pathwarp::fit::Error::NotFinite(e)) = refit::warp_curve(&line, &half, &options) else { panic!("no error") };
+    assert!(e.at.x > 150.0 && e.at.y == 30.0, "{e:?}");
 }

@@ -254,9 +254,9 @@ fn points_have_no_corners_of_their_own() {
         (_, t) => (0.0, 100.0 - t),
     };
     for (points, most) in [
-        ((0..=400).map(|i| circle(i).to_point()).collect::<Vec<_>>(), 5),
+        ((0..=400).map(|i| circle(i).to_point()).collect::<Vec<Point>>(), 8),
         ((0..=400).map(|i| square(i).into()).collect(), 4),
-        ((0..400).map(|i| wave(9.0).eval(f64::from(i) / 399.0).0).collect(), 12),
+        ((0..400).map(|i| wave(9.0).eval(f64::from(i) / 399.0).0).collect(), 20),
     ] {
         let fitted = fit_points(points.iter().copied(), &Options::new(0.1)).unwrap();
         assert!(fitted.path.segments().count() <= most, "{}", fitted.path.to_svg());

@@ -27,7 +27,7 @@ impl Opacity {
     /// transparent.
     ///
     /// ```
-    /// use pathwarp_svg::Opacity;
+    /// use pathwarp_svg::engine::Opacity;
     ///
     /// let one = Opacity { width: 3, values: vec![0, 0, 0, 0, 255, 0, 0, 0, 0] }.traced();
     /// assert_eq!(one.bounding_box().unwrap(), pathwarp::kurbo::Rect::new(1.0, 1.0, 2.0, 2.0));

@@ -47,7 +47,7 @@ const DIGITS: i32 = 10;
 /// outline: its text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
 ///
 /// ```
-/// use pathwarp_svg::{LetteringOptions, bundled_font, write_lettering};
+/// use pathwarp_svg::engine::{LetteringOptions, bundled_font, write_lettering};
 /// use pathwarp_text::{Font, TextStyle, layout};
 ///
 /// let font = Font::new(bundled_font(), 0)?;
