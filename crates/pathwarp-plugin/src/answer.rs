@@ -1,6 +1,7 @@
 //! Requests, answers and descriptions of built maps, which the binary and the text form of the protocol share.
 
-use pathwarp::map::{Ask, Creases};
+use pathwarp::engine::Ask;
+use pathwarp::map::Creases;
 
 /// Returns the command of the text protocol that asks so.
 pub(crate) fn word(ask: Ask) -> &'static str {

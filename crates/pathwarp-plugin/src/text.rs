@@ -2,8 +2,9 @@
 
 use crate::answer::{BuildAnswer, word};
 use crate::fault::{Fault, beginning};
+use pathwarp::engine::Ask;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Ask, Crease, Creases, Level};
+use pathwarp::map::{Crease, Creases, Level};
 use std::fmt::Write as _;
 
 /// Encodes the request to build a map from `lines`.

@@ -8,7 +8,7 @@ use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::map::{Abilities, Callee};
+use pathwarp::engine::{Abilities, Callee};
 use pathwarp::recipe::Step;
 use pathwarp::refit::Assurance;
 use pathwarp_engine::input::hatching;
@@ -333,8 +333,8 @@ fn report<'py>(py: Python<'py>, warped: &pathwarp_engine::Path) -> PyResult<Boun
         Assurance::Sampled => "sampled",
     };
     out.set_item("assurance", assurance)?;
-    out.set_item("over_budget", r.over_budget.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
-    out.set_item("unresolved", r.unresolved)?;
+    out.set_item("unresolved", r.unresolved.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
+    out.set_item("resolution", r.resolution)?;
     out.set_item("folds", warped.folds)?;
     out.set_item("warnings", &warped.warnings)?;
     Ok(out)

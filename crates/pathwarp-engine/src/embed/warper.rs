@@ -16,10 +16,10 @@ use pathwarp::Outline;
 use pathwarp::budget::Budget;
 use pathwarp::check::{self, Check};
 use pathwarp::deform::{Deformation as _, Info, Registry};
+use pathwarp::engine::{Abilities, Callee};
 use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
 use pathwarp::kurbo::{PathEl, Rect};
-use pathwarp::map::{Abilities, Callee};
 use pathwarp::param::{Args, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
@@ -357,7 +357,7 @@ impl Warper {
             let path = match edit.map(|planned| planned.edit) {
                 None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
-                Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),
+                Some(edit) => pathwarp_svg::engine::edit_path(outline, edit, &refit, digits),
             };
             // A map that has failed gives no numbers, which is not the geometry's fault.
             built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;

@@ -28,9 +28,9 @@ class PathReport(TypedDict):
     max_error: float
     """The largest distance from the exact result."""
     assurance: Assurance
-    over_budget: List[Tuple[float, float]]
+    unresolved: List[Tuple[float, float]]
     """Places where the tolerance was not met."""
-    unresolved: Optional[float]
+    resolution: Optional[float]
     """The resolution of the coordinates, if the tolerance is below it."""
     folds: int
     """Number of orientation changes along the path, if it folds."""
@@ -54,8 +54,8 @@ class ShapeReport(_Shape, total=False):
     steps: List[int]
     copies: int
     folded_at: List[float]
-    over_budget: List[List[float]]
-    unresolved: float
+    unresolved: List[List[float]]
+    resolution: float
     paint_residual: Optional[float]
     pictures: int
     stroke_error: Optional[float]
