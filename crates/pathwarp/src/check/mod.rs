@@ -24,7 +24,7 @@ use crate::map::{CreaseKind, Creases, Map, RationalBezier, detail_in};
 use crate::outline::{EllipticArc, Outline, Seg};
 use crate::param::{Args, Frame, Kind, Settings};
 use crate::refit;
-use kurbo::{Circle, CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape, Vec2};
+use kurbo::{CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape, Vec2};
 use std::cell::Cell;
 use std::f64::consts::PI;
 
@@ -387,8 +387,10 @@ fn refitting(t: &Tested<'_>) -> Check {
     let tolerance = hundredth / 2_f64.sqrt() * 0.01;
     let declared = detail_in(map, frame);
     let size = declared.unwrap_or(f64::INFINITY).clamp(0.01 * hundredth, hundredth);
-    let circle = Circle::new(center, 0.3 * frame.width().min(frame.height()));
-    let mut art = vec![(Outline::from(&circle.to_path(1e-9)), 101)];
+    let (r, y) = (0.3 * frame.width().min(frame.height()), center.y);
+    let (from, to) = (center.x - r, center.x + r);
+    let circle = Outline::from_svg(&format!("M{from},{y} A{r},{r} 0 1 1 {to},{y} A{r},{r} 0 1 1 {from},{y} Z"));
+    let mut art = vec![(circle.unwrap_or_default(), 101)];
     art.extend(DETAILS.iter().enumerate().map(|(i, n)| {
         let half = Vec2::from_angle(0.618 * i as f64) * (0.5 * size * f64::from(*n));
         (Outline::from_points(&[center - half, center + half], false), SAMPLES * n + 97)
