@@ -33,13 +33,13 @@ pub type SpotOf<'a> = dyn Fn(&usvg::Path) -> Option<Spot> + 'a;
 pub struct Options<'a> {
     /// Provides exact outlines, since usvg approximates arcs.
     pub exact: &'a ExactOutline<'a>,
-    /// Provides mesh gradients in place of paints.
+    /// Provides mesh gradients that replace paints.
     pub mesh: &'a MeshOf<'a>,
-    /// Provides inks in place of the colours of strokes.
+    /// Provides inks that replace the colours of strokes.
     pub spot: &'a SpotOf<'a>,
     /// Pixels per inch of pictures that replace filters; `None` stands for 300.
     pub picture_dpi: Option<f64>,
-    /// Limits on pictures, embedded or in place of filters.
+    /// Limits on pictures that are embedded or replace filters.
     pub limits: Limits,
 }
 

@@ -317,7 +317,7 @@ impl Lost {
         for (x, y) in (0..n * height).flat_map(|y| (0..n * width).map(move |x| (x, y))) {
             sums[(y / n) * width + (x / n)].iter_mut().zip(read(x, y)).for_each(|(s, v)| *s += f64::from(*v));
         }
-        // The index of a pixel's square, that of the square next to it, and the weight of the latter.
+        // The indices of a pixel's square and of the square next to it, and the weight of the latter.
         let mixed = |v: usize, squares: usize| {
             let off = ((v % n) as f64 + 0.5) / n as f64 - 0.5;
             let beside = if off < 0.0 { (v / n).saturating_sub(1) } else { (v / n + 1).min(squares - 1) };

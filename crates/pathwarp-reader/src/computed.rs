@@ -48,7 +48,7 @@ pub(super) struct Inherited {
 type Written<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
 
 impl Inherited {
-    /// Records the declarations about paint among those of an element. Returns all that hold for it.
+    /// Records which declarations of an element are about paint. Returns all such declarations that hold for it.
     fn record_words(&mut self, written: Written<'_>) -> Arc<Words> {
         for (name, value) in written.into_iter().filter(|s| Words::records(&s.0)) {
             Arc::make_mut(&mut self.words).record(&name, value.as_deref());
@@ -333,14 +333,14 @@ impl Values<'_, '_, '_> {
         if t.is_some_and(|t| t.a * t.d == t.b * t.c) { fallback(&link) } else { raw }
     }
 
-    /// The paint in place of a gradient or pattern in box units on a shape whose box has no width or no height.
+    /// The paint that replaces a gradient or pattern in box units on a shape whose box has no width or no height.
     fn flat_paint<'v>(&self, raw: &'v str) -> Option<&'v str> {
         let link = reference(raw)?;
         let units = self.server_attribute(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
         (units != Some("userSpaceOnUse")).then(|| fallback(&link))
     }
 
-    /// Further declarations: the paint in place of a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
+    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
     /// in sRGB. `declared` looks up the properties of the element.
     fn paints<'s, 'n>(
         &self,
@@ -397,7 +397,7 @@ impl Values<'_, '_, '_> {
     }
 }
 
-/// The paint in place of one that cannot apply.
+/// The paint that replaces one that cannot apply.
 fn fallback<'v>(link: &Reference<'v>) -> &'v str {
     if link.rest.trim().is_empty() { "none" } else { link.rest.trim() }
 }

@@ -10,7 +10,7 @@ use roxmltree::Node;
 use std::fmt::Write as _;
 use std::rc::Rc;
 
-/// The text in place of HTML.
+/// The text that replaces HTML.
 pub(super) struct Foreign {
     /// Its lines, as the content of a `text`.
     pub(super) content: String,

@@ -243,7 +243,7 @@ impl TextStyle {
         self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
     }
 
-    /// Multiplies the opacity of a part of a text into those of its fill and stroke.
+    /// Multiplies the opacities of the fill and stroke of a part of a text by its opacity.
     fn fade<'a>(&mut self, tag: &str, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
         const NAMES: [&str; 2] = ["fill-opacity", "stroke-opacity"];
         let declared = NAMES.map(|name| value(name).and_then(opacity));

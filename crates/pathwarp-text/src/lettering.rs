@@ -29,7 +29,7 @@ pub struct Cluster {
     pub origin: Point,
     /// Advance width as shaped: includes kerning, but not letter and word spacing.
     pub advance: f64,
-    /// Outline in place; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
+    /// Outline at its position; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
     pub outline: BezPath,
     /// The glyphs of the outline.
     pub glyphs: Vec<PlacedGlyph>,

@@ -12,7 +12,7 @@ use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 use std::fmt;
 
-/// Limit on the work of one glyph, far above that of ornaments and coloured glyphs in sound fonts.
+/// Limit on the work of one glyph. Ornaments and coloured glyphs in sound fonts take far less.
 pub const MAX_WORK: u64 = 200_000;
 
 /// Limit on the nesting of parts and paints, more than readers follow.

@@ -137,7 +137,7 @@ impl Picture {
         Ok(Self { pixmap, profile, exif, early_end })
     }
 
-    /// A picture of pixels made from those of this one, with its colour profile, if that fits, and its EXIF metadata, if they are sound,
+    /// A picture of new pixels made from this one, with its colour profile, if that fits, and its EXIF metadata, if they are sound,
     /// adapted to the new size and upright pixels. They lack the thumbnail and, unless `keep_location`, the geographic position.
     #[must_use]
     pub fn remade(&self, pixmap: Pixmap, keep_location: bool) -> Self {

@@ -18,7 +18,7 @@ use tiny_skia::Pixmap;
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
-    // Limit the size of the result in proportion to the source, as that of any result to its input.
+    // The limit on a result grows with its input, here the source.
     let limits = Limits::default().for_input(warp.source.data().len());
     let (width_px, height_px) = (f64::from(width), f64::from(height));
     let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;

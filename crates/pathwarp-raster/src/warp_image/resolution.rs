@@ -60,11 +60,11 @@ pub struct SmoothShade<'a> {
     pub colors: &'a Colors<'a>,
     /// The part of the paint to warp, in its coordinates.
     pub source: Rect,
-    /// From the paint's coordinates to the plane of the map.
+    /// Maps the paint's coordinates to the plane of the map.
     pub placed: Affine,
     /// The map.
     pub map: &'a dyn Map,
-    /// From the plane of the map to that of the result.
+    /// Maps the plane of the map to the plane of the result.
     pub after: Affine,
     /// The part of the result's plane to paint.
     pub target: Rect,

@@ -158,7 +158,7 @@ impl Footprint {
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         let (top, bottom) = range(y - high, y + high, level.height);
         if i.abs() * (wide + high) < 1e-3 {
-            // The axes are those of the picture, so the weights of columns are the same in every row.
+            // The footprint lies along rows and columns, so the weights of columns are equal in every row.
             let (left, right) = range(x - wide, x + wide, level.width);
             let mut columns = [0.0; COLUMNS];
             let n = right.saturating_sub(left).min(COLUMNS);
