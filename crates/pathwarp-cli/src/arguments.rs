@@ -77,7 +77,7 @@ pub(crate) const OF_OUTPUT: [&str; 8] =
 
 /// The common options of these names, for a command that has only some of them.
 pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
-    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(arg)
+    OPTIONS.iter().filter(|o| names.contains(&o.name)).map(|o| arg(o).help_heading("Common options"))
 }
 
 /// The options about reading drawings, for commands that have no other common options.

@@ -70,7 +70,7 @@ pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
             .long(INVERSE)
             .action(ArgAction::SetTrue)
             .help_heading(HEADING)
-            .help("Apply the inverse map, if there is one (give --frame: percentages refer to the source's box)")
+            .help("Apply the inverse map (give --frame: percentages refer to the source)")
     });
     info.params.iter().map(param_arg).chain(inverse)
 }

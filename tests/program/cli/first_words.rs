@@ -333,6 +333,29 @@ fn short_help_fits_a_screen() {
             );
             assert!(long.contains("--gradients") && long.contains("Examples:"), "{long}");
         }
+        let long = said("--help");
+        assert!(long.lines().count() <= 130, "{name}: {} lines\n{long}", long.lines().count());
+        // Commands are whole, to be copied.
+        let is_wide = |l: &&str| l.chars().count() > 100 && !l.trim_start().starts_with("pathwarp ");
+        assert_eq!(long.lines().find(is_wide), None, "{name}");
+    }
+}
+
+/// Every common option stands once in `help options`, whole, and the pages of deformations name it.
+#[test]
+fn help_options_has_all_common_options() {
+    let said = |words: &[&str]| text(&pathwarp_in(Path::new("."), words, b"").stdout);
+    let (all, warp) = (said(&["help", "options"]), said(&["warp", "--help"]));
+    let plain = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for option in pathwarp_engine::options::OPTIONS {
+        let name = format!("--{}", option.name);
+        let heads = |l: &&str| {
+            let words: Vec<&str> = l.split([' ', ',']).filter(|w| !w.is_empty()).take(2).collect();
+            l.starts_with("  ") && !l.starts_with("        ") && words.contains(&name.as_str())
+        };
+        assert_eq!(all.lines().filter(heads).count(), 1, "{name}");
+        assert!(plain(&all).contains(&plain(&option.help())), "{name}");
+        assert!(warp.split([' ', '\n']).any(|w| w == name), "{name}");
     }
 }
 

@@ -7,6 +7,7 @@ mod compare;
 mod convert;
 mod edit;
 mod gimp_paths;
+mod help;
 mod install;
 mod map;
 mod plugin;
@@ -190,6 +191,10 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
+    if first.get(1).is_some_and(|w| w == "help") && first.get(2).is_some_and(|w| w == "options") {
+        output::to_stdout(help::options(arguments::options_without_inputs()).as_bytes())?;
+        return Ok(Status::Complete);
+    }
     if let Some(text) = foreign_help(registry, first) {
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
@@ -198,8 +203,11 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         return Err(Failure::Usage(said).into());
     }
     let mut command = build_for(registry, first.get(1));
-    if first.iter().any(|a| a == "-h") {
-        command = about::shortened(command, &first[1..], "pathwarp");
+    let asks = |words: &[&str]| first.iter().any(|a| words.iter().any(|w| a == w));
+    if asks(&["-h"]) {
+        command = help::shortened(command, &first[1..], "pathwarp");
+    } else if asks(&["--help", "help"]) {
+        command = help::paged(command, &first[1..]);
     }
     let matches = command
         .try_get_matches_from(first)

@@ -84,8 +84,8 @@ fn page(info: &Info) -> String {
     out.push_str("| `--inverse` | | | The inverse map, where there is one. |\n");
     let _ = write!(
         out,
-        "\nThe options that all deformations share are in `pathwarp help {}`.\n\n## Source\n\n{}\n",
-        info.name, info.source
+        "\nThe options that all deformations share are in `pathwarp help options`.\n\n## Source\n\n{}\n",
+        info.source
     );
     out
 }

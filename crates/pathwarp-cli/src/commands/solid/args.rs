@@ -27,7 +27,7 @@ const SHARED: &[&str] = &[
 
 /// The common options.
 pub(super) fn options() -> Vec<Arg> {
-    some_options(SHARED).map(|a| a.help_heading("Common options")).collect()
+    some_options(SHARED).collect()
 }
 
 /// The models, the common options and the box.

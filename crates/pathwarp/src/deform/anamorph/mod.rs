@@ -72,7 +72,7 @@ parameters! {
         length: Option<f64> = length("length", Axis::Y).within(1e-6, 1e9).slider(10.0, 40000.0);
         /// The surface that the artwork is projected onto: plane:…, cylinder:…, cone:… or sphere:… as above.
         param = new("onto", Kind::Text("SURFACE"));
-        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as below.
+        /// The mirror in which the artwork appears, on a table under it: cylinder:…, cone:… or sphere:… as above.
         param = new("mirror", Kind::Text("SHAPE"));
         /// Place of the mirror's foot on the page, such as on the photograph of a drawing that --inverse restores. Default: below
         /// the artwork's middle.
@@ -87,11 +87,11 @@ parameters! {
         param = new("reference", Kind::Text("X,Y X,Y [X,Y]"));
         /// Degree of the net: control points along a side, less one; MxN across and down a box.
         param = new("degree", Kind::Text("N|MxN")).default("1");
-        /// Takes a control point to this many times its distance from the eye; may be given many times.
+        /// Takes a control point to this many times its distance from the eye.
         param = new("push", Kind::Text("I,J[,K]:FACTOR")).repeated();
-        /// Takes a control point this much further from the eye, or nearer if negative; may be given many times.
+        /// Takes a control point this much further from the eye, or nearer if negative.
         param = new("away", Kind::Text("I,J[,K]:LENGTH")).repeated();
-        /// Takes a control point to the point of its ray nearest to here (eye in the drawing); may be given many times.
+        /// Takes a control point to the point of its ray nearest to here (eye in the drawing).
         param = new("at", Kind::Text("I,J[,K]:X,Y")).repeated();
         /// Takes this point to so many times its distance from the eye (a length further from an eye at infinity), by pushing the control point nearest to it that is not on
         /// a fixed side: the first side of a triangle, the edge of a box if --local.

@@ -87,13 +87,13 @@ parameters! {
         param = new("glyphs", Kind::Choice(&["bend", "rotate", "skew", "ribbon", "stair"])).default("bend");
         /// Set objects one by one, of which a text is one, instead of letters.
         param = flag("objects");
-        /// The same as --glyphs skew.
+        /// Short for --glyphs skew.
         param = flag("skew");
-        /// The same as --glyphs ribbon.
+        /// Short for --glyphs ribbon.
         param = flag("ribbon");
-        /// The line on which lengths are measured: the skeleton, or half the artwork's height, which evens out letters in a bend.
+        /// Measure lengths on the skeleton, or at half the artwork's height, where letters are even.
         even: bool = either("spacing", &["baseline", "even"]);
-        /// Take the skeleton in the direction it was drawn, a closed one from its start.
+        /// Run the skeleton as drawn, a closed one from its start.
         as_drawn: bool = flag("as-drawn");
         /// Run the skeleton the other way.
         reverse: bool = flag("reverse");
@@ -420,31 +420,28 @@ static INFO: Info = Info::new("bend", "bend artwork along a path")
         ..ByHand::NONE
     })
     .guides(&["along"], 1)
-    .about("The artwork follows a path, the skeleton: horizontals run along it, verticals stand on it. The skeleton may \
-have any number of lines, curves and arcs, open or closed. Nothing is stretched unless you ask: --stretch scale sizes the artwork \
-to the skeleton, fit stretches it lengthwise only. --copies 12 sets so many copies of it side by side, --copies fill (or --stretch repeat) as many as \
-fit on the skeleton with --gap between them, spread evenly: a border closes on a ring.\n\nAn open skeleton is run left to right and a closed one clockwise, so that the artwork \
-stands on its upper or outer side, with its middle on the highest point of a closed one. --reverse runs a skeleton the other way: artwork on a closed \
-one then stands upright on its lowest point, inside. --as-drawn takes it as it was drawn, as is always done with spirals and \
-with open paths that go around more than once. Beyond the ends of an open one everything continues straight. --interpolate lays a smooth \
-skeleton through a few points: a cubic spline whose curvature is continuous, with centripetal parameters (square roots of the distances), which \
-keep it from overshooting where points are close. --spline 3 pulls it towards them instead, and it waves less; an open one begins at the first \
-and ends at the last.\n\n\
-Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by \
-one instead of bent: rotate turns them, skew keeps their verticals vertical, ribbon keeps their horizontals horizontal, stair only moves them. \
-They keep their own size, times --width; --stretch fit spreads them out from end to end, scale sizes them. Text around a whole ring is spread out by \
---stretch fit even where it is bent. Without lettering, or with --objects, --glyphs sets the objects of a drawing: what is selected by --select, or else the members of its outermost \
-group of several, of which those that overlap are one. With --copies, gaps between all of them are equal. --spacing even measures distances at \
-half the height of the artwork instead of on the skeleton, so that letters neither crowd inside a bend nor drift apart outside it.\n\n--by parameter, or --handles, gives the polynomial map of the paper: \
-its sides are handles on the control polygon instead of normals of the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], \
-…]}, …]}: for every piece of degree n the n handles of the first level, then n-1 of the second, and so on (deeper levels may be \
-omitted). A handle is the image of the artwork's height. With --spline or --interpolate it may hold {\"points\": [[dx,dy], null, …]} \
-instead, a handle for each point or null for its own: they are blended as the points are, so that every line along the skeleton is as smooth as \
-it is. Without a file, such handles are mitres (--spline) or normals (--interpolate); on several curves in a row handles stand at their control \
-points too, and lines are smooth wherever the skeleton is. What still has kinks is a warning, and --explain names every joint. --preview shows the \
-control polygon with its handles and the artwork's frame on each of its sides, the first level of the algorithm.\n\n--preset needs no skeleton: \
-stretch makes the artwork longer by --factor, swell scales its height in the middle, taper at its right end. (A twist needs space: \
-`pathwarp solid bend --preset twist`.)")
+    .about("The artwork follows a path, the skeleton: horizontals run along it, verticals stand on it. The skeleton may have any \
+number of lines, curves and arcs, open or closed; beyond the ends of an open one everything continues straight. --copies fill \
+sets as many copies as there is room for: a border closes on a ring.\n\n\
+An open skeleton is run left to right and a closed one clockwise, so that the artwork stands on its upper or outer side, with its \
+middle on the highest point of a closed one. --reverse runs it the other way: artwork on a closed one stands upright on its lowest \
+point, inside. --as-drawn takes it as it was drawn, as is always done with open paths that go around more than once.\n\n\
+Lettering (text, or made by `pathwarp text`) stands on the skeleton with its baseline. With --glyphs its letters are set one by one \
+instead of bent: rotate turns them, skew keeps verticals vertical, ribbon keeps horizontals horizontal, stair only moves them. They \
+keep their size, times --width; --stretch fit spreads them from end to end, scale sizes them. Without lettering, or with --objects, \
+--glyphs sets the objects of a drawing: what --select names, or else the members of its outermost group of several, of which those that \
+overlap are one. --spacing even measures at half the artwork's height, so that letters neither crowd inside a bend nor drift apart \
+outside it.\n\n\
+--interpolate lays a smooth skeleton through a few points: a cubic spline with continuous curvature and centripetal parameters (square \
+roots of the distances), so that it does not overshoot. --spline 3 is pulled towards the points instead, and waves less.\n\n\
+--by parameter, or --handles, gives the polynomial map of the paper: its sides are handles on the control polygon instead of normals of \
+the curve. FILE.json holds {\"pieces\": [{\"levels\": [[[dx,dy], …], …]}, …]}: for every piece of degree n the n handles of the first \
+level, then n-1 of the second, and so on (deeper levels may be omitted), or {\"points\": [[dx,dy], null, …]}: one for each point of \
+--spline or --interpolate, null for its default. A handle is the image of the artwork's height. By default all lines along a smooth \
+skeleton are smooth; what has kinks is a warning, and --explain names every joint. --preview shows the control polygon and the first \
+level of the algorithm.\n\n\
+--preset needs no skeleton: stretch makes the artwork longer by --factor, swell scales its height in the middle, taper at its right end. \
+(A twist needs space: `pathwarp solid bend --preset twist`.)")
     .source("Y.-K. Chang and A. Rockwood, A generalized de Casteljau approach to 3D free-form deformation, SIGGRAPH 1994")
     .params(Bend::PARAMS)
     .demo(&[("along", "M-10,60 Q25,35 50,45 T110,50")])
