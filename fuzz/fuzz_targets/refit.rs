@@ -32,5 +32,5 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(warped) = warp_path(&path, &map, &options) else { return };
     assert!(warped.path.is_finite());
     assert!(warped.report.segments_out < 4000);
-    assert!(!warped.report.over_budget.is_empty() || warped.report.max_error <= tolerance);
+    assert!(!warped.report.unresolved.is_empty() || warped.report.max_error <= tolerance);
 });

@@ -47,9 +47,9 @@ pub fn check_map(path: &Outline, map: &dyn Map, options: &Options) {
     let report = &warped.report;
     assert!(report.max_error >= 0.0, "{report:?}");
     let size = path.segs().map(extent).chain([largest(warped.path.control_box())]).fold(0.0, f64::max);
-    let unresolved = options.tolerance < FINEST * size * (1.0 - ROUNDING);
-    assert!(!unresolved || report.unresolved.is_some(), "no word about {size}: {report:?}");
-    if !report.over_budget.is_empty() {
+    let coarse = options.tolerance < FINEST * size * (1.0 - ROUNDING);
+    assert!(!coarse || report.resolution.is_some(), "no word about {size}: {report:?}");
+    if !report.unresolved.is_empty() {
         return;
     }
     let allowed = if report.assurance == Assurance::Exact { f64::INFINITY } else { options.tolerance };

@@ -89,6 +89,28 @@ def test_contours_are_one_entity_on_the_exact_image(run, tmp_path, name, curves)
 
 
 @pytest.mark.parametrize("name", PATHS)
+def test_exact_images_are_splines_with_weights(run, tmp_path, name):
+    """Under a projective map a contour is one spline of its own degree, and control points are on rays of the eye."""
+    tool = ["--frame", "0,0,100,100", "--eye", "50,150", "--reference", "0,100 100,100 50,-60", "--push", "0,0,1:160%"]
+    run("map", "anamorph", *tool, "--exact", PATHS[name], "-o", "out.dxf")
+    (entity,) = opened(tmp_path / "out.dxf")
+    px = 25.4 / 96
+
+    def f(x, y):
+        delta = 1 + (100 - y) / 160 * (1 / 1.6 - 1)
+        return (50 + (x - 50) / delta) * px, PAGE + (150 + (y - 150) / delta) * px
+
+    assert entity.dxftype() == "SPLINE" and is_closed(entity)
+    # The cubic of "mixed" is a quadratic in disguise.
+    assert entity.dxf.degree == (3 if name == "leaf" else 2) and len(entity.weights) == len(entity.control_points)
+    # ezdxf's paths are cubics, its own curve is not.
+    curve = entity.construction_tool()
+    t = np.linspace(curve.knots()[0], curve.max_t, 40001)
+    found = np.array([(p.x, PAGE - p.y) for p in curve.points(t)])
+    assert apart(found, image(PATHS[name], f)) < STEP
+
+
+@pytest.mark.parametrize("name", PATHS)
 def test_lines_and_arcs_are_polylines_with_bulges(run, tmp_path, name):
     d = PATHS[name]
     (tmp_path / "in.svg").write_text(drawing(f"<path d='{d}' fill='none' stroke='red' stroke-width='0.1'/>"))

@@ -95,7 +95,7 @@ const TEXTS: &[&str] = &[
 
 /// The bundled font as F.
 fn with_font(text: &str) -> String {
-    let data = STANDARD.encode(pathwarp_svg::bundled_font());
+    let data = STANDARD.encode(pathwarp_svg::engine::bundled_font());
     format!(
         "<style>@font-face{{font-family:F;src:url(data:font/ttf;base64,{data})}}</style><g font-family='F' text-rendering='geometricPrecision'>{text}</g>"
     )

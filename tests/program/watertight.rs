@@ -41,8 +41,8 @@ fn stained_glass_has_no_gaps() {
     };
     let shared_before = count(&mut doc.shapes().iter().map(|s| &*s.outline));
     assert!(shared_before > 20, "the sample has shared edges: {shared_before}");
-    let shared = refit::SharedEdges::among(doc.shapes().iter().map(|s| &*s.outline));
-    assert_ne!(shared, refit::SharedEdges::default());
+    let shared = pathwarp::engine::SharedEdges::among(doc.shapes().iter().map(|s| &*s.outline));
+    assert_ne!(shared, pathwarp::engine::SharedEdges::default());
     for nodes in [Nodes::Source, Nodes::Fewest, Nodes::Auto, Nodes::Extremes] {
         let options = refit::Options::new(1e-3).with_nodes(nodes);
         let warped = doc.warp(&map, &WarpOptions::new(options)).unwrap();

@@ -15,7 +15,7 @@ pub(crate) struct JoinSettings {
     /// Joints that turn by less, in radians, are smooth.
     pub(crate) corner: f64,
     /// Errors are to be proven where they can be.
-    pub(crate) prove: bool,
+    pub(crate) certify: bool,
     /// The stretches are those of pieces, so that new ones are hardly longer and must end at closer places.
     pub(crate) finely: bool,
     /// Pieces are to be the same from either end.
@@ -64,7 +64,7 @@ pub(crate) fn joined<S: Source>(
         }
         let (end, samples) = (covered.len().min(i + LONGEST_RUN), run.per_segment);
         let count = run.extend(&covered[i..end], settings.corner, |Covered { part, pieces, report }| {
-            let form = if settings.prove { part.quotient().and_then(Quotient::provable) } else { None };
+            let form = if settings.certify { part.quotient().and_then(Quotient::provable) } else { None };
             let is_line = matches!(pieces[..], [Piece::Line(_)]);
             let joins = pieces.len() <= 2 && report.unresolved.is_empty();
             let joins =
@@ -115,7 +115,7 @@ pub fn cover_far<S: Source>(
     let mut covered = Vec::with_capacity(count);
     own.add(&fitter.joints, &mut covered);
     let StretchFitter { tolerance, evenly, .. } = *fitter;
-    let settings = JoinSettings { tolerance, corner, prove: fitter.form.is_some(), finely: true, evenly };
+    let settings = JoinSettings { tolerance, corner, certify: fitter.form.is_some(), finely: true, evenly };
     fitter.extra.set(fitter.extra.get() + (2 * LONG_GRID + LONG_WORK) * covered.len());
     let lanes = covered.iter().flat_map(|c| sample_lanes(2 * LONG_GRID).map(move |t| (&c.part, t)));
     Source::announce(&mut { lanes }, &mut std::iter::empty());

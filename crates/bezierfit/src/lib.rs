@@ -25,6 +25,7 @@
 // The types without it are `parts`.
 #![allow(missing_debug_implementations)]
 
+mod adaptor;
 mod banded;
 mod breaks;
 mod distances;
@@ -54,9 +55,10 @@ mod stretch;
 mod strips;
 mod stroke;
 
+pub use adaptor::Kurbo;
 pub use offset::Offset;
 pub use options::{Degree, Error, MAX_EVALUATIONS, Nodes, Options, Pieces};
-pub use path::{PathSource, Segment, fit, simplify};
+pub use path::{PathSource, Segment, fit, fit_points, simplify};
 #[cfg(feature = "area")]
 pub use region::{difference, intersection, offset, union, union_even_odd};
 pub use report::{Assurance, Fitted, Piece, PieceReport, Report};

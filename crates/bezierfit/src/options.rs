@@ -18,7 +18,7 @@ pub struct Options {
     /// Largest allowed Hausdorff distance between the source and the output, both ways.
     pub tolerance: f64,
     /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
-    pub prove: bool,
+    pub certify: bool,
     /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: those for which no smooth curve can stand
     /// within the tolerance, such as squares with sides of some ten tolerances, but neither stairs of pixels nor noise nor facets. Joints
     /// of other curves are smooth up to half a degree by default.
@@ -93,55 +93,33 @@ pub enum Pieces {
     Exactly(usize),
 }
 
+macro_rules! setters {
+    ($($name:ident($field:ident: $type:ty) => $value:expr;)*) => {$(
+        #[doc = concat!("Sets [`Options::", stringify!($field), "`].")]
+        #[must_use]
+        pub fn $name(self, $field: $type) -> Self {
+            Self { $field: $value, ..self }
+        }
+    )*};
+}
+
 impl Options {
     /// Within `tolerance`, measured.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
         let (best, evaluations) = (false, MAX_EVALUATIONS);
-        Self { tolerance, prove: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
+        Self { tolerance, certify: false, corner: None, nodes: Nodes::default(), degree, pieces, best, evaluations }
     }
 
-    /// Sets [`Options::prove`].
-    #[must_use]
-    pub fn with_prove(self, prove: bool) -> Self {
-        Self { prove, ..self }
-    }
-
-    /// Sets [`Options::corner`].
-    #[must_use]
-    pub fn with_corner(self, corner: f64) -> Self {
-        Self { corner: Some(corner), ..self }
-    }
-
-    /// Sets [`Options::nodes`].
-    #[must_use]
-    pub fn with_nodes(self, nodes: Nodes) -> Self {
-        Self { nodes, ..self }
-    }
-
-    /// Sets [`Options::degree`].
-    #[must_use]
-    pub fn with_degree(self, degree: Degree) -> Self {
-        Self { degree, ..self }
-    }
-
-    /// Sets [`Options::pieces`].
-    #[must_use]
-    pub fn with_pieces(self, pieces: Pieces) -> Self {
-        Self { pieces, ..self }
-    }
-
-    /// Sets [`Options::best`].
-    #[must_use]
-    pub fn with_best(self, best: bool) -> Self {
-        Self { best, ..self }
-    }
-
-    /// Sets [`Options::evaluations`].
-    #[must_use]
-    pub fn with_evaluations(self, evaluations: usize) -> Self {
-        Self { evaluations, ..self }
+    setters! {
+        with_certify(certify: bool) => certify;
+        with_corner(corner: f64) => Some(corner);
+        with_nodes(nodes: Nodes) => nodes;
+        with_degree(degree: Degree) => degree;
+        with_pieces(pieces: Pieces) => pieces;
+        with_best(best: bool) => best;
+        with_evaluations(evaluations: usize) => evaluations;
     }
 
     /// Refuses what makes no sense.

@@ -39,11 +39,11 @@ const ONE_ROUND: usize = 200_000;
 /// assert!(fitted.path.segments().count() <= 16);
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
-pub fn fit<S: Source>(source: &S, options: &Options) -> Result<Fitted, Error> {
-    limited(options, &|options| Ok(fitted(source, options)?))
+pub fn fit(source: &dyn Source, options: &Options) -> Result<Fitted, Error> {
+    limited(options, &|options| Ok(fitted(&source, options)?))
 }
 
-fn fitted<S: Source>(source: &S, options: &Options) -> Result<Fitted, NotFinite> {
+fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let calls = Cell::new(0);
@@ -77,18 +77,18 @@ fn merged_parts<S: Source>(
     for part in parts {
         calls.set(0);
         let (mut pieces, mut report) = (Vec::new(), Report::default());
-        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.prove, 0.0), f64::INFINITY);
+        let mut fitter = StretchFitter::new(part, &slow, options.tolerance, (options.certify, 0.0), f64::INFINITY);
         fitter.counted = Some((calls, options.evaluations.saturating_sub(ONE_ROUND)));
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         let own = Covered { part: *part, pieces, report };
         own.add(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
     }
     if options.nodes.merges() {
-        let Options { tolerance, prove, .. } = *options;
+        let Options { tolerance, certify, .. } = *options;
         let settings = JoinSettings {
             tolerance,
             corner: options.joint(),
-            prove,
+            certify,
             finely: covered.len() > parts.len(),
             evenly: false,
         };
@@ -146,6 +146,32 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
     limited(options, &|options| Ok(simplified(path, options)?))
 }
 
+/// Fits the curve that points mean, in their order: as [`simplify`] does the lines from one to the next, so that corners are those of the
+/// curve. It is closed if the last point is the first.
+///
+/// # Errors
+/// A point is not finite, or the options make no sense.
+///
+/// ```
+/// use bezierfit::{Options, fit_points};
+///
+/// let wave = (0..400).map(|i| (f64::from(i), 20.0 * (f64::from(i) / 30.0).sin()));
+/// assert!(fit_points(wave, &Options::new(0.1))?.path.segments().count() < 20);
+/// # Ok::<(), bezierfit::Error>(())
+/// ```
+pub fn fit_points(points: impl IntoIterator<Item = impl Into<Point>>, options: &Options) -> Result<Fitted, Error> {
+    let points: Vec<Point> = points.into_iter().map(Into::into).collect();
+    let mut path = BezPath::from_vec(points.iter().map(|p| PathEl::LineTo(*p)).collect());
+    if let Some(first) = path.elements_mut().first_mut() {
+        *first = PathEl::MoveTo(points[0]);
+    }
+    if points.len() > 2 && points[0] == points[points.len() - 1] {
+        path.pop();
+        path.close_path();
+    }
+    simplify(&path, options)
+}
+
 fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
@@ -196,7 +222,7 @@ fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<S
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.nodes.merges() { segments.len() } else { 1 };
     let count = run.extend(&segments[..most], options.path_joint(), |segment| {
-        let form = if options.prove { segment.quotient() } else { None };
+        let form = if options.certify { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
         Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, is_line)))
@@ -424,6 +450,12 @@ impl Segment {
     /// Returns `true` if it has a length and no cusps.
     fn is_smooth(&self) -> bool {
         self.slow_spots().all().is_empty() && self.has_length()
+    }
+}
+
+impl From<PathSeg> for Segment {
+    fn from(seg: PathSeg) -> Self {
+        Self::new(seg)
     }
 }
 

@@ -98,6 +98,45 @@ impl<F: Fn(f64) -> (Point, Vec2)> Source for F {
     }
 }
 
+/// Forwards every method, so that [`fit`](crate::fit()) is compiled once for all sources.
+impl Source for &dyn Source {
+    fn eval(&self, t: f64) -> (Point, Vec2) {
+        (**self).eval(t)
+    }
+
+    fn points(&self, t: &Lane, out: &mut Lanes) {
+        (**self).points(t, out);
+    }
+
+    fn breaks(&self) -> Vec<f64> {
+        (**self).breaks()
+    }
+
+    fn is_simple(&self) -> bool {
+        (**self).is_simple()
+    }
+
+    fn quotient(&self) -> Option<Quotient> {
+        (**self).quotient()
+    }
+
+    fn denominators(&self, t: &Lane) -> Lane {
+        (**self).denominators(t)
+    }
+
+    fn resolved(&self, between: [f64; 2], intervals: usize, tolerance: f64) -> Option<bool> {
+        (**self).resolved(between, intervals, tolerance)
+    }
+
+    fn place(&self, t: f64) -> Point {
+        (**self).place(t)
+    }
+
+    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+        (**self).end(t)
+    }
+}
+
 /// A curve that is not finite at some parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NotFinite {

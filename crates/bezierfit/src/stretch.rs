@@ -67,11 +67,11 @@ impl<'a, S: Source> StretchFitter<'a, S> {
     /// For pieces whose ends are at most `blur` from the curve. Ends after the attempts that exceed `left` evaluations by themselves, so
     /// that the result does not depend on what others count at the same time.
     #[inline(always)]
-    pub fn new(source: &'a S, slow: &'a SlowSpots, tolerance: f64, (prove, blur): (bool, f64), left: f64) -> Self {
+    pub fn new(source: &'a S, slow: &'a SlowSpots, tolerance: f64, (certify, blur): (bool, f64), left: f64) -> Self {
         let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
         let most = if usual < HARD as f64 { usual } else { hard.max(HARD as f64) };
         let most_attempts = (most as usize).saturating_add(1);
-        let form = if prove { source.quotient().and_then(Quotient::provable) } else { None };
+        let form = if certify { source.quotient().and_then(Quotient::provable) } else { None };
         let form = form.map(|f| Quotient { blur, ..f });
         let simple = blur == 0.0 && source.is_simple();
         Self {

@@ -10,7 +10,7 @@ use crate::raw::{
 use pathwarp::deform::{Deformation as _, Registry};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp_engine::input::hatching;
-use pathwarp_engine::{Warper, option_names};
+use pathwarp_engine::{Warper, reserved_names};
 use pathwarp_plugin::Reserved;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn pathwarp_new_plugin(
         let (file, pairs) = unsafe { (text(file, "file")?, pairs(names, values, count)?) };
         let built_in = Registry::builtin();
         let taken: Vec<&str> = built_in.entries().iter().map(|e| e.info().name).collect();
-        let parameters: Vec<&str> = option_names().map(|(name, _)| name).collect();
+        let parameters: Vec<&str> = reserved_names().collect();
         let reserved = Reserved { names: &taken, parameters: &parameters };
         let started = pathwarp_plugin::by_file(Path::new(file), reserved);
         let plugin = started.map_err(|fault| Failed::input(fault.of(Path::new(file)).to_string()))?;

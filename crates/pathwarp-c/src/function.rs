@@ -4,8 +4,8 @@
 
 use crate::raw::{Failed, text, value, wrong};
 use pathwarp::Error;
+use pathwarp::engine::{Abilities, Ask, Callee};
 use pathwarp::kurbo::Point;
-use pathwarp::map::{Abilities, Ask, Callee};
 use std::cell::OnceCell;
 use std::ffi::{c_char, c_void};
 

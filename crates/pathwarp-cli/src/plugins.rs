@@ -6,8 +6,7 @@ use clap::Arg;
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::Format;
-use pathwarp_engine::options::OPTIONS;
-use pathwarp_engine::steps::INVERSE;
+use pathwarp_engine::reserved_names;
 use pathwarp_plugin::{Broken, Plugin, Reserved};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -22,9 +21,6 @@ pub(crate) fn option() -> Arg {
 
 /// Commands for which no plug-in of the folder matters.
 const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
-
-/// Names of arguments that a deformation's parameter cannot have, besides the common options.
-const ARGUMENTS: [&str; 8] = [INVERSE, OPTION, "help", "version", "points", "jacobian", "INPUT", "size"];
 
 /// The plug-ins of a run.
 #[derive(Default)]
@@ -92,7 +88,7 @@ pub(crate) fn load(
     let mut names: Vec<&str> = registry.entries().iter().map(|e| e.info().name).collect();
     names.extend(commands);
     names.push("help");
-    let parameters: Vec<&str> = OPTIONS.iter().map(|o| o.name).chain(ARGUMENTS).collect();
+    let parameters: Vec<&str> = reserved_names().collect();
     let reserved = Reserved { names: &names, parameters: &parameters };
     let mut plugins = Plugins::default();
     let wanted = need_installed(registry, &args);

@@ -1,6 +1,7 @@
 //! Subpaths as entities, one each: exact or flattened.
 
 use crate::file::{Codes, MODEL_SPACE, nearest};
+use crate::model::Spline;
 use pathwarp::kurbo::{CubicBez, ParamCurve as _, Point, Vec2};
 use pathwarp::outline::EllipticArc;
 use pathwarp::{Seg, Subpath};
@@ -154,8 +155,6 @@ fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
 /// Segments as one spline: every joint is a triple knot, so corners stay. A closed one ends at the very point it starts from. Its flag for
 /// closed splines stays off: LibreCAD up to 2.2 draws those as periodic ones of the same control points, another curve.
 fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64) {
-    /// A planar spline that is not rational.
-    const FLAGS: i64 = 8;
     const DEGREE: usize = 3;
     let mut cubics: Vec<CubicBez> = Vec::with_capacity(segs.len());
     for seg in segs {
@@ -168,20 +167,42 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64)
     if closed {
         last.p3 = first;
     }
-    let n = cubics.len();
-    entity(out, pen, "SPLINE", "AcDbSpline").length(210, 0.0).length(220, 0.0).length(230, 1.0);
-    out.whole(70, FLAGS).whole(71, DEGREE as i64);
-    out.whole(72, (DEGREE * (n + 1) + 2) as i64).whole(73, (DEGREE * n + 1) as i64).whole(74, 0);
-    out.fine(42, 1e-10).fine(43, 1e-10);
-    for joint in 0..=n {
-        let ends = usize::from(joint == 0 || joint == n);
-        for _ in 0..DEGREE + ends {
-            out.length(40, joint as f64);
-        }
+    let knots: Vec<f64> = joints(DEGREE, cubics.len()).collect();
+    let points = std::iter::once(first).chain(cubics.iter().flat_map(|c| [c.p1, c.p2, c.p3]));
+    let points: Vec<[f64; 3]> = points.map(|p| [p.x, p.y, 0.0]).collect();
+    nurbs(out, pen, &Spline { layer: pen.layer, degree: DEGREE, knots: &knots, points: &points, weights: &[] });
+}
+
+/// The knots of Bézier curves of one degree in a row, at parameters 0, 1, 2 and so on.
+fn joints(degree: usize, count: usize) -> impl Iterator<Item = f64> {
+    (0..=count).flat_map(move |joint| {
+        let ends = usize::from(joint == 0 || joint == count);
+        std::iter::repeat_n(joint as f64, degree + ends)
+    })
+}
+
+/// Writes a B-spline curve: rational if its weights differ, planar if all of it is at z = 0.
+pub(crate) fn nurbs(out: &mut Codes, pen: &Pen<'_>, s: &Spline<'_>) {
+    const RATIONAL: i64 = 4;
+    const PLANAR: i64 = 8;
+    let is_rational = s.weights.windows(2).any(|w| w[0] != w[1]);
+    let is_planar = s.points.iter().all(|p| p[2] == 0.0);
+    entity(out, pen, "SPLINE", "AcDbSpline");
+    if is_planar {
+        out.length(210, 0.0).length(220, 0.0).length(230, 1.0);
     }
-    out.point(10, first);
-    for c in cubics {
-        out.point(10, c.p1).point(10, c.p2).point(10, c.p3);
+    out.whole(70, if is_rational { RATIONAL } else { 0 } + if is_planar { PLANAR } else { 0 });
+    out.whole(71, s.degree as i64);
+    out.whole(72, s.knots.len() as i64).whole(73, s.points.len() as i64).whole(74, 0);
+    out.fine(42, 1e-10).fine(43, 1e-10);
+    for knot in s.knots {
+        out.shortest(40, *knot);
+    }
+    for weight in s.weights.iter().filter(|_| is_rational) {
+        out.shortest(41, *weight);
+    }
+    for [x, y, z] in s.points {
+        out.length(10, *x).length(20, *y).length(30, *z);
     }
 }
 

@@ -1,7 +1,7 @@
 //! A DXF's text: group codes, colours, layers, and the parts of a file around its entities.
 
 use crate::model::{Options, Shape};
-use pathwarp::decimal::push_trimmed;
+use pathwarp::engine::decimal::push_trimmed;
 use pathwarp::kurbo::Point;
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -295,6 +295,11 @@ impl Codes {
     /// An angle, parameter or ratio.
     pub(crate) fn fine(&mut self, code: u16, value: f64) -> &mut Self {
         self.number(code, value, FINE)
+    }
+
+    /// A number by as many digits as tell it from all others.
+    pub(crate) fn shortest(&mut self, code: u16, value: f64) -> &mut Self {
+        self.number(code, value, value.to_string().len())
     }
 
     /// A point with x, y and z.

@@ -3,7 +3,7 @@
 //! Every subpath is one entity, as cutters need it. Lines, circles and circular arcs are exact: `LINE`, `CIRCLE`, `ARC`, or an
 //! `LWPOLYLINE` with bulges where they follow one another. An ellipse or an arc of one is an exact `ELLIPSE`. Any other subpath is a
 //! `SPLINE` of degree 3 with triple knots at the joints, exact but for arcs in it. For programs that know no splines,
-//! [`Curves::Polylines`] makes it an `LWPOLYLINE` within a tolerance.
+//! [`Curves::Polylines`] makes it an `LWPOLYLINE` within a tolerance. [`write_splines`] writes curves of any degree with weights.
 //!
 //! Files are of version AC1018 (AutoCAD 2004), the first with true colours: plain text with characters beyond ASCII escaped.
 //! The unit is the millimetre. They hold neither dates nor random ids: the same outlines always give the same text.
@@ -24,10 +24,11 @@ mod entities;
 mod file;
 mod model;
 
-pub use model::{Curves, Options, Shape};
+pub use model::{Curves, MAX_DEGREE, Options, Shape, Spline};
 
 use entities::Pen;
 use file::{Codes, Layers};
+use pathwarp::Outline;
 use pathwarp::budget::{Budget, Exceeded, cost};
 
 /// Returns a DXF file with the outlines of these shapes.
@@ -55,4 +56,19 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded
         }
     }
     Ok(file::finish(out))
+}
+
+/// Returns a DXF file with these curves, each an entity `SPLINE` with its own degree, knots and weights.
+#[must_use]
+pub fn write_splines(splines: &[Spline<'_>]) -> String {
+    let none = Outline::default();
+    let shapes: Vec<Shape<'_>> =
+        splines.iter().map(|s| Shape { layer: s.layer, color: None, outline: &none }).collect();
+    let layers = Layers::of(&shapes);
+    let mut out = Codes::new();
+    file::start(&mut out, &layers, &Options::default());
+    for s in splines {
+        entities::nurbs(&mut out, &Pen { layer: layers.name(s.layer), color: None }, s);
+    }
+    file::finish(out)
 }

@@ -16,6 +16,24 @@ pub struct Shape<'a> {
     pub outline: &'a Outline,
 }
 
+/// The highest degree of a [`Spline`] that CAD programs read.
+pub const MAX_DEGREE: usize = 9;
+
+/// A B-spline curve in space, rational or not, of a degree up to [`MAX_DEGREE`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spline<'a> {
+    /// Name of the layer, as of [`Shape`].
+    pub layer: &'a str,
+    /// Degree.
+    pub degree: usize,
+    /// Clamped knots: the degree and 1 more than points.
+    pub knots: &'a [f64],
+    /// Control points in millimetres, x to the right and y up.
+    pub points: &'a [[f64; 3]],
+    /// A positive weight for each control point; none if all are equal.
+    pub weights: &'a [f64],
+}
+
 /// The form of Bézier curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]

@@ -130,6 +130,8 @@
     up: "M12 19V6M6 11.5 12 5.5l6 6",
     down: "M12 5v13M6 12.5l6 6 6-6",
     eye: "M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12M12 9.2a2.8 2.8 0 1 1 0 5.6 2.8 2.8 0 0 1 0-5.6",
+    copy: "M9 9h10v10H9zM5 15V5h10",
+    pen: "M5 19l1-4L16 5l3 3L9 18z",
     lock: "M6 11h12v8.5H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3"
   };
   function icon(name) {
@@ -139,13 +141,25 @@
   // src/toast.ts
   var SHORTEST = 5e3;
   var CHARACTER = 60;
+  var ABOVE = 10;
   var fading = 0;
-  function toast(text) {
+  var shown = 0;
+  function toast(text, stays = false) {
     const box = byId("toast");
+    const [view, tools] = [byId("view").getBoundingClientRect(), byId("tools").getBoundingClientRect()];
+    if (tools.height > 0) box.style.setProperty("bottom", `${view.bottom - tools.top + ABOVE}px`);
+    else box.style.removeProperty("bottom");
     box.textContent = text;
     box.classList.add("on");
     clearTimeout(fading);
-    fading = window.setTimeout(() => box.classList.remove("on"), Math.max(SHORTEST, CHARACTER * text.length));
+    const own = ++shown;
+    if (!stays) fading = window.setTimeout(hush, Math.max(SHORTEST, CHARACTER * text.length));
+    return () => {
+      if (own === shown) hush();
+    };
+  }
+  function hush() {
+    byId("toast").classList.remove("on");
   }
 
   // src/fields.ts
@@ -221,9 +235,9 @@
   function reason(e) {
     return e instanceof Error ? e.message : String(e);
   }
-  function inWords(problem) {
-    const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/`([^`]*)`|--([a-z-]+)/g, (_, quoted, name = "") => `“${quoted ?? name.replaceAll("-", " ")}”`);
-    return /^\S+: /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
+  function inWords(problem, isBeside = false) {
+    const text = problem.replace(/^error: /, "").replace(isBeside ? /^“[^”]*”: / : "", "").replace(/`([^`]*)`/g, "“$1”");
+    return /^(\S+|[^:;]*\.\w{1,5}): /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
   }
   var Field = class {
     /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
@@ -386,11 +400,18 @@
   function paramName({ name, label }) {
     return label ?? words(name);
   }
+  function isCaption({ deformation }) {
+    return deformation === "caption";
+  }
+  var LONGEST = 30;
   function stepName(step2, deformation) {
+    if (step2.name) return step2.name;
     if (!deformation) return words(step2.deformation);
+    if (isCaption(step2)) return `“${(step2.args.words ?? []).join(" ").slice(0, LONGEST)}”`;
     const preset = deformation.gallery ? step2.args[deformation.gallery.presets]?.[0] : void 0;
     const variant = deformation.variants.find(({ param }) => step2.args[param]);
-    return preset ? words(preset) : variant?.label ?? called(deformation);
+    const isKnown = deformation.params.some((p) => p.name === deformation.gallery?.presets && p.words?.includes(preset ?? ""));
+    return preset ? isKnown ? words(preset) : preset.split(/[\\/]/).pop() : variant?.label ?? called(deformation);
   }
 
   // src/dials.ts
@@ -455,6 +476,45 @@
   }
   function within(value, least = -Infinity, most = Infinity) {
     return Math.min(Math.max(value, least), most);
+  }
+
+  // src/space.ts
+  var ROUND = 60;
+  function inSpace({ deformation, grips, frame: [x, y, w, h2] }) {
+    const out = [];
+    const foot = [x + w / 2, y + h2];
+    const wide = () => grips["picture-width"]?.value ?? w;
+    const tall = () => wide() / w * h2;
+    const middle2 = () => [foot[0], foot[1] - tall() / 2];
+    const size = (name, get, value, from) => {
+      const [param, grip] = [deformation.params.find((p) => p.name === name), grips[name]];
+      if (param && grip?.value !== void 0) out.push(dial(param, name, words(name), from, () => get(grip.value), (to) => void (grip.value = Math.max(value(to), 1e-3 * h2))));
+    };
+    size("eye-height", (v) => [foot[0], foot[1] - v], (to) => foot[1] - to[1], () => foot);
+    size("picture-width", (v) => [foot[0] + v / 2, foot[1]], (to) => 2 * (to[0] - foot[0]), () => foot);
+    for (const param of deformation.params) {
+      const grip = grips[param.name];
+      if (grip?.surface) out.push(...surface(param, grip.surface, param.name === "mirror" ? () => grips.foot?.point ?? foot : middle2, tall));
+    }
+    return out;
+  }
+  function surface(param, shape, middle2, tall) {
+    const isLevel = /,\s*level\b/.test(shape.text);
+    return shape.sizes.filter(([name]) => /(radius|diameter)$/.test(name)).map((own) => {
+      const k = own[0].endsWith("diameter") ? 2 : 1;
+      const up = own[0].startsWith("top") ? -0.5 : own[0].startsWith("bottom") ? 0.5 : 0;
+      const centre = () => [middle2()[0], middle2()[1] + up * tall()];
+      const get = () => isLevel ? [centre()[0], centre()[1] + own[1] / k] : [centre()[0] + own[1] / k, centre()[1]];
+      const set2 = (to) => {
+        own[1] = k * Math.max(Math.abs(isLevel ? to[1] - centre()[1] : to[0] - centre()[0]), 1e-3 * tall());
+        shape.text = shape.text.replace(new RegExp(`(^|[:,])(\\s*${own[0]}\\s*=)[^,]*`), `$1$2${short(own[1])}`);
+      };
+      const made = dial(param, `${param.name}/${own[0]}`, `${words(param.name)}, ${own[0].replace("-", " ")}`, centre, get, set2);
+      const isRound = shape.text.startsWith("sphere") || param.name === "mirror";
+      const round = () => Array.from({ length: ROUND + 1 }, (_, i) => [centre()[0] + own[1] / k * Math.cos(2 * Math.PI * i / ROUND), centre()[1] + own[1] / k * Math.sin(2 * Math.PI * i / ROUND)]);
+      const across = () => [[2 * centre()[0] - get()[0], 2 * centre()[1] - get()[1]], get()];
+      return { ...made, line: () => ({ kind: "arm", points: isRound ? round() : across() }) };
+    });
   }
 
   // src/knots.ts
@@ -544,7 +604,7 @@
   var MARGIN = 0.15;
   var PAIR = "X,Y:X,Y";
   var FEWEST_CLOSED = 3;
-  var ROUND = 90;
+  var ROUND2 = 90;
   var SKELETONS = /* @__PURE__ */ new Set(["along"]);
   var Handles = class {
     constructor(deformation, step2, grips) {
@@ -571,7 +631,7 @@
       for (const { name } of this.deformation.params) {
         const grip = this.grips[name];
         if (!grip) continue;
-        if (grip.point) this.addPoint(name, grip);
+        if (grip.point && !(name === "eye" && this.step.args["eye-height"])) this.addPoint(name, grip);
         grip.points?.forEach((_, i) => this.addOneOf(name, grip.points, i));
         grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs, i));
         grip.net?.points.forEach((_, i) => this.addNode(name, grip.net, i));
@@ -580,7 +640,8 @@
         if (grip.circle) this.addCircle(name, grip);
         grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
       }
-      this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
+      const place2 = { deformation: this.deformation, grips: this.grips, frame: this.frame };
+      this.dials = this.handles.every(({ param }) => param === "about") ? dials(place2) : this.grips.eye || this.grips["eye-height"] ? inSpace(place2) : [];
       this.handles.push(...this.dials.map(({ handle }) => handle));
     }
     /** The net whose control points are handles. */
@@ -774,8 +835,8 @@
             const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
             ends.forEach(([seg, own, other], i) => {
               if (seg?.length !== 6) return;
-              const moved = similarity(turns ? at(other) : null, from, to);
-              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved([seg[k], seg[k + 1]]));
+              const moved2 = similarity(turns ? at(other) : null, from, to);
+              for (const k of isFollowed[i] ? [own, 2 - own] : [own]) seg.splice(k, 2, ...moved2([seg[k], seg[k + 1]]));
             });
             if (n === 0) sub.start = to;
             if (n > 0 || joined) arrive.splice(arrive.length - 2, 2, ...to);
@@ -912,10 +973,10 @@
         if (grip.circle) {
           const [cx, cy, r, from, to] = grip.circle;
           const at = (i) => {
-            const a = (from + (to - from) * i / ROUND) * Math.PI / 180;
+            const a = (from + (to - from) * i / ROUND2) * Math.PI / 180;
             return [cx + r * Math.cos(a), cy + r * Math.sin(a)];
           };
-          out.push({ kind: "path", points: Array.from({ length: ROUND + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
+          out.push({ kind: "path", points: Array.from({ length: ROUND2 + 1 }, (_, i) => at(i)) }, { kind: "arm", points: [[cx, cy], at(0)] });
         }
         for (const path of grip.paths ?? []) path.forEach((sub) => this.subpathLines(sub, out));
       }
@@ -945,6 +1006,7 @@
       const grip = this.grips[name];
       if (!param || !grip) return;
       if (grip.net) this.writeNet(name, grip.net);
+      else if (grip.surface) this.step.args[name] = [grip.surface.text];
       else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
       else if (grip.value !== void 0 && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
       else if (grip.value !== void 0) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];
@@ -1065,6 +1127,7 @@
   var DRAFT = 0.35;
   var DRAFTED = "pathwarp-drafted";
   var KEYS = 500;
+  var SEEN = 0.05;
   var NET = /* @__PURE__ */ new Set(["degree", "cells", "spline"]);
   var App = class {
     catalogue = [];
@@ -1081,6 +1144,8 @@
     /** Selectors of the parts that no step bends. */
     locks = [];
     grips = [];
+    /** The places of steps for parts that the drawing lacks. */
+    gone = [];
     handles = null;
     /** A path of the drawing that was a guide until its line was dragged just now. */
     released = null;
@@ -1225,11 +1290,11 @@
     }
     /** Shows the picture of the present steps, exactly. Returns `false` if there is none. */
     async refresh() {
-      const shown2 = await this.attempt(async () => {
+      const shown3 = await this.attempt(async () => {
         this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null }));
         return true;
       });
-      return shown2 ?? !this.isConnected;
+      return shown3 ?? !this.isConnected;
     }
     /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
     draft(since) {
@@ -1321,6 +1386,7 @@
     }
     /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
     inTurn(work) {
+      hush();
       const done = this.turns.then(() => this.flush()).then(work);
       this.turns = done.catch(() => void 0);
       return done;
@@ -1375,7 +1441,7 @@
     /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
     async prepared(deformation) {
       const others = this.isProposal ? [] : this.steps;
-      const known = others.findIndex((s2) => s2.deformation === deformation);
+      const known = others.findIndex((s2) => s2.deformation === deformation && !isCaption(s2));
       if (known >= 0) return this.choosing(known);
       const step2 = await this.opening(deformation, []);
       if (!step2) return;
@@ -1386,6 +1452,22 @@
       this.tell("steps");
       this.dropHandles();
       await this.proposed();
+    }
+    /** Puts words after those that there are, before all else. Returns their step, which is kept as soon as it is committed. */
+    caption(args) {
+      return this.inTurn(async () => {
+        const step2 = await this.opening("caption", []);
+        if (!step2) return null;
+        Object.assign(step2.args, args);
+        const others = this.isProposal ? [] : this.steps;
+        this.isProposal = false;
+        this.selected = others.filter(isCaption).length;
+        this.steps = others.toSpliced(this.selected, 0, step2);
+        this.tell("steps");
+        this.dropHandles();
+        await this.refresh();
+        return step2;
+      });
     }
     /** Changes the list of steps. */
     arrange(steps, selected) {
@@ -1447,12 +1529,15 @@
         return null;
       }
       this.fail(null);
-      return inWords(problem);
+      return inWords(problem, true);
     }
     /** Gives the net of the step more or fewer control points; it bends as before. */
     async renet(values) {
       const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
       if (!answer?.step) return this.tell("steps");
+      const [a, b] = this.state?.toPx ?? [1, 0];
+      const mm = (answer.moved ?? 0) * Math.hypot(a, b) * 25.4 / 96;
+      if (mm >= SEEN) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
       this.steps = this.steps.map((s2, i) => i === this.selected ? answer.step : s2);
       this.tell("steps");
       this.dropHandles();
@@ -1460,6 +1545,13 @@
     }
     grip(name) {
       return this.grips[this.selected]?.params[name];
+    }
+    /** The radius that a circle would need for the artwork not to be longer than it; `null` if it is long enough, or the artwork stretched. */
+    tooSmall(name) {
+      const [circle2, frame, step2] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
+      if (!circle2 || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step2?.args[other])) return null;
+      const least = frame[2] / (Math.abs(circle2[4] - circle2[3]) * (Math.PI / 180));
+      return circle2[2] < least && Math.abs(Math.abs(circle2[4] - circle2[3]) - 360) < 1e-6 ? least : null;
     }
     take(answer) {
       this.problem = null;
@@ -1470,6 +1562,7 @@
       this.warnings = answer.warnings ?? [];
       this.summary = answer.summary ?? null;
       if (answer.grips) this.grips = answer.grips;
+      if (answer.gone) this.gone = answer.gone;
       this.screen.show(answer);
       if (!this.isDragging) this.takeHandles();
       this.tell("report");
@@ -1534,6 +1627,15 @@
       await this.commit();
       return true;
     }
+    /** The place in the drawing that the visible steps take to this one, or this one if there is none. */
+    async source(at) {
+      for (let k = this.visible.length; k > 0; k--) {
+        const steps = this.visible.slice(0, k);
+        if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
+        at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+      }
+      return at;
+    }
     /** The place in the artwork that the step takes to this one. */
     async preimage(at) {
       const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
@@ -1542,9 +1644,498 @@
     }
   };
 
+  // src/drawing.ts
+  var SVG2 = "http://www.w3.org/2000/svg";
+  var XLINK = "http://www.w3.org/1999/xlink";
+  var ELEMENTS = new Set(
+    "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
+  );
+  var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
+  var LOADS = /url\(\s*["']?(?!#)/i;
+  function copy(from, lines) {
+    if (from.namespaceURI !== SVG2 || !ELEMENTS.has(from.localName)) {
+      skip(from, lines);
+      return null;
+    }
+    const to = document.createElementNS(SVG2, from.localName);
+    for (const { name, value } of Array.from(from.attributes)) set(to, name, value);
+    lines?.push(to);
+    for (const child of Array.from(from.children)) {
+      const copied = copy(child, lines);
+      if (copied) to.append(copied);
+    }
+    if (from.children.length > 0) lines?.push(null);
+    return to;
+  }
+  function skip(element, lines) {
+    lines?.push(null);
+    for (const child of Array.from(element.children)) skip(child, lines);
+    if (element.children.length > 0) lines?.push(null);
+  }
+  function set(element, name, value) {
+    if (name.startsWith("on") || name.startsWith("xmlns")) return;
+    if (name === "href" || name === "xlink:href") {
+      if (LINK.test(value)) element.setAttributeNS(name === "href" ? null : XLINK, name, value);
+      return;
+    }
+    if (name === "style") {
+      for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
+        if (property && !LOADS.test(rest.join(":"))) element.style.setProperty(property.trim(), rest.join(":").trim());
+      }
+      return;
+    }
+    if (LOADS.test(value)) return;
+    element.setAttribute(name, value);
+  }
+  function parse(text, lines = null) {
+    const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    return copy(root, lines);
+  }
+  function apart(text, prefix) {
+    const root = text ? parse(text) : null;
+    for (const element of Array.from(root?.querySelectorAll("*") ?? [])) {
+      for (const { name, value } of Array.from(element.attributes)) {
+        if (name === "id") element.setAttribute(name, `${prefix}-${value}`);
+        else if (value.includes("url(#")) element.setAttribute(name, value.replaceAll("url(#", `url(#${prefix}-`));
+        else if (name.endsWith("href") && value.startsWith("#")) element.setAttribute(name, `#${prefix}-${value.slice(1)}`);
+      }
+    }
+    return root;
+  }
+  var Drawing = class {
+    constructor(layer) {
+      this.layer = layer;
+    }
+    layer;
+    /** The element that each line of the server's text opens. */
+    lines = [];
+    /** Shows a picture. */
+    show(picture) {
+      if ("changes" in picture) {
+        for (const [line, name, value] of picture.changes) {
+          const element = this.lines[line];
+          if (element) set(element, name, value);
+        }
+        return;
+      }
+      this.lines = [];
+      const root = parse(picture.whole, this.lines);
+      this.layer.replaceChildren(...root ? Array.from(root.children) : []);
+    }
+    /** The paths of the drawing, for nodes and handles. */
+    paths() {
+      return Array.from(this.layer.querySelectorAll("path")).filter((p) => !p.closest("defs"));
+    }
+  };
+
+  // src/opening.ts
+  var PASTED = "pasted.svg";
+  var Opening = class {
+    constructor(app2) {
+      this.app = app2;
+      const chosen = byId("open-file");
+      byId("open").addEventListener("click", () => chosen.click());
+      chosen.addEventListener("change", () => {
+        const file = chosen.files?.[0];
+        chosen.value = "";
+        if (file) void this.open(file);
+      });
+      window.addEventListener("dragover", (e) => {
+        e.preventDefault();
+        if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
+        document.body.classList.add("dropping");
+      });
+      window.addEventListener("dragleave", (e) => {
+        if (!e.relatedTarget) document.body.classList.remove("dropping");
+      });
+      window.addEventListener("drop", (e) => {
+        e.preventDefault();
+        document.body.classList.remove("dropping");
+        this.take(e.dataTransfer);
+      });
+      window.addEventListener("paste", (e) => {
+        if (!isTyping(e.target)) this.take(e.clipboardData);
+      });
+    }
+    app;
+    /** Opens what was dropped or pasted: a file, or the text of a drawing. */
+    take(data) {
+      const file = data?.files[0];
+      const text = data?.getData("text/plain") ?? "";
+      if (file) void this.open(file);
+      else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
+      else if (data) toast("This is not a drawing: drop or paste an SVG or a photograph");
+    }
+    async open(file) {
+      const { app: app2 } = this;
+      await app2.settle();
+      const { state } = app2;
+      if (!state || !app2.isLive) return;
+      if (state.program) return void toast(`${state.program} waits for this drawing; another one cannot be opened`);
+      const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
+      if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
+      await app2.enter(() => app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) })));
+    }
+  };
+  async function bring(app2, file) {
+    const bytes = await base64(file);
+    const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
+    if (!answer?.written) return null;
+    if (answer.copied) toast(`${file.name} was copied beside the drawing`);
+    return answer.written;
+  }
+  var PIECE = 32768;
+  async function base64(file) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    let binary = "";
+    for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
+    return btoa(binary);
+  }
+
+  // src/background.ts
+  var MM = 96 / 25.4;
+  var OPACITY = 50;
+  var NOTCH = 15;
+  var ABOVE2 = 26;
+  var PLACES = 100;
+  var TYPED = { x: ["mm", MM], y: ["mm", MM], width: ["mm", MM, 0.01], turn: ["°", 1] };
+  var Background = class {
+    constructor(app2, stage2) {
+      this.app = app2;
+      this.stage = stage2;
+      stage2.behind.append(this.layer);
+      stage2.overlay.append(this.frame);
+      stage2.around = () => this.file ? this.corners : [];
+      stage2.onLayout.push(() => this.place());
+      this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.chosen.click());
+      this.chosen.addEventListener("change", () => {
+        const file = this.chosen.files?.[0];
+        this.chosen.value = "";
+        if (file) {
+          void this.take(file).then(() => {
+            app2.screen.reveal();
+            return this.keep();
+          });
+        }
+      });
+      this.opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100)));
+      this.opacity.addEventListener("change", () => void this.keep());
+      byId("background-other").addEventListener("click", () => this.chosen.click());
+      byId("background-remove").addEventListener("click", () => {
+        this.clear();
+        void this.keep();
+      });
+      this.outline.addEventListener("click", () => void this.shape());
+      for (const [name, [unit, size, least]] of Object.entries(TYPED)) {
+        const input = byId(`background-${name}`);
+        const number = (text) => inUnits(text, unit) ?? NaN;
+        const isWrong = (text) => number(text) >= (least ?? -Infinity) ? null : asked(unit, least);
+        const field = new Field(input, () => String(Number((this.lie[name] / size).toFixed(2))), (text) => {
+          this.lay({ [name]: number(text) * size });
+          void this.keep();
+          return null;
+        }, isWrong);
+        this.box.querySelector(".messages").append(field.message);
+        this.fields.push(field);
+      }
+      this.ground.addEventListener("pointerdown", (e) => this.grab(e, ([x, y]) => ([px, py]) => ({ x: this.lie.x + px - x, y: this.lie.y + py - y })));
+      this.ground.addEventListener("keydown", (e) => this.key(e));
+      this.knobs.forEach((knob, i) => knob.addEventListener("pointerdown", (e) => this.grab(e, (from) => i < 4 ? this.scaled(i, from) : this.turned(from))));
+      app2.listen((change) => {
+        if (change === "link") this.isKept = false;
+        if (change !== "state" || this.isKept) return;
+        this.isKept = true;
+        void (this.file ? this.keep() : this.restore());
+      });
+    }
+    app;
+    stage;
+    image = s("image", { class: "background" });
+    /** The paths of a drawing, which are clicked and not seen. */
+    outlines = s("g", { class: "outlines", opacity: 0 });
+    layer = s("g", { visibility: "hidden" }, this.image, this.outlines);
+    edge = s("path", { class: "line arm" });
+    ground = s("path", { class: "ground", tabindex: 0, role: "button", "aria-label": "Background; arrow keys move it" });
+    /** The corners clockwise from the upper left, and what turns it. */
+    knobs = ["nw", "ne", "se", "sw", "turn"].map((part) => s(
+      "g",
+      { class: `part ${part}` },
+      s("title", {}, part === "turn" ? "Turn the background" : "Scale the background"),
+      s("circle", { r: 16, class: "reach" }),
+      part === "turn" ? s("circle", { r: 6, class: "body" }) : s("rect", { x: -5, y: -5, width: 10, height: 10, class: "body" })
+    ));
+    frame = s("g", { class: "lie", visibility: "hidden" }, this.ground, this.edge, ...this.knobs);
+    button = byId("background");
+    box = byId("background-box");
+    chosen = byId("background-file");
+    outline = byId("background-outline");
+    file = null;
+    isDrawing = false;
+    lie = { x: 0, y: 0, width: 1, turn: 0 };
+    /** Height over width. */
+    ratio = 1;
+    fields = [];
+    opacity = byId("background-opacity");
+    /** The program has been asked for the background, or told of it. */
+    isKept = false;
+    /** Asks for points around what a photograph shows. */
+    onRound = () => {
+    };
+    /** Lets the program keep the background for the next time the page is loaded. */
+    async keep() {
+      const { file, lie, opacity } = this;
+      const background2 = file && { name: file.name, type: file.type, bytes: await base64(file), lie, opacity: opacity.value };
+      await this.app.attempt(() => this.app.connection.ask({ do: "keep-background", background: background2 }));
+    }
+    async restore() {
+      const kept2 = (await this.app.attempt(() => this.app.connection.ask({ do: "background" })))?.background;
+      if (!kept2) return;
+      const content = Uint8Array.from(atob(kept2.bytes), (c) => c.charCodeAt(0));
+      if (!await this.take(new File([content], kept2.name, { type: kept2.type }))) return;
+      this.opacity.value = kept2.opacity;
+      this.image.setAttribute("opacity", String(Number(kept2.opacity) / 100));
+      this.lay(kept2.lie);
+      this.show(false);
+      this.app.screen.reveal();
+    }
+    /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
+    async take(file) {
+      const url = URL.createObjectURL(file);
+      const probe = new Image();
+      probe.src = url;
+      try {
+        await probe.decode();
+      } catch {
+        URL.revokeObjectURL(url);
+        this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
+        return false;
+      }
+      this.clear();
+      this.file = file;
+      this.isDrawing = /\.svgz?$/i.test(file.name);
+      const [x0, y0, x1] = this.stage.pageBox;
+      this.ratio = probe.naturalHeight / Math.max(probe.naturalWidth, 1);
+      this.outline.hidden = this.app.state?.program !== null;
+      this.image.setAttribute("href", url);
+      this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
+      this.lay(this.isDrawing ? { x: 0, y: 0, width: probe.naturalWidth, turn: 0 } : { x: x0, y: y0, width: x1 - x0, turn: 0 });
+      this.show(true);
+      return true;
+    }
+    get middle() {
+      const { x, y, width } = this.lie;
+      return [x + width / 2, y + width * this.ratio / 2];
+    }
+    /** The corners clockwise from the upper left, in px of the drawing. */
+    get corners() {
+      const [[cx, cy], { x, y, width, turn }] = [this.middle, this.lie];
+      const [cos, sin] = [Math.cos(turn * Math.PI / 180), Math.sin(turn * Math.PI / 180)];
+      return [[x, y], [x + width, y], [x + width, y + width * this.ratio], [x, y + width * this.ratio]].map(([px, py]) => [
+        cx + cos * (px - cx) - sin * (py - cy),
+        cy + sin * (px - cx) + cos * (py - cy)
+      ]);
+    }
+    /** Moves, scales and turns it. */
+    lay(change) {
+      Object.assign(this.lie, change);
+      const { x, y, width, turn } = this.lie;
+      for (const [name, value] of Object.entries({ x, y, width, height: width * this.ratio })) this.image.setAttribute(name, String(value));
+      this.layer.setAttribute("transform", `rotate(${turn} ${this.middle.join(" ")})`);
+      this.outlines.setAttribute("transform", `translate(${x} ${y}) scale(${width / Number(this.outlines.dataset.width ?? 1)})`);
+      for (const field of this.fields) field.refresh();
+      this.place();
+    }
+    /** Puts its frame around it on the screen. */
+    place() {
+      const { scale: scale2, shift } = this.stage.camera;
+      const corners2 = this.corners.map(([x, y]) => [scale2 * x + shift[0], scale2 * y + shift[1]]);
+      const [a, b] = [corners2[0], corners2[1]];
+      const [top, long] = [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(b[0] - a[0], b[1] - a[1]) || 1];
+      const turn = [top[0] + ABOVE2 * (b[1] - a[1]) / long, top[1] - ABOVE2 * (b[0] - a[0]) / long];
+      this.ground.setAttribute("d", `M${corners2.join("L")}Z`);
+      this.edge.setAttribute("d", `M${corners2.join("L")}ZM${top}L${turn}`);
+      [...corners2, turn].forEach((p, i) => this.knobs[i].setAttribute("transform", `translate(${p})`));
+    }
+    /** A scaling about the corner opposite. */
+    scaled(corner, from) {
+      const [[ox, oy], [cx, cy], { width }] = [this.corners[(corner + 2) % 4], this.middle, this.lie];
+      const [ax, ay] = [from[0] - ox, from[1] - oy];
+      return (to) => {
+        const k = Math.max(((to[0] - ox) * ax + (to[1] - oy) * ay) / (ax * ax + ay * ay || 1), 1e-3);
+        return { x: ox + k * (cx - ox) - k * width / 2, y: oy + k * (cy - oy) - k * width * this.ratio / 2, width: k * width };
+      };
+    }
+    turned(from) {
+      const [[cx, cy], { turn }] = [this.middle, this.lie];
+      const angle = ([x, y]) => Math.atan2(y - cy, x - cx) * 180 / Math.PI;
+      return (to, { shiftKey }) => {
+        const now = turn + angle(to) - angle(from);
+        return { turn: shiftKey ? NOTCH * Math.round(now / NOTCH) : (now + 540) % 360 - 180 };
+      };
+    }
+    /** Follows a pointer, which begins at a place in px of the drawing, until it is lifted, or Escape gives it up. */
+    grab(e, begin) {
+      if (e.button !== 0) return;
+      e.stopPropagation();
+      const before2 = { ...this.lie };
+      const at = (event) => {
+        const { scale: scale2, shift } = this.stage.camera;
+        const [x, y] = this.stage.point(event);
+        return [(x - shift[0]) / scale2, (y - shift[1]) / scale2];
+      };
+      const change = begin(at(e));
+      const stop = new AbortController();
+      const end2 = () => {
+        stop.abort();
+        void this.keep();
+      };
+      window.addEventListener("pointermove", (event) => {
+        if (event.pointerId !== e.pointerId) return;
+        Object.assign(this.lie, before2);
+        this.lay(change(at(event), event));
+      }, stop);
+      for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, end2, stop);
+      window.addEventListener("keydown", ({ key }) => {
+        if (key !== "Escape") return;
+        this.lay(before2);
+        end2();
+      }, stop);
+    }
+    key(e) {
+      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+      if (!by) return;
+      e.preventDefault();
+      e.stopPropagation();
+      const far = (e.shiftKey ? 10 : 1) / this.stage.camera.scale;
+      this.lay({ x: this.lie.x + far * by[0], y: this.lie.y + far * by[1] });
+      void this.keep();
+    }
+    show(on2) {
+      this.box.hidden = !on2;
+      this.layer.setAttribute("visibility", this.file ? "visible" : "hidden");
+      this.frame.setAttribute("visibility", on2 ? "visible" : "hidden");
+      this.button.setAttribute("aria-pressed", String(this.file !== null));
+      this.button.setAttribute("aria-expanded", String(on2));
+      byId("background-name").textContent = this.file?.name ?? "";
+    }
+    clear() {
+      const href = this.image.getAttribute("href");
+      if (href) URL.revokeObjectURL(href);
+      this.image.removeAttribute("href");
+      this.outlines.replaceChildren();
+      this.opacity.value = String(OPACITY);
+      this.file = null;
+      this.show(false);
+    }
+    /** Puts the artwork into an outline of the background: a path that is clicked, or points around what a photograph shows. */
+    async shape() {
+      const { app: app2, file, stage: stage2, outlines } = this;
+      const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+      if (!file || !closed2) return;
+      const choose = (value) => void app2.choose("envelope", { envelope: [value] }, closed2.label);
+      this.show(false);
+      if (!this.isDrawing) return this.onRound(choose);
+      if (outlines.childElementCount === 0) {
+        const bytes = await base64(file);
+        const answer = await app2.attempt(() => app2.connection.ask({ do: "drawn", name: file.name, bytes }));
+        const root = apart(answer?.svg, "behind");
+        if (!root) return;
+        outlines.dataset.width = root.getAttribute("width") ?? "1";
+        outlines.replaceChildren(...Array.from(root.children));
+        this.lay({});
+      }
+      const paths = Array.from(outlines.querySelectorAll("path")).filter((path) => !path.closest("defs"));
+      if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${closed2.label}”`);
+      const [only] = paths;
+      if (only && paths.length === 1 && !/Z.*M/i.test(only.getAttribute("d") ?? "")) return choose(ring(only, stage2, this.corners[0]));
+      stage2.pick((path, at) => choose(ring(path, stage2, stage2.camera.inPx(at))), ".outlines path", `Click a path of ${file.name}`);
+    }
+  };
+  function ring(path, stage2, [x, y]) {
+    const [box, m] = [stage2.svg.getBoundingClientRect(), path.getScreenCTM()];
+    const place2 = (px, py) => stage2.camera.toUser([m.a * px + m.c * py + m.e - box.x, m.b * px + m.d * py + m.f - box.y]);
+    const rings = (path.getAttribute("d") ?? "").split(/(?=M)/).map((d) => d.replace(/Z\s*$/, "").replace(/(-?[\d.]+)[\s,]+(-?[\d.]+)/g, (_, px, py) => place2(Number(px), Number(py)).map(short).join(",")));
+    const far = (d) => {
+      const line = s("path", { d });
+      const places = Array.from({ length: PLACES }, (_, i) => line.getPointAtLength(line.getTotalLength() * i / PLACES));
+      return Math.min(...places.map((p) => stage2.camera.inPx([p.x, p.y])).map(([px, py]) => Math.hypot(px - x, py - y)));
+    };
+    const nearest3 = rings.reduce((best, d) => far(d) < far(best) ? d : best);
+    return `${nearest3.trim()} Z`;
+  }
+
+  // src/caption.ts
+  var BELOW = 14;
+  var Caption = class {
+    constructor(app2, stage2, sketching2) {
+      this.app = app2;
+      this.stage = stage2;
+      this.sketching = sketching2;
+      this.text.addEventListener("input", () => this.typed());
+      this.text.addEventListener("blur", () => this.done());
+      this.text.addEventListener("keydown", (e) => {
+        if (e.key === "Escape") this.text.blur();
+      });
+      stage2.svg.addEventListener("dblclick", () => {
+        if (app2.step && isCaption(app2.step)) this.open(app2.step, (app2.step.args.words ?? []).join("\n"));
+      });
+    }
+    app;
+    stage;
+    sketching;
+    box = byId("caption-box");
+    text = byId("caption-text");
+    step = null;
+    before = "";
+    /** Asks for the place of words with these values. */
+    begin(args) {
+      this.sketching.begin("point", async (value) => {
+        const [x, y] = await this.app.source(value.split(",").map(Number));
+        const step2 = await this.app.caption({ ...args, at: [`${short(x)},${short(y)}`] });
+        if (step2) this.open(step2, (args.words ?? []).join("\n"), "");
+      });
+    }
+    open(step2, text, before2 = text) {
+      [this.step, this.before, this.text.value] = [step2, before2, text];
+      this.box.hidden = false;
+      this.place();
+      this.text.focus();
+      this.text.select();
+    }
+    /** Puts the field below the words. */
+    place() {
+      const at = this.stage.handle("at")?.get();
+      if (this.box.hidden || !at) return;
+      const [x, y] = this.stage.camera.toScreen(at);
+      const { clientWidth, clientHeight } = this.stage.svg;
+      const within2 = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
+      this.box.style.left = `${within2(x, clientWidth - this.box.offsetWidth)}px`;
+      this.box.style.top = `${within2(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+    }
+    typed() {
+      this.text.rows = this.text.value.split("\n").length;
+      if (!this.step || this.text.value.trim() === "") return;
+      this.step.args.words = this.text.value.split("\n");
+      this.app.draft(performance.now());
+      this.app.tell("values");
+    }
+    /** Keeps what was typed; where nothing was, the words go. */
+    done() {
+      const { app: app2, step: step2, text, before: before2 } = this;
+      const at = step2 ? app2.steps.indexOf(step2) : -1;
+      this.step = null;
+      this.box.hidden = true;
+      if (at < 0) return;
+      if (text.value.trim() !== "") return text.value === before2 ? void 0 : void app2.commit();
+      if (before2 === "" && app2.state) void app2.load(app2.state);
+      else void app2.arrange(app2.steps.toSpliced(at, 1), at);
+    }
+  };
+
   // src/gallery.ts
   var ALSO = {
     shaper: "bottle label neck",
+    envelope: "lines in a shape text in a shape badge",
     bend: "text on path words on a line badge seal",
     arc: "text on a circle badge",
     simplify: "smooth clean up fewer nodes traced",
@@ -1660,7 +2251,7 @@
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
       const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-      const known = [...this.app.deformation(deformation)?.knownAs ?? [], variant ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
+      const known = [...this.app.deformation(deformation)?.knownAs ?? [], variant && deformation !== "envelope" ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
       const card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
       button.addEventListener("click", () => void this.choose(card));
       this.cards.push(card);
@@ -1734,8 +2325,8 @@
       this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
       for (const section of Array.from(this.box.children)) {
         if (section === this.own || section === this.none) continue;
-        const shown2 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
-        if (shown2.length > 0 && !shown2.some((card) => card.tabIndex === 0)) shown2[0].tabIndex = 0;
+        const shown3 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
+        if (shown3.length > 0 && !shown3.some((card) => card.tabIndex === 0)) shown3[0].tabIndex = 0;
         section.hidden = !Array.from(section.querySelectorAll(".card")).some((c) => !c.hidden);
       }
     }
@@ -1754,6 +2345,30 @@
   }
   function isDragged(d) {
     return d.params.some((p) => p.kind === "path" && p.name !== "base" || DRAGGED.has(p.notation ?? ""));
+  }
+
+  // src/keys.ts
+  var KEYS2 = [
+    ["Ctrl Z", "Undo; while something is dragged, put it back"],
+    ["Ctrl Shift Z", "Redo"],
+    ["Ctrl S", "Save"],
+    ["Ctrl Shift S", "Save under a name or in another format"],
+    ["B, held", "Show the original"],
+    ["E", "Show the result of all steps behind that of an earlier one"],
+    ["+  −  0", "Zoom in, zoom out, fit everything"],
+    ["Arrow keys", "Move the selected point by a pixel, with Shift by ten"],
+    ["Insert, Delete", "Add a point after the selected one, take it away"],
+    ["Shift, dragging", "Keep to the horizontal or vertical; on the ground, select points"],
+    ["Alt, dragging", "Do not snap"],
+    ["Tab", "Go on to the next point, button or group of shapes"],
+    ["Escape", "Give up what was begun"],
+    ["?", "Show this list"]
+  ];
+  function showKeys() {
+    const dialog = byId("keys-dialog");
+    if (dialog.open) return dialog.close();
+    byId("keys-list").replaceChildren(...KEYS2.flatMap(([keys, what]) => [h("dt", {}, keys), h("dd", {}, what)]));
+    dialog.showModal();
   }
 
   // src/ground.ts
@@ -1890,72 +2505,8 @@
     };
   }
 
-  // src/opening.ts
-  var PASTED = "pasted.svg";
-  var Opening = class {
-    constructor(app2) {
-      this.app = app2;
-      const chosen = byId("open-file");
-      byId("open").addEventListener("click", () => chosen.click());
-      chosen.addEventListener("change", () => {
-        const file = chosen.files?.[0];
-        chosen.value = "";
-        if (file) void this.open(file);
-      });
-      window.addEventListener("dragover", (e) => {
-        e.preventDefault();
-        if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
-        document.body.classList.add("dropping");
-      });
-      window.addEventListener("dragleave", (e) => {
-        if (!e.relatedTarget) document.body.classList.remove("dropping");
-      });
-      window.addEventListener("drop", (e) => {
-        e.preventDefault();
-        document.body.classList.remove("dropping");
-        this.take(e.dataTransfer);
-      });
-      window.addEventListener("paste", (e) => {
-        if (!isTyping(e.target)) this.take(e.clipboardData);
-      });
-    }
-    app;
-    /** Opens what was dropped or pasted: a file, or the text of a drawing. */
-    take(data) {
-      const file = data?.files[0];
-      const text = data?.getData("text/plain") ?? "";
-      if (file) void this.open(file);
-      else if (/<svg[\s>]/i.test(text)) void this.open(new File([text], PASTED));
-      else if (data) toast("This is not a drawing: drop or paste an SVG or a photograph");
-    }
-    async open(file) {
-      const { app: app2 } = this;
-      await app2.settle();
-      const { state } = app2;
-      if (!state || !app2.isLive) return;
-      if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
-      const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
-      if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
-      await app2.enter(() => app2.attempt(async () => app2.connection.ask({ do: "open", name: file.name, bytes: await base64(file) })));
-    }
-  };
-  async function bring(app2, file) {
-    const bytes = await base64(file);
-    const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
-    if (!answer?.written) return null;
-    if (answer.copied) toast(`${file.name} was copied beside the drawing`);
-    return answer.written;
-  }
-  var PIECE = 32768;
-  async function base64(file) {
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    let binary = "";
-    for (let i = 0; i < bytes.length; i += PIECE) binary += String.fromCharCode(...bytes.subarray(i, i + PIECE));
-    return btoa(binary);
-  }
-
   // src/parts.ts
-  var ELEMENTS = { g: "group", a: "link", svg: "drawing", use: "copy", image: "picture", rect: "rectangle" };
+  var ELEMENTS2 = { g: "group", a: "link", svg: "drawing", use: "copy", image: "picture", rect: "rectangle" };
   var Parts = class {
     constructor(app2, stage2, modes2) {
       this.app = app2;
@@ -1979,11 +2530,14 @@
     /** The names of what is not shown; the file has it all the same. */
     hidden = /* @__PURE__ */ new Set();
     shown = "";
+    file = "";
     async load() {
-      const { drawing = "" } = this.app.state ?? {};
-      if (drawing === this.shown) return;
-      this.shown = drawing;
-      this.hidden.clear();
+      const { drawing = "", file = "", steps = [] } = this.app.state ?? {};
+      const shown3 = JSON.stringify([drawing, ...steps.filter(isCaption)]);
+      if (shown3 === this.shown) return;
+      this.shown = shown3;
+      if (file !== this.file) this.hidden.clear();
+      this.file = file;
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
       this.all = answer?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
@@ -1993,7 +2547,7 @@
       this.show();
     }
     row(part) {
-      const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag, letter) => capital((ELEMENTS[tag] ?? tag) + letter));
+      const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag, letter) => capital((ELEMENTS2[tag] ?? tag) + letter));
       const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
       choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
       choose.addEventListener("pointerenter", () => this.stage.lightParts([part, ...this.inside(part)].map(({ name }) => name)));
@@ -2021,15 +2575,21 @@
     }
     clicked(name, adds) {
       const part = this.all.find((p) => p.name === name);
-      const isLocked = part && this.app.locks.some((lock) => this.all.some((p) => p.selector === lock && (p === part || this.inside(p).includes(part))));
-      if (part && !isLocked) return this.toggle(part, adds);
-      if (!adds) void this.app.scope([]);
+      if (part) this.toggle(part, adds);
+      else if (!adds) void this.app.scope([]);
+    }
+    /** A part is locked or hidden, by itself or with a group around it. */
+    isOut(part) {
+      const isOut = ({ name, selector }) => this.hidden.has(name) || this.app.locks.includes(selector);
+      return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
     }
     /** Chooses a part alone, or adds it to the others, or takes it from them. */
-    toggle({ selector }, adds) {
+    toggle(part, adds) {
       const { chosen } = this.app;
+      const { selector } = part;
       const others = chosen.filter((s2) => s2 !== selector);
       const isChosen = others.length < chosen.length;
+      if (!isChosen && this.isOut(part)) return;
       if (!adds) void this.app.scope(isChosen && others.length === 0 ? [] : [selector]);
       else void this.app.scope(isChosen ? others : [...others, selector]);
     }
@@ -2091,7 +2651,7 @@
           const at = this.handle.get();
           stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
         };
-        const read = () => this.handle ? shown(this.handle)[i] : "";
+        const read = () => this.handle ? shown2(this.handle)[i] : "";
         const isWrong = (typed) => place2(typed) === null ? `${asked("")} or 50 %` : null;
         const take = (typed) => {
           if (this.handle && typed !== read()) move(place2(typed));
@@ -2124,10 +2684,10 @@
     }
     /** Tells screen readers where keys have moved a handle. */
     say(handle) {
-      byId("spoken").textContent = `${handle.label}: ${shown(handle).join(", ")}`;
+      byId("spoken").textContent = `${handle.label}: ${shown2(handle).join(", ")}`;
     }
   };
-  function shown(handle) {
+  function shown2(handle) {
     return handle.get().map((v) => short(Number(v.toFixed(DECIMALS))));
   }
 
@@ -2179,79 +2739,6 @@
     }
   };
 
-  // src/drawing.ts
-  var SVG2 = "http://www.w3.org/2000/svg";
-  var XLINK = "http://www.w3.org/1999/xlink";
-  var ELEMENTS2 = new Set(
-    "svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight feSpecularLighting feSpotLight feTile feTurbulence use".split(" ")
-  );
-  var LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
-  var LOADS = /url\(\s*["']?(?!#)/i;
-  function copy(from, lines) {
-    if (from.namespaceURI !== SVG2 || !ELEMENTS2.has(from.localName)) {
-      skip(from, lines);
-      return null;
-    }
-    const to = document.createElementNS(SVG2, from.localName);
-    for (const { name, value } of Array.from(from.attributes)) set(to, name, value);
-    lines?.push(to);
-    for (const child of Array.from(from.children)) {
-      const copied = copy(child, lines);
-      if (copied) to.append(copied);
-    }
-    if (from.children.length > 0) lines?.push(null);
-    return to;
-  }
-  function skip(element, lines) {
-    lines?.push(null);
-    for (const child of Array.from(element.children)) skip(child, lines);
-    if (element.children.length > 0) lines?.push(null);
-  }
-  function set(element, name, value) {
-    if (name.startsWith("on") || name.startsWith("xmlns")) return;
-    if (name === "href" || name === "xlink:href") {
-      if (LINK.test(value)) element.setAttributeNS(name === "href" ? null : XLINK, name, value);
-      return;
-    }
-    if (name === "style") {
-      for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
-        if (property && !LOADS.test(rest.join(":"))) element.style.setProperty(property.trim(), rest.join(":").trim());
-      }
-      return;
-    }
-    if (LOADS.test(value)) return;
-    element.setAttribute(name, value);
-  }
-  function parse(text, lines = null) {
-    const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-    return copy(root, lines);
-  }
-  var Drawing = class {
-    constructor(layer) {
-      this.layer = layer;
-    }
-    layer;
-    /** The element that each line of the server's text opens. */
-    lines = [];
-    /** Shows a picture. */
-    show(picture) {
-      if ("changes" in picture) {
-        for (const [line, name, value] of picture.changes) {
-          const element = this.lines[line];
-          if (element) set(element, name, value);
-        }
-        return;
-      }
-      this.lines = [];
-      const root = parse(picture.whole, this.lines);
-      this.layer.replaceChildren(...root ? Array.from(root.children) : []);
-    }
-    /** The paths of the drawing, for nodes and handles. */
-    paths() {
-      return Array.from(this.layer.querySelectorAll("path")).filter((p) => !p.closest("defs"));
-    }
-  };
-
   // src/heat.ts
   var FULL = Math.log2(2);
   function cells({ columns, points, factors }, place2) {
@@ -2281,7 +2768,8 @@
 
   // src/selection.ts
   var AROUND = 16;
-  var ABOVE = 26;
+  var ABOVE3 = 26;
+  var EDGE = 6;
   var Selection = class {
     keys = /* @__PURE__ */ new Set();
     layer = s("g", { class: "selection", visibility: "hidden" });
@@ -2326,9 +2814,14 @@
       const [x0, y0, x1, y1] = [Math.min(...xs) - AROUND, Math.min(...ys) - AROUND, Math.max(...xs) + AROUND, Math.max(...ys) + AROUND];
       this.box = [[x0, y0], [x1, y1]];
       const middle2 = (x0 + x1) / 2;
-      this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle2},${y0}V${y0 - ABOVE}`);
-      const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE] };
+      this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle2},${y0}V${y0 - ABOVE3}`);
+      const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE3] };
       for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+    }
+    /** A place is in the box or on its edge. */
+    holds([x, y]) {
+      const [[x0, y0], [x1, y1]] = this.box;
+      return this.isMany && x > x0 - EDGE && x < x1 + EDGE && y > y0 - EDGE && y < y1 + EDGE;
     }
     /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */
     transform(part, from) {
@@ -2435,11 +2928,14 @@
   var BESIDE = 28;
   var REACH = 18;
   var PICKED = 8;
+  var GREETED = "pathwarp-greeted";
+  var DRAFT_OF_END = 1;
+  var MOST_OF_END = 60;
   var Stage = class {
     constructor(app2, modes2) {
       this.app = app2;
       this.modes = modes2;
-      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+      this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.aheadArt, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.value, this.marquee);
       const stage2 = this;
       app2.screen = {
         show: (answer) => this.show(answer),
@@ -2452,6 +2948,7 @@
         if (change === "state") this.place();
         if (change === "handles") this.rebuild();
         if (change === "report" && this.showsStretch) void this.drawStretch();
+        if (change === "report" || change === "steps") void this.drawEnd();
       });
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
@@ -2459,7 +2956,7 @@
         if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
       });
       this.svg.addEventListener("pointermove", (e) => {
-        if (this.picks) this.light(this.named(e, ".art [id]"));
+        if (this.picks) this.light(this.named(e, this.pickable));
         else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
       });
       new ResizeObserver(() => this.resized()).observe(this.svg);
@@ -2477,6 +2974,8 @@
     behind = s("g", {});
     art = s("g", { class: "art" });
     beforeArt = s("g", { class: "art", visibility: "hidden" });
+    /** The result of all steps, behind that of an earlier one. */
+    aheadArt = s("g", { class: "ahead" });
     heat = s("g", { class: "heat" });
     nodes = s("path", { class: "nodes" });
     arms = s("path", { class: "arms" });
@@ -2496,6 +2995,8 @@
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
+    /** The value of the handle that is dragged. */
+    value = s("text", { class: "value-of-drag" });
     drawing = new Drawing(this.art);
     elements = /* @__PURE__ */ new Map();
     lines = [];
@@ -2516,11 +3017,19 @@
     isBefore = false;
     showsNodes = false;
     showsStretch = false;
-    /** The stretch has been asked for, and has to be asked for again. */
-    isStretchAsked = false;
-    isStretchWanted = false;
-    /** Takes the id of the path that is clicked next, instead of anything else. */
+    showsEnd = false;
+    /** The deformation whose handles are pointed out. */
+    greeted = "";
+    /** The time that the last result of all steps took, in ms. */
+    endTook = 0;
+    /** Takes the path that is clicked next, of those that a selector matches, and the place, instead of anything else. */
     picks = null;
+    pickable = "";
+    /** Takes the question for a path away. */
+    answered = () => {
+    };
+    /** Places in px of the drawing that Fit shows, too. */
+    around = () => [];
     /** The names of the drawing's parts. */
     parts = /* @__PURE__ */ new Set();
     /** A part was clicked, or none. */
@@ -2531,8 +3040,7 @@
     /** A handle has been moved by keys. */
     onKeys = () => {
     };
-    onZoom = () => {
-    };
+    onLayout = [];
     get size() {
       return [this.svg.clientWidth, this.svg.clientHeight];
     }
@@ -2558,7 +3066,8 @@
       if (!this.app.state || x1 <= x0 || y1 <= y0) return;
       const handles = (this.app.handles?.handles ?? []).map((h2) => this.camera.inPx(h2.get())).filter((p) => p.every(Number.isFinite));
       const [a, b, c, d] = this.pageBox;
-      const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
+      const all = [[a, b], [c, d], ...handles, ...this.around()];
+      const [xs, ys] = [all.map((p) => p[0]), all.map((p) => p[1])];
       this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
       const [x, y] = this.camera.shift;
       this.camera.shift = [x + x0, y + y0];
@@ -2648,8 +3157,7 @@
       this.isBefore = on2;
       if (on2 && this.beforeArt.childElementCount === 0) {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
-        const root = answer?.svg ? parse(answer.svg) : null;
-        if (root) this.beforeArt.replaceChildren(...Array.from(renamed(root).children));
+        this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
       }
       this.svg.classList.toggle("before", this.isBefore);
       this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
@@ -2667,24 +3175,27 @@
       this.arms.setAttribute("d", arms);
     }
     /** Shows the stretch of the visible steps, or hides it. */
-    async drawStretch() {
+    drawStretch = latest(async () => {
       const { app: app2 } = this;
-      if (!this.showsStretch) return this.heat.replaceChildren();
-      this.isStretchWanted = true;
-      if (this.isStretchAsked) return;
-      this.isStretchAsked = true;
-      while (this.isStretchWanted) {
-        this.isStretchWanted = false;
-        const answer = await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible }));
-        const stretch = this.showsStretch ? answer?.stretch : null;
-        this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
-      }
-      this.isStretchAsked = false;
-    }
+      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
+      const stretch = this.showsStretch ? answer?.stretch : null;
+      this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
+    });
+    /** Shows the result of all steps behind that of an earlier one, or hides it. */
+    drawEnd = latest(async () => {
+      const { app: app2 } = this;
+      const isEarlier = () => this.showsEnd && app2.selected < app2.steps.length - 1;
+      const draft = app2.isDragging ? DRAFT_OF_END * this.camera.pixel : null;
+      if (draft !== null && this.endTook > MOST_OF_END) return;
+      const start = performance.now();
+      const answer = isEarlier() ? await app2.connection.ask({ do: "ahead", steps: app2.steps, draft }).catch(() => null) : null;
+      if (answer) this.endTook = performance.now() - start;
+      this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : void 0, "ahead")?.children ?? []));
+    });
     /** Puts everything in its place on the screen. */
     layout() {
       const { camera } = this;
-      const layers = [...this.shadows, this.sheet, this.behind, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+      const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
       for (const layer of layers) layer.setAttribute("transform", camera.transform);
       this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
       for (const mark of Array.from(this.marks.children)) {
@@ -2693,7 +3204,7 @@
       }
       this.placeHandles();
       if (this.litParts.length > 0) this.lightParts(this.litParts);
-      this.onZoom();
+      for (const follow of this.onLayout) follow();
     }
     /** Puts handles and their lines where they are now. */
     placeHandles() {
@@ -2743,6 +3254,7 @@
       });
       this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
       const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
+      this.greet();
       this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
       this.placeHandles();
       if (this.isToFit && handles) {
@@ -2755,6 +3267,14 @@
         else if (had) again.focus({ preventScroll: true });
         else this.focus(this.focused);
       }
+    }
+    /** The first time that a deformation has handles here, they are pointed out. */
+    greet() {
+      const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
+      this.knobs.classList.toggle("greeting", name !== void 0 && (name === this.greeted || !known.has(name)));
+      if (!name || !this.app.handles || known.has(name)) return;
+      this.greeted = name;
+      localStorage.setItem(GREETED, [...known, name].join(" ").trim());
     }
     /** Selects a handle. */
     focus(key) {
@@ -2796,19 +3316,23 @@
       const box = this.svg.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
     }
-    /** The next click on the drawing names a path. */
-    pick(take) {
-      this.picks = take;
+    /** The next click takes a path, of those that a selector matches; what is asked for is shown until then. */
+    pick(take, among = ".art [id]", wish = "") {
+      [this.picks, this.pickable] = [take, among];
       this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
+      this.svg.classList.toggle("outlining", take !== null && among !== ".art [id]");
       this.light(null);
+      this.answered();
+      this.answered = take && wish ? toast(wish, true) : () => {
+      };
     }
     /** Names the path that was clicked; elsewhere, the question stays. */
     picked(e) {
-      const named = this.named(e, ".art [id]");
-      if (!named) return toast("No path with a name is there. Click one, or press Escape");
+      const named = this.named(e, this.pickable);
+      if (!named) return void toast("No path is there. Click one, or press Escape");
       const take = this.picks;
       this.pick(null);
-      take?.(partOf(named.closest("[id]").id));
+      take?.(named, this.camera.toUser(this.point(e)));
     }
     /** Names the part that was clicked. */
     pickedPart(e) {
@@ -2818,7 +3342,15 @@
         if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
       }
       this.light(null);
-      this.onPart(name, e.shiftKey);
+      if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
+    }
+    /** A part that is not shown has this place. */
+    isHiddenAt(e) {
+      const { away } = this;
+      this.hideParts(/* @__PURE__ */ new Set());
+      const isThere = this.named(e, ".art *") !== null;
+      this.hideParts(away);
+      return isThere;
     }
     /** The elements of parts in the picture. */
     ofParts(names) {
@@ -2853,10 +3385,24 @@
       if (path) outlineOf(path, this.svg, this.lit);
       else this.lit.setAttribute("d", "");
     }
+    /** Shows the value of a handle beside it while it is dragged, or no longer does. */
+    tell(handle) {
+      const { step: step2 } = this.app;
+      const param = this.app.deformation(step2?.deformation)?.params.find(({ name }) => name === handle?.param);
+      const isNumber = param && ["number", "length", "angle", "count"].includes(param.kind);
+      const [x, y] = handle?.get() ?? [0, 0];
+      const digits = Math.max(0, Math.ceil(-Math.log10(this.camera.pixel)));
+      const place2 = [x, y].map((v) => v.toFixed(digits)).join(", ");
+      this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step2?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : place2;
+      const [sx, sy] = this.camera.toScreen([x, y]);
+      this.value.setAttribute("x", String(sx + REACH));
+      this.value.setAttribute("y", String(sy - REACH));
+    }
     /** Writes the values of a handle that has been moved, and asks for the picture. */
     changed(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
+      if (this.app.hold) this.tell(handle);
       this.onFocus(handle);
       this.app.tell("values");
       this.app.draft(since);
@@ -2947,6 +3493,19 @@
       this.changed(handle, performance.now());
     }
   };
+  function latest(work) {
+    let [isAsked, isWanted] = [false, false];
+    return async () => {
+      isWanted = true;
+      if (isAsked) return;
+      isAsked = true;
+      while (isWanted) {
+        isWanted = false;
+        await work();
+      }
+      isAsked = false;
+    };
+  }
   function partOf(id) {
     return id.replace(/^art-/, "");
   }
@@ -2959,22 +3518,12 @@
     if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
     return to;
   }
-  function renamed(root) {
-    for (const element of Array.from(root.querySelectorAll("*"))) {
-      for (const { name, value } of Array.from(element.attributes)) {
-        if (name === "id") element.setAttribute(name, `before-${value}`);
-        else if (value.includes("url(#")) element.setAttribute(name, value.replaceAll("url(#", "url(#before-"));
-        else if (name.endsWith("href") && value.startsWith("#")) element.setAttribute(name, `#before-${value.slice(1)}`);
-      }
-    }
-    return root;
-  }
 
   // src/pointing.ts
   var MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
   var SNAP = 7;
   var SHAKES = 3;
-  var NOTCH = 50;
+  var NOTCH2 = 50;
   var PINCH_RATE = 0.01;
   var WHEEL_RATE = 2e-3;
   var Pointing = class {
@@ -3008,8 +3557,8 @@
     wheel(e) {
       e.preventDefault();
       const { stage: stage2 } = this;
-      const isPinch = e.ctrlKey && Math.abs(e.deltaY) < NOTCH;
-      if (e.ctrlKey || e.metaKey || e.deltaX === 0 && Math.abs(e.deltaY) >= NOTCH) {
+      const isPinch = e.ctrlKey && Math.abs(e.deltaY) < NOTCH2;
+      if (e.ctrlKey || e.metaKey || e.deltaX === 0 && Math.abs(e.deltaY) >= NOTCH2) {
         return stage2.zoom(Math.exp(-e.deltaY * (isPinch ? PINCH_RATE : WHEEL_RATE)), stage2.point(e));
       }
       stage2.shift([-e.deltaX, -e.deltaY]);
@@ -3030,6 +3579,7 @@
       if (knob && bends) this.drag(e, knob);
       else if (this.modes.picksParts && bends) this.pan(e, () => stage2.pickedPart(e));
       else if (part && bends) this.transform(e, stage2.selection.transform(part, stage2.point(e)));
+      else if (bends && !e.shiftKey && stage2.selection.holds(stage2.point(e))) this.transform(e, moved(stage2.point(e)), () => stage2.select([]));
       else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
@@ -3058,6 +3608,7 @@
     }) {
       const { app: app2 } = this;
       const start = this.stage.point(e);
+      hush();
       void app2.flush();
       const step2 = app2.step;
       const before2 = structuredClone(step2);
@@ -3066,6 +3617,7 @@
       const stop = () => {
         app2.isDragging = false;
         app2.hold = null;
+        this.stage.tell(null);
         done();
       };
       const abandon = this.follow(e, {
@@ -3101,7 +3653,7 @@
         if (adds) stage2.selection.toggle(handle.key);
         stage2.select(adds ? Array.from(stage2.selection.keys) : [handle.key]);
       };
-      if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+      if (several && !adds) return this.transform(e, moved([x, y]), clicked);
       const grabbed = stage2.camera.toScreen(handle.get());
       const mover = modes2.mover(handles, handle);
       knob.classList.add("held");
@@ -3158,7 +3710,7 @@
       if (!handles || !pull) return false;
       const [x, y] = stage2.point(e);
       if (pull.ends.length > 1 && pull.ends.every((key) => stage2.selection.keys.has(key))) {
-        this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+        this.transform(e, moved([x, y]));
         return true;
       }
       const puller = modes2.puller(handles, pull);
@@ -3202,16 +3754,17 @@
         const [a, b] = [this.down.get(one), this.down.get(two)];
         return [[(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], Math.hypot(a[0] - b[0], a[1] - b[1])];
       };
-      let [at, apart] = middle2();
+      let [at, apart2] = middle2();
       window.addEventListener("pointermove", () => {
         const [to, wide] = middle2();
-        if (apart > 0) this.stage.zoom(wide / apart, at);
+        if (apart2 > 0) this.stage.zoom(wide / apart2, at);
         this.stage.shift([to[0] - at[0], to[1] - at[1]]);
-        [at, apart] = [to, wide];
+        [at, apart2] = [to, wide];
       }, { signal });
       for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
     }
   };
+  var moved = ([x, y]) => (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y];
 
   // src/presets.ts
   var Presets = class {
@@ -3318,10 +3871,12 @@
       app2.released = null;
       if (app2.appends) return show("note", "Choose the shape of the next step, or press Escape");
       if (app2.steps.length === 0) return show("note", "Choose a shape");
+      if (app2.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
+      if (app2.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
       if (!handles) return;
       const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
       const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-      const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+      const note = isCaption(app2.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
     }
     /** Somebody has moved the view, and may have meant to bend the artwork. */
@@ -3448,7 +4003,7 @@
       const { state } = this.app;
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state) return;
-      if (state.steps.length === 0) return toast(NOTHING);
+      if (state.steps.length === 0) return this.open();
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
@@ -3458,7 +4013,7 @@
       if (!await this.app.settle()) return;
       const { state } = this.app;
       if (!state || state.program || this.dialog.open) return;
-      if (state.steps.length === 0) return toast(NOTHING);
+      if (state.steps.length === 0 && !state.words) return void toast(NOTHING);
       this.name.value = state.target;
       this.choose("svg");
       if (!state.photograph) this.recall();
@@ -3471,10 +4026,10 @@
     }
     /** The choices of last time. */
     recall() {
-      const { unit = "px", size = WIDTH, background = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}");
-      const isColour = background.startsWith("#");
-      [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background];
-      if (isColour) this.colour.value = background;
+      const { unit = "px", size = WIDTH, background: background2 = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}");
+      const isColour = background2.startsWith("#");
+      [this.unit.value, this.size.value, this.background.value] = [unit, String(size), isColour ? "colour" : background2];
+      if (isColour) this.colour.value = background2;
       this.colour.hidden = !isColour;
     }
     /** The file that is asked for. Returns `null` for a picture without a size. */
@@ -3487,9 +4042,9 @@
         this.say(unit === "%" ? "The size is a number of per cent, such as 200" : `The width is a whole number of pixels up to ${WIDEST}`);
         return null;
       }
-      const background = this.background.value === "colour" ? this.colour.value : this.background.value;
-      if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background }));
-      const picture = { ...unit === "%" ? { scale: size / 100 } : { width: size }, background: background === "none" ? null : background };
+      const background2 = this.background.value === "colour" ? this.colour.value : this.background.value;
+      if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background: background2 }));
+      const picture = { ...unit === "%" ? { scale: size / 100 } : { width: size }, background: background2 === "none" ? null : background2 };
       return { name, folder, picture };
     }
     choose(extension) {
@@ -3570,10 +4125,104 @@
     }
   };
 
+  // src/words.ts
+  var BUNDLED = "Noto Sans (bundled)";
+  var LARGEST = 2e3;
+  var WordsDialog = class {
+    constructor(app2) {
+      this.app = app2;
+      byId("words").addEventListener("click", () => void this.open());
+      byId("words-place").addEventListener("click", () => {
+        this.dialog.close();
+        const { value } = this.text;
+        this.onPlace({ ...value.trim() && !this.app.state?.words && { words: value.split("\n") }, ...this.font && { font: [this.font] } });
+      });
+      byId("words-cancel").addEventListener("click", () => this.dialog.close());
+      this.search.addEventListener("input", () => this.list());
+      this.fonts.addEventListener("change", () => this.font = this.fonts.value === BUNDLED ? null : this.fonts.value);
+      this.dialog.querySelector("form").addEventListener("submit", (e) => {
+        e.preventDefault();
+        void this.set();
+      });
+      app2.listen((change) => {
+        if (change === "state") this.show();
+      });
+    }
+    app;
+    dialog = byId("words-dialog");
+    text = byId("words-text");
+    search = byId("words-search");
+    fonts = byId("words-font");
+    size = byId("words-size");
+    spacing = byId("words-spacing");
+    message = byId("words-message");
+    families = null;
+    font = null;
+    /** Words are to be put on the drawing, with these values. */
+    onPlace = () => {
+    };
+    show() {
+      const { state } = this.app;
+      byId("words").textContent = state?.words ? "Edit words…" : "Words…";
+      byId("words-set").textContent = state?.words ? "Set words" : "New drawing";
+      byId("words-place").classList.toggle("primary", !state?.words);
+      byId("words-set").classList.toggle("primary", !!state?.words);
+      if (state?.program) byId("words").hidden = true;
+    }
+    async open() {
+      if (!await this.app.settle()) return;
+      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+      this.families ??= answer?.families ?? [];
+      const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
+      [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
+      this.font = font;
+      this.list();
+      const isMissing = font !== null && !this.families.includes(font);
+      this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
+      this.dialog.showModal();
+      this.text.focus();
+    }
+    /** The families that fit what was typed, each in its own letters. */
+    list() {
+      const wanted = this.search.value.trim().toLowerCase();
+      const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
+      this.fonts.replaceChildren(...all.map((name) => {
+        const option = h("option", { value: name }, name);
+        if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
+        return option;
+      }));
+      this.fonts.value = this.font ?? BUNDLED;
+      this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+    }
+    async set() {
+      const { app: app2 } = this;
+      const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
+      if (this.text.value.trim() === "") return this.say("Type some words first");
+      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
+      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+      try {
+        const words2 = { text: this.text.value, font: this.font, size, spacing };
+        await app2.enter(async () => {
+          const answer = await app2.connection.ask({ do: "set-words", words: words2 });
+          this.dialog.close();
+          if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
+          return answer;
+        });
+      } catch (e) {
+        this.say(inWords(reason(e)));
+      }
+    }
+    say(text) {
+      this.message.textContent = text;
+    }
+  };
+
   // src/settings.ts
   var OF_ARTWORK = [0, 100];
   var BOTH_WAYS = [-100, 100];
   var COARSE = 20;
+  var NOTES = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
+  var MM2 = 96 / 25.4;
   var SIDE_BY_SIDE = 3;
   var SKETCHES = {
     line: "Drag from its start to its end on the drawing",
@@ -3606,17 +4255,18 @@
       const { step: step2 } = this.app;
       const deformation = this.app.deformation(step2?.deformation);
       const params = deformation?.params ?? [];
-      const signature = [this.app.selected, step2?.deformation, ...this.adjusts(params)].join();
+      const circles = params.filter((p) => this.app.grip(p.name)?.circle).map((p) => p.name);
+      const signature = [this.app.selected, step2?.deformation, ...this.adjusts(params), ...circles].join();
       if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
       this.shown = signature;
       this.onOther();
       this.refreshers = [];
       if (!step2 || !deformation) return this.box.replaceChildren();
-      const main = params.filter((p) => isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
+      const main = params.filter((p) => isCaption(step2) && p.kind !== "point" || isMain(p, step2.args[p.name] !== void 0) || this.app.grip(p.name)?.adjust !== void 0);
       const more = params.filter((p) => !main.includes(p));
       const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : void 0;
       this.box.replaceChildren(
-        h("p", { class: "about" }, sentence(deformation.title)),
+        h("p", { class: "about" }, sentence(deformation.title), NOTES[deformation.name] ?? ""),
         ...main.map((p) => this.control(p)),
         more.length > 0 ? h("details", { class: "more" }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))) : ""
       );
@@ -3661,11 +4311,65 @@
             button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
             return button;
           });
-          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
+          const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...radius || [], this.text(p, id));
         }
-        default:
-          return h("div", { class: "field", title }, label, this.text(p, id));
+        default: {
+          if (p.notation === "FAMILY") return h("div", { class: "field", title }, label, this.family(p, id));
+          return h("div", { class: "field", title }, h("div", { class: "row" }, label, p.notation === "COLOUR" && this.colour(p)), this.text(p, id));
+        }
       }
+    }
+    colour(p) {
+      const input = h("input", { type: "color", "aria-label": `${paramName(p)}, chosen` });
+      input.addEventListener("input", () => this.app.setSoon(p.name, [input.value]));
+      this.refreshers.push(() => input.value = /^#[0-9a-f]{6}$/i.test(this.current(p)) ? this.current(p) : "#000000");
+      return input;
+    }
+    /** The fonts that are installed. */
+    family(p, id) {
+      const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
+      select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
+      const show2 = () => {
+        const value = this.current(p);
+        if (!Array.from(select.options).some((o) => o.value === value)) select.append(h("option", { value }, value));
+        select.value = value;
+      };
+      this.refreshers.push(show2);
+      void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+        select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
+        show2();
+      });
+      return select;
+    }
+    /** The radius of a circle, in mm, and a word where the artwork is longer than it. */
+    radius(p, id) {
+      const { app: app2 } = this;
+      const [a, b] = app2.state?.toPx ?? [1, 0];
+      const unit = MM2 / Math.hypot(a, b);
+      const circle2 = () => app2.grip(p.name)?.circle;
+      const input = h("input", { type: "text", id: `${id}-radius`, class: "value", inputmode: "decimal", autocomplete: "off" });
+      const number = (text) => inUnits(text, "mm") ?? NaN;
+      const set2 = (mm) => {
+        const present = circle2();
+        return present ? app2.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
+      };
+      const field = new Field(input, () => short2((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : asked("mm", 0));
+      const note = h("p", { class: "wrong", role: "status" });
+      const grow = h("button", { type: "button", class: "link" });
+      grow.addEventListener("click", () => void set2(Number(grow.dataset.mm)));
+      const long = h("div", { hidden: true }, note, grow);
+      this.refreshers.push(() => {
+        field.refresh();
+        const least = app2.tooSmall(p.name);
+        long.hidden = least === null;
+        if (least === null) return;
+        grow.dataset.mm = String(Math.ceil(10.6 * least / unit) / 10);
+        note.textContent = "The artwork is longer than this circle, and overlaps itself.";
+        grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
+      });
+      const row = h("div", { class: "row" }, h("label", { for: input.id }, "Radius"), h("span", { class: "measure" }, input, h("span", { class: "unit" }, "mm")));
+      return [row, field.message, long];
     }
     flag(p, id, title) {
       const box = h("input", { type: "checkbox", id, role: "switch" });
@@ -3675,12 +4379,13 @@
     }
     choice(p, id, label, title) {
       const all = p.words ?? [];
-      if (all.length > SIDE_BY_SIDE) return h("div", { class: "field", title }, label, this.select(p, id));
+      const pictures = p.name === "glyphs";
+      if (all.length > SIDE_BY_SIDE && !pictures) return h("div", { class: "field", title }, label, this.select(p, id));
       const options = all.map((word, i) => {
         const input = h("input", { type: "radio", name: id, value: word, id: `${id}-${i}` });
         input.addEventListener("change", () => this.app.set(p.name, [word], true));
         this.refreshers.push(() => input.checked = this.current(p) === word);
-        return h("label", {}, input, h("span", {}, words(word)));
+        return h("label", {}, input, h("span", {}, pictures && glyphs(word), words(word)));
       });
       return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
     }
@@ -3711,12 +4416,12 @@
         this.app.setSoon(p.name, [text({ value, unit: q.unit })]);
         return short(value);
       };
-      const shown2 = () => {
+      const shown3 = () => {
         const q = present();
         return q ? short(q.value) : this.current(p);
       };
       const input = h("input", { type: "text", id, class: "value", inputmode: "decimal", spellcheck: false, autocomplete: "off", placeholder: "auto" });
-      const field = new Field(input, shown2, take, isWrong, nudge);
+      const field = new Field(input, shown3, take, isWrong, nudge);
       this.refreshers.push(() => {
         measure.textContent = unit();
         field.refresh();
@@ -3839,7 +4544,7 @@
       slider.addEventListener("dblclick", () => app2.set(values(0)[0], reset(), true));
     }
     slider(p, id, label, title) {
-      const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] : scale(p);
+      const [unit, range] = this.app.isFirst(this.app.step) && p.kind === "length" ? ["%", p.slider] : scale(p);
       const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
       this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
       this.refreshers.push(() => {
@@ -3866,6 +4571,22 @@
       return 100 * value / whole;
     }
   };
+  function glyphs(word) {
+    const [radius, height, half] = [22, 13, 4.5];
+    const letters = [-0.85, 0, 0.85].map((turn) => {
+      const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
+      const along = ["rotate", "skew"].includes(word) ? [cos, sin] : [1, 0];
+      const up = ["rotate", "ribbon"].includes(word) ? [sin, -cos] : [0, -1];
+      const place2 = (x, y) => {
+        const angle = turn + x / radius;
+        return word === "bend" ? [(radius + y) * Math.sin(angle), -(radius + y) * Math.cos(angle)] : [radius * sin + x * along[0] + y * up[0], -radius * cos + x * along[1] + y * up[1]];
+      };
+      const line = (...points) => `M${points.map(([x, y]) => place2(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
+      const sides = [[-half, 0], [-half, height / 2], [-half, height], [0, height], [half, height], [half, height / 2], [half, 0]];
+      return line(...sides) + line([-half, height / 2], [half, height / 2]);
+    });
+    return s("svg", { viewBox: "-34 -38 68 36", class: "glyphs", "aria-hidden": "true" }, s("path", { d: `M-20,-10A22,22 0 0 1 20,-10${letters.join("")}` }));
+  }
   function isMain(p, isGiven) {
     switch (p.kind) {
       case "number":
@@ -3912,9 +4633,12 @@
   var HINTS = {
     line: "Drag from the start of the line to its end",
     path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
-    circle: "Drag from the centre of the circle to its edge"
+    circle: "Drag from the centre of the circle to its edge",
+    point: "Click where the words begin",
+    round: "Click points around the outline, many where it is round; a click on the first one or Enter ends it"
   };
   var NEAR = 8;
+  var CORNER = 50;
   var [FROM, TO] = [90, 450];
   var Sketching = class {
     constructor(app2, stage2) {
@@ -3936,11 +4660,12 @@
       const giveUp = () => this.end();
       this.stop = () => {
         stop.abort();
+        explained();
         if (app2.hold === giveUp) app2.hold = null;
       };
       app2.hold = giveUp;
       stage2.svg.classList.add("picking");
-      toast(HINTS[kind]);
+      const explained = toast(HINTS[kind], true);
       const done = (value) => {
         this.end();
         if (value) take(value);
@@ -3948,32 +4673,37 @@
       const text = (p) => p.map(short).join(",");
       const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage2.camera.pixel;
       const place2 = (e) => stage2.camera.toUser(stage2.point(e));
-      const path = (closed2) => points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
+      const path = (closed2) => {
+        if (kind === "round") return points.length < 3 ? null : around(points, text);
+        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
+      };
+      const isClicked = kind === "path" || kind === "round";
       stage2.svg.addEventListener("pointerdown", (e) => {
         if (e.button !== 0) return;
         e.stopPropagation();
         e.preventDefault();
         const at = place2(e);
-        if (kind === "path" && points.length > 2 && isNear(at, points[0])) return done(path(true));
+        if (kind === "point") return done(text(at));
+        if (isClicked && points.length > 2 && isNear(at, points[0])) return done(path(true));
         if (points.length === 0 || !isNear(at, points[points.length - 1])) points.push(at);
         this.show(kind, points, at);
       }, listen);
       stage2.svg.addEventListener("pointermove", (e) => this.show(kind, points, place2(e)), listen);
       window.addEventListener("pointerup", (e) => {
-        if (kind === "path" || points.length === 0) return;
+        if (isClicked || points.length === 0) return;
         const [from, to] = [points[0], place2(e)];
         if (isNear(from, to)) return void (points.length = 0);
         done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
       }, listen);
       stage2.svg.addEventListener("dblclick", (e) => {
         e.stopPropagation();
-        if (kind === "path") done(path(false));
+        if (isClicked) done(path(false));
       }, listen);
       window.addEventListener("keydown", (e) => {
         if (e.key !== "Escape" && e.key !== "Enter") return;
         e.stopPropagation();
         e.preventDefault();
-        done(e.key === "Enter" && kind === "path" ? path(false) : null);
+        done(e.key === "Enter" && isClicked ? path(false) : null);
       }, listen);
     }
     show(kind, points, to) {
@@ -3992,20 +4722,47 @@
       this.stage.pick(null);
     }
   };
+  function around(points, text) {
+    const at = (i) => points[(i + points.length) % points.length];
+    const minus = ([ax, ay], [bx, by]) => [ax - bx, ay - by];
+    const tangent = (i) => {
+      const [a, b] = [minus(at(i), at(i - 1)), minus(at(i + 1), at(i))];
+      const turn = Math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+      const [x, y] = minus(at(i + 1), at(i - 1));
+      const length2 = Math.hypot(x, y) || 1;
+      return Math.abs(turn) > CORNER * Math.PI / 180 ? [0, 0] : [x / length2, y / length2];
+    };
+    const pieces = points.map((p, i) => {
+      const [q, s2, t] = [at(i + 1), tangent(i), tangent(i + 1)];
+      const third = Math.hypot(...minus(q, p)) / 3;
+      return `C${text([p[0] + third * s2[0], p[1] + third * s2[1]])} ${text([q[0] - third * t[0], q[1] - third * t[1]])} ${text(q)}`;
+    });
+    return `M${text(points[0])} ${pieces.join(" ")} Z`;
+  }
 
   // src/steps.ts
+  var SHAKES2 = 5;
   var Steps = class {
     constructor(app2) {
       this.app = app2;
       app2.listen((change) => {
         if (change === "steps" || change === "state") this.build();
+        if (change === "report" && app2.gone.join() !== this.gone) this.build();
       });
       this.add.addEventListener("click", () => this.append());
+      this.list.addEventListener("dblclick", (e) => {
+        const button = e.target.closest("button.step");
+        if (button) this.rename(Array.from(this.list.children).indexOf(button.parentElement));
+      });
     }
     app;
     list = byId("steps");
     /** Where a row has been moved to. */
     moved = null;
+    /** The steps on show whose letters are gone. */
+    gone = "";
+    /** A row is being dragged, so its button is not clicked. */
+    isDragged = false;
     note = byId("steps-note");
     add = byId("add-step");
     /** Asks for the shape of a further step, or no longer does. */
@@ -4019,6 +4776,7 @@
     build() {
       const { app: app2 } = this;
       const { steps, selected, appends } = app2;
+      this.gone = app2.gone.join();
       const focused = this.list.contains(document.activeElement) ? document.activeElement : null;
       const kind = focused?.dataset.kind ?? "";
       const row = Array.from(this.list.children).indexOf(focused?.closest("li"));
@@ -4029,7 +4787,8 @@
       if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
       this.add.setAttribute("aria-pressed", String(appends));
       this.note.hidden = selected >= steps.length - 1;
-      this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. Saving uses all steps.`;
+      byId("end").hidden = this.note.hidden;
+      this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. “End” (E) shows what all of them make. Saving uses all steps.`;
     }
     row(step2, i) {
       const { app: app2 } = this;
@@ -4038,14 +4797,19 @@
       const title = stepName(step2, app2.deformation(step2.deformation));
       const count = step2.select?.length ?? 0;
       const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
-      const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope);
-      choose.addEventListener("click", () => void app2.select(i));
-      const moved = (to) => {
+      const gone = app2.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
+      const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope, gone);
+      choose.addEventListener("click", () => {
+        if (!this.isDragged) void app2.select(i);
+      });
+      choose.addEventListener("pointerdown", (e) => this.drag(e, i, first, moved2));
+      const moved2 = (to) => {
         const others = steps.filter((_, k) => k !== i);
         others.splice(to, 0, step2);
         this.moved = to;
         void app2.arrange(others, to);
       };
+      const hide2 = () => void app2.arrange(steps.map((s2, k) => k === i ? { ...s2, hidden: !step2.hidden || void 0 } : s2), selected);
       const button = (name, label, action, disabled = false) => {
         const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
         b.addEventListener("click", action);
@@ -4054,230 +4818,68 @@
       const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
       return h(
         "li",
-        { class: i === selected ? "chosen" : "" },
+        { class: `${i === selected ? "chosen" : ""} ${step2.hidden ? "hidden" : ""}` },
         choose,
-        steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
-        steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
-        !app2.isProposal && button("close", `Remove ${title}`, remove)
+        !app2.isProposal && button("eye", `${step2.hidden ? "Show" : "Hide"} ${title}`, hide2),
+        steps.length > 1 && button("up", `Move ${title} up`, () => moved2(i - 1), i <= first),
+        steps.length > 1 && button("down", `Move ${title} down`, () => moved2(i + 1), i < first || i === steps.length - 1),
+        !app2.isProposal && button("close", `Remove ${title}`, remove),
+        !app2.isProposal && i === selected && h(
+          "span",
+          { class: "acts" },
+          button("pen", `Rename ${title}`, () => this.rename(i)),
+          i >= first && button("copy", `Duplicate ${title}`, () => void app2.arrange(steps.toSpliced(i + 1, 0, structuredClone(step2)), i + 1))
+        )
       );
     }
-  };
-
-  // src/target.ts
-  var MM = 96 / 25.4;
-  var OPACITY = 50;
-  var Target = class {
-    constructor(app2, stage2) {
-      this.app = app2;
-      this.stage = stage2;
-      stage2.behind.append(this.image);
-      this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.chosen.click());
-      this.chosen.addEventListener("change", () => {
-        const file = this.chosen.files?.[0];
-        this.chosen.value = "";
-        if (file) void this.take(file).then(() => this.keep());
-      });
-      this.opacity.addEventListener("input", () => this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100)));
-      this.opacity.addEventListener("change", () => void this.keep());
-      byId("target-other").addEventListener("click", () => this.chosen.click());
-      byId("target-remove").addEventListener("click", () => {
-        this.clear();
-        void this.keep();
-      });
-      this.outline.addEventListener("click", () => void this.shape());
-      for (const name of ["x", "y", "width"]) {
-        const input = byId(`target-${name}`);
-        const least = name === "width" ? 0.01 : void 0;
-        const inMm = (text) => inUnits(text, "mm") ?? NaN;
-        const isWrong = (text) => inMm(text) >= (least ?? -Infinity) ? null : asked("mm", least);
-        const field = new Field(input, () => String(Number((this.place[name] / MM).toFixed(2))), (text) => {
-          this.place[name] = inMm(text) * MM;
-          this.lay();
-          void this.keep();
-          return null;
-        }, isWrong);
-        this.box.querySelector(".messages").append(field.message);
-        this.fields.push(field);
-      }
-      app2.listen((change) => {
-        if (change === "link") this.isKept = false;
-        if (change !== "state" || this.isKept) return;
-        this.isKept = true;
-        void (this.file ? this.keep() : this.restore());
-      });
-    }
-    app;
-    stage;
-    image = s("image", { class: "target", visibility: "hidden" });
-    button = byId("target");
-    box = byId("target-box");
-    chosen = byId("target-file");
-    outline = byId("target-outline");
-    file = null;
-    /** Left, top and width in px of the drawing, and height over width. */
-    place = { x: 0, y: 0, width: 1 };
-    ratio = 1;
-    /** The width of a drawing at its own size. */
-    natural = 1;
-    fields = [];
-    opacity = byId("target-opacity");
-    /** The program has been asked for the target, or told of it. */
-    isKept = false;
-    /** Lets the program keep the target for the next time the page is loaded. */
-    async keep() {
-      const { file, place: place2, opacity } = this;
-      const target = file && { name: file.name, type: file.type, bytes: await base64(file), place: place2, opacity: opacity.value };
-      await this.app.attempt(() => this.app.connection.ask({ do: "keep-target", target }));
-    }
-    async restore() {
-      const kept2 = (await this.app.attempt(() => this.app.connection.ask({ do: "target" })))?.target;
-      if (!kept2) return;
-      const content = Uint8Array.from(atob(kept2.bytes), (c) => c.charCodeAt(0));
-      if (!await this.take(new File([content], kept2.name, { type: kept2.type }))) return;
-      this.place = kept2.place;
-      this.opacity.value = kept2.opacity;
-      this.image.setAttribute("opacity", String(Number(kept2.opacity) / 100));
-      this.lay();
-      this.show(false);
-    }
-    /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
-    async take(file) {
-      const url = URL.createObjectURL(file);
-      const probe = new Image();
-      probe.src = url;
-      try {
-        await probe.decode();
-      } catch {
-        URL.revokeObjectURL(url);
-        this.app.fail(`${file.name} is not a picture or drawing that the browser can show`);
-        return false;
-      }
-      this.clear();
-      this.file = file;
-      const isDrawing = /\.svgz?$/i.test(file.name);
-      const [x0, y0, x1] = this.stage.pageBox;
-      this.ratio = probe.naturalHeight / Math.max(probe.naturalWidth, 1);
-      this.natural = probe.naturalWidth;
-      this.place = isDrawing ? { x: 0, y: 0, width: probe.naturalWidth } : { x: x0, y: y0, width: x1 - x0 };
-      this.outline.hidden = !isDrawing || this.app.state?.program !== null;
-      this.image.setAttribute("href", url);
-      this.image.setAttribute("opacity", String(Number(this.opacity.value) / 100));
-      this.image.setAttribute("visibility", "visible");
-      this.lay();
-      this.show(true);
-      return true;
-    }
-    lay() {
-      const { x, y, width } = this.place;
-      for (const [name, value] of Object.entries({ x, y, width, height: width * this.ratio })) this.image.setAttribute(name, String(value));
-      for (const field of this.fields) field.refresh();
-    }
-    show(on2) {
-      this.box.hidden = !on2;
-      this.button.setAttribute("aria-pressed", String(this.file !== null));
-      this.button.setAttribute("aria-expanded", String(on2));
-      byId("target-name").textContent = this.file?.name ?? "";
-    }
-    clear() {
-      const href = this.image.getAttribute("href");
-      if (href) URL.revokeObjectURL(href);
-      this.image.removeAttribute("href");
-      this.image.setAttribute("visibility", "hidden");
-      this.opacity.value = String(OPACITY);
-      this.file = null;
-      this.show(false);
-    }
-    /** Puts the artwork into the outline of the target: its file is copied beside the drawing, and counts at its own size and place. */
-    async shape() {
-      const { app: app2, file } = this;
-      if (!file) return;
-      const written = await bring(app2, file);
-      const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
-      if (!written || !closed2) return;
-      this.place = { x: 0, y: 0, width: this.natural };
-      this.lay();
-      await app2.choose("envelope", { envelope: [written] }, closed2.label);
-    }
-  };
-
-  // src/words.ts
-  var BUNDLED = "Noto Sans (bundled)";
-  var LARGEST = 2e3;
-  var WordsDialog = class {
-    constructor(app2) {
-      this.app = app2;
-      byId("words").addEventListener("click", () => void this.open());
-      byId("words-cancel").addEventListener("click", () => this.dialog.close());
-      this.search.addEventListener("input", () => this.list());
-      this.fonts.addEventListener("change", () => this.font = this.fonts.value === BUNDLED ? null : this.fonts.value);
-      this.dialog.querySelector("form").addEventListener("submit", (e) => {
-        e.preventDefault();
-        void this.set();
-      });
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
-    }
-    app;
-    dialog = byId("words-dialog");
-    text = byId("words-text");
-    search = byId("words-search");
-    fonts = byId("words-font");
-    size = byId("words-size");
-    spacing = byId("words-spacing");
-    message = byId("words-message");
-    families = null;
-    font = null;
-    show() {
-      const { state } = this.app;
-      byId("words").textContent = state?.words ? "Edit words…" : "Words…";
-      if (state?.program) byId("words").hidden = true;
-    }
-    async open() {
-      if (!await this.app.settle()) return;
-      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
-      this.families ??= answer?.families ?? [];
-      const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
-      [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
-      this.font = font;
-      this.list();
-      const isMissing = font !== null && !this.families.includes(font);
-      this.message.textContent = isMissing ? `${font} is not installed here. The letters stay as they are until you choose another font` : "";
-      this.dialog.showModal();
-      this.text.focus();
-    }
-    /** The families that fit what was typed, each in its own letters. */
-    list() {
-      const wanted = this.search.value.trim().toLowerCase();
-      const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
-      this.fonts.replaceChildren(...all.map((name) => {
-        const option = h("option", { value: name }, name);
-        if (name !== BUNDLED) option.style.setProperty("font-family", `"${name.replaceAll('"', "")}", system-ui`);
-        return option;
-      }));
-      this.fonts.value = this.font ?? BUNDLED;
-      this.fonts.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
-    }
-    async set() {
+    /** Asks for a name in the place of the present one. */
+    rename(i) {
       const { app: app2 } = this;
-      const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
-      if (this.text.value.trim() === "") return this.say("Type some words first");
-      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
-      try {
-        const words2 = { text: this.text.value, font: this.font, size, spacing };
-        await app2.enter(async () => {
-          const answer = await app2.connection.ask({ do: "set-words", words: words2 });
-          this.dialog.close();
-          if (answer.lacking?.length) toast(`The font lacks ${answer.lacking.join(" ")}. Choose one that has them.`);
-          return answer;
-        });
-      } catch (e) {
-        this.say(inWords(reason(e)));
-      }
+      const [row, step2] = [this.list.children[i], app2.steps[i]];
+      if (app2.isProposal || !row || !step2) return;
+      const title = stepName(step2, app2.deformation(step2.deformation));
+      const input = h("input", { type: "text", class: "step", "aria-label": `Name of ${title}`, maxlength: 60, value: title });
+      const done = (name) => {
+        const wanted = name.trim() === "" ? void 0 : name.trim();
+        if (!input.isConnected) return;
+        if (name === title) return this.build();
+        void app2.arrange(app2.steps.map((s2) => s2 === step2 ? { ...s2, name: wanted } : s2), app2.selected);
+      };
+      input.addEventListener("blur", () => done(input.value));
+      input.addEventListener("keydown", (e) => {
+        if (e.key !== "Enter" && e.key !== "Escape") return;
+        e.stopPropagation();
+        if (e.key === "Escape") input.value = title;
+        input.blur();
+      });
+      row.firstElementChild?.replaceWith(input);
+      input.select();
     }
-    say(text) {
-      this.message.textContent = text;
+    /** Follows a pointer that moves a row among those that may change places. */
+    drag(e, i, first, moved2) {
+      if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
+      const rows = Array.from(this.list.children);
+      const kin = (k) => k < first === i < first && k < this.app.steps.length;
+      this.isDragged = false;
+      let to = i;
+      const stop = new AbortController();
+      window.addEventListener("pointermove", (event) => {
+        if (event.pointerId !== e.pointerId) return;
+        this.isDragged ||= Math.abs(event.clientY - e.clientY) > SHAKES2;
+        if (!this.isDragged) return;
+        const under = rows.findIndex((r, k) => kin(k) && event.clientY < r.getBoundingClientRect().bottom);
+        to = under >= 0 ? under : rows.findLastIndex((_, k) => kin(k));
+        rows.forEach((r, k) => {
+          r.classList.toggle("above", k === to && to < i);
+          r.classList.toggle("below", k === to && to > i);
+        });
+      }, stop);
+      for (const end2 of ["pointerup", "pointercancel"]) {
+        window.addEventListener(end2, () => {
+          stop.abort();
+          if (to !== i && end2 === "pointerup") moved2(to);
+        }, stop);
+      }
     }
   };
 
@@ -4295,24 +4897,26 @@
   new Parts(app, stage, modes);
   new Place(app, stage);
   new Opening(app);
-  new Target(app, stage);
-  new WordsDialog(app);
+  var background = new Background(app, stage);
   new Pointing(app, stage, modes).onPan = () => report.panned();
   modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
-  stage.onZoom = () => {
+  stage.onLayout.push(() => {
     byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
-  };
+  });
+  stage.onLayout.push(() => caption.place());
   var sketching = new Sketching(app, stage);
+  var caption = new Caption(app, stage, sketching);
+  new WordsDialog(app).onPlace = (args) => caption.begin(args);
   settings.onDraw = (kind, take) => {
     closeSheets();
     sketching.begin(kind, take);
   };
+  background.onRound = (take) => sketching.begin("round", take);
   settings.onOther = () => sketching.end();
   settings.onPick = (take) => {
     closeSheets();
     sketching.end();
-    toast("Click a path of the drawing");
-    stage.pick(take);
+    stage.pick((path) => take(partOf(path.closest("[id]").id)), void 0, "Click a path of the drawing");
   };
   function on(id, action) {
     byId(id).addEventListener("click", action);
@@ -4322,6 +4926,7 @@
   on("zoom-in", () => stage.zoom(ZOOM));
   on("zoom-out", () => stage.zoom(1 / ZOOM));
   on("fit", () => stage.fit());
+  on("keys", showKeys);
   var phone = matchMedia("(max-width: 520px)");
   var arrange = () => byId(phone.matches ? "keep-preset" : "history").after(byId("start-over"));
   phone.addEventListener("change", arrange);
@@ -4333,11 +4938,13 @@
   function toggle(id, get, set2) {
     const button = byId(id);
     const show2 = () => button.setAttribute("aria-pressed", String(get()));
-    button.addEventListener("click", () => {
+    const turn = () => {
       set2(!get());
       show2();
-    });
+    };
+    button.addEventListener("click", turn);
     show2();
+    return turn;
   }
   toggle("select", () => modes.selects, (v) => {
     modes.selects = v;
@@ -4354,6 +4961,10 @@
   toggle("nodes", () => stage.showsNodes, (v) => {
     stage.showsNodes = v;
     stage.drawNodes();
+  });
+  var showEnd = toggle("end", () => stage.showsEnd, (v) => {
+    stage.showsEnd = v;
+    void stage.drawEnd();
   });
   toggle("stretch", () => stage.showsStretch, (v) => {
     stage.showsStretch = v;
@@ -4393,12 +5004,14 @@
     stage.pick(null);
     if (app.appends) app.append(false);
   }
-  var KEYS2 = {
+  var KEYS3 = {
     "+": () => stage.zoom(ZOOM),
     "=": () => stage.zoom(ZOOM),
     "-": () => stage.zoom(1 / ZOOM),
     "0": () => stage.fit(),
-    b: () => void stage.before(true)
+    b: () => void stage.before(true),
+    e: showEnd,
+    "?": () => showKeys()
   };
   var COMMANDS2 = {
     s: (shift) => void (shift ? saving.open() : saving.quick()),
@@ -4410,10 +5023,10 @@
     if (key === "escape") return escape();
     if (e.altKey || isTyping(e.target) && key !== "s") return;
     const isCommand = e.ctrlKey || e.metaKey;
-    const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS2[key];
+    const action = isCommand ? COMMANDS2[key] : isTyping(e.target) ? void 0 : KEYS3[key];
     if (!action) return;
     if (isCommand) e.preventDefault();
-    if (app.isLive && (!e.repeat || key !== "b")) action(e.shiftKey);
+    if (app.isLive && (!e.repeat || !"be".includes(key))) action(e.shiftKey);
   });
   window.addEventListener("keyup", (e) => {
     if (e.key.toLowerCase() === "b") hide();

@@ -216,7 +216,7 @@ fn from_demo(p: &Param, value: &str, frame: Rect) -> String {
 mod tests {
     use super::*;
     use pathwarp::deform::Registry;
-    use pathwarp::kurbo::Point;
+    use pathwarp::kurbo::{Point, Shape as _, Vec2};
     use pathwarp::map::Map as _;
     use pathwarp::param::{Args, Frame};
     use pathwarp::recipe::{Recipe, Step};
@@ -275,13 +275,17 @@ mod tests {
     }
 
     fn build_with(info: &Info, values: BTreeMap<String, Vec<String>>) -> pathwarp::recipe::BuiltRecipe {
+        build_in(info, values, FRAME)
+    }
+
+    fn build_in(info: &Info, values: BTreeMap<String, Vec<String>>, frame: Rect) -> pathwarp::recipe::BuiltRecipe {
         let mut args = Args::new();
         for (name, values) in values {
             args.set(&name, values);
         }
-        let art = Outline::from_svg("M20,30 H684 V230 H20 Z").unwrap();
+        let art = Outline::from(&frame.to_path(0.1));
         let recipe = Recipe { steps: vec![Step::new(info.name, args)] };
-        let built = recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art));
+        let built = recipe.build(&Registry::builtin(), Frame::new(frame), &std::iter::once(&art));
         built.unwrap_or_else(|e| panic!("{}: {e}", info.name))
     }
 
@@ -306,9 +310,26 @@ mod tests {
             }
         }
         for (info, v) in variants() {
-            let p = FRAME.center() + pathwarp::kurbo::Vec2::new(60.0, 30.0);
+            let p = FRAME.center() + Vec2::new(60.0, 30.0);
             let built = build_with(info, of_variant(info, v.label, FRAME, true).unwrap());
             assert!(built.map.point(p).distance(p) > 5.0, "{} shows nothing", v.label);
+        }
+    }
+
+    /// On a word, no part of what the gallery shows is turned over: differences of the map keep their orientation all over the box.
+    #[test]
+    fn examples_do_not_fold_a_word() {
+        const STEP: f64 = 1e-5;
+        let registry = Registry::builtin();
+        let frames = [FRAME, Rect::new(0.0, 0.0, 600.0, 80.0)];
+        for (frame, entry) in frames.iter().flat_map(|f| registry.entries().iter().map(move |e| (*f, e))) {
+            let built = build_in(entry.info(), example(entry.info(), frame), frame);
+            let at =
+                |u: f64, v: f64| built.map.point(frame.origin() + Vec2::new(u * frame.width(), v * frame.height()));
+            for (u, v) in (1..40).flat_map(|i| (1..40).map(move |j| (f64::from(i) / 40.0, f64::from(j) / 40.0))) {
+                let area = (at(u + STEP, v) - at(u - STEP, v)).cross(at(u, v + STEP) - at(u, v - STEP));
+                assert!(area >= 0.0 || area.is_nan(), "{} folds a word at {u}, {v}", entry.info().name);
+            }
         }
     }
 }

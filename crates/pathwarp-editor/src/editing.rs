@@ -1,6 +1,7 @@
 //! Drawings in the editor, on the engine.
 
 use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
+use crate::names::Names;
 use crate::picture as page;
 use crate::words::Words;
 use base64::Engine as _;
@@ -12,6 +13,7 @@ use pathwarp::param::Args;
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::bitmap::{background, encode};
+use pathwarp_engine::caption::{captioned, is_caption};
 use pathwarp_engine::edits::EDITS;
 use pathwarp_engine::export::Exported;
 use pathwarp_engine::failure::Failure;
@@ -28,7 +30,8 @@ use pathwarp_engine::session::{Framed, Ready, Session};
 use pathwarp_engine::steps::OF_STEPS;
 use pathwarp_engine::{coming_from, recipe_file, references};
 use pathwarp_raster::{RenderOptions, Size};
-use pathwarp_svg::{Document, Origin, ReadOptions, Relinking, families, usvg_tree};
+use pathwarp_svg::engine::{Relinking, families};
+use pathwarp_svg::{Document, Origin, ReadOptions, usvg_tree};
 use pathwarp_text::TextStyle;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -41,6 +44,8 @@ enum Version {
     File,
     /// The drawing with an id for every element.
     Page,
+    /// The same with large pictures in few pixels, while something is dragged.
+    Light,
     /// The drawing, or a bitmap of a large one.
     Small,
 }
@@ -50,16 +55,21 @@ struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
     shown: Option<SvgArtwork>,
+    /// The drawing with the captions that were asked for last.
+    captioned: Option<(Vec<Step>, Document)>,
+    /// The drawing of the page with large pictures in few pixels, once something was dragged; inside, `None` if there are none.
+    light: Option<Option<SvgArtwork>>,
     /// A bitmap of a large drawing in its place, once small pictures were asked for.
     sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
     given: Given,
     options: CommonOptions,
     flags: Arc<Flags>,
+    names: Arc<Names>,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
-    /// The folder of the drawing, where its results go.
-    folder: PathBuf,
+    /// The drawing's file, beside which its results go.
+    file: PathBuf,
     /// The frame of the last picture.
     framed: Option<Framed>,
 }
@@ -68,31 +78,31 @@ impl EditedArtwork {
     fn new(
         svg: SvgArtwork,
         shown: Option<SvgArtwork>,
-        registry: &Arc<Registry>,
         given: Given,
         options: CommonOptions,
-        flags: &Arc<Flags>,
+        file: &Path,
+        host: &EngineHost,
     ) -> Self {
         Self {
             svg,
             shown,
+            captioned: None,
+            light: None,
             sketch: None,
-            registry: Arc::clone(registry),
+            registry: Arc::clone(&host.registry),
             given,
             options,
-            flags: Arc::clone(flags),
-            plugins: Vec::new(),
-            folder: PathBuf::new(),
+            flags: Arc::clone(&host.flags),
+            names: Arc::clone(&host.names),
+            plugins: host.plugins.clone(),
+            file: file.to_owned(),
             framed: None,
         }
     }
 
-    fn with_plugins(self, options: &[(String, String)]) -> Self {
-        Self { plugins: options.to_vec(), ..self }
-    }
-
-    fn in_folder(self, folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), ..self }
+    /// The folder of the drawing.
+    fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new(""))
     }
 
     /// Makes the sketch of a large drawing, unless there is one.
@@ -120,7 +130,20 @@ impl EditedArtwork {
             4.0 * PIXELS,
             STANDARD.encode(png)
         );
-        self.sketch = Some(SvgArtwork::read(svg.as_bytes(), Path::new("sketch.svg"), &self.options, None)?);
+        self.sketch = Some(SvgArtwork::read(svg.as_bytes(), &self.file, &self.options, None)?);
+        Ok(())
+    }
+
+    /// Makes the version with pictures in few pixels, unless that has been tried.
+    fn lighten(&mut self) -> Result<(), Failure> {
+        if self.light.is_none() {
+            let document = self.shown.as_ref().unwrap_or(&self.svg).document();
+            let with_pictures = Relinking { embed: true, ..Relinking::default() };
+            let embedded = with_pictures.of(document.text(), self.svg.reading())?;
+            let light = page::lightened(embedded.as_deref().unwrap_or(document.text()), self.svg.reading());
+            let read = |text: String| SvgArtwork::read(text.as_bytes(), &self.file, &self.options, None);
+            self.light = Some(light.map(read).transpose()?);
+        }
         Ok(())
     }
 
@@ -133,10 +156,11 @@ impl EditedArtwork {
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, sketch, registry, given, options, framed, .. } = self;
+        let Self { svg, shown, light, sketch, registry, given, options, framed, .. } = self;
         let (svg, framed) = match version {
             Version::File => (svg, framed),
             Version::Page => (shown.as_mut().unwrap_or(svg), framed),
+            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
             Version::Small => match sketch {
                 // Its frame is another.
                 Some(sketch) => (sketch, &mut None),
@@ -151,18 +175,23 @@ impl EditedArtwork {
     }
 
     fn bent(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, Failure> {
-        let version = if let Fineness::Small(_) = fineness {
-            self.draw_sketch()?;
-            Version::Small
-        } else {
-            Version::Page
+        let version = match fineness {
+            Fineness::Small(_) => {
+                self.draw_sketch()?;
+                Version::Small
+            }
+            Fineness::Draft(_) => {
+                self.lighten()?;
+                Version::Light
+            }
+            Fineness::Exact => Version::Page,
         };
         self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }
 
     /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
     fn finished(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
-        let folder = self.folder.clone();
+        let folder = self.folder().to_owned();
         self.with_steps(recipe, Version::File, |session, svg, ready| {
             let embeds = matches!(format, Format::Svg | Format::Svgz);
             let text = || {
@@ -206,7 +235,7 @@ impl EditedArtwork {
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 
@@ -216,9 +245,9 @@ fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
     let exclude = saved.recipe.steps.first().map(|s| s.exclude.clone()).unwrap_or_default();
     edits.iter_mut().for_each(|s| s.exclude.clone_from(&exclude));
-    // Once, edits alone stood beside a step that moves nothing.
+    // Words alone are saved with a step that moves nothing; once, edits alone were.
     let is_still = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
-    let is_alone = !edits.is_empty() && matches!(&*saved.recipe.steps, [only] if is_still(only));
+    let is_alone = matches!(&*saved.recipe.steps, [only] if is_still(only));
     saved.recipe.steps.splice(0..usize::from(is_alone), edits);
     Ok(())
 }
@@ -287,6 +316,27 @@ impl Artwork for EditedArtwork {
         self.svg.document()
     }
 
+    fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String> {
+        let captions: Vec<Step> = recipe.steps.iter().filter(|s| is_caption(s)).cloned().collect();
+        // Selectors are looked for again and again.
+        self.svg.renew_budget();
+        if captions.is_empty() {
+            return Ok(self.svg.document());
+        }
+        if self.captioned.as_ref().is_none_or(|(of, _)| *of != captions) {
+            let set = captioned(self.svg.document(), &captions, self.svg.reading(), &self.options);
+            let (document, _) = self.said(set)?;
+            self.captioned = Some((captions, document));
+        }
+        Ok(match &mut self.captioned {
+            Some((_, document)) => {
+                document.renew_budget();
+                document
+            }
+            None => self.svg.document(),
+        })
+    }
+
     fn reading(&self) -> &ReadOptions {
         self.svg.reading()
     }
@@ -302,7 +352,9 @@ impl Artwork for EditedArtwork {
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bent(recipe, fineness);
-        self.said(bent)
+        let mut bent = self.said(bent)?;
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        Ok(bent)
     }
 
     fn written(
@@ -313,7 +365,8 @@ impl Artwork for EditedArtwork {
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
-        self.said(written)
+        let (bytes, warnings) = self.said(written)?;
+        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -329,7 +382,7 @@ impl Artwork for EditedArtwork {
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
         let told = on_a_line(recipe, &self.given);
-        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, &self.folder)))
+        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, self.folder())))
     }
 }
 
@@ -343,6 +396,7 @@ pub struct EngineHost {
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
     flags: Arc<Flags>,
+    names: Arc<Names>,
 }
 
 impl fmt::Debug for EngineHost {
@@ -356,7 +410,8 @@ impl EngineHost {
     #[must_use]
     pub fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
-        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags }
+        let names = Names::of(registry.entries().iter().map(|e| e.info()).chain(&EDITS));
+        Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags, names: Arc::new(names) }
     }
 
     /// Names plug-ins in command lines by these options.
@@ -396,13 +451,12 @@ impl EngineHost {
         let svg = SvgArtwork::read(source, file, &options, None)?;
         let named = svg.document().with_ids();
         let shown = (named != svg.document().text()).then(|| SvgArtwork::read(named.as_bytes(), file, &options, None));
-        let artwork = EditedArtwork::new(svg, shown.transpose()?, &self.registry, given, options, &self.flags);
-        let artwork = artwork.with_plugins(&self.plugins).in_folder(folder);
+        let artwork = EditedArtwork::new(svg, shown.transpose()?, given, options, file, self);
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| f.message(&self.flags))
+        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 

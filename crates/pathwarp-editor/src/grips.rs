@@ -9,6 +9,7 @@ use pathwarp::map::Lattice;
 use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 use pathwarp::{Outline, Seg};
+use pathwarp_engine::edits::CAPTION;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -33,6 +34,11 @@ pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe)
         json!({ "frame": rect(frame.rect), "params": params })
     });
     steps.collect()
+}
+
+/// The handles of a caption in this frame.
+pub(crate) fn of_caption(args: &Args, frame: &Frame) -> Value {
+    json!({ "frame": rect(frame.rect), "params": of_step(&CAPTION, args, frame) })
 }
 
 /// A box as x, y, width, height.
@@ -80,6 +86,15 @@ fn of_param(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Value> {
                 Some(json!([xy(s.point_in(p.name, from).ok()?), xy(s.point_in(p.name, to).ok()?)]))
             };
             Some(json!({ "pairs": words(s, p).map(pair).collect::<Option<Vec<_>>>()? }))
+        }
+        Kind::Text("SURFACE" | "SHAPE") => {
+            let text = s.texts(p.name).pop()?;
+            let word = |w: &str| {
+                let (name, value) = w.split_once('=')?;
+                Some(json!([name.trim(), s.length_in(p.name, value.trim(), Axis::X).ok()?]))
+            };
+            let sizes: Vec<Value> = text.split_once(':')?.1.split(',').filter_map(word).collect();
+            Some(json!({ "surface": { "text": text, "sizes": sizes } }))
         }
         Kind::Text(ADJUST) => {
             let shape = TextShape::named(s.texts(info.gallery?.presets).last()?)?;
@@ -314,6 +329,8 @@ mod tests {
         assert_eq!(mls["pin"]["points"], json!([[10.0, 20.0]]));
         assert_eq!(mls["pair"]["pairs"], json!([[[45.0, 30.0], [50.0, 40.0]]]));
         assert_eq!(of("swirl", &[])["center"]["point"], json!([45.0, 30.0]));
+        let cone = &of("anamorph", &[("onto", "cone:top-radius=20%,bottom-diameter=9,height=3,inside")])["onto"];
+        assert_eq!(cone["surface"]["sizes"], json!([["top-radius", 18.0], ["bottom-diameter", 9.0], ["height", 3.0]]));
     }
 
     #[test]

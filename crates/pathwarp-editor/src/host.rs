@@ -107,6 +107,12 @@ pub trait Artwork: Send {
     /// The drawing.
     fn document(&self) -> &Document;
 
+    /// The drawing with the captions of a recipe.
+    ///
+    /// # Errors
+    /// A caption cannot be set.
+    fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String>;
+
     /// The options that it was read with, which results are read with, too.
     fn reading(&self) -> &ReadOptions;
 

@@ -9,6 +9,7 @@
 //! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's folders;
 //! * `picture`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
 //! * `catalogue`, `grips`: the deformations, their first values, and the geometry that handles show;
+//! * `names`: the engine's messages in the words of the page;
 //! * `nets`: control points of nets that become more or fewer.
 
 mod catalogue;
@@ -19,6 +20,7 @@ mod grips;
 mod guard;
 mod host;
 mod http;
+mod names;
 mod nets;
 mod picture;
 mod presets;

@@ -3,6 +3,8 @@
 //! usvg resolves scripts, events, links, foreign objects and style sheets away; the page gets plain elements with attributes, one a
 //! line. While something is dragged, most lines stay and most of the others differ in one attribute, so only that is sent.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp::kurbo::{BezPath, Point, Rect, Shape as _, Size, Vec2};
 use pathwarp_raster::{Pixmap, encode_png, render_group};
@@ -115,6 +117,39 @@ impl Picture {
         }
         Some(out)
     }
+}
+
+/// The text of a drawing with its large embedded pictures in few pixels, where they have a size of their own; `None` if it has none.
+pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
+    /// Length of a picture's text from which it is large.
+    const LARGE: usize = 1 << 16;
+    /// The longer side, in pixels.
+    const PIXELS: f32 = 400.0;
+    let (mut out, mut done) = (String::new(), 0);
+    for (start, _) in svg.match_indices("data:image/") {
+        let Some(quote @ ('"' | '\'')) = svg[..start].chars().next_back() else { continue };
+        let end = start + svg[start..].find(quote)?;
+        let tag = svg[..start].rfind('<').map_or("", |from| &svg[from..start]);
+        let rest = svg[end..].find('>').map_or("", |to| &svg[end..end + to]);
+        let has = |name: &str| tag.contains(name) || rest.contains(name);
+        if start < done
+            || end - start < LARGE
+            || !(tag.starts_with("<image") && has(" width=") && has(" height="))
+            || svg.contains("pixelated")
+        {
+            continue;
+        }
+        let alone = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"><image xlink:href=\"{}\"/></svg>",
+            &svg[start..end]
+        );
+        let Ok((png, _)) = Picture::bitmap(&alone, PIXELS, reading) else { continue };
+        out += &svg[done..start];
+        out += "data:image/png;base64,";
+        out += &STANDARD.encode(png);
+        done = end;
+    }
+    (done > 0).then(|| out + &svg[done..])
 }
 
 /// A bitmap of all that a drawing shows, with its longer side of this many pixels, and the box that it fills, in px. `length` is that of

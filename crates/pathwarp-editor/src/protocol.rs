@@ -24,6 +24,17 @@ pub(crate) struct PageStep {
     pub(crate) select: Vec<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) exclude: Vec<String>,
+    /// The user's name for it, in the draft alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<String>,
+    /// It bends nothing for the time being, and is in no result.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) hidden: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// A request.
@@ -57,11 +68,21 @@ pub(crate) enum Request {
     },
     /// The drawing without any steps.
     Before,
-    /// The target of the page, if one is kept.
-    Target,
-    /// Keeps the target of the page, whatever that is, until the program ends.
-    KeepTarget {
-        target: Value,
+    /// The drawing under these steps, to lie behind a picture of fewer; `draft` is its tolerance while something is dragged.
+    Ahead {
+        steps: Vec<PageStep>,
+        draft: Option<f64>,
+    },
+    /// A drawing as it is, given as base64.
+    Drawn {
+        name: String,
+        bytes: String,
+    },
+    /// The background of the page, if one is kept.
+    Background,
+    /// Keeps the background of the page, whatever that is, until the program ends.
+    KeepBackground {
+        background: Value,
     },
     /// The parts of the drawing.
     Parts,
@@ -160,7 +181,7 @@ pub(crate) struct Target {
     pub(crate) picture: PictureOptions,
 }
 
-/// The recipe of steps.
+/// The recipe of the steps that are not hidden.
 pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
     let step = |s: &PageStep| {
         let mut args = Args::new();
@@ -170,7 +191,7 @@ pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
         let (select, exclude) = (s.select.clone(), s.exclude.clone());
         Step { inverse: s.inverse, select, exclude, ..Step::new(s.deformation.clone(), args) }
     };
-    Recipe { steps: steps.iter().map(step).collect() }
+    Recipe { steps: steps.iter().filter(|s| !s.hidden).map(step).collect() }
 }
 
 /// The steps of a recipe.
@@ -181,6 +202,7 @@ pub(crate) fn steps(recipe: &Recipe) -> Vec<PageStep> {
         args: s.args.iter().map(|(name, values)| (name.to_owned(), values.to_vec())).collect(),
         select: s.select.clone(),
         exclude: s.exclude.clone(),
+        ..PageStep::default()
     };
     recipe.steps.iter().map(step).collect()
 }

@@ -18,7 +18,7 @@ pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
     /// Longest name, in letters.
     const LONGEST: usize = 40;
     let plain = |c: char| if c.is_alphanumeric() { c } else { '-' };
-    let name: String = text.trim().to_lowercase().chars().map(plain).take(LONGEST).collect();
+    let name: String = text.trim().chars().map(plain).take(LONGEST).collect();
     let words: Vec<&str> = name.split('-').filter(|word| !word.is_empty()).collect();
     free(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
 }
@@ -94,7 +94,7 @@ mod tests {
     fn names_stay_in_the_folder() {
         let beside = Path::new("/art/logo.svg");
         assert_eq!(usual(beside), Path::new("/art/logo-bent.svg"));
-        assert_eq!(of_words("It's “Fjord” & <sea>\n", beside), Path::new("/art/it-s-fjord-sea.svg"));
+        assert_eq!(of_words("It's “Fjord” & <sea>\n", beside), Path::new("/art/It-s-Fjord-sea.svg"));
         assert_eq!(of_words(" … ", beside), Path::new("/art/words.svg"));
         assert_eq!(named("flag", beside), Ok("/art/flag.svg".into()));
         assert_eq!(named("flag.pdf", beside), Ok("/art/flag.pdf".into()));

@@ -3,7 +3,7 @@
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
 use crate::draft::{self, Draft, Kept, Moment, NO_FOLDER};
-use crate::grips::{grips, rect, with_net_of};
+use crate::grips::{grips, of_caption, rect, with_net_of};
 use crate::guard::Guard;
 use crate::host::{Bent, Fineness, Host, Opened, PictureOptions, Purpose};
 use crate::picture::Picture;
@@ -14,10 +14,13 @@ use crate::{presets, saving};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Map as _, inverse_over};
-use pathwarp::recipe::{BuiltRecipe, Recipe};
+use pathwarp::map::{Map, inverse_over};
+use pathwarp::param::Args;
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
+use pathwarp_engine::caption::{self, is_caption};
 use pathwarp_engine::framed::is_framed;
-use pathwarp_svg::{DrawingPart, ReadOptions, Selection};
+use pathwarp_svg::engine::DrawingPart;
+use pathwarp_svg::{Document, ReadOptions, Selection};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -169,8 +172,9 @@ impl Session {
         let (old_steps, mut steps) = (self.kept.now.steps.clone(), Vec::new());
         let frames = self.frames(&old_steps)?;
         for (step, from) in old_steps.into_iter().zip(frames) {
-            let Some(step) = other.for_own_parts(step) else { continue };
-            let to = other.frame_of(&steps, &step.select)?;
+            // A step for letters that have gone waits until they are back.
+            let waits = self.waits(&step) || other.waits(&step);
+            let to = if waits { from } else { other.frame_of(&steps, &step.select)? };
             steps.push(presets::laid(other.host.registry(), step, from, to));
         }
         let mut kept = self.kept.clone();
@@ -178,17 +182,44 @@ impl Session {
         self.redraw(other, kept)
     }
 
-    /// A step of other words for those of its parts that this drawing has, too; `None` if it has none of them.
-    fn for_own_parts(&self, mut step: PageStep) -> Option<PageStep> {
-        let document = self.opened.artwork.document();
+    /// The steps for the parts that the drawing has; those that have none of theirs are hidden.
+    fn present(&mut self, given: &[PageStep]) -> Vec<PageStep> {
+        let mut out = given.to_vec();
+        if given.iter().all(|s| s.select.is_empty() && s.exclude.is_empty()) {
+            return out;
+        }
+        // A caption that is wrong is reported where the drawing is bent.
+        let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return out };
         let is_here = |selector: &String| {
             let select = vec![selector.clone()];
             document.check_selection(&Selection { select, ..Selection::default() }).is_ok()
         };
-        let is_of_all = step.select.is_empty();
-        step.select.retain(is_here);
-        step.exclude.retain(is_here);
-        (is_of_all || !step.select.is_empty()).then_some(step)
+        for step in &mut out {
+            let is_of_all = step.select.is_empty();
+            step.select.retain(is_here);
+            step.exclude.retain(is_here);
+            step.hidden |= step.select.is_empty() && !is_of_all;
+        }
+        out
+    }
+
+    /// Returns `true` if the drawing has none of the parts that a step is for.
+    fn waits(&mut self, step: &PageStep) -> bool {
+        !step.hidden && self.present(std::slice::from_ref(step)).iter().all(|s| s.hidden)
+    }
+
+    /// The recipe of steps, as far as their parts are there.
+    fn recipe(&mut self, given: &[PageStep]) -> Recipe {
+        recipe(&self.present(given))
+    }
+
+    /// The recipe that results are made by. Words need no step, and then nothing moves.
+    fn finishing(&mut self) -> Recipe {
+        let mut given = self.recipe(&self.kept.now.steps.clone());
+        if given.steps.is_empty() {
+            given.steps.push(Step::new("affine", Args::new()));
+        }
+        given
     }
 
     /// A session like this one for the drawing `svg`, which is to be the content of `file`.
@@ -267,8 +298,9 @@ impl Session {
     /// The drawing under these steps; `draft` is the tolerance while something is dragged.
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
-        let bent = self.opened.artwork.bend(&recipe(given), fineness)?;
-        let about = self.about(self.firsts(given), &bent);
+        let present = self.present(given);
+        let bent = self.opened.artwork.bend(&recipe(&present), fineness)?;
+        let about = self.about(given, &present, &bent);
         let reading = self.opened.artwork.reading().clone();
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
@@ -279,21 +311,48 @@ impl Session {
         Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
-    /// The number of steps that come before bending.
-    fn firsts(&self, given: &[PageStep]) -> usize {
-        let is_first = |s: &&PageStep| self.host.first().iter().any(|i| i.name == s.deformation);
-        given.iter().take_while(is_first).count()
+    /// A drawing of a file, as it is.
+    pub(crate) fn drawn(&self, name: &str, bytes: &str) -> Result<Picture, String> {
+        let wrong = |e: &dyn std::fmt::Display| format!("{name}: {e}");
+        let content = STANDARD.decode(bytes).map_err(|e| wrong(&e))?;
+        let reading = self.opened.artwork.reading();
+        let document = Document::read(&content, name, reading).map_err(|e| wrong(&e))?;
+        Picture::of(document.text(), DECIMALS, reading)
     }
 
-    fn about(&self, firsts: usize, bent: &Bent) -> Value {
-        let mut grips = grips(self.host.registry(), &bent.resolved, &bent.built);
-        // What comes before bending has no handles.
-        let frame = rect(self.opened.artwork.frame());
-        grips.splice(0..0, (0..firsts).map(|_| json!({ "frame": frame, "params": {} })));
+    /// Returns `true` for a step that comes before bending.
+    fn is_first(&self, step: &PageStep) -> bool {
+        self.host.first().iter().any(|i| i.name == step.deformation)
+    }
+
+    /// For each step what `of_bending` has for those that bend, in order; what comes before bending and what is hidden has `other`.
+    fn spread<T: Clone>(&self, given: &[PageStep], of_bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
+        let mut of_bending = of_bending.into_iter();
+        let rests = |s: &PageStep| s.hidden || self.is_first(s);
+        let one = |s| if rests(s) { None } else { of_bending.next() };
+        given.iter().map(one).map(|found| found.unwrap_or_else(|| other.clone())).collect()
+    }
+
+    /// What a page shows about a drawing under these steps, of which those `present` have their parts.
+    fn about(&self, given: &[PageStep], present: &[PageStep], bent: &Bent) -> Value {
+        let artwork = &self.opened.artwork;
+        let grips = grips(self.host.registry(), &bent.resolved, &bent.built);
+        let without = json!({ "frame": rect(artwork.frame()), "params": {} });
+        let mut grips = self.spread(present, grips, &without);
+        for (step, grips) in given.iter().zip(&mut grips) {
+            // Of what comes before bending, captions alone have handles.
+            if let [caption] = &*recipe(std::slice::from_ref(step)).steps
+                && is_caption(caption)
+            {
+                *grips = of_caption(&caption.args, &caption::frame(artwork.document()));
+            }
+        }
+        let gone: Vec<usize> = (0..given.len()).filter(|&i| present[i].hidden && !given[i].hidden).collect();
         let mut about = json!({
             "grips": grips,
+            "gone": gone,
             "guides": guides(&bent.built),
-            "warnings": bent.warnings,
+            "warnings": bent.warnings.iter().map(|w| self.said(w)).collect::<Vec<_>>(),
             "page": bent.page.map(|p| [p.x0, p.y0, p.width(), p.height()]),
         });
         if let Some(s) = &bent.summary {
@@ -313,7 +372,8 @@ impl Session {
         let visible = visible(&given, shown);
         let picture = self.bend(visible, None)?;
         if visible.len() < given.len() {
-            self.opened.artwork.settle(&recipe(&given))?;
+            let all = self.recipe(&given);
+            self.opened.artwork.settle(&all)?;
         }
         if given != self.kept.now.steps {
             self.kept.go_on(given);
@@ -360,26 +420,29 @@ impl Session {
 
     /// The stretch of these steps over the artwork's box.
     pub(crate) fn stretch(&mut self, given: &[PageStep]) -> Result<Value, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
         Ok(stretch(&built.map, self.opened.artwork.frame()))
     }
 
     /// The place that the last of these steps takes to `at`, if there is one.
-    pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Option<Point>, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
-        let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else { return Ok(Some(at)) };
-        let from = inverse_over(&step.map, frame.rect).point(at);
+    pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Value, String> {
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
+        let (Some(step), Some(frame)) = (built.steps.last(), built.frames.last()) else {
+            return Ok(json!({ "at": [at.x, at.y] }));
+        };
+        let from = inverse_over(step.map.clone(), frame.rect).point(at);
         let near = PREIMAGE * (frame.rect.width() + frame.rect.height());
-        Ok((step.map.point(from).distance(at) <= near).then_some(from))
+        let from = (step.map.point(from).distance(at) <= near).then_some([from.x, from.y]);
+        Ok(json!({ "at": from }))
     }
 
-    /// The last of these steps with other values of what says how many control points its net has; it bends as before.
-    pub(crate) fn renet(
-        &mut self,
-        given: &[PageStep],
-        values: BTreeMap<String, Vec<String>>,
-    ) -> Result<PageStep, String> {
-        let (resolved, built) = self.opened.artwork.settle(&recipe(given))?;
+    /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can;
+    /// and how far it then moves what.
+    pub(crate) fn renet(&mut self, given: &[PageStep], values: BTreeMap<String, Vec<String>>) -> Result<Value, String> {
+        let present = self.recipe(given);
+        let (resolved, built) = self.opened.artwork.settle(&present)?;
         let mut after = given.last().cloned().ok_or("there is no step")?;
         after.args.extend(values);
         let entry = self.host.registry().get(&after.deformation);
@@ -394,7 +457,14 @@ impl Session {
             }
         }
         after.args.retain(|_, values| !values.is_empty());
-        Ok(after)
+        let all = given.iter().take(given.len() - 1).chain([&after]).cloned().collect::<Vec<_>>();
+        let all = self.recipe(&all);
+        // Values that are wrong are reported when they are committed.
+        let new = self.opened.artwork.settle(&all).ok();
+        let new = new.as_ref().and_then(|(_, new)| new.steps.last());
+        let both = built.steps.last().zip(built.frames.last()).zip(new);
+        let moved = both.map_or(0.0, |((old, frame), new)| apart(&old.map, &new.map, frame.rect));
+        Ok(json!({ "step": after, "moved": moved }))
     }
 
     /// The first values of a deformation after these steps.
@@ -416,7 +486,8 @@ impl Session {
         }
         let still = PageStep { deformation: "affine".into(), select: select.to_vec(), ..PageStep::default() };
         let steps = [given, &[still]].concat();
-        let (_, built) = self.opened.artwork.settle(&recipe(&steps))?;
+        let steps = self.recipe(&steps);
+        let (_, built) = self.opened.artwork.settle(&steps)?;
         built.frames.last().map(|f| f.rect).ok_or_else(|| "the parts have no box".into())
     }
 
@@ -429,24 +500,26 @@ impl Session {
     }
 
     /// The parts of the drawing, for a list.
-    pub(crate) fn parts(&self) -> Value {
-        let parts = self.opened.artwork.document().parts().into_iter().take(MOST_PARTS);
+    pub(crate) fn parts(&mut self) -> Result<Value, String> {
+        let document = self.opened.artwork.captioned(&recipe(&self.kept.now.steps))?;
+        let parts = document.parts().into_iter().take(MOST_PARTS);
         let part = |p: DrawingPart| json!({ "name": p.name, "selector": p.selector, "label": p.label, "element": p.element, "depth": p.depth });
-        parts.map(part).collect()
+        Ok(parts.map(part).collect())
     }
 
     /// The box that each of these steps refers to.
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
-        let firsts = std::iter::repeat_n(self.opened.artwork.frame(), self.firsts(given));
-        Ok(firsts.chain(built.frames.iter().map(|f| f.rect)).take(given.len()).collect())
+        let present = self.present(given);
+        let (_, built) = self.opened.artwork.settle(&recipe(&present))?;
+        Ok(self.spread(&present, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
     }
 
     /// The frame of a step after these.
     fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
-        let (_, built) = self.opened.artwork.settle(&recipe(given))?;
+        let given = self.recipe(given);
+        let (_, built) = self.opened.artwork.settle(&given)?;
         let artwork = &self.opened.artwork;
-        let image = (!given.is_empty()).then(|| built.image_box(artwork.outlines().into_iter())).flatten();
+        let image = (!given.steps.is_empty()).then(|| built.image_box(artwork.outlines().into_iter())).flatten();
         Ok(image.unwrap_or_else(|| artwork.frame()))
     }
 
@@ -482,7 +555,8 @@ impl Session {
     pub(crate) fn thumbnail(&mut self, given: &[PageStep]) -> Result<String, String> {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
-        let bent = self.opened.artwork.bend(&recipe(given), Fineness::Small(tolerance))?;
+        let given = self.recipe(given);
+        let bent = self.opened.artwork.bend(&given, Fineness::Small(tolerance))?;
         Picture::small(&bent.svg, self.opened.artwork.reading())
     }
 
@@ -525,6 +599,13 @@ impl Session {
         if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
     }
 
+    /// What is said about the drawing to the user: its file has another name if a program waits for it.
+    pub(crate) fn said(&self, text: &str) -> String {
+        let Purpose::Program { drawing, .. } = &self.purpose else { return text.to_owned() };
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        text.replace(&*self.file.to_string_lossy(), drawing).replace(&*name, drawing)
+    }
+
     fn refuse_for_program(&self, what: &str) -> Result<(), String> {
         self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
     }
@@ -558,9 +639,15 @@ impl Session {
         if to.exists() && !own && !asked && !replace {
             return Ok(json!({ "exists": to.file_name().map(|n| n.to_string_lossy()) }));
         }
-        let (bytes, lost) = self.finished(&to, true, &target.picture)?;
+        let (bytes, mut lost) = self.finished(&to, true, &target.picture)?;
         if let Err(why) = self.host.write(&to, &bytes) {
             return Ok(json!({ "unwritable": why }));
+        }
+        let given = self.kept.now.steps.clone();
+        if self.present(&given).iter().any(|s| s.hidden) {
+            let waits = given.iter().all(|s| !s.hidden);
+            let which = if waits { "steps whose letters are gone" } else { "hidden steps" };
+            lost.push(format!("{which} are not in the file"));
         }
         if is_svg(&to) {
             self.saved = Some((to.clone(), self.kept.now.clone()));
@@ -584,7 +671,7 @@ impl Session {
 
     /// The result in the format of the file `to`, where it `stays` unless that is elsewhere, and what it cannot hold.
     fn finished(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
-        let given = recipe(&self.kept.now.steps);
+        let given = self.finishing();
         if saving::has_extension(to, &["toml"]) {
             return Ok((self.opened.artwork.recipe_text(&given)?.into_bytes(), Vec::new()));
         }
@@ -616,9 +703,9 @@ impl Session {
 
     /// The command line that writes the result as *Save* does, under a name or the usual one; and the drawing's file if it was written
     /// for that.
-    pub(crate) fn command_line(&self, target: &Target) -> Result<Value, String> {
+    pub(crate) fn command_line(&mut self, target: &Target) -> Result<Value, String> {
         let to = self.place(target)?;
-        let (given, mut options) = (recipe(&self.kept.now.steps), self.opened.artwork.options());
+        let (given, mut options) = (self.finishing(), self.opened.artwork.options());
         let (source, before, written) = self.source()?;
         let name = to.display().to_string();
         let line = |options: &[(String, String)], out: &Path| {
@@ -640,6 +727,16 @@ impl Session {
         };
         Ok(json!({ "text": text, "written": written }))
     }
+}
+
+/// The largest distance between two images of a place in a box, over a grid of them.
+fn apart(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
+    /// Places along a side.
+    const PLACES: u32 = 25;
+    let share = |k: u32| f64::from(k) / f64::from(PLACES - 1);
+    let places = (0..PLACES * PLACES).map(|k| (share(k % PLACES), share(k / PLACES)));
+    let at = places.map(|(x, y)| Point::new(r.x0 + x * r.width(), r.y0 + y * r.height()));
+    at.map(|p| a.point(p).distance(b.point(p))).filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
 /// The folder of a file, for people.

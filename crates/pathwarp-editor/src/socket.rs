@@ -77,10 +77,9 @@ impl Page {
             Err(e) => return self.send(&json!({ "error": format!("this request is not understood: {e}") })),
         };
         let shared = Arc::clone(&self.shared);
-        let mut answer = match shared.with_session(|session| self.respond(session, request)) {
-            Ok(answer) => answer,
-            Err(problem) => json!({ "error": problem }),
-        };
+        let mut answer = shared.with_session(|session| {
+            self.respond(session, request).unwrap_or_else(|problem| json!({ "error": session.said(&problem) }))
+        });
         answer["id"] = json!(id);
         self.send(&answer)
     }
@@ -91,12 +90,14 @@ impl Page {
                 (self.picture, self.quick) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
-            Request::Target => Ok(json!({ "target": *self.shared.target() })),
-            Request::KeepTarget { target } => {
-                *self.shared.target() = target;
+            Request::Background => Ok(json!({ "background": *self.shared.background() })),
+            Request::KeepBackground { background } => {
+                *self.shared.background() = background;
                 Ok(json!({}))
             }
-            Request::Parts => Ok(json!({ "parts": session.parts() })),
+            Request::Ahead { steps, draft } => Ok(json!({ "svg": session.bend(&steps, draft)?.picture()?.text() })),
+            Request::Drawn { name, bytes } => Ok(json!({ "svg": session.drawn(&name, &bytes)?.text() })),
+            Request::Parts => Ok(json!({ "parts": session.parts()? })),
             Request::Bend { steps, draft } => {
                 let shown = session.bend(&steps, draft)?;
                 self.show(shown)
@@ -158,10 +159,8 @@ impl Page {
                 Ok(json!({ "presets": session.presets()? }))
             }
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
-            Request::Preimage { steps, at } => {
-                Ok(json!({ "at": session.preimage(&steps, at.into())?.map(|p| [p.x, p.y]) }))
-            }
-            Request::Renet { steps, values } => Ok(json!({ "step": session.renet(&steps, values)? })),
+            Request::Preimage { steps, at } => session.preimage(&steps, at.into()),
+            Request::Renet { steps, values } => session.renet(&steps, values),
             Request::CommandLine { to } => session.command_line(&to),
         }
     }
@@ -209,7 +208,7 @@ fn changed_paths(changes: Vec<(usize, String)>) -> Value {
 pub(crate) struct Shared {
     session: Mutex<Session>,
     /// What the page shows behind the drawing.
-    target: Mutex<Value>,
+    background: Mutex<Value>,
     pub(crate) pages: Pages,
 }
 
@@ -260,11 +259,11 @@ impl Drop for OpenPage {
 
 impl Shared {
     pub(crate) fn new(session: Session) -> Self {
-        Self { session: Mutex::new(session), target: Mutex::default(), pages: Pages::default() }
+        Self { session: Mutex::new(session), background: Mutex::default(), pages: Pages::default() }
     }
 
-    fn target(&self) -> MutexGuard<'_, Value> {
-        self.target.lock().unwrap_or_else(PoisonError::into_inner)
+    fn background(&self) -> MutexGuard<'_, Value> {
+        self.background.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Works on the session. A panic in another connection does not end the editor: steps are taken over only after the drawing has been bent by

@@ -6,12 +6,20 @@ use pathwarp::budget::Exceeded;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::Kind;
 use pathwarp::{Error, GeometryError};
-use pathwarp_svg::{LetteringFrameError, ShapeReport, Skipped, UnreadImages, Warning};
+use pathwarp_svg::engine::{LetteringFrameError, UnreadImages};
+use pathwarp_svg::{ShapeReport, Skipped, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The error of edits of a picture.
-pub(crate) const NO_PATHS_TO_EDIT: &str =
-    "edits (simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
+pub(crate) const NO_PATHS_TO_EDIT: &str = "edits (caption, simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
+
+/// The warning about characters that no font has.
+pub fn missing_letters(chars: &[char]) -> String {
+    /// Number of characters that fit a line or two.
+    const SHOWN: usize = 12;
+    let shown: Vec<String> = chars.iter().map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
+    format!("no font has {}; install one that has them, or name it with --font", listed(&shown, SHOWN))
+}
 
 /// The warning about shapes of which an edit leaves nothing.
 pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Option<String> {

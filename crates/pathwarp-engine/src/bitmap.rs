@@ -4,14 +4,14 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::{advice, edges, meter};
 use pathwarp::budget::{Budget, Exceeded, Limit, Limits, cost};
+use pathwarp::engine::{Batches, Cost};
 use pathwarp::kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::Cost;
-use pathwarp::map::{Batches, Jet, Map, NewtonInverse};
+use pathwarp::map::{Jet, Map, NewtonInverse};
 use pathwarp_raster::{
     Color, ImageWarp, IntRect, Picture, PictureFormat, Pixmap, SeenColor, ShadeTolerance, SmoothShade, encode_png,
     encode_smooth_png, enlarged, extent, header_size, shown, warp_image,
 };
-use pathwarp_svg::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
+use pathwarp_svg::engine::{BentImage, GradientPainter, GradientRequest, ImageRequest, ImageWarper, PictureError};
 use std::borrow::Cow;
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};

@@ -2,7 +2,8 @@
 
 use crate::bitmap::{Bender, Pixel, count_picture, count_pixels, too_much};
 use pathwarp_raster::{Picture, Pixmap, RenderOptions, Size, encode_png, header_size};
-use pathwarp_svg::{EdgePainter, Opacity, PictureError, ReadOptions};
+use pathwarp_svg::ReadOptions;
+use pathwarp_svg::engine::{EdgePainter, Opacity, PictureError};
 
 /// Pixels of a bleed in a px, without a resolution of its own: 300 in an inch. And the most there are.
 const PRINTED: f64 = 300.0 / 96.0;

@@ -6,8 +6,9 @@ use pathwarp::deform::{ByHand, Info};
 use pathwarp::param::{Axis, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 
-/// The edits. Each has the name of its command.
-pub static EDITS: [Info; 5] = [
+/// The edits. Each has the name of its command. Captions come before the others wherever they stand among them.
+pub static EDITS: [Info; 6] = [
+    CAPTION,
     Info::new("simplify", "give paths the fewest nodes within a distance")
         .group("Before bending")
         .params(&[
@@ -65,6 +66,45 @@ pub static EDITS: [Info; 5] = [
             ..ByHand::NONE
         }),
     Info::new("outline", "turn strokes and text into filled outlines").group("Before bending"),
+];
+
+/// The edit that sets a caption.
+pub const CAPTION: Info =
+    Info::new("caption", "set words on the drawing").group("Before bending").params(&OF_CAPTION).by_hand(ByHand {
+        label: Some("Words"),
+        labels: &[("at", "Place"), ("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
+        neutral: &[("words", "Words")],
+        showing: &[("words", "Words"), ("align", "center"), ("fill", "#c30"), ("size", "30%")],
+        ..ByHand::NONE
+    });
+
+const OF_CAPTION: [Param; 10] = [
+    Param::new("words", Kind::Text("WORDS"), "The words. Given several times, each is a line.").needed().repeated(),
+    Param::new(
+        "at",
+        Kind::Point,
+        "The place of the first line's baseline: its left end, middle or right end, as --align says.",
+    )
+    .default("50%,50%"),
+    Param::length("size", Axis::Y, "Size of the letters' em.").within(1e-9, 1e6).slider(0.0, 50.0).default("10%"),
+    Param::new("font", Kind::Text("FAMILY"), "An installed family, or a font file. Default: the bundled Noto Sans."),
+    Param::new(
+        "weight",
+        Kind::Choice(&["thin", "extralight", "light", "regular", "medium", "semibold", "bold", "extrabold", "black"]),
+        "Weight within the family; a bolder one is made where the family lacks it.",
+    )
+    .default("regular"),
+    Param::flag("italic", "Use the family's italic, or slant the letters where it has none."),
+    Param::new("fill", Kind::Text("COLOUR"), "Colour, as in CSS.").default("black"),
+    Param::new("align", Kind::Choice(&["left", "center", "right"]), "Alignment of the lines.").default("left"),
+    Param::number("letter-spacing", "Space added between letters, as a share of the size.")
+        .within(-1e3, 1e3)
+        .slider(-0.2, 1.0)
+        .default("0%"),
+    Param::number("line-height", "Distance between baselines, as a share of the size.")
+        .within(0.0, 1e3)
+        .slider(0.5, 3.0)
+        .default("120%"),
 ];
 
 const CONTOUR: [Param; 8] = [

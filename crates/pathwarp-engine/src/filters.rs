@@ -3,8 +3,9 @@
 use crate::bitmap::{Bender, Pixel, count_evaluations, count_pixels, too_much};
 use pathwarp::budget::{Budget, Limit};
 use pathwarp_raster::{Continued, DrawingWarp, Error, Picture, encode_smooth_png};
+use pathwarp_svg::ReadOptions;
+use pathwarp_svg::engine::{BentImage, FilterPainter, FilterRequest, PictureError};
 use pathwarp_svg::usvg_tree::{ReadTree, read_tree};
-use pathwarp_svg::{BentImage, FilterPainter, FilterRequest, PictureError, ReadOptions};
 
 /// The share of the work left for a drawing that its filters may take, and that of the rest of it which one may take.
 const SHARE: f64 = 0.5;

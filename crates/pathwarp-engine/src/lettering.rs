@@ -6,7 +6,8 @@ use crate::input;
 use crate::options::Reading;
 use pathwarp::budget::{Exceeded, Limit, Limits, cost};
 use pathwarp::param::LengthUnit;
-use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, bundled_font, fallback_fonts, write_lettering};
+use pathwarp_svg::ReadOptions;
+use pathwarp_svg::engine::{FontFile, LetteringOptions, bundled_font, fallback_fonts, write_lettering};
 use pathwarp_text::{Font, OutlinedText, TextLimits, TextStyle, layout_within};
 use std::path::Path;
 
@@ -31,7 +32,7 @@ pub fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -
     if looks_like_file {
         return read(path, 0);
     }
-    Ok(pathwarp_svg::find_font(name, weight, italic, options)?)
+    Ok(pathwarp_svg::engine::find_font(name, weight, italic, options)?)
 }
 
 /// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.

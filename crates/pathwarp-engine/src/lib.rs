@@ -22,6 +22,7 @@
 
 pub mod advice;
 pub mod bitmap;
+pub mod caption;
 pub mod catalogue;
 pub mod coming_from;
 mod edges;
@@ -47,7 +48,9 @@ pub mod session;
 pub mod steps;
 pub mod temporaries;
 pub mod units;
+pub mod weights;
 
 pub use embed::{
     Details, Drawing, Error, ErrorKind, Path, PointMap, Warper, lettering_drawing, option_names, option_words, preset,
+    reserved_names,
 };

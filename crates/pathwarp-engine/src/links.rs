@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use crate::output::is_stream;
-use pathwarp_svg::{Document, ReadOptions, Relinking};
+use pathwarp_svg::engine::Relinking;
+use pathwarp_svg::{Document, ReadOptions};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 

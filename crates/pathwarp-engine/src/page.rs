@@ -3,10 +3,11 @@
 use crate::options::{CommonOptions, FrameChoice};
 use crate::readable::three_figures;
 use crate::units::MM_PER_PX;
-use pathwarp::decimal::trimmed;
+use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Rect;
 use pathwarp::recipe::Recipe;
-use pathwarp_svg::{Document, Overhang, PageFit, Warning};
+use pathwarp_svg::engine::Overhang;
+use pathwarp_svg::{Document, PageFit, Warning};
 
 /// Side of the largest square page that is an icon's, in px.
 const ICON: f64 = 64.0;

@@ -1,7 +1,7 @@
 //! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
 //! and not as long as a file.
 
-use pathwarp::decimal::trimmed;
+use pathwarp::engine::decimal::trimmed;
 use serde::Serialize;
 use std::borrow::Cow;
 

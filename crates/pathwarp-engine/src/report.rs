@@ -69,7 +69,7 @@ impl FileReport {
 
     /// Returns `true` if a shape was skipped or missed the tolerance.
     pub(crate) fn is_partial(&self) -> bool {
-        !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.shape.path.over_budget.is_empty())
+        !self.skipped.is_empty() || self.shapes.iter().any(|s| !s.shape.path.unresolved.is_empty())
     }
 }
 
@@ -138,11 +138,11 @@ impl Serialize for ReportedShape {
         if let Some(at) = &self.fold.at {
             map.serialize_entry("folded_at", &place(at))?;
         }
-        if !path.over_budget.is_empty() {
-            map.serialize_entry("over_budget", &path.over_budget.iter().map(place).collect::<Vec<_>>())?;
+        if !path.unresolved.is_empty() {
+            map.serialize_entry("unresolved", &path.unresolved.iter().map(place).collect::<Vec<_>>())?;
         }
-        if let Some(resolution) = path.unresolved {
-            map.serialize_entry("unresolved", &resolution)?;
+        if let Some(resolution) = path.resolution {
+            map.serialize_entry("resolution", &resolution)?;
         }
         if let Some(distance) = paint_residual {
             map.serialize_entry("paint_residual", distance)?;

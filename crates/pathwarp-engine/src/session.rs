@@ -2,6 +2,7 @@
 //! command line, the editor, Inkscape and other languages all take it.
 
 use crate::advice::{self, Flags};
+use crate::caption::is_caption;
 use crate::edits;
 use crate::export::KerfReport;
 use crate::failure::Failure;
@@ -17,10 +18,11 @@ use crate::report::{FileReport, ReportedShape, StepSelection};
 use crate::units::MM_PER_PX;
 use crate::{recipe_file, references};
 use pathwarp::deform::{Explanation, Registry, SavedFile};
+use pathwarp::engine::{BuiltParts, Portion};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::Map;
 use pathwarp::param::Frame;
-use pathwarp::recipe::{BuiltParts, BuiltRecipe, Portion, Recipe, Step};
+use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_raster::Picture;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -111,7 +113,7 @@ impl Session<'_> {
         artwork.remove_guides(guides.clone());
         let (own, recipe) = edits::divided(&recipe)?;
         let mut first = [&self.options.edits[..], &own].concat();
-        let edit = first.pop_if(|_| recipe.steps.is_empty());
+        let edit = first.pop_if(|last| recipe.steps.is_empty() && !is_caption(last));
         let steps = edit.as_ref().map_or(&recipe.steps[..], std::slice::from_ref);
         artwork.edit_first(&first, steps, self.options)?;
         let baseline_of = |s: &Step| baseline(self.registry, s);

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use pathwarp::Outline;
-use pathwarp::decimal::trimmed;
+use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::{CubicBez, Line, Point};
 use pathwarp::outline::{Seg, Subpath};
 

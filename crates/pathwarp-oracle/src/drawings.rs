@@ -53,7 +53,7 @@ pub fn read(svg: &str) -> Document {
 }
 
 pub fn warp_options() -> WarpOptions {
-    WarpOptions::new(refit::Options::new(1e-4))
+    WarpOptions::new(refit::Options::new(1e-4).with_nodes(refit::Nodes::Source))
 }
 
 pub fn warp(svg: &str, map: Affine) -> WarpedDocument {

@@ -1,7 +1,7 @@
 //! Builds content streams, with the resources that they use.
 
 use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape as _, Vec2};
-use pathwarp::decimal::single;
+use pathwarp::engine::decimal::single;
 use pdf_writer::types::ColorSpaceOperand;
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Finish as _, Name, Ref};

@@ -3,8 +3,8 @@
 //! A message consists of its length in bytes without this prefix (u32), one byte for its kind, and a body.
 
 use crate::fault::{Fault, MAX_MESSAGE_BYTES, beginning};
+use pathwarp::engine::Ask;
 use pathwarp::kurbo::Point;
-use pathwarp::map::Ask;
 
 // Kinds of requests.
 const BUILD: u8 = 1;

@@ -3,11 +3,11 @@
 use crate::entry::{Entry, Reserved, lines, read};
 use crate::fault::Fault;
 use crate::session::{Instance, Program, Protocol, Session};
-use crate::{answer, binary, text};
+use crate::{binary, text};
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
+use pathwarp::engine::{Abilities, Ask, Called, Callee};
 use pathwarp::kurbo::Point;
-use pathwarp::map::{Abilities, Ask, Called, Callee};
 use pathwarp::param::{Axis, Settings};
 use std::fmt;
 use std::path::Path;
@@ -97,8 +97,7 @@ impl Deformation for Plugin {
             fault => fault.of(&self.program.path),
         };
         let answer = self.program.build(&instance).map_err(refused)?;
-        let creases = answer::creases(&answer.creases).map_err(refused)?;
-        let abilities = Abilities { creases, detail: answer.detail, ..self.abilities.clone() };
+        let abilities = Abilities { creases: answer.creases, detail: answer.detail, ..self.abilities.clone() };
         let callee = Arc::new(Asked { program: Arc::clone(&self.program), instance });
         let map = Called::new(callee, abilities, frame.extent(Axis::Diagonal));
         let mut built = Built::called(map, "the plug-in gives no numbers there");

@@ -4,7 +4,7 @@ use crate::fault::Fault;
 use crate::session::Protocol;
 use pathwarp::Error;
 use pathwarp::deform::{Case, Example, Info, Law, Pairs};
-use pathwarp::map::Abilities;
+use pathwarp::engine::Abilities;
 use pathwarp::param::{Args, Axis, Kind, NamedPath, Param, Settings};
 use serde::Deserialize;
 use serde_json::{Map, Value};

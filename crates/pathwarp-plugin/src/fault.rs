@@ -103,6 +103,11 @@ pub enum Fault {
         /// The values found instead, as the end of a sentence.
         found: String,
     },
+    /// A crease cannot be read.
+    #[error(
+        "{0} is no crease, which is line A B C with A or B not 0, perhaps with a box X0 Y0 X1 Y1 unless it is an edge, or circle X Y R with R not 0"
+    )]
+    Crease(String),
     /// A value is not a number.
     #[error("answered NaN or infinity for the point {0},{1}, and its entry does not say \"domain\": \"partial\"")]
     NotFinite(f64, f64),

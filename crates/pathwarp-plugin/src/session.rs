@@ -9,8 +9,8 @@ use crate::pipes_by_poll::Pipes;
 #[cfg(not(unix))]
 use crate::pipes_by_threads::Pipes;
 use crate::text::{self, LineCount};
+use pathwarp::engine::Ask;
 use pathwarp::kurbo::Point;
-use pathwarp::map::Ask;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};

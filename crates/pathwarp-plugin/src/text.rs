@@ -1,9 +1,10 @@
 //! The protocol as lines of text, for programs written by hand.
 
-use crate::answer::{BuildAnswer, CreaseAnswer, word};
+use crate::answer::{BuildAnswer, word};
 use crate::fault::{Fault, beginning};
-use pathwarp::kurbo::Point;
-use pathwarp::map::{Ask, Creases};
+use pathwarp::engine::Ask;
+use pathwarp::kurbo::{Point, Rect};
+use pathwarp::map::{Crease, Creases, Level};
 use std::fmt::Write as _;
 
 /// Encodes the request to build a map from `lines`.
@@ -45,7 +46,10 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
             "note" => out.notes.push(rest.to_owned()),
             "warning" => out.warnings.push(rest.to_owned()),
             "detail" => out.detail = Some(size(rest).ok_or_else(|| garbage(line))?),
-            "crease" | "edge" => out.creases.push(crease(rest, word == "edge").ok_or_else(|| garbage(line))?),
+            "crease" | "edge" => {
+                let read = crease(rest, word == "edge");
+                out.creases.push(read.ok_or_else(|| Fault::Crease(beginning(line.as_bytes())))?);
+            }
             _ => return Err(garbage(line)),
         }
     }
@@ -64,34 +68,32 @@ fn size(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite())
 }
 
-/// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`.
-fn crease(text: &str, edge: bool) -> Option<CreaseAnswer> {
+/// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`. The domain is where the level of an edge is positive.
+fn crease(text: &str, edge: bool) -> Option<Crease> {
     let mut words = text.split_whitespace();
     let shape = words.next()?;
     let numbers = words.map(str::parse).collect::<Result<Vec<f64>, _>>().ok()?;
-    let none = CreaseAnswer { line: None, within: None, circle: None, edge };
-    match (shape, numbers.as_slice()) {
-        ("line", &[a, b, c]) => Some(CreaseAnswer { line: Some([a, b, c]), ..none }),
-        ("line", &[a, b, c, x0, y0, x1, y1]) => {
-            Some(CreaseAnswer { line: Some([a, b, c]), within: Some([x0, y0, x1, y1]), ..none })
+    let level = match (shape, numbers.as_slice()) {
+        ("line", &[a, b, c]) if a.hypot(b) > 0.0 => Level::Line { a, b, c },
+        ("line", &[a, b, c, x0, y0, x1, y1]) if a.hypot(b) > 0.0 && !edge => {
+            Level::Stretch { a, b, c, within: Rect::new(x0, y0, x1, y1) }
         }
-        ("circle", &[x, y, r]) => Some(CreaseAnswer { circle: Some([x, y, r]), ..none }),
-        _ => None,
-    }
+        ("circle", &[x, y, r]) if r != 0.0 => Level::Circle { center: Point::new(x, y), radius: r },
+        _ => return None,
+    };
+    Some(if edge { Crease::edge(level) } else { Crease::kink(level) })
 }
 
 /// Reads creases and edges as programs declare them: `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`, each perhaps after `crease` or `edge`.
 ///
 /// # Errors
-/// [`Fault::Garbage`] for a text that is none of them.
+/// [`Fault::Crease`] for a text that is none of them.
 pub fn creases<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Creases, Fault> {
     let mut out = Creases::default();
     for text in texts {
         let (word, rest) = text.trim().split_once(' ').unwrap_or((text, ""));
         let shape = if ["crease", "edge"].contains(&word) { rest } else { text };
-        let read = crease(shape, word == "edge").and_then(|answer| answer.crease());
-        let expected = || "line A B C [X0 Y0 X1 Y1] or circle X Y R, perhaps after edge".to_owned();
-        out.push(read.ok_or_else(|| Fault::Garbage { expected: expected(), found: beginning(text.as_bytes()) })?);
+        out.push(crease(shape, word == "edge").ok_or_else(|| Fault::Crease(beginning(text.as_bytes())))?);
     }
     Ok(out)
 }

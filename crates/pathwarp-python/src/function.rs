@@ -2,8 +2,8 @@
 
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pathwarp::Error;
+use pathwarp::engine::{Ask, Callee};
 use pathwarp::kurbo::Point;
-use pathwarp::map::{Ask, Callee};
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 

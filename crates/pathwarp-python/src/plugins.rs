@@ -2,7 +2,7 @@
 
 use crate::errors::usage;
 use pathwarp::deform::{Deformation, Registry};
-use pathwarp_engine::option_names;
+use pathwarp_engine::reserved_names;
 use pathwarp_plugin::{Broken, Reserved};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub(crate) fn registry(py: Python<'_>, files: &[PathBuf], names: &[&str]) -> PyR
     }
     let built_in = registry.clone();
     let own: Vec<&str> = built_in.entries().iter().map(|e| e.info().name).collect();
-    let parameters: Vec<&str> = option_names().map(|(name, _)| name).chain(["inverse", "plugins"]).collect();
+    let parameters: Vec<&str> = reserved_names().collect();
     let reserved = Reserved { names: &own, parameters: &parameters };
     for file in files {
         let started = py.detach(|| pathwarp_plugin::by_file(file, reserved));

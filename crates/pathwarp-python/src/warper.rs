@@ -8,7 +8,7 @@ use crate::{arrays, outline};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
-use pathwarp::map::{Abilities, Callee};
+use pathwarp::engine::{Abilities, Callee};
 use pathwarp::recipe::Step;
 use pathwarp::refit::Assurance;
 use pathwarp_engine::input::hatching;
@@ -188,6 +188,13 @@ impl Warper {
         Ok(out)
     }
 
+    /// Checks the map: for each check its name, what was checked, and what is wrong.
+    fn check(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String, Vec<String>)>> {
+        let warper = self.engine.clone();
+        let checked = on_threads_alone(py, || Ok(()), move |stop| warper.stopped_by(stop).check())?;
+        Ok(self.done(py, checked)?.into_iter().map(|c| (c.name, c.detail, c.faults)).collect())
+    }
+
     /// Bends a path: its data and report.
     fn warp_path<'py>(&self, py: Python<'py>, data: &str) -> PyResult<(String, Bound<'py, PyDict>)> {
         let (warper, data) = (self.engine.clone(), data.to_owned());
@@ -326,8 +333,8 @@ fn report<'py>(py: Python<'py>, warped: &pathwarp_engine::Path) -> PyResult<Boun
         Assurance::Sampled => "sampled",
     };
     out.set_item("assurance", assurance)?;
-    out.set_item("over_budget", r.over_budget.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
-    out.set_item("unresolved", r.unresolved)?;
+    out.set_item("unresolved", r.unresolved.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>())?;
+    out.set_item("resolution", r.resolution)?;
     out.set_item("folds", warped.folds)?;
     out.set_item("warnings", &warped.warnings)?;
     Ok(out)

@@ -267,3 +267,59 @@ def test_the_wheel_has_its_papers():
     texts = [f.read_text() for f in importlib.metadata.files("pathwarp") if f.name.startswith("LICENSE")]
     assert len(texts) == 2 and any("Permission is hereby granted" in t for t in texts)
     assert "\n\n" in pathwarp.deform.bend.__doc__ and json.dumps(pathwarp.deform.bend.__doc__)
+
+
+def faults(function, frame=None, **of_function):
+    checks = Deformation(function, **of_function).check(frame)
+    return {check.name: check.faults for check in checks if check.faults}
+
+
+def test_mistakes_are_told_by_their_kind():
+    assert not faults(wave) and not faults(wave, jacobian=slopes, inverse=back, detail=14)
+    for wrong, name, words in (
+        (lambda x, y: (x, y + abs(x - 50)), "creases", "declare a crease at line 1 0 -50"),
+        (lambda x, y: (x, y + np.maximum(0, 20 - np.hypot(x - 50, y - 40)) / 5), "creases", "at circle 50 40 20"),
+        (lambda x, y: (x + (x > 50) * 9, y), "creases", "jumps by 9 at 50"),
+        (lambda x, y: (np.nan * x, y), "values", "has no value at any of 81 places"),
+        (lambda x, y: (7, 7), "values", "sends all points to one, or"),
+        (lambda x, y: ((x + np.sin(y)).astype(np.float32), y), "values", "x' has the digits of single precision"),
+        (lambda x, y: (x, np.round(y + np.sin(x), 3)), "values", "y' is rounded to 3 decimals"),
+        (lambda x, y: (x + np.random.default_rng().random(x.shape), y), "values", "gives two answers for the point 3.7,4.3"),
+        (lambda x, y: (x - x.mean(), y), "values", "may not depend on the other points of a batch"),
+    ):
+        found = faults(wrong)
+        assert list(found) == [name] and words in found[name][0], found
+    # Jacobians: a sign, and rows for columns.
+    flat = faults(wave, jacobian=lambda x, y: ((1, 0), (-5 / 9 * np.cos(x / 9), 1)))
+    assert flat["values"][0].startswith("∂y'/∂x is wrong at 81 of 81 places: -0.5"), flat
+    rows = faults(wave, jacobian=lambda x, y: ((1, 5 / 9 * np.cos(x / 9)), (0, 1)))
+    assert rows == {"values": ["its derivatives are transposed: ∂y'/∂x and ∂x'/∂y change places"]}
+    # An inverse that is right in a part.
+    root = faults(lambda x, y: ((x - 50) ** 2 / 50, y), inverse=lambda x, y: (50 + np.sqrt(50 * x), y))
+    assert "at 45 of 81 places" in root["inverse"][0] and "the map folds" in root["inverse"][0]
+    # Declared creases, half a plane, chains, and another box.
+    assert not faults(lambda x, y: (x, y + abs(x - 50)), creases=[(1, 0, -50)])
+    assert not faults(lambda x, y: (np.where(x > 50, x + np.sin(y / 9), np.nan), y))
+    assert not any(check.faults for check in (Deformation(wave) + "arc").check())
+    assert "line 1 0 -500" in faults(lambda x, y: (x, y + abs(x - 500)), frame=(0, 0, 900, 900))["creases"][0]
+    with pytest.raises(ZeroDivisionError):
+        Deformation(lambda x, y: 1 / 0).check()
+
+
+def test_outlines_of_paths_are_of_their_kind():
+    assert pathwarp.outline("M0,0 H40", width=10) == "M0,5 L40,5 L40,-5 L0,-5 Z"
+    ring = pathwarp.outline(svgpathtools.parse_path("M10,50 A40,40 0 1 1 90,50 A40,40 0 1 1 10,50 Z"), width=4, tolerance=0.01)
+    radii = {round(abs(p - (50 + 50j)), 1) for p in (side.point(0.3) for side in ring if not isinstance(side, svgpathtools.Line))}
+    assert isinstance(ring, svgpathtools.Path) and radii == {38.0, 42.0}
+    line = pathwarp.outline(np.array([[0, 0], [40, 0], [40, 30]]), width=2, join="round", cap="square")
+    assert isinstance(line, np.ndarray) and abs(line[~np.isnan(line[:, 0])].min(0) - (-1, -1)).max() < 0.01
+    assert pathwarp.outline(np.array([0, 40 + 0j]), width=2).dtype.kind == "c"
+    for shapes, options, words in (
+        ("M0,0 H40", {}, "width"),
+        ("M0,0 H40", {"width": 0}, "width"),
+        ("M0,0 H40", {"width": 2, "join": "mitre"}, "join: `mitre` is none of miter"),
+        (SAMPLES / "logo.svg", {"width": 2}, "have their own"),
+        ("M0,0 L", {"width": 2}, "path data"),
+    ):
+        with pytest.raises(pathwarp.PathwarpError, match=words):
+            pathwarp.outline(shapes, **options)

@@ -775,7 +775,7 @@ fn shown_symbol(
         let declared = |name: &str| value::length(style.value(node, name)?, units, full(name, units));
         let [x, y] = ["x", "y"].map(|name| declared(name).unwrap_or(0.0));
         let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * turned.unwrap_or_default();
-        out.push(("transform", pathwarp::decimal::matrix(all)));
+        out.push(("transform", pathwarp::engine::decimal::matrix(all)));
         out.extend(["x", "y"].into_iter().zip(shift).map(|(name, v)| (name, v.to_string())));
     }
     out

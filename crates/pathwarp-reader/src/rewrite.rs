@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use csscolorparser::Color;
 use memchr::memmem;
 use pathwarp::budget::{Budget, Exceeded, cost};
-use pathwarp::decimal::matrix;
+use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::Affine;
 use roxmltree::{Document, NS_XML_URI, Node};
 use std::borrow::Cow;

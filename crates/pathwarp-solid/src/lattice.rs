@@ -16,7 +16,7 @@ use crate::map::{
 use crate::settings::Box3;
 use glam::{DMat3, DVec3};
 use pathwarp::budget::Budget;
-use pathwarp::map::bspline;
+use pathwarp::engine::bspline;
 use std::sync::Arc;
 
 /// A grid of weighted control points over a box: the data of a [`LatticeMap3`].

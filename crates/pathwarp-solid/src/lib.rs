@@ -12,6 +12,7 @@
 pub mod artwork;
 pub mod check;
 pub mod deform;
+mod hull;
 mod lattice;
 pub mod map;
 pub mod mesh;

@@ -206,7 +206,7 @@ impl<'a> Settings3<'a> {
 
 /// A point for messages, to six decimals.
 pub(crate) fn show(p: DVec3) -> String {
-    let round = |v: f64| pathwarp::decimal::trimmed(v, 6);
+    let round = |v: f64| pathwarp::engine::decimal::trimmed(v, 6);
     format!("{},{},{}", round(p.x), round(p.y), round(p.z))
 }
 

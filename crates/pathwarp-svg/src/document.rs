@@ -46,6 +46,9 @@ pub struct DrawingPart {
     pub depth: usize,
 }
 
+/// Says of an element that its name and those inside are SVG's.
+const SVG_SPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\" ";
+
 /// An SVG file.
 #[derive(Debug)]
 pub struct Document {
@@ -116,7 +119,8 @@ impl Document {
         if away <= FAR * side || self.drawing.specified_area().is_none() {
             return Ok(None);
         }
-        let refit = refit::Options::new(FINE * side).with_budget(self.budget().clone());
+        let refit =
+            refit::Options::new(FINE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options =
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
@@ -135,7 +139,7 @@ impl Document {
             return Ok(None);
         }
         let tolerance = FINE / stretch(self.user_to_px());
-        let refit = refit::Options::new(tolerance).with_budget(self.budget().clone());
+        let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options = WarpOptions::new(refit).with_on_error(OnError::Skip).with_page(PageFit::None);
         Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))
     }
@@ -271,6 +275,21 @@ impl Document {
     #[must_use]
     pub fn with_ids(&self) -> String {
         self.drawing.source.with_ids()
+    }
+
+    /// The drawing as in its file, with an element at the end of its root.
+    #[must_use]
+    pub fn with_appended(&self, element: &str) -> String {
+        let source = &self.drawing.source;
+        let root = &source.elements[0];
+        let name = &source.text[root.qname.clone()];
+        let (at, skipped) = root.close.as_ref().map_or((root.open_end - 2, 2), |close| (close.start, 0));
+        let at = source.places_in_file(std::iter::once(at))[0];
+        let file = source.as_in_file();
+        let [start, end] = if skipped > 0 { [">", &format!("</{name}>")] } else { ["", ""] };
+        // Where a prefix stands for SVG, names without one mean something else.
+        let spaced = if name == "svg" { element.to_owned() } else { element.replacen(' ', SVG_SPACE, 1) };
+        [&file[..at], start, &spaced, end, &file[at + skipped..]].concat()
     }
 
     /// Bounding box of the selected painted shapes, without stroke widths, and of pictures.

@@ -81,8 +81,10 @@ mod bend;
 mod document;
 mod embed;
 mod nodes;
+#[doc(hidden)]
 pub mod objects;
 mod scene;
+#[doc(hidden)]
 pub mod sheet;
 mod source;
 #[cfg(feature = "usvg")]
@@ -90,25 +92,38 @@ pub mod usvg_tree;
 mod write;
 
 pub use bend::options::{
-    Clones, CutLine, Edit, Filters, Gradients, LetterPlaces, OnError, PageFit, Patterns, Strokes, Structure, TextMode,
-    WarpOptions,
+    Clones, Edit, Filters, Gradients, OnError, PageFit, Patterns, Strokes, Structure, TextMode, WarpOptions,
 };
-pub use bend::outcome::{Overhang, ShapeReport, Skipped, Warning, WarpedDocument};
-pub use bend::path::{WarpedPath, edit_path, warp_path};
-pub use bend::pictures::{
-    BentImage, EdgePainter, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter,
-    GradientRequest, ImageRequest, ImageWarper, Images, Painter, PictureError, SeenColor,
-};
-pub use bend::traced::Opacity;
-pub use document::{Document, DrawingPart};
+pub use bend::outcome::{ShapeReport, Skipped, Warning, WarpedDocument};
+pub use bend::path::{WarpedPath, warp_path};
+pub use bend::pictures::{Images, Painter};
+pub use document::Document;
 pub use embed::Origin;
-pub use scene::drawing::{NamedPath, Shape, UnreadImages};
+pub use scene::drawing::{NamedPath, Shape};
 pub use scene::plot::{Plot, PlotLoss, PlotShape};
-pub use scene::selected_lettering::{Lettering, LetteringFrame, LetteringFrameError};
-pub use source::faces::{GenericFamilies, bundled_font};
-pub use source::fonts::{FontFile, check_fonts, families, family_styles, find_font};
-pub use source::links::Relinking;
-pub use source::read::{ReadOptions, Turned, compressed};
-pub use source::select::{Division, Elements, Selection};
-pub use source::shaping::fallback_fonts;
-pub use write::lettering::{LetteringOptions, SetGroup, SetPath, write_lettering, write_set_groups};
+pub use source::read::ReadOptions;
+pub use source::select::{Elements, Selection};
+
+/// For the crates that stand on this one, such as pathwarp-engine, as are the modules `objects` and `sheet`: painters of what SVG cannot
+/// bend, fonts, and documents of set text. It may change in any release.
+#[doc(hidden)]
+pub mod engine {
+    pub use crate::bend::options::{CutLine, LetterPlaces};
+    pub use crate::bend::outcome::Overhang;
+    pub use crate::bend::path::edit_path;
+    pub use crate::bend::pictures::{
+        BentImage, EdgePainter, FilterDrawing, FilterPainter, FilterRequest, GradientColors, GradientPainter,
+        GradientRequest, ImageRequest, ImageWarper, PictureError, SeenColor,
+    };
+    pub use crate::bend::traced::Opacity;
+    pub use crate::document::DrawingPart;
+    pub use crate::scene::drawing::UnreadImages;
+    pub use crate::scene::selected_lettering::{Lettering, LetteringFrame, LetteringFrameError};
+    pub use crate::source::faces::{GenericFamilies, bundled_font};
+    pub use crate::source::fonts::{FontFile, check_fonts, families, family_styles, find_font};
+    pub use crate::source::links::Relinking;
+    pub use crate::source::read::{Turned, compressed};
+    pub use crate::source::select::Division;
+    pub use crate::source::shaping::fallback_fonts;
+    pub use crate::write::lettering::{LetteringOptions, SetGroup, SetPath, lettering_group, write_lettering, write_set_groups};
+}

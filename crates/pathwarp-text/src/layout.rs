@@ -125,7 +125,9 @@ fn clusters(
         let count = shaped.len();
         for (i, cluster) in shaped.into_iter().enumerate() {
             let inside = joined && i + 1 < count;
-            let letter = if inside || cluster.advance == 0.0 { 0.0 } else { style.letter_spacing };
+            // Letters move together until they would pass each other.
+            let closest = -cluster.advance.max(0.0);
+            let letter = if inside || cluster.advance == 0.0 { 0.0 } else { style.letter_spacing.max(closest) };
             let word = if is_space(&line[cluster.range.clone()]) { style.word_spacing } else { 0.0 };
             out.push(SpacedCluster { cluster, gap: letter + word });
         }

@@ -56,7 +56,7 @@ pub struct TextStyle {
     /// Size of the em, greater than 0 and at most 1e6.
     pub size: f64,
     /// Space added between clusters, but not within joined scripts (Arabic, Syriac, …). Positive or negative, at most a thousand
-    /// times the size.
+    /// times the size; a cluster that would lie before the one it follows lies upon it.
     pub letter_spacing: f64,
     /// Space added to every space character. Positive or negative, at most a thousand times the size.
     pub word_spacing: f64,

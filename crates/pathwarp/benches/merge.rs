@@ -9,8 +9,9 @@
 
 use pathwarp::Outline;
 use pathwarp::deform::{Style, Warp};
+use pathwarp::engine::KnownShapes;
 use pathwarp::map::Map;
-use pathwarp::refit::{KnownShapes, Nodes, Options};
+use pathwarp::refit::{Nodes, Options};
 use pathwarp_oracle::{Bicubic, Rational};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -44,7 +45,7 @@ fn main() {
     );
     let (only, mode) = (env("ONLY"), env("MODE"));
     let around = outlines.iter().filter_map(Outline::bounding_box).reduce(|a, b| a.union(b)).unwrap_or_default();
-    let flag = Style::named("flag").and_then(|s| Warp::new(s, around).bend(0.4).build().ok());
+    let flag = Style::named("flag").and_then(|s| Warp::new(around, s).bend(0.4).build().ok());
     let mut maps: Vec<(&str, Arc<dyn Map>)> = vec![
         ("mild", Arc::new(Bicubic::mild())),
         ("strong", Arc::new(Bicubic::strong())),
@@ -57,7 +58,7 @@ fn main() {
             if !only.is_empty() && only != row {
                 continue;
             }
-            let off = Options::new(tolerance);
+            let off = Options::new(tolerance).with_nodes(Nodes::Source);
             let merge = off.clone().with_nodes(Nodes::Fewest);
             let certify = merge.clone().with_certify(true);
             let columns = [("off", &off), ("merged", &merge), ("certify", &certify)];

@@ -128,7 +128,7 @@ impl BenchRow {
             let o = &o.clone().with_budget(Arc::default());
             outlines.iter().map(|p| warp_path(p, map, o).map_or(0, |w| w.report.segments_out)).sum::<usize>()
         };
-        let plain = Options::new(tolerance);
+        let plain = Options::new(tolerance).with_nodes(Nodes::Source);
         let certify = plain.clone().with_certify(true);
         let theirs = |f: &dyn Fn(&Image<'_>) -> kurbo::BezPath| {
             segs.iter().map(|seg| f(&Image { seg, map }).elements().len() - 1).sum::<usize>()

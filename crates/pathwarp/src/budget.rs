@@ -28,6 +28,7 @@ pub enum Limit {
 }
 
 /// The work that common operations take.
+#[doc(hidden)]
 pub mod cost {
     /// A comparison of names, of places or of a selector with an element.
     pub const COMPARISON: f64 = 2.0;
@@ -378,6 +379,7 @@ impl Search {
 
 /// Returns `true` once nothing is left of a budget: inverses within it are then undefined everywhere.
 #[must_use]
+#[doc(hidden)]
 pub fn is_over(budget: Option<&Arc<Budget>>) -> bool {
     budget.is_some_and(|b| b.left() <= 0.0)
 }

@@ -21,6 +21,9 @@
 //! every deformation must obey; [`fold`] finds places where a map turns the plane over; [`distance`] measures how far two paths are
 //! apart.
 //!
+//! An application needs these, with [`edit`], [`map`] and [`budget`]. Who writes a deformation implements [`map::Map`] or
+//! [`map::Formula`], and [`deform::Deformation`] with [`param`]. A third part, `engine`, is for pathwarp's own crates, and hidden here.
+//!
 //! # Features
 //!
 //! - `serde` (default): reads JSON. Without it there are no warp styles and text shapes ([`deform::Warp`], [`deform::WordArt`]),
@@ -58,6 +61,7 @@ macro_rules! setters {
 mod anchors;
 pub mod budget;
 pub mod check;
+#[doc(hidden)]
 pub mod decimal;
 pub mod deform;
 pub mod distance;
@@ -70,7 +74,24 @@ pub mod outline;
 pub mod param;
 pub mod recipe;
 pub mod refit;
+#[doc(hidden)]
 pub mod solve;
+
+/// For the crates that stand on this one, such as pathwarp-svg and pathwarp-engine: costs, memories and batches of maps, edges that shapes
+/// share, maps of other languages. It may change in any release.
+#[doc(hidden)]
+pub mod engine {
+    pub use crate::map::batches::{Batches, Cost, Gathered, Images, Searches};
+    pub use crate::map::bspline;
+    pub use crate::map::called::{Abilities, Ask, Called, Callee};
+    pub use crate::map::joint::Joint;
+    pub use crate::recipe::{BuiltParts, Portion};
+    pub use crate::refit::KnownShapes;
+    pub use crate::refit::borders::Borders;
+    pub use crate::refit::report::{RESOLUTION, SpanReport};
+    pub use crate::refit::shared::{SharedEdges, Span};
+    pub use crate::{decimal, solve};
+}
 
 pub use bezierfit as fit;
 pub use error::{Error, GeometryError};

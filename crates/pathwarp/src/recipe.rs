@@ -25,7 +25,7 @@
 use crate::budget::{Budget, Limits};
 use crate::deform::{Built, Deformation, Overlay, Placement, Registry, Role, Seam};
 use crate::error::{Error, GeometryError, show};
-use crate::map::{Chain, Class, Creases, Map, inverse_over};
+use crate::map::{Chain, Class, Creases, Map, inverse_of};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Args, Frame, Kind, Param};
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -100,6 +100,7 @@ pub struct BuiltRecipe {
 
 /// A part of the artwork that the same steps hold for.
 #[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
 pub struct Portion<'a> {
     /// The indices of those steps, in order.
     pub steps: Vec<usize>,
@@ -109,6 +110,7 @@ pub struct Portion<'a> {
 
 /// A recipe whose steps hold for parts of the artwork, with every parameter settled.
 #[derive(Debug, Clone)]
+#[doc(hidden)]
 pub struct BuiltParts {
     /// All steps in order, for artwork that all of them hold for.
     pub whole: BuiltRecipe,
@@ -411,6 +413,19 @@ impl BuiltRecipe {
         self.map.spending(&Arc::new(Budget::new(Limits::none())))
     }
 
+    /// Returns the steps as one deformation, without copies and letters.
+    #[must_use]
+    pub fn as_one(&self) -> Built {
+        let map = self.unlimited();
+        let (values, state) = (map.clone(), self.clone());
+        let mut built = Built::new(Arc::new(map));
+        if self.steps.iter().any(|s| s.undefined.is_some()) {
+            built.undefined = Some(Arc::new(move |p| (!values.point(p).is_finite()).then(String::new)));
+        }
+        built.failure = Some(Arc::new(move || state.failure()));
+        built
+    }
+
     /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
     /// `None` if nothing of the artwork is in the map's domain.
     #[must_use]
@@ -451,7 +466,7 @@ type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), Geomet
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
 fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
-    let inverse = inverse_over(&built.map, frame.rect);
+    let inverse = inverse_of(&built.map, frame.rect);
     inverse.within(budget).unwrap_or(inverse)
 }
 

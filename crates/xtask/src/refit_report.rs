@@ -60,7 +60,8 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
     let registry = Registry::builtin();
     let shaper = registry.get("shaper").ok_or("the registry has no shaper")?;
     let map = shaper.build_from(&Args::from_pairs(&[("shaper", CAGE)]), &frame).map_err(|e| e.to_string())?.map;
-    let warped = refit::warp_path(&source, &map, &Options::new(tolerance)).map_err(|e| e.to_string())?;
+    let warped = refit::warp_path(&source, &map, &Options::new(tolerance).with_nodes(refit::Nodes::Source))
+        .map_err(|e| e.to_string())?;
     let pieces: Vec<PathSeg> = warped.path.segments().collect();
 
     let mut svg = String::new();

@@ -1,9 +1,10 @@
 //! What programs do that know kurbo and not pathwarp: each checked against formulas.
 
+use pathwarp::engine::KnownShapes;
 use pathwarp::kurbo::{Affine, BezPath, Circle, Ellipse, ParamCurve, Point, Rect, RoundedRect, Shape, Vec2};
 use pathwarp::map::{AffineMap, Chain, Map, NewtonInverse, from_fn, from_fn_with};
 use pathwarp::outline::Seg;
-use pathwarp::refit::{self, KnownShapes, Nodes, Options};
+use pathwarp::refit::{self, Nodes, Options};
 use pathwarp::{Error, GeometryError, Outline};
 use pathwarp_svg::{Document, ReadOptions, WarpOptions};
 use std::sync::Arc;
@@ -46,6 +47,7 @@ fn pointers_to_maps_are_maps() {
     let (map, shared, boxed) = (from_fn(wave), Arc::new(from_fn(wave)), Box::new(from_fn(wave)) as Box<dyn Map>);
     let lent: &dyn Map = &map;
     assert_eq!([moved(lent, p), moved(&*shared as &dyn Map, p), moved(&*boxed, p)], [wave(p); 3]);
+    assert_eq!([moved(&map, p), moved(&&map, p), moved(Box::new(&map), p), moved(&shared, p)], [wave(p); 4]);
     assert_eq!([moved(Arc::clone(&shared), p), moved(shared as Arc<dyn Map>, p), moved(boxed, p)], [wave(p); 3]);
     let boxed: Box<dyn Map> = Box::new(AffineMap(Affine::rotate(1.0)));
     assert_eq!(format!("{:?}", Chain::default().then(boxed).then(AffineMap(Affine::rotate(-1.0))).steps().len()), "0");
@@ -114,4 +116,47 @@ fn impossible_tolerances_are_errors_of_their_own() {
     assert!(
         refit::suited(-1.0, 1.0) < 0.0 && refit::suited(0.0, 1.0) == 0.0 && !refit::suited(f64::NAN, 1.0).is_infinite()
     );
+}
+
+/// A formula made of maps that are none, on numbers with derivatives: x ↦ F(F(x)).
+#[test]
+fn a_map_within_a_formula_keeps_its_derivatives() {
+    struct Twice<M>(M);
+    impl<M: Map> pathwarp::map::Formula for Twice<M> {
+        fn f<S: pathwarp::map::Real>(&self, x: S, y: S) -> (S, S) {
+            let (x, y) = (&self.0).f(x, y);
+            (&self.0).f(x, y)
+        }
+    }
+    let p = Point::new(3.0, 4.0);
+    let jet = Twice(from_fn_with(wave, slopes)).jet(p);
+    assert_eq!(jet.p, wave(wave(p)));
+    assert!((jet.dx - Vec2::new(1.0, 2.0 * (p.x / 20.0).cos() / 4.0)).hypot() < 1e-15 && jet.dy == Vec2::new(0.0, 1.0));
+}
+
+/// The image of a slanted line under the wave, from a closure, and under a fold with a crease, whose image has one corner.
+#[test]
+fn one_curve_goes_under_a_map() {
+    use pathwarp::map::{Crease, Creases, Jet, Level};
+    struct Fold;
+    impl Map for Fold {
+        fn jet(&self, p: Point) -> Jet {
+            let side = if p.x < 40.0 { -1.0 } else { 1.0 };
+            Jet { p: Point::new(p.x, p.y + (p.x - 40.0).abs()), dx: Vec2::new(1.0, side), dy: Vec2::new(0.0, 1.0) }
+        }
+        fn creases(&self, out: &mut Creases) {
+            out.push(Crease::kink(Level::Line { a: 1.0, b: 0.0, c: -40.0 }));
+        }
+    }
+    let line = |t: f64| (Point::new(300.0 * t, 30.0), Vec2::new(300.0, 0.0));
+    let options = pathwarp::fit::Options::new(1e-3);
+    let waved = refit::warp_curve(&line, &from_fn(wave), &options).unwrap();
+    assert!(off(&waved.path, 30.0) <= 1.02e-3 && waved.report.unresolved.is_empty());
+    let folded = refit::warp_curve(&line, &Fold, &options).unwrap();
+    assert_eq!(folded.path.segments().count(), 2);
+    let corner = folded.path.segments().next().unwrap().eval(1.0);
+    assert!(corner.distance(Point::new(40.0, 30.0)) < 1e-9);
+    let pole = from_fn(|p| Point::new(1.0 / (p.x - 150.0), p.y));
+    let Err(pathwarp::fit::Error::NotFinite(e)) = refit::warp_curve(&line, &pole, &options) else { panic!("no error") };
+    assert!(e.at.distance(Point::new(150.0, 30.0)) < 1.0, "{e:?}");
 }

@@ -129,3 +129,21 @@ def test_messages():
     small = run("read", str(LOGO), "scale", "0.2", "0.2", "pathwarp", "arc", "--bend", "40%", "--curves", "lines", "layout", "tight")
     assert small.returncode == 0 and "past the page" not in small.stderr, small
     assert "--bend" in run("pathwarp", "arc", "--help").stdout and "DEFORMATION" in run("pathwarp", "--help").stdout
+
+
+def test_a_function_in_a_file_is_a_map(circle, tmp_path):
+    maps = ROOT / "examples/python/maps.py"
+    bent = execute(f"read --no-crop {circle} pathwarp {maps}:breeze")
+    # Each vertex, and each middle between two, is near the image of the circle by the formula.
+    x, y = exact_circle().T
+    image = x + 9 * np.sin(y / 40) + 1j * (y + x / 16 * np.sin(x / 60 + y / 200))
+    (line,) = bent.layers[1]
+    assert max(abs(image - p).min() for p in np.concatenate([line, (line[1:] + line[:-1]) / 2])) < 0.02 * MM
+    for words, told in (
+        (f"{maps}:storm", "has no function `storm`"),
+        (f"{tmp_path}/none.py:breeze", "FileNotFoundError"),
+        (f"{maps}:breeze --curves source", "bends lines"),
+    ):
+        command = [sys.executable, "-m", "vpype_cli", "read", str(circle), "pathwarp", *words.split()]
+        failed = subprocess.run(command, capture_output=True, text=True)
+        assert failed.returncode == 2 and told in failed.stderr, failed.stderr

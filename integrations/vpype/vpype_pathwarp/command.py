@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import logging
+import runpy
 import textwrap
 from typing import Any
 
@@ -21,6 +22,7 @@ HELP = """Bend the drawing by a deformation of pathwarp.
 
     DEFORMATION is one of pathwarp's (shaper, bend, wave, swirl…) or one of its presets (arc, flag, arch…); its parameters follow as
     options, as on pathwarp's command line. `pathwarp list` shows them all, and `vpype pathwarp DEFORMATION --help` those of one.
+    FILE.py:NAME is a function of your own: it takes arrays of x and y in px, and gives a pair of such arrays.
 
     If the drawing is as `read` left it, its SVG file is bent and then flattened, so that curves are as smooth as if they had been
     drawn bent. Otherwise the lines are bent as they are, straight ones as finely as --quantization asks.
@@ -30,6 +32,8 @@ HELP = """Bend the drawing by a deformation of pathwarp.
         vpype read logo.svg pathwarp arc --bend 40% write out.svg
 
         vpype read logo.svg crop 0 0 10cm 10cm pathwarp shaper --shaper cage.svg write out.svg
+
+        vpype read logo.svg pathwarp maps.py:breeze write out.svg
 """
 
 
@@ -91,10 +95,13 @@ class PathwarpCommand(click.Command):
         if not name or name.startswith("-"):
             return super().parse_args(ctx, args or ["--help"])
         info = pw.find(name)
-        if info is None:
+        if ".py:" in name:
+            own, about = [], f"{name} — a function of x and y in px"
+        elif info is None:
             raise click.UsageError(str(_error(lambda: pw.Deformation(name))), ctx)
-        own = options_of(info, preset=name.lower() != info.name)
-        about = f"{info.name} — {info.title}\n\n{textwrap.fill(info.about, 100)}"
+        else:
+            own = options_of(info, preset=name.lower() != info.name)
+            about = f"{info.name} — {info.title}\n\n{textwrap.fill(info.about, 100)}"
         inner = click.Command(f"pathwarp {name}", params=[*own, *common()], help=about)
         settings = {"allow_extra_args": True, "allow_interspersed_args": False}
         with inner.make_context(f"pathwarp {name}", args[1:], parent=ctx.parent, **settings) as parsed:
@@ -109,11 +116,27 @@ class PathwarpCommand(click.Command):
 def call(ctx: click.Context, name: str, values: dict[str, Any]) -> Call:
     curves, frame, inverse = values.pop("curves"), values.pop("frame"), values.pop("inverse")
     given = {k: list(v) if isinstance(v, tuple) else v for k, v in values.items() if v not in (None, (), False)}
+    made_of: Any = name
+    if ".py:" in name:
+        if curves == "source":
+            raise click.UsageError("a function of px bends lines; --curves source bends the file, in its user units", ctx)
+        made_of, curves = function(name, ctx), "lines"
     try:
-        deformation = pw.Deformation(name, frame=frame, **given)
+        deformation = pw.Deformation(made_of, frame=frame, **given)
         return Call(deformation.inverse() if inverse else deformation, curves)
     except pw.PathwarpError as e:
         raise click.UsageError(str(e), ctx) from None
+
+
+def function(name: str, ctx: click.Context) -> Any:
+    """The function that FILE.py:NAME names. The file runs as a program does."""
+    file, _, word = name.rpartition(":")
+    try:
+        return runpy.run_path(file)[word]
+    except KeyError:
+        raise click.UsageError(f"{file} has no function `{word}`", ctx) from None
+    except Exception as e:  # the file may do anything
+        raise click.UsageError(f"{file}: {type(e).__name__}: {e}", ctx) from e
 
 
 def _error(failing: Any) -> Exception:

@@ -78,7 +78,7 @@ fn checks_tell_of_crashes_of_edges_and_of_two_answers() {
     let crash = "return x + math.sin(self.height * y) / self.height, y";
     let file = with_laws(&s, "crash", crash, "[{\"identity\": {\"height\": 0}}]", "plane");
     let (told, _) = s.expect(1, &["check", &file]);
-    assert!(told.contains("FAIL  laws") && told.contains("ended") && told.contains("(\"height\", \"0\")"), "{told}");
+    assert!(told.contains("FAIL  laws") && told.contains("ended") && told.contains("{\"height\": 0}"), "{told}");
 
     let half = "return (x + x * x / 100, y) if x > 9 else (math.nan, math.nan)";
     let law = "[{\"keeps-lines-along\": [{}, [0, 1]]}]";
@@ -103,6 +103,67 @@ fn checks_tell_of_crashes_of_edges_and_of_two_answers() {
     let file = with_laws(&s, "random", random, "[]", "plane");
     let (told, _) = s.expect(1, &["check", &file]);
     assert!(told.contains("gives two answers for the point 3.7,4.3: ") && !told.contains("refitting"), "{told}");
+}
+
+/// The check tells each mistake by its kind, in words that an author finds in the entry or can write into the program.
+#[test]
+fn mistakes_are_told_by_their_kind() {
+    if !python() {
+        return;
+    }
+    let s = Scratch::new();
+    let laws = "[{\"identity\": {\"height\": 0}}, {\"keeps-lines\": {}}, {\"area\": [{}, 1]}, {\"undoes\": [{}, {}]}]";
+    let counter = "self.n = getattr(self, 'n', 0) + 1; return x, y + (5 if self.height else self.n // 100)";
+    for (name, point, laws, domain, words) in [
+        (
+            "kink",
+            "return x, y + 0.3 * abs(x - 50)",
+            "[]",
+            "plane",
+            vec!["FAIL  creases", "declare a crease at line 1 0 -50"],
+        ),
+        (
+            "ring",
+            "return x, y + max(0, 20 - math.hypot(x - 50, y - 40)) / 5",
+            "[]",
+            "plane",
+            vec!["at circle 50 40 20"],
+        ),
+        ("rounds", "return x, round(y + 10 * math.sin(x / 9), 3)", "[]", "plane", vec!["y' is rounded to 3 decimals"]),
+        (
+            "swaps",
+            "return y, x + math.sin(y / 9)",
+            "[]",
+            "plane",
+            vec!["is sound", "it mirrors, as one does that swaps x and y"],
+        ),
+        (
+            "counts",
+            counter,
+            "[{\"identity\": {\"height\": 0}}]",
+            "plane",
+            vec!["FAIL  laws", "{\"height\": 0} gives two answers for the point"],
+        ),
+        (
+            "nothing",
+            "return math.nan, math.nan",
+            laws,
+            "partial",
+            vec!["FAIL  values", "has no value at any of 81 places"],
+        ),
+    ] {
+        let file = with_laws(&s, name, point, laws, domain);
+        let sound = i32::from(name != "swaps");
+        let (told, _) = s.expect(sound, &["check", &file]);
+        assert!(words.iter().all(|w| told.contains(w)) && !told.contains("Point {"), "{words:?}: {told}");
+        if name == "nothing" {
+            assert_eq!(told.matches("the map has no value at any place").count(), 3 + 1, "{told}");
+            assert!(told.contains("area {}: the map"), "{told}");
+        }
+    }
+    let crease = [("write(\"ok\\n\")", "write(\"crease line 0 0 5\\nok\\n\")")];
+    let (told, _) = s.expect(1, &["check", &template(&s, "creased", &crease)]);
+    assert!(told.contains("FAIL  build") && told.contains("`crease line 0 0 5` is no crease"), "{told}");
 }
 
 #[test]

@@ -139,7 +139,7 @@ fn every_deformation_is_the_same_far_from_the_origin() {
     let mut wrong = Vec::new();
     for setting in SETTINGS {
         let (near, far) = (built(setting, Vec2::ZERO), built(setting, FAR));
-        let back = inverse_over(&far.map, FRAME + FAR);
+        let back = inverse_over(far.map.clone(), FRAME + FAR);
         let [mut worst, mut returned] = [0.0f64; 2];
         for k in 0..400_u32 {
             // Multiples of 1/64, which are the same far away.

@@ -61,7 +61,7 @@ impl Found {
         let off = off(&outline, map, &warped, samples);
         let r = &warped.report;
         let says = || format!("{what} on {d}, merge {merge}: {off} is {:?} {}", r.assurance, r.max_error);
-        if !r.over_budget.is_empty() {
+        if !r.unresolved.is_empty() {
             self.warned.push(says());
         } else if off <= TOLERANCE * (1.0 + 1e-6) && r.assurance >= Assurance::Checked {
             self.right += 1;
@@ -134,9 +134,10 @@ fn built_in_maps_are_not_merely_sampled() {
         let map = entry.build_from(&Args::from_pairs(info.demo), &frame).unwrap().map;
         let image = map.jet(Point::new(50.0, 50.0)).p;
         let moved = Affine::translate(image - Point::new(50.0, 50.0)) * Affine::scale_about(0.2, (50.0, 50.0));
-        for (way, map, art) in
-            [("it", map.clone(), art.clone()), ("its inverse", inverse_over(&map, frame.rect), art.transformed(moved))]
-        {
+        for (way, map, art) in [
+            ("it", map.clone(), art.clone()),
+            ("its inverse", inverse_over(map.clone(), frame.rect), art.transformed(moved)),
+        ] {
             if let Ok(w) = warp_path(&art, &*map, &Options::new(0.01)) {
                 assert!(w.report.assurance > Assurance::Sampled, "{}, {way}", info.name);
                 seen += 1;

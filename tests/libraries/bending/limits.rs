@@ -8,7 +8,7 @@ use pathwarp_oracle::{Fold, Ripple};
 use std::sync::Arc;
 
 fn warp(d: &str, map: &dyn Map, tolerance: f64) -> RefittedPath {
-    warp_path(&Outline::from_svg(d).unwrap(), map, &Options::new(tolerance)).unwrap()
+    warp_path(&Outline::from_svg(d).unwrap(), map, &Options::new(tolerance).with_nodes(Nodes::Source)).unwrap()
 }
 
 fn single(seg: Seg) -> Outline {

@@ -1,9 +1,10 @@
 //! Shapes that come again, as letters do: their cubics are carried from place to place, and stay within the tolerance.
 
 use pathwarp::Outline;
+use pathwarp::engine::KnownShapes;
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use pathwarp::map::{Class, Jet, Map};
-use pathwarp::refit::{KnownShapes, Nodes, Options, RefittedPath, warp_path};
+use pathwarp::refit::{Nodes, Options, RefittedPath, warp_path};
 use pathwarp_oracle::{Bicubic, Rational, Ripple};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -35,7 +36,7 @@ fn maps() -> [Box<dyn Map>; 4] {
 
 /// Every subpath of the result against the image of its own.
 fn assert_within(line: &Outline, w: &RefittedPath, map: &dyn Map, tolerance: f64) {
-    assert!(w.report.max_error <= tolerance && w.report.over_budget.is_empty());
+    assert!(w.report.max_error <= tolerance && w.report.unresolved.is_empty());
     let out = Outline::from(&w.path);
     assert_eq!(out.subpaths.len(), line.subpaths.len());
     for (from, to) in line.subpaths.iter().zip(out.subpaths) {

@@ -1,9 +1,10 @@
 //! Reports: exact images are reported as exact, and places at which the work budget ran out are listed.
 
 use pathwarp::budget::{Budget, Limit, Limits};
+use pathwarp::engine::RESOLUTION;
 use pathwarp::kurbo::{Affine, ParamCurve, PathEl, Point, Vec2};
 use pathwarp::map::{AffineMap, Formula, Homography, Jet, Map, Real};
-use pathwarp::refit::{Assurance, Nodes, Options, RESOLUTION, warp_path};
+use pathwarp::refit::{Assurance, Nodes, Options, warp_path};
 use pathwarp::{GeometryError, Outline, Seg};
 use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Bicubic, Run, distance, far};
@@ -53,7 +54,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     )
     .unwrap();
     for tolerance in [10.0, 1.0, 0.01] {
-        let w = warp_path(&outline, &map, &Options::new(tolerance)).unwrap();
+        let w = warp_path(&outline, &map, &Options::new(tolerance).with_nodes(Nodes::Source)).unwrap();
         let out = pathwarp_oracle::cubics(&w.path);
         // In the order of the path.
         let mut nodes = out.iter().map(|c| c.p3);
@@ -90,8 +91,8 @@ fn misfits_are_reported_with_their_place() {
                 });
                 let w = warp_path(&outline, &Torn, &o).unwrap();
                 let r = &w.report;
-                assert!(!r.over_budget.is_empty(), "{d} {tolerance}");
-                assert!(r.over_budget.iter().all(|p| (p.x - 500.0).abs() < 1e-3), "{d}: {:?}", r.over_budget);
+                assert!(!r.unresolved.is_empty(), "{d} {tolerance}");
+                assert!(r.unresolved.iter().all(|p| (p.x - 500.0).abs() < 1e-3), "{d}: {:?}", r.unresolved);
                 assert!(r.max_error > tolerance && r.assurance == Assurance::Sampled, "{d} {tolerance}: {r:?}");
                 // The stated error is that of the line across the tear: half of its length, unless it comes near the image elsewhere.
                 let image: Vec<Point> = (0..=4000).map(|i| Torn.point(seg.eval(f64::from(i) / 4000.0))).collect();
@@ -133,7 +134,7 @@ fn the_budget_ends() {
                 continue;
             }
         };
-        assert!(!w.report.over_budget.is_empty());
+        assert!(!w.report.unresolved.is_empty());
         let truth = distance(&outline, &Noise, &w.path, 30_000, 1.0);
         assert!(w.report.max_error >= truth && w.report.max_error < 100.0, "{truth} {:?}", w.report);
         assert!(w.path.is_finite() && w.report.segments_out < 20_000, "{}", w.report.segments_out);
@@ -148,9 +149,9 @@ fn a_tolerance_below_rounding_names_a_place() {
     let resolution = RESOLUTION * far.extent();
     let report = |tolerance: f64| warp_path(&far, &quarter_turn, &Options::new(tolerance)).unwrap().report;
     let missed = report(resolution * (1.0 - 1e-10));
-    assert!(missed.unresolved.is_some() && missed.over_budget.len() == 1, "{missed:?}");
+    assert!(missed.resolution.is_some() && missed.unresolved.len() == 1, "{missed:?}");
     let met = report(resolution * (1.0 + 1e-10));
-    assert!(met.unresolved.is_none() && met.over_budget.is_empty(), "{met:?}");
+    assert!(met.resolution.is_none() && met.unresolved.is_empty(), "{met:?}");
 }
 
 /// A cone on the plane: the tip of √(x² + y²) has a value and no derivative.
@@ -167,7 +168,7 @@ fn a_formula_is_followed_through_the_tip_of_a_root() {
     for d in ["M0 0L80 30", "M-60 -20L0 0L50 5", "M0 0C20 40 60 -20 90 10", "M-70 1C-20 0 0 0 0 0"] {
         let outline = Outline::from_svg(d).unwrap();
         let w = warp_path(&outline, &Cone, &Options::new(0.01)).unwrap();
-        assert!(w.report.over_budget.is_empty() && w.report.max_error <= 0.01, "{d}: {:?}", w.report);
+        assert!(w.report.unresolved.is_empty() && w.report.max_error <= 0.01, "{d}: {:?}", w.report);
         let image = |p: Point| {
             let r = p.to_vec2().hypot();
             Point::new(p.x * (r * 0.01 + 1.0), p.y + r * 0.5)
@@ -209,7 +210,7 @@ fn the_share_is_that_of_the_stated_error() {
     // Ten million units away, a tolerance of 1e-9 is below the rounding of coordinates.
     let outline = Outline::from_svg("M1e7 1e7h10v10").unwrap();
     let report = warp_path(&outline, &AffineMap(Affine::translate((5.0, 3.0))), &Options::new(1e-9)).unwrap().report;
-    assert!(report.unresolved.is_some());
+    assert!(report.resolution.is_some());
     assert_eq!(report.share, report.max_error / 1e-9);
 }
 

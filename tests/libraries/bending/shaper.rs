@@ -178,7 +178,7 @@ proptest! {
                 Ok(w) => {
                     prop_assert!(w.path.is_finite() && w.path.bounding_box().is_finite());
                     prop_assert_eq!(w.path.iter().filter(|e| matches!(e, PathEl::MoveTo(_))).count(), art.subpaths.len());
-                    prop_assert!(w.report.max_error <= 0.01 || !w.report.over_budget.is_empty());
+                    prop_assert!(w.report.max_error <= 0.01 || !w.report.unresolved.is_empty());
                 }
             },
         }

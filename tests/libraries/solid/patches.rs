@@ -148,6 +148,17 @@ fn anamorphoses_over_every_reference() {
         let delta = Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * w + (Q::ONE / q(0.8) - Q::ONE) * &rest * &rest;
         radial(&p, eye, &delta)
     });
+    // A pentahedron on the same axes, of degree 1 over x and y and 2 along z: its degree 3 times that of the patch.
+    let pentahedron = ("reference", "0,0,0 128,0,0 0,128,0 0,0,128 128,0,128 0,128,128");
+    let map = chain("anamorph", &[at, pentahedron, ("degree", "1x1x2"), ("push", "0,1,0,1:1.6 1,0,0,2:0.8")]);
+    compare(&patch([2, 3], true), &map, [6, 9], 1e-12, |p| {
+        let [u, v, w] = p.clone().map(|c| c / q(128.0));
+        let rest = Q::ONE - &u - &v;
+        let delta = Q::ONE
+            + (Q::ONE / q(1.6) - Q::ONE) * u * bernstein(2, 1, &w)
+            + (Q::ONE / q(0.8) - Q::ONE) * rest * bernstein(2, 2, &w);
+        radial(&p, eye, &delta)
+    });
     let cuboid = chain("anamorph", &[at, ("degree", "2x1x1"), ("push", "1,0,1:1.6")]);
     compare(&patch([2, 3], true), &cuboid, [8, 12], 1e-12, |p| {
         let t = p.clone().map(|c| c / q(64.0));

@@ -9,7 +9,8 @@ use pathwarp_engine::Warper;
 use pathwarp_oracle::drawings::{drawing, read};
 use pathwarp_oracle::{Polygon, Random, flat};
 use pathwarp_raster::{Pixmap, encode_png};
-use pathwarp_svg::{CutLine, Edit, PageFit, WarpOptions, WarpedDocument};
+use pathwarp_svg::engine::CutLine;
+use pathwarp_svg::{Edit, PageFit, WarpOptions, WarpedDocument};
 
 const TOLERANCE: f64 = 0.01;
 

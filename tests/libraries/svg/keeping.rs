@@ -3,10 +3,8 @@
 
 use base64::Engine as _;
 use pathwarp_oracle::drawings::{Bend, drawing, oblique, options, read, warp, warp_options};
-use pathwarp_svg::{
-    BentImage, Document, ImageRequest, ImageWarper, Images, OnError, PictureError, Structure, WarpedDocument,
-    compressed,
-};
+use pathwarp_svg::engine::{BentImage, ImageRequest, ImageWarper, PictureError, compressed};
+use pathwarp_svg::{Document, Images, OnError, Structure, WarpedDocument};
 use std::sync::Arc;
 
 fn flat(body: &str) -> WarpedDocument {

@@ -2,7 +2,8 @@
 
 use pathwarp::kurbo::{Affine, Point, Rect};
 use pathwarp_oracle::drawings::{Bend, drawing, read, warp_options};
-use pathwarp_svg::{LetterPlaces, LetteringFrame, LetteringFrameError, Selection};
+use pathwarp_svg::Selection;
+use pathwarp_svg::engine::{LetterPlaces, LetteringFrame, LetteringFrameError};
 
 const ALL: [LetteringFrame; 5] = [
     LetteringFrame::BaselineAscent,

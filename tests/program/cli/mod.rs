@@ -2,6 +2,7 @@
 
 mod badges;
 mod batches;
+mod captions;
 mod chains;
 mod circles;
 mod commands;

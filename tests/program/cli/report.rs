@@ -112,7 +112,7 @@ fn a_missed_tolerance_is_reported_with_its_place() {
         assert!(text(&out.stderr).contains("misses the tolerance near"), "{}", text(&out.stderr));
         let s = &r["shapes"][0];
         assert!(s["max_error"].as_f64().unwrap() > 0.001 && s["assurance"] == "checked" && s["certified"] == false);
-        let places = s["over_budget"].as_array().unwrap();
+        let places = s["unresolved"].as_array().unwrap();
         assert!(!places.is_empty());
         // Only the horizontal sides miss it; the vertical ones stay straight.
         assert!(places.iter().all(|p| p[1] == 0.0 || p[1] == 100.0), "{places:?}");

@@ -145,7 +145,7 @@ impl Entity {
         out
     }
 
-    /// De Boor's algorithm, for any knots.
+    /// Points along a spline.
     fn spline(&self) -> Vec<Point> {
         let degree = self.number(71) as usize;
         let knots = self.all(40);
@@ -158,19 +158,29 @@ impl Entity {
             let polygon: f64 = points[k - degree..=k].windows(2).map(|w| w[0].distance(w[1])).sum();
             let n = (polygon / STEP).clamp(20.0, 2000.0).ceil() as usize;
             for i in 0..=n {
-                let x = knots[k] + (knots[k + 1] - knots[k]) * i as f64 / n as f64;
-                let mut d: Vec<Point> = points[k - degree..=k].to_vec();
-                for r in 1..=degree {
-                    for j in (r..=degree).rev() {
-                        let i = j + k - degree;
-                        let a = (x - knots[i]) / (knots[i + 1 + degree - r] - knots[i]);
-                        d[j] = d[j - 1].lerp(d[j], a);
-                    }
-                }
-                out.push(d[degree]);
+                let [x, y, _] = self.in_span(k, knots[k] + (knots[k + 1] - knots[k]) * i as f64 / n as f64);
+                out.push(Point::new(x, y));
             }
         }
         out
+    }
+
+    /// A point of a spline in the span behind knot `k`, by de Boor's algorithm on homogeneous coordinates.
+    pub fn in_span(&self, k: usize, t: f64) -> [f64; 3] {
+        let (degree, knots, weights) = (self.number(71) as usize, self.all(40), self.all(41));
+        let axes = [10, 20, 30].map(|code| self.all(code));
+        let weight = |i: usize| weights.get(i).copied().unwrap_or(1.0);
+        let of = |i: usize| [axes[0][i] * weight(i), axes[1][i] * weight(i), axes[2][i] * weight(i), weight(i)];
+        let mut d: Vec<[f64; 4]> = (k - degree..=k).map(of).collect();
+        for r in 1..=degree {
+            for j in (r..=degree).rev() {
+                let i = j + k - degree;
+                let a = (t - knots[i]) / (knots[i + 1 + degree - r] - knots[i]);
+                d[j] = std::array::from_fn(|c| d[j - 1][c] * (1.0 - a) + d[j][c] * a);
+            }
+        }
+        let [x, y, z, w] = d[degree];
+        [x / w, y / w, z / w]
     }
 }
 

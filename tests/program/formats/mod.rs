@@ -4,6 +4,7 @@
 mod choice;
 mod dxf;
 mod dxf_reader;
+mod nurbs;
 mod page_size;
 mod pdf;
 mod pictures;

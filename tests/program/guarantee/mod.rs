@@ -109,7 +109,7 @@ fn done(warper: &Warper, svg: &str, d: &str) -> Option<Done> {
     let done = warper.warp_drawing(svg.as_bytes(), None).ok()?;
     let report: Value = serde_json::from_str(&done.report).unwrap();
     for s in report["shapes"].as_array()? {
-        if s["over_budget"].as_array().is_some_and(|o| !o.is_empty()) {
+        if s["unresolved"].as_array().is_some_and(|o| !o.is_empty()) {
             return None;
         }
         assert!(s["share"].as_f64().is_none_or(|s| s <= 1.0), "{s}");

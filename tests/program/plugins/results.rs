@@ -24,7 +24,7 @@ fn the_check_names_the_law_that_fails_and_where() {
         "FAIL  laws",
         "should be the identity",
         "FAIL  cases",
-        "(1.0, 2.0)",
+        "{} takes 1,2 to 7,7",
         "fails",
     ] {
         assert!(report.contains(word), "`{word}` not in:\n{report}");

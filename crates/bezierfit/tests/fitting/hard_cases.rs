@@ -226,9 +226,9 @@ fn a_circle_of_any_number_of_cubics_is_four() {
         path.move_to(place(0));
         (0..n).for_each(|i| path.curve_to(place(i) + along(i), place(i + 1) - along(i + 1), place(i + 1)));
         path.close_path();
-        for prove in [false, true] {
-            let simple = simplify(&path, &Options::new(1.0).with_prove(prove)).unwrap();
-            assert_eq!(simple.path.segments().count(), 4, "{n} {prove}");
+        for certify in [false, true] {
+            let simple = simplify(&path, &Options::new(1.0).with_certify(certify)).unwrap();
+            assert_eq!(simple.path.segments().count(), 4, "{n} {certify}");
             let radii = simple
                 .path
                 .segments()

@@ -1,7 +1,9 @@
 //! What options and sources promise, measured on the output itself.
 
 use super::common::{Drawn, distance, off, polygon, wave};
-use bezierfit::{Assurance, Degree, Error, Nodes, Options, PathSource, Pieces, Segment, Source, fit, simplify};
+use bezierfit::{
+    Assurance, Degree, Error, Kurbo, Nodes, Options, PathSource, Pieces, Segment, Source, fit, fit_points, simplify,
+};
 use kurbo::{BezPath, CubicBez, Line, ParamCurve, ParamCurveDeriv, PathEl, PathSeg, Point, QuadBez, Vec2};
 use pathwarp_oracle::Random;
 
@@ -35,7 +37,7 @@ fn the_report_has_an_entry_for_every_piece() {
     let simple = simplify(&path, &Options::new(0.05)).unwrap();
     assert_eq!(simple.report.pieces[0].assurance, Assurance::Exact);
     let circle = kurbo::Shape::to_path(&kurbo::Circle::new((0.0, 0.0), 100.0), 1e-12);
-    let proven = simplify(&circle, &Options::new(0.05).with_prove(true)).unwrap();
+    let proven = simplify(&circle, &Options::new(0.05).with_certify(true)).unwrap();
     assert!(proven.report.pieces.iter().all(|p| p.assurance >= Assurance::Certified));
     assert!(proven.report.pieces.iter().any(|p| p.assurance == Assurance::Certified));
 }
@@ -239,4 +241,45 @@ fn points_become_arcs_lines_and_corners() {
         simplify(&polygon(&[Point::new(f64::NAN, 0.0)], true), &Options::new(0.1)),
         Err(Error::NotFinite(_))
     ));
+}
+
+/// Points of a circle, of a square and of a wave: corners are those of the curve, not the points.
+#[test]
+fn points_have_no_corners_of_their_own() {
+    let circle = |i: i32| 100.0 * Vec2::from_angle(f64::from(i % 400) * std::f64::consts::TAU / 400.0);
+    let square = |i: i32| match (i / 100 % 4, f64::from(i % 100)) {
+        (0, t) => (t, 0.0),
+        (1, t) => (100.0, t),
+        (2, t) => (100.0 - t, 100.0),
+        (_, t) => (0.0, 100.0 - t),
+    };
+    for (points, most) in [
+        ((0..=400).map(|i| circle(i).to_point()).collect::<Vec<_>>(), 5),
+        ((0..=400).map(|i| square(i).into()).collect(), 4),
+        ((0..400).map(|i| wave(9.0).eval(f64::from(i) / 399.0).0).collect(), 12),
+    ] {
+        let fitted = fit_points(points.iter().copied(), &Options::new(0.1)).unwrap();
+        assert!(fitted.path.segments().count() <= most, "{}", fitted.path.to_svg());
+        for p in points {
+            let off = fitted.path.segments().map(|s| kurbo::ParamCurveNearest::nearest(&s, p, 1e-9).distance_sq);
+            assert!(off.fold(f64::INFINITY, f64::min).sqrt() <= 0.1001);
+        }
+    }
+    assert!(matches!(fit_points([(0.0, f64::NAN), (1.0, 1.0)], &Options::new(0.1)), Err(Error::NotFinite(_))));
+    for few in [vec![], vec![(1.0, 1.0)], vec![(1.0, 1.0); 2], vec![(1.0, 1.0); 3]] {
+        assert!(fit_points(few, &Options::new(0.1)).is_ok());
+    }
+}
+
+/// Kurbo's fitter with a source of ours, with its corner kept, and a round trip through both adaptors.
+#[test]
+fn curves_go_to_kurbo_and_back() {
+    let theirs = kurbo::fit_to_bezpath(&Kurbo(wave(20.0)), 0.01);
+    assert!(distance(&wave(20.0), &theirs, 0.01) <= 0.02);
+    let roof = PathSource::new(&BezPath::from_svg("M0 0C10 20 40 50 50 50L100 0").unwrap()).unwrap();
+    let twice = Kurbo(Kurbo(roof.clone()));
+    assert_eq!(Source::breaks(&twice), Source::breaks(&roof));
+    assert_eq!(fit(&twice, &Options::new(0.01)).unwrap().path.segments().count(), 2);
+    let corner = kurbo::fit_to_bezpath(&Kurbo(roof), 0.01).segments().any(|s| s.end() == Point::new(50.0, 50.0));
+    assert!(corner);
 }

@@ -8,7 +8,7 @@ use crate::commands::gimp_paths;
 use crate::ending::Status;
 use crate::terminal;
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use pathwarp::decimal::trimmed;
+use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Point;
 use pathwarp_engine::export::{self, Exported, KerfReport};
 use pathwarp_engine::failure::Failure;

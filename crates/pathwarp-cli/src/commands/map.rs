@@ -3,6 +3,7 @@
 use crate::arguments;
 use crate::arguments::reading_args;
 use crate::commands::args::switch;
+use crate::commands::exact::{self, Curves};
 use crate::ending::{Ending, Status};
 use crate::steps;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -10,14 +11,14 @@ use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
 use pathwarp::deform::{Built, Registry};
 use pathwarp::kurbo::{Point, Rect};
-use pathwarp::map::{Creases, Jet, Map, exact_images, preimages};
+use pathwarp::map::{Creases, Jet, Map as _, preimages};
 use pathwarp::outline::Outline;
-use pathwarp::param::{Args, Frame, Param, Settings};
+use pathwarp::param::Frame;
 use pathwarp::recipe::Recipe;
 use pathwarp_engine::catalogue::Catalogue as _;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::{self, PlainArtwork, hatching};
-use pathwarp_engine::options::{CommonOptions, Given, Reading, rect};
+use pathwarp_engine::options::{CommonOptions, Given, rect};
 use pathwarp_engine::session::Session;
 use pathwarp_engine::steps::INVERSE;
 use pathwarp_engine::{output, references};
@@ -45,7 +46,9 @@ pub(super) fn map_command(registry: &Registry) -> Command {
              coordinates are quotients of polynomials, and for flat anamorphoses, they are all points at which the map is defined, \
              inside and outside the frame, up to a million times its size away; for other maps, those that Newton's method finds \
              over the frame and half its size around it.\n\nWith --exact every control point of the exact image is a line x y weight, \
-             and an empty line ends each curve.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
+             and an empty line ends each curve. -o FILE.dxf writes them in millimetres (a px is 25.4/96 mm, y up), a spline with weights for \
+             each contour, of degree 9 at most; -o FILE.json as `pathwarp solid` reads them, in the numbers given. A curve of degree p \
+             keeps it under projective maps and has degree p n under others of degree n, p (m + n) under lattices of degree m x n.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
              0,0,100,100 --points -",
         );
     let frame = Arg::new("frame")
@@ -54,19 +57,13 @@ pub(super) fn map_command(registry: &Registry) -> Command {
         .allow_hyphen_values(true)
         .help("Box that percentages and defaults refer to [default: the bounding box of the points]");
     let all = switch("all", "Print all points that the maps of steps with --inverse lead back to").requires(INVERSE);
-    let exact = Arg::new(EXACT.name).long(EXACT.name).value_name("PATHREF").help(EXACT.help);
-    let exact = exact.allow_hyphen_values(true).conflicts_with_all(["points", "jacobian", "all"]);
-    let own = [frame, all.conflicts_with("jacobian"), exact];
+    let own = [frame, all.conflicts_with("jacobian")];
     for info in registry.infos() {
         let command = Command::new(info.name).aliases(steps::aliases(info.name)).about(info.title);
-        c = c.subcommand(command.args(steps::args(info)).args(points_args()).args(own.clone()));
+        c = c.subcommand(command.args(steps::args(info)).args(points_args()).args(own.clone()).args(exact::args()));
     }
     c
 }
-
-/// The path of `--exact`.
-const EXACT: Param =
-    Param::path("exact", "Instead of points, print the control points and weights of the exact image of this path");
 
 /// The file of points, and what is printed of their images.
 pub(super) fn points_args() -> [Arg; 2] {
@@ -117,12 +114,12 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
     recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
-    let exact = exact_path(m, &reading)?;
+    let exact = Curves::read(m, &reading)?;
     let (points, bytes) = if exact.is_some() { (Vec::new(), 0) } else { read_points(m, "two numbers x y")? };
     let points: Vec<Point> = points.into_iter().map(|[x, y]| Point::new(x, y)).collect();
     let frame = match (m.get_one::<String>("frame"), &exact) {
         (Some(t), _) => rect(t).map_err(|e| Failure::usage(format!("--frame: {e}")))?.rect([1.0; 2]),
-        (None, Some(path)) => path.bounding_box().unwrap_or(Rect::ZERO),
+        (None, Some(curves)) => curves.bounds(),
         (None, None) => Outline::from_points(&points, false).bounding_box().unwrap_or(Rect::ZERO),
     };
     let hatching = hatching(frame);
@@ -136,8 +133,8 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let work = if m.get_flag("all") { ALL } else { POINT };
     let spent = budget.spend(work * map.cost().work * points.len() as f64);
     spent.map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;
-    if let Some(path) = exact {
-        return Ok(print_exact(&path, map)?);
+    if let Some(curves) = exact {
+        return Ok(curves.mapped(map, m)?);
     }
     if m.get_flag("all") {
         return Ok(print_preimages(&points, &recipe, &built.steps, frame)?);
@@ -154,32 +151,6 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
         (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
     };
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
-}
-
-/// The path of `--exact`, if it is given.
-fn exact_path(m: &ArgMatches, reading: &Reading) -> Result<Option<Outline>, Failure> {
-    let Some(text) = m.get_one::<String>(EXACT.name) else { return Ok(None) };
-    let mut args = Args::from_pairs(&[(EXACT.name, text)]);
-    let params = [EXACT];
-    let found = args.resolve_paths(&params, |reference| references::in_px(reference, reading).map(Some));
-    let path = found.and_then(|()| Settings::new(&params, &args, &Frame::new(Rect::ZERO))?.path_if(EXACT.name));
-    Ok(path.map_err(Failure::of_recipe)?.map(|path| path.outline))
-}
-
-/// Prints the control points and weights of the exact image of a path.
-fn print_exact(path: &Outline, map: &dyn Map) -> Result<Status, Failure> {
-    let mut out = String::new();
-    for (k, seg) in path.segs().enumerate() {
-        let curves = exact_images(map, seg).ok_or_else(|| {
-            let problem = "has no exact image: the map's coordinates are not quotients of polynomials there";
-            Failure::usage(format!("--exact: segment {} {problem}", k + 1))
-        })?;
-        for [x, y, w] in curves.iter().flat_map(|c| c.points.iter().copied().chain([[0.0; 3]])) {
-            let _ = if [x, y, w] == [0.0; 3] { writeln!(out) } else { writeln!(out, "{} {} {w}", x / w, y / w) };
-        }
-    }
-    output::to_stdout(out.as_bytes())?;
-    Ok(Status::Complete)
 }
 
 /// Prints where all steps lead, with every preimage of those that are inverses.

@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod convert;
 mod edit;
+mod exact;
 mod gimp_paths;
 mod help;
 mod install;
@@ -135,6 +136,7 @@ static OTHERS: &[Subcommand] = &[
     subcommand("text", text::text_command, |c| Ok(text::text(c.registry, c.matches, c.words)?)),
     subcommand("badge", text::badge_command, |c| Ok(text::badge(c.registry, c.matches, c.words)?)),
     subcommand("paths", |_| convert::paths_command(), |c| Ok(convert::list_paths(c.matches)?)),
+    subcommand("caption", |_| warp::caption_command(), |c| c.deform("caption")),
     subcommand("simplify", |_| warp::simplify_command(), |c| c.deform("simplify")),
     subcommand("offset", |_| warp::offset_command(), |c| c.deform("offset")),
     subcommand("unite", |_| warp::unite_command(), |c| c.deform("unite")),

@@ -6,7 +6,7 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::check::{Check, frame, report};
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp::kurbo::Point;
-use pathwarp::map::{Jet, Map};
+use pathwarp::map::Jet;
 use pathwarp::param::Args;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::output::{self, PendingFile};
@@ -14,7 +14,7 @@ use pathwarp_engine::{advice, readable};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 pub(super) fn check_command() -> Command {
     Command::new("check")
@@ -42,58 +42,71 @@ pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> R
         return Err(plugins.failure(what).unwrap_or_else(|| Failure::usage(unknown())));
     };
     let name = entry.info().name;
-    let mut out = match plugins.get(name) {
+    let whose = match plugins.get(name) {
         None => format!("{name}, built in\n"),
         Some(p) => format!("{name}, the plug-in {}\n", p.path().display()),
     };
-    let checks = report(entry);
-    let wrong: usize = checks.iter().filter(|c| !c.faults.is_empty()).count();
-    checks.iter().for_each(|check| show(check, &mut out));
-    if wrong == 0 {
-        if let Some(speed) = speed(entry) {
-            let _ = writeln!(out, "  ok    {:<10}  {speed}", "speed");
+    output::to_stdout(whose.as_bytes())?;
+    // Before the checks, which take long if it is slow.
+    let speed = speed(entry).map(|speed| format!("  ok    {:<10}  {speed}\n", "speed")).unwrap_or_default();
+    let mut told = output::to_stdout(speed.as_bytes());
+    let (mut wrong, mut count) = (0, 0);
+    report(entry, |check| {
+        count += 1;
+        wrong += usize::from(!check.faults.is_empty());
+        if told.is_ok() {
+            told = show(&check);
         }
-        let _ = writeln!(out, "{name} is sound");
-    } else {
-        let _ = writeln!(out, "{name} fails {wrong} of {} checks", checks.len());
-    }
-    output::to_stdout(out.as_bytes())?;
+    });
+    told?;
+    let verdict = if wrong == 0 { "is sound".to_owned() } else { format!("fails {wrong} of {count} checks") };
+    output::to_stdout(format!("{name} {verdict}\n").as_bytes())?;
     Ok(Status::partial_if(wrong > 0))
 }
 
-/// The lines of one check.
-fn show(check: &Check, out: &mut String) {
+/// Prints the lines of one check.
+fn show(check: &Check) -> Result<(), Failure> {
     let word = if check.faults.is_empty() { "ok  " } else { "FAIL" };
-    let _ = writeln!(out, "  {word}  {:<10}  {}", check.name, readable::message(&check.detail));
+    let mut out = format!("  {word}  {:<10}  {}\n", check.name, readable::message(&check.detail));
     for fault in &check.faults {
         let _ = writeln!(out, "        {:<10}  {}", "", readable::message(fault));
     }
+    output::to_stdout(out.as_bytes())
 }
 
-/// The time for a point and for a jet, alone and in large batches.
+/// Describes the time for a point and for a jet, alone and in large batches; `None` if the map cannot be built or fails.
 fn speed(entry: &dyn Deformation) -> Option<String> {
     /// Points in a batch.
     const BATCH: usize = 4096;
-    /// Calls for single points.
-    const CALLS: usize = 50;
-    let map = entry.build_from(&Args::from_pairs(entry.info().demo), &frame()).ok()?.map;
+    /// Points in a small batch, and calls for single points.
+    const FEW: usize = 50;
+    /// The time for a point from which on larger batches are not waited for.
+    const SLOW: Duration = Duration::from_micros(500);
+    /// Points that a drawing of some hundred segments takes, about.
+    const DRAWING: u32 = 20_000;
+    let built = entry.build_from(&Args::from_pairs(entry.info().demo), &frame()).ok()?;
+    let map = &*built.map;
     let place = |i: usize| Point::new(3.0 + 0.0231 * i as f64, 97.0 - 0.0229 * i as f64);
     let points: Vec<Point> = (0..BATCH).map(place).collect();
     let (mut images, mut jets) = (points.clone(), vec![Jet::default(); BATCH]);
-    let clock = Instant::now();
-    map.points(&points, &mut images);
-    let point = clock.elapsed() / BATCH as u32;
-    let clock = Instant::now();
-    map.jets(&points, &mut jets);
-    let jet = clock.elapsed() / BATCH as u32;
-    let clock = Instant::now();
-    points.iter().take(CALLS).for_each(|p| {
-        let _ = map.point(*p);
-    });
-    let call = clock.elapsed() / CALLS as u32;
-    Some(format!(
-        "{point:.1?} for a point and {jet:.1?} for one with derivatives, in batches of {BATCH}; {call:.1?} for a single one"
-    ))
+    let each = |count: usize, work: &mut dyn FnMut()| {
+        let clock = Instant::now();
+        work();
+        clock.elapsed() / count as u32
+    };
+    let point = each(FEW, &mut || map.points(&points[..FEW], &mut images[..FEW]));
+    let speed = if point > SLOW {
+        let drawing = point * DRAWING;
+        format!("slow: {point:.1?} for a point, in batches of {FEW}; a drawing of {DRAWING} points takes {drawing:.1?}")
+    } else {
+        let point = each(BATCH, &mut || map.points(&points, &mut images));
+        let jet = each(BATCH, &mut || map.jets(&points, &mut jets));
+        let single = each(FEW, &mut || points.iter().take(FEW).for_each(|p| _ = map.point(*p)));
+        format!(
+            "{point:.1?} for a point and {jet:.1?} for one with derivatives, in batches of {BATCH}; {single:.1?} for a single one"
+        )
+    };
+    built.failure.as_ref().is_none_or(|failed| failed().is_none()).then_some(speed)
 }
 
 /// The words that stand for the name in the templates.

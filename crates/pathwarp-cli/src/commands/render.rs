@@ -18,9 +18,9 @@ use pathwarp_engine::options::CommonOptions;
 use pathwarp_engine::report::SkippedShape;
 use pathwarp_engine::{advice, export, input, output};
 use pathwarp_raster::{Picture, RenderOptions, Size};
+use pathwarp_svg::engine::{LetteringOptions, families, write_lettering};
 use pathwarp_svg::sheet::{Cell, SheetOptions, sheet};
-use pathwarp_svg::{Document, LetteringOptions, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument};
-use pathwarp_svg::{families, usvg_tree, write_lettering};
+use pathwarp_svg::{Document, ReadOptions, Selection, Skipped, WarpOptions, WarpedDocument, usvg_tree};
 use pathwarp_text::TextStyle;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -348,7 +348,9 @@ impl Preset<'_> {
     fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
-        let options = WarpOptions::new(refit::Options::new(tolerance).with_budget(doc.budget().clone()));
+        let options = WarpOptions::new(
+            refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone()),
+        );
         Ok(doc.warp(&built.map, &options)?)
     }
 }

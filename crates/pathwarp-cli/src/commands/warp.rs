@@ -174,6 +174,20 @@ const SHARED: [&str; 29] = [
 /// The options that some of the three commands have beside their parameters.
 const OF_EDITS: [&str; 3] = ["text", "union", "image-dpi"];
 
+pub(super) fn caption_command() -> Command {
+    let about = "Set words on a drawing";
+    declared("caption", about, &[])
+        .long_about(format!(
+            "{about}.\n\nThe words lie above the drawing, as the outlines of their letters, and bend with it. A recipe has them as words. The group \
+             of the first caption is called caption-1, and its letters caption-1-1, caption-1-2 and so on, for --select.",
+        ))
+        .after_help(
+            "Examples:\n  A name below a badge:\n    pathwarp caption badge.svg --words Fjord --at 50%,105% --align center -o named.svg\n  Two \
+             lines, and then a flag of all:\n    pathwarp caption badge.svg --words 'The Old' --words Bakery --weight bold --fill '#c30' -o flag.svg + \
+             warp --style flag",
+        )
+}
+
 pub(super) fn simplify_command() -> Command {
     let about = "Give paths the fewest nodes within a distance";
     declared("simplify", about, &[])

@@ -302,9 +302,9 @@ fn warn(r: &FileReport, count: usize) {
     for s in r.skipped.iter().take(SHOWN) {
         terminal::warning(&of_file(&s.to_string()));
     }
-    for s in r.shapes.iter().map(|s| &s.shape).filter(|s| !s.path.over_budget.is_empty()).take(SHOWN) {
-        let Point { x, y } = s.path.over_budget[0];
-        let why = match s.path.unresolved {
+    for s in r.shapes.iter().map(|s| &s.shape).filter(|s| !s.path.unresolved.is_empty()).take(SHOWN) {
+        let Point { x, y } = s.path.unresolved[0];
+        let why = match s.path.resolution {
             Some(resolution) => format!("it is below the resolution of these coordinates, {resolution:.0e}"),
             None => format!("the error there is up to {:.3e}", s.path.max_error),
         };

@@ -2,9 +2,10 @@
 
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
-import { toast } from "./toast";
+import { hush, toast } from "./toast";
 import { inWords, reason, showWrong } from "./fields";
 import { Handles } from "./handles";
+import { isCaption } from "./names";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
 /** While something is dragged, curves may be off by this share of a px of the screen. */
@@ -13,6 +14,9 @@ const DRAFT = 0.35;
 const DRAFTED = "pathwarp-drafted";
 /** The pause after which keys count as one change, in ms. */
 const KEYS = 500;
+
+/** A distance that is seen, in mm. */
+const SEEN = 0.05;
 
 /** Parameters that say how many control points a net has. */
 const NET = new Set(["degree", "cells", "spline"]);
@@ -43,6 +47,8 @@ export class App {
   /** Selectors of the parts that no step bends. */
   locks: string[] = [];
   grips: StepGrips[] = [];
+  /** The places of steps for parts that the drawing lacks. */
+  gone: number[] = [];
   handles: Handles | null = null;
   /** A path of the drawing that was a guide until its line was dragged just now. */
   released: string | null = null;
@@ -312,6 +318,7 @@ export class App {
 
   /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
   private inTurn<T>(work: () => Promise<T>): Promise<T> {
+    hush();
     const done = this.turns.then(() => this.flush()).then(work);
     this.turns = done.catch(() => undefined);
     return done;
@@ -376,7 +383,7 @@ export class App {
   /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
   private async prepared(deformation: string): Promise<void> {
     const others = this.isProposal ? [] : this.steps;
-    const known = others.findIndex((s) => s.deformation === deformation);
+    const known = others.findIndex((s) => s.deformation === deformation && !isCaption(s));
     if (known >= 0) return this.choosing(known);
     const step = await this.opening(deformation, []);
     if (!step) return;
@@ -387,6 +394,23 @@ export class App {
     this.tell("steps");
     this.dropHandles();
     await this.proposed();
+  }
+
+  /** Puts words after those that there are, before all else. Returns their step, which is kept as soon as it is committed. */
+  caption(args: Record<string, string[]>): Promise<Step | null> {
+    return this.inTurn(async () => {
+      const step = await this.opening("caption", []);
+      if (!step) return null;
+      Object.assign(step.args, args);
+      const others = this.isProposal ? [] : this.steps;
+      this.isProposal = false;
+      this.selected = others.filter(isCaption).length;
+      this.steps = others.toSpliced(this.selected, 0, step);
+      this.tell("steps");
+      this.dropHandles();
+      await this.refresh();
+      return step;
+    });
   }
 
   /** Changes the list of steps. */
@@ -455,13 +479,16 @@ export class App {
       return null;
     }
     this.fail(null);
-    return inWords(problem);
+    return inWords(problem, true);
   }
 
   /** Gives the net of the step more or fewer control points; it bends as before. */
   private async renet(values: Record<string, string[]>): Promise<void> {
     const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
     if (!answer?.step) return this.tell("steps");
+    const [a, b] = this.state?.toPx ?? [1, 0];
+    const mm = ((answer.moved ?? 0) * Math.hypot(a, b) * 25.4) / 96;
+    if (mm >= SEEN) toast(`The shape has moved by up to ${mm.toFixed(mm < 10 ? 2 : 0)} mm: so few points cannot hold it`);
     this.steps = this.steps.map((s, i) => (i === this.selected ? answer.step! : s));
     this.tell("steps");
     this.dropHandles();
@@ -470,6 +497,14 @@ export class App {
 
   grip(name: string): Grip | undefined {
     return this.grips[this.selected]?.params[name];
+  }
+
+  /** The radius that a circle would need for the artwork not to be longer than it; `null` if it is long enough, or the artwork stretched. */
+  tooSmall(name: string): number | null {
+    const [circle, frame, step] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
+    if (!circle || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step?.args[other])) return null;
+    const least = frame[2] / (Math.abs(circle[4] - circle[3]) * (Math.PI / 180));
+    return circle[2] < least && Math.abs(Math.abs(circle[4] - circle[3]) - 360) < 1e-6 ? least : null;
   }
 
   private take(answer: Answer): void {
@@ -481,6 +516,7 @@ export class App {
     this.warnings = answer.warnings ?? [];
     this.summary = answer.summary ?? null;
     if (answer.grips) this.grips = answer.grips;
+    if (answer.gone) this.gone = answer.gone;
     this.screen.show(answer);
     if (!this.isDragging) this.takeHandles();
     this.tell("report");
@@ -553,6 +589,16 @@ export class App {
     this.tell("handles");
     await this.commit();
     return true;
+  }
+
+  /** The place in the drawing that the visible steps take to this one, or this one if there is none. */
+  async source(at: XY): Promise<XY> {
+    for (let k = this.visible.length; k > 0; k--) {
+      const steps = this.visible.slice(0, k);
+      if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
+      at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+    }
+    return at;
   }
 
   /** The place in the artwork that the step takes to this one. */

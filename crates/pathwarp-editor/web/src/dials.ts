@@ -16,7 +16,7 @@ export interface Dial {
   line: () => Line;
 }
 
-interface Place {
+export interface Place {
   deformation: Deformation;
   grips: Record<string, Grip>;
   frame: Frame;
@@ -42,7 +42,8 @@ export function dials(place: Place): Dial[] {
   return out;
 }
 
-function dial(param: Param, key: string, label: string, from: () => XY, get: () => XY, set: (to: XY) => void): Dial {
+/** A handle of a parameter with the line from a place to it. */
+export function dial(param: Param, key: string, label: string, from: () => XY, get: () => XY, set: (to: XY) => void): Dial {
   return {
     handle: { key, param: param.name, shape: "node", label, group: param.name, get, set: (to) => set(to) },
     line: () => ({ kind: "arm", points: [from(), get()] }),

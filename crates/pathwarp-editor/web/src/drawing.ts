@@ -63,9 +63,22 @@ function set(element: Element, name: string, value: string): void {
 }
 
 /** Parses a drawing into elements that are safe to show. */
-export function parse(text: string, lines: (Element | null)[] | null = null): Element | null {
+function parse(text: string, lines: (Element | null)[] | null = null): Element | null {
   const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
   return copy(root, lines);
+}
+
+/** Parses a drawing that is shown beside the picture, whose ids get another prefix than those of the picture. */
+export function apart(text: string | undefined, prefix: string): Element | null {
+  const root = text ? parse(text) : null;
+  for (const element of Array.from(root?.querySelectorAll("*") ?? [])) {
+    for (const { name, value } of Array.from(element.attributes)) {
+      if (name === "id") element.setAttribute(name, `${prefix}-${value}`);
+      else if (value.includes("url(#")) element.setAttribute(name, value.replaceAll("url(#", `url(#${prefix}-`));
+      else if (name.endsWith("href") && value.startsWith("#")) element.setAttribute(name, `#${prefix}-${value.slice(1)}`);
+    }
+  }
+  return root;
 }
 
 /** The drawing on the canvas. */

@@ -102,11 +102,11 @@ export function reason(e: unknown): string {
   return e instanceof Error ? e.message : String(e);
 }
 
-/** What the program says about a value, in the words of the page. */
-export function inWords(problem: string): string {
-  const text = problem.replace(/^(error: )?(--[a-z-]+: )?/, "").replace(/`([^`]*)`|--([a-z-]+)/g, (_, quoted?: string, name = "") => `“${quoted ?? name.replaceAll("-", " ")}”`);
+/** What the program says: a sentence with its quotes. Beside a field, its name in front is left out. */
+export function inWords(problem: string, isBeside = false): string {
+  const text = problem.replace(/^error: /, "").replace(isBeside ? /^“[^”]*”: / : "", "").replace(/`([^`]*)`/g, "“$1”");
   // Names of files stay as they are.
-  return /^\S+: /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
+  return /^(\S+|[^:;]*\.\w{1,5}): /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
 }
 
 type Editable = HTMLInputElement | HTMLTextAreaElement;

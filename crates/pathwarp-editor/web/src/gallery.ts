@@ -10,6 +10,7 @@ import type { Deformation, Step } from "./types";
 /** Words for what is done here by a shape, and elsewhere in the program otherwise. */
 const ALSO: Record<string, string> = {
   shaper: "bottle label neck",
+  envelope: "lines in a shape text in a shape badge",
   bend: "text on path words on a line badge seal",
   arc: "text on a circle badge",
   simplify: "smooth clean up fewer nodes traced",
@@ -141,7 +142,7 @@ export class Gallery {
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
     const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
-    const known = [...(this.app.deformation(deformation)?.knownAs ?? []), variant ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
+    const known = [...(this.app.deformation(deformation)?.knownAs ?? []), variant && deformation !== "envelope" ? "" : ALSO[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
     const card: Card = { button, image, steps, deformation, args, variant, words: [button.textContent, ...known].join(" ") };
     button.addEventListener("click", () => void this.choose(card));
     this.cards.push(card);

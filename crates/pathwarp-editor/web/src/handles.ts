@@ -4,6 +4,7 @@ import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrip
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
+import { inSpace } from "./space";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
 /** A place on a path of a parameter. */
@@ -66,7 +67,8 @@ export class Handles {
     for (const { name } of this.deformation.params) {
       const grip = this.grips[name];
       if (!grip) continue;
-      if (grip.point) this.addPoint(name, grip);
+      // An eye with a height of its own is at the middle.
+      if (grip.point && !(name === "eye" && this.step.args["eye-height"])) this.addPoint(name, grip);
       grip.points?.forEach((_, i) => this.addOneOf(name, grip.points!, i));
       grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs!, i));
       grip.net?.points.forEach((_, i) => this.addNode(name, grip.net!, i));
@@ -76,7 +78,8 @@ export class Handles {
       grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
     // A point that turns and scales are about changes nothing by itself.
-    this.dials = this.handles.every(({ param }) => param === "about") ? dials({ deformation: this.deformation, grips: this.grips, frame: this.frame }) : [];
+    const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };
+    this.dials = this.handles.every(({ param }) => param === "about") ? dials(place) : this.grips.eye || this.grips["eye-height"] ? inSpace(place) : [];
     this.handles.push(...this.dials.map(({ handle }) => handle));
   }
 
@@ -431,6 +434,7 @@ export class Handles {
     const grip = this.grips[name];
     if (!param || !grip) return;
     if (grip.net) this.writeNet(name, grip.net);
+    else if (grip.surface) this.step.args[name] = [grip.surface.text];
     else if (grip.adjust) this.step.args[name] = writeAdjust(grip.adjust);
     else if (grip.value !== undefined && param.kind === "angle") this.step.args[name] = [String(Number(grip.value.toFixed(1)))];
     else if (grip.value !== undefined) this.step.args[name] = [param.kind === "length" ? length(grip.value, param.axis, this.frame) : `${Number((100 * grip.value).toFixed(1))}%`];

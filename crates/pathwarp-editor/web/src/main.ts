@@ -1,8 +1,11 @@
 // The page: puts the parts together, with the buttons and keys that belong to none of them.
 
 import { App } from "./app";
+import { Background } from "./background";
+import { Caption } from "./caption";
 import { byId, isTyping } from "./dom";
 import { Gallery } from "./gallery";
+import { showKeys } from "./keys";
 import { Ground } from "./ground";
 import { Modes, snapLines } from "./modes";
 import { Opening } from "./opening";
@@ -14,10 +17,8 @@ import { Report } from "./report";
 import { Saving } from "./saving";
 import { Settings } from "./settings";
 import { Sketching } from "./sketch";
-import { Stage } from "./stage";
+import { partOf, Stage } from "./stage";
 import { Steps } from "./steps";
-import { Target } from "./target";
-import { toast } from "./toast";
 import { WordsDialog } from "./words";
 
 /** The factor of one step of magnification. */
@@ -35,24 +36,26 @@ new Steps(app);
 new Parts(app, stage, modes);
 new Place(app, stage);
 new Opening(app);
-new Target(app, stage);
-new WordsDialog(app);
+const background = new Background(app, stage);
 new Pointing(app, stage, modes).onPan = () => report.panned();
 modes.onSnap = snapLines((p) => stage.camera.toScreen(p));
-stage.onZoom = () => {
+stage.onLayout.push(() => {
   byId("zoom").textContent = `${Math.round(100 * stage.camera.scale)}%`;
-};
+});
+stage.onLayout.push(() => caption.place());
 const sketching = new Sketching(app, stage);
+const caption = new Caption(app, stage, sketching);
+new WordsDialog(app).onPlace = (args) => caption.begin(args);
 settings.onDraw = (kind, take) => {
   closeSheets();
   sketching.begin(kind, take);
 };
+background.onRound = (take) => sketching.begin("round", take);
 settings.onOther = () => sketching.end();
 settings.onPick = (take) => {
   closeSheets();
   sketching.end();
-  toast("Click a path of the drawing");
-  stage.pick(take);
+  stage.pick((path) => take(partOf(path.closest("[id]")!.id)), undefined, "Click a path of the drawing");
 };
 
 function on(id: string, action: () => void): void {
@@ -64,6 +67,7 @@ on("redo", () => void app.turn("redo"));
 on("zoom-in", () => stage.zoom(ZOOM));
 on("zoom-out", () => stage.zoom(1 / ZOOM));
 on("fit", () => stage.fit());
+on("keys", showKeys);
 // A phone's header has no room for what stands well below the steps.
 const phone = matchMedia("(max-width: 520px)");
 const arrange = () => byId(phone.matches ? "keep-preset" : "history").after(byId("start-over"));
@@ -75,14 +79,16 @@ on("start-over", async () => {
 });
 
 /** A button that stays pressed. */
-function toggle(id: string, get: () => boolean, set: (value: boolean) => void): void {
+function toggle(id: string, get: () => boolean, set: (value: boolean) => void): () => void {
   const button = byId(id);
   const show = () => button.setAttribute("aria-pressed", String(get()));
-  button.addEventListener("click", () => {
+  const turn = () => {
     set(!get());
     show();
-  });
+  };
+  button.addEventListener("click", turn);
   show();
+  return turn;
 }
 
 toggle("select", () => modes.selects, (v) => {
@@ -100,6 +106,10 @@ toggle("smooth", () => modes.smooths, (v) => (modes.smooths = v));
 toggle("nodes", () => stage.showsNodes, (v) => {
   stage.showsNodes = v;
   stage.drawNodes();
+});
+const showEnd = toggle("end", () => stage.showsEnd, (v) => {
+  stage.showsEnd = v;
+  void stage.drawEnd();
 });
 toggle("stretch", () => stage.showsStretch, (v) => {
   stage.showsStretch = v;
@@ -154,6 +164,8 @@ const KEYS: Record<string, () => void> = {
   "-": () => stage.zoom(1 / ZOOM),
   "0": () => stage.fit(),
   b: () => void stage.before(true),
+  e: showEnd,
+  "?": () => showKeys(),
 };
 const COMMANDS: Record<string, (shift: boolean) => void> = {
   s: (shift) => void (shift ? saving.open() : saving.quick()),
@@ -170,7 +182,7 @@ window.addEventListener("keydown", (e) => {
   const action = isCommand ? COMMANDS[key] : isTyping(e.target) ? undefined : KEYS[key];
   if (!action) return;
   if (isCommand) e.preventDefault();
-  if (app.isLive && (!e.repeat || key !== "b")) action(e.shiftKey);
+  if (app.isLive && (!e.repeat || !"be".includes(key))) action(e.shiftKey);
 });
 window.addEventListener("keyup", (e) => {
   if (e.key.toLowerCase() === "b") hide();

@@ -22,10 +22,22 @@ export function paramName({ name, label }: Param): string {
   return label ?? words(name);
 }
 
-/** The name of a step: its preset, the way in which it began, or its deformation. */
+/** A step sets words on the drawing. */
+export function isCaption({ deformation }: { deformation: string }): boolean {
+  return deformation === "caption";
+}
+
+/** Letters of words that name a step. */
+const LONGEST = 30;
+
+/** The name of a step: the user's, its words, its preset, the way in which it began, or its deformation. */
 export function stepName(step: Step, deformation: Deformation | undefined): string {
+  if (step.name) return step.name;
   if (!deformation) return words(step.deformation);
+  if (isCaption(step)) return `“${(step.args.words ?? []).join(" ").slice(0, LONGEST)}”`;
   const preset = deformation.gallery ? step.args[deformation.gallery.presets]?.[0] : undefined;
   const variant = deformation.variants.find(({ param }) => step.args[param]);
-  return preset ? words(preset) : variant?.label ?? called(deformation);
+  const isKnown = deformation.params.some((p) => p.name === deformation.gallery?.presets && p.words?.includes(preset ?? ""));
+  // Names of files stay as they are.
+  return preset ? (isKnown ? words(preset) : preset.split(/[\\/]/).pop()!) : variant?.label ?? called(deformation);
 }

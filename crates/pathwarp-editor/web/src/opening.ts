@@ -48,7 +48,7 @@ export class Opening {
     await app.settle();
     const { state } = app;
     if (!state || !app.isLive) return;
-    if (state.program) return toast(`${state.program} waits for this drawing; another one cannot be opened`);
+    if (state.program) return void toast(`${state.program} waits for this drawing; another one cannot be opened`);
     const isLost = state.problem !== null && state.steps.length > 0 && !state.saved;
     if (isLost && !confirm(`The steps of ${state.file} are not saved, and nothing keeps them. Open ${file.name} all the same?`)) return;
     await app.enter(() => app.attempt(async () => app.connection.ask({ do: "open", name: file.name, bytes: await base64(file) })));

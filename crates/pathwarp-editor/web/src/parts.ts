@@ -4,7 +4,7 @@
 import type { App } from "./app";
 import { byId, h, icon } from "./dom";
 import type { Modes } from "./modes";
-import { capital } from "./names";
+import { capital, isCaption } from "./names";
 import type { Stage } from "./stage";
 import type { Part } from "./types";
 
@@ -20,6 +20,7 @@ export class Parts {
   /** The names of what is not shown; the file has it all the same. */
   private hidden = new Set<string>();
   private shown = "";
+  private file = "";
 
   constructor(private app: App, private stage: Stage, private modes: Modes) {
     app.listen((change) => {
@@ -31,10 +32,13 @@ export class Parts {
   }
 
   private async load(): Promise<void> {
-    const { drawing = "" } = this.app.state ?? {};
-    if (drawing === this.shown) return;
-    this.shown = drawing;
-    this.hidden.clear();
+    const { drawing = "", file = "", steps = [] } = this.app.state ?? {};
+    const shown = JSON.stringify([drawing, ...steps.filter(isCaption)]);
+    if (shown === this.shown) return;
+    this.shown = shown;
+    // Other words have the same letters in the same places.
+    if (file !== this.file) this.hidden.clear();
+    this.file = file;
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
     this.all = answer?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
@@ -73,16 +77,23 @@ export class Parts {
 
   private clicked(name: string | null, adds: boolean): void {
     const part = this.all.find((p) => p.name === name);
-    const isLocked = part && this.app.locks.some((lock) => this.all.some((p) => p.selector === lock && (p === part || this.inside(p).includes(part))));
-    if (part && !isLocked) return this.toggle(part, adds);
-    if (!adds) void this.app.scope([]);
+    if (part) this.toggle(part, adds);
+    else if (!adds) void this.app.scope([]);
+  }
+
+  /** A part is locked or hidden, by itself or with a group around it. */
+  private isOut(part: Part): boolean {
+    const isOut = ({ name, selector }: Part) => this.hidden.has(name) || this.app.locks.includes(selector);
+    return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
   }
 
   /** Chooses a part alone, or adds it to the others, or takes it from them. */
-  private toggle({ selector }: Part, adds: boolean): void {
+  private toggle(part: Part, adds: boolean): void {
     const { chosen } = this.app;
+    const { selector } = part;
     const others = chosen.filter((s) => s !== selector);
     const isChosen = others.length < chosen.length;
+    if (!isChosen && this.isOut(part)) return;
     if (!adds) void this.app.scope(isChosen && others.length === 0 ? [] : [selector]);
     else void this.app.scope(isChosen ? others : [...others, selector]);
   }

@@ -4,6 +4,7 @@ import type { App } from "./app";
 import type { Modes } from "./modes";
 import { REACH, type Stage } from "./stage";
 import { together, type Part } from "./selection";
+import { hush } from "./toast";
 import type { XY } from "./types";
 
 /** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
@@ -77,6 +78,7 @@ export class Pointing {
     if (knob && bends) this.drag(e, knob);
     else if (this.modes.picksParts && bends) this.pan(e, () => stage.pickedPart(e));
     else if (part && bends) this.transform(e, stage.selection.transform(part, stage.point(e)));
+    else if (bends && !e.shiftKey && stage.selection.holds(stage.point(e))) this.transform(e, moved(stage.point(e)), () => stage.select([]));
     else if (bends && (e.shiftKey || stage.selects)) this.frame(e);
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
@@ -106,6 +108,7 @@ export class Pointing {
   private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void, clicked: () => void = () => {}): void {
     const { app } = this;
     const start = this.stage.point(e);
+    hush();
     void app.flush();
     const step = app.step!;
     const before = structuredClone(step);
@@ -114,6 +117,7 @@ export class Pointing {
     const stop = () => {
       app.isDragging = false;
       app.hold = null;
+      this.stage.tell(null);
       done();
     };
     const abandon = this.follow(e, {
@@ -151,7 +155,7 @@ export class Pointing {
       if (adds) stage.selection.toggle(handle.key);
       stage.select(adds ? Array.from(stage.selection.keys) : [handle.key]);
     };
-    if (several && !adds) return this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y], clicked);
+    if (several && !adds) return this.transform(e, moved([x, y]), clicked);
     const grabbed = stage.camera.toScreen(handle.get());
     const mover = modes.mover(handles, handle);
     knob.classList.add("held");
@@ -211,7 +215,7 @@ export class Pointing {
     const [x, y] = stage.point(e);
     // A line that is selected moves as a whole.
     if (pull.ends.length > 1 && pull.ends.every((key) => stage.selection.keys.has(key))) {
-      this.transform(e, (to) => ([px, py]) => [px + to[0] - x, py + to[1] - y]);
+      this.transform(e, moved([x, y]));
       return true;
     }
     const puller = modes.puller(handles, pull);
@@ -267,3 +271,6 @@ export class Pointing {
     for (const lifted of ["pointerup", "pointercancel"]) window.addEventListener(lifted, () => stop.abort(), { signal });
   }
 }
+
+/** Moves places as the pointer moves. */
+const moved = ([x, y]: XY) => (to: XY) => ([px, py]: XY): XY => [px + to[0] - x, py + to[1] - y];

@@ -1,5 +1,6 @@
 // The state of things in words: hints over the canvas, figures and problems at the foot, and the end of the program.
 
+import { isCaption } from "./names";
 import type { App } from "./app";
 import { byId } from "./dom";
 import { toast } from "./toast";
@@ -72,11 +73,13 @@ export class Report {
     app.released = null;
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
     if (app.steps.length === 0) return show("note", "Choose a shape");
+    if (app.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
+    if (app.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
     // Handles are on the way.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
     const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
-    const note = !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
+    const note = isCaption(app.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
     show("note", app.isProposal && has ? `${note}, or choose a shape` : note);
   }
 

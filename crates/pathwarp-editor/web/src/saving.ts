@@ -122,7 +122,7 @@ export class Saving {
     const { state } = this.app;
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state) return;
-    if (state.steps.length === 0) return toast(NOTHING);
+    if (state.steps.length === 0) return this.open();
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
     if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
     if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
@@ -133,7 +133,7 @@ export class Saving {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (!state || state.program || this.dialog.open) return;
-    if (state.steps.length === 0) return toast(NOTHING);
+    if (state.steps.length === 0 && !state.words) return void toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
     if (!state.photograph) this.recall();

@@ -8,6 +8,8 @@ import type { Handle, XY } from "./types";
 /** Space between the points and the box around them, and between the box and the handle that turns, in px. */
 const AROUND = 16;
 const ABOVE = 26;
+/** The distance from which the edge of the box is taken, in px. */
+const EDGE = 6;
 
 /** What the box is taken by: its corners, or the handle above it. */
 export type Part = "nw" | "ne" | "se" | "sw" | "turn";
@@ -65,6 +67,12 @@ export class Selection {
     this.frame.setAttribute("d", `M${x0},${y0}H${x1}V${y1}H${x0}ZM${middle},${y0}V${y0 - ABOVE}`);
     const places: Record<Part, XY> = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle, y0 - ABOVE] };
     for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
+  }
+
+  /** A place is in the box or on its edge. */
+  holds([x, y]: XY): boolean {
+    const [[x0, y0], [x1, y1]] = this.box;
+    return this.isMany && x > x0 - EDGE && x < x1 + EDGE && y > y0 - EDGE && y < y1 + EDGE;
   }
 
   /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */

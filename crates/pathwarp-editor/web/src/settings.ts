@@ -1,28 +1,33 @@
 // The settings of a step: one control for every parameter, made from the registry's table.
 
 import type { App } from "./app";
-import { byId, h } from "./dom";
-import { asked, evaluate, Field, type Quantity } from "./fields";
-import { capital, paramName, words } from "./names";
+import { byId, h, s } from "./dom";
+import { asked, evaluate, Field, inUnits, type Quantity } from "./fields";
+import { capital, isCaption, paramName, words } from "./names";
 import { bring } from "./opening";
 import type { Sketch } from "./sketch";
 import type { Adjust, Param } from "./types";
-import { adjustName, adjustUnit, DRAGGED, readAdjust, short, writeAdjust } from "./values";
+import { BUNDLED } from "./words";
+import { adjustName, adjustUnit, arc, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
 /** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
 const OF_ARTWORK: [number, number] = [0, 100];
 const BOTH_WAYS: [number, number] = [-100, 100];
 /** Arrow keys change values of this range by 1. */
 const COARSE = 20;
+/** What surprises about some deformations. */
+const NOTES: Record<string, string> = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
+
+const MM = 96 / 25.4;
 /** Choices of up to this many words are shown side by side. */
 const SIDE_BY_SIDE = 3;
 
 /** What is done to draw a line. */
-const SKETCHES: Record<Sketch, string> = {
+const SKETCHES = {
   line: "Drag from its start to its end on the drawing",
   path: "Click its points on the drawing; a double click, Enter or the first point ends it",
   circle: "Drag from its centre to its edge on the drawing",
-};
+} satisfies Partial<Record<Sketch, string>>;
 
 export class Settings {
   private box = byId("settings");
@@ -48,17 +53,18 @@ export class Settings {
     const { step } = this.app;
     const deformation = this.app.deformation(step?.deformation);
     const params = deformation?.params ?? [];
-    const signature = [this.app.selected, step?.deformation, ...this.adjusts(params)].join();
+    const circles = params.filter((p) => this.app.grip(p.name)?.circle).map((p) => p.name);
+    const signature = [this.app.selected, step?.deformation, ...this.adjusts(params), ...circles].join();
     if (signature === this.shown && this.box.childElementCount > 0) return this.refresh();
     this.shown = signature;
     this.onOther();
     this.refreshers = [];
     if (!step || !deformation) return this.box.replaceChildren();
-    const main = params.filter((p) => isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
+    const main = params.filter((p) => (isCaption(step) && p.kind !== "point") || isMain(p, step.args[p.name] !== undefined) || this.app.grip(p.name)?.adjust !== undefined);
     const more = params.filter((p) => !main.includes(p));
     const focused = this.box.contains(document.activeElement) ? document.activeElement?.id : undefined;
     this.box.replaceChildren(
-      h("p", { class: "about" }, sentence(deformation.title)),
+      h("p", { class: "about" }, sentence(deformation.title), NOTES[deformation.name] ?? ""),
       ...main.map((p) => this.control(p)),
       more.length > 0 ? h("details", { class: "more" }, h("summary", {}, "More settings"), ...more.map((p) => this.control(p))) : "",
     );
@@ -99,10 +105,69 @@ export class Settings {
           button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
           return button;
         });
-        return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), this.text(p, id));
+        const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
+        return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...(radius || []), this.text(p, id));
       }
-      default: return h("div", { class: "field", title }, label, this.text(p, id));
+      default: {
+        if (p.notation === "FAMILY") return h("div", { class: "field", title }, label, this.family(p, id));
+        return h("div", { class: "field", title }, h("div", { class: "row" }, label, p.notation === "COLOUR" && this.colour(p)), this.text(p, id));
+      }
     }
+  }
+
+  private colour(p: Param): HTMLElement {
+    const input = h("input", { type: "color", "aria-label": `${paramName(p)}, chosen` });
+    input.addEventListener("input", () => this.app.setSoon(p.name, [input.value]));
+    this.refreshers.push(() => (input.value = /^#[0-9a-f]{6}$/i.test(this.current(p)) ? this.current(p) : "#000000"));
+    return input;
+  }
+
+  /** The fonts that are installed. */
+  private family(p: Param, id: string): HTMLElement {
+    const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
+    select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
+    const show = () => {
+      const value = this.current(p);
+      if (!Array.from(select.options).some((o) => o.value === value)) select.append(h("option", { value }, value));
+      select.value = value;
+    };
+    this.refreshers.push(show);
+    void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+      select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
+      show();
+    });
+    return select;
+  }
+
+  /** The radius of a circle, in mm, and a word where the artwork is longer than it. */
+  private radius(p: Param, id: string): HTMLElement[] {
+    const { app } = this;
+    const [a, b] = app.state?.toPx ?? [1, 0];
+    const unit = MM / Math.hypot(a, b);
+    const circle = () => app.grip(p.name)?.circle;
+    const input = h("input", { type: "text", id: `${id}-radius`, class: "value", inputmode: "decimal", autocomplete: "off" });
+    const number = (text: string) => inUnits(text, "mm") ?? NaN;
+    const set = (mm: number) => {
+      const present = circle();
+      return present ? app.setTyped(p.name, [arc([present[0], present[1], mm * unit, present[3], present[4]])]) : null;
+    };
+    const field = new Field(input, () => short2((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : asked("mm", 0)));
+    const note = h("p", { class: "wrong", role: "status" });
+    const grow = h("button", { type: "button", class: "link" });
+    grow.addEventListener("click", () => void set(Number(grow.dataset.mm)));
+    const long = h("div", { hidden: true }, note, grow);
+    this.refreshers.push(() => {
+      field.refresh();
+      const least = app.tooSmall(p.name);
+      long.hidden = least === null;
+      if (least === null) return;
+      // With a gap between its end and its beginning.
+      grow.dataset.mm = String(Math.ceil((10.6 * least) / unit) / 10);
+      note.textContent = "The artwork is longer than this circle, and overlaps itself.";
+      grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
+    });
+    const row = h("div", { class: "row" }, h("label", { for: input.id }, "Radius"), h("span", { class: "measure" }, input, h("span", { class: "unit" }, "mm")));
+    return [row, field.message, long];
   }
 
   private flag(p: Param, id: string, title: string): HTMLElement {
@@ -114,12 +179,13 @@ export class Settings {
 
   private choice(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
     const all = p.words ?? [];
-    if (all.length > SIDE_BY_SIDE) return h("div", { class: "field", title }, label, this.select(p, id));
+    const pictures = p.name === "glyphs";
+    if (all.length > SIDE_BY_SIDE && !pictures) return h("div", { class: "field", title }, label, this.select(p, id));
     const options = all.map((word, i) => {
       const input = h("input", { type: "radio", name: id, value: word, id: `${id}-${i}` });
       input.addEventListener("change", () => this.app.set(p.name, [word], true));
       this.refreshers.push(() => (input.checked = this.current(p) === word));
-      return h("label", {}, input, h("span", {}, words(word)));
+      return h("label", {}, input, h("span", {}, pictures && glyphs(word), words(word)));
     });
     return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
   }
@@ -289,7 +355,7 @@ export class Settings {
   }
 
   private slider(p: Param, id: string, label: HTMLElement, title: string): HTMLElement {
-    const [unit, range] = this.app.isFirst(this.app.step) ? ["%", p.slider] as const : scale(p);
+    const [unit, range] = this.app.isFirst(this.app.step) && p.kind === "length" ? ["%", p.slider] as const : scale(p);
     const slider = h("input", { type: "range", min: range[0], max: range[1], step: step(range), "aria-label": paramName(p), id: `${id}-slider` });
     this.slide(slider, (value) => [p.name, [`${short(value)}${unit}`]], () => []);
     this.refreshers.push(() => {
@@ -317,6 +383,24 @@ export class Settings {
     const whole = p.axis === "x" ? w : p.axis === "y" ? h : Math.hypot(w, h);
     return (100 * value) / whole;
   }
+}
+
+/** Three letters on an arc, as a way of setting them has them. */
+function glyphs(word: string): SVGSVGElement {
+  const [radius, height, half] = [22, 13, 4.5];
+  const letters = [-0.85, 0, 0.85].map((turn) => {
+    const [sin, cos] = [Math.sin(turn), Math.cos(turn)];
+    const along = ["rotate", "skew"].includes(word) ? [cos, sin] : [1, 0];
+    const up = ["rotate", "ribbon"].includes(word) ? [sin, -cos] : [0, -1];
+    const place = (x: number, y: number) => {
+      const angle = turn + x / radius;
+      return word === "bend" ? [(radius + y) * Math.sin(angle), -(radius + y) * Math.cos(angle)] : [radius * sin + x * along[0]! + y * up[0]!, -radius * cos + x * along[1]! + y * up[1]!];
+    };
+    const line = (...points: [number, number][]) => `M${points.map(([x, y]) => place(x, y).map((v) => v.toFixed(1)).join(",")).join("L")}`;
+    const sides: [number, number][] = [[-half, 0], [-half, height / 2], [-half, height], [0, height], [half, height], [half, height / 2], [half, 0]];
+    return line(...sides) + line([-half, height / 2], [half, height / 2]);
+  });
+  return s("svg", { viewBox: "-34 -38 68 36", class: "glyphs", "aria-hidden": "true" }, s("path", { d: `M-20,-10A22,22 0 0 1 20,-10${letters.join("")}` }));
 }
 
 /** The settings that are looked at first: those that do something. Paths and points are dragged, and the rest has its place below. */

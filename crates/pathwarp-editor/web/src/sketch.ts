@@ -7,17 +7,22 @@ import { toast } from "./toast";
 import type { XY } from "./types";
 import { arc, short } from "./values";
 
-export type Sketch = "line" | "path" | "circle";
+/** The shapes that can be drawn; *round* is a closed line around something, smooth where it turns little. */
+export type Sketch = "line" | "path" | "circle" | "round" | "point";
 
 /** What is to be done, in words. */
 const HINTS: Record<Sketch, string> = {
   line: "Drag from the start of the line to its end",
   path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
   circle: "Drag from the centre of the circle to its edge",
+  point: "Click where the words begin",
+  round: "Click points around the outline, many where it is round; a click on the first one or Enter ends it",
 };
 
 /** Presses that are nearer are clicks on the same point, in px. */
 const NEAR = 8;
+/** A line around something has a corner where it turns more than this, in degrees. */
+const CORNER = 50;
 /** A circle begins at the bottom and goes over the top, where the middle of words lies then. */
 const [FROM, TO] = [90, 450];
 
@@ -40,11 +45,12 @@ export class Sketching {
     const giveUp = () => this.end();
     this.stop = () => {
       stop.abort();
+      explained();
       if (app.hold === giveUp) app.hold = null;
     };
     app.hold = giveUp;
     stage.svg.classList.add("picking");
-    toast(HINTS[kind]);
+    const explained = toast(HINTS[kind], true);
     const done = (value: string | null) => {
       this.end();
       if (value) take(value);
@@ -52,19 +58,24 @@ export class Sketching {
     const text = (p: XY) => p.map(short).join(",");
     const isNear = (a: XY, b: XY) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage.camera.pixel;
     const place = (e: PointerEvent) => stage.camera.toUser(stage.point(e));
-    const path = (closed: boolean) => (points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`);
+    const path = (closed: boolean) => {
+      if (kind === "round") return points.length < 3 ? null : around(points, text);
+      return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`;
+    };
+    const isClicked = kind === "path" || kind === "round";
     stage.svg.addEventListener("pointerdown", (e) => {
       if (e.button !== 0) return;
       e.stopPropagation();
       e.preventDefault();
       const at = place(e);
-      if (kind === "path" && points.length > 2 && isNear(at, points[0]!)) return done(path(true));
+      if (kind === "point") return done(text(at));
+      if (isClicked && points.length > 2 && isNear(at, points[0]!)) return done(path(true));
       if (points.length === 0 || !isNear(at, points[points.length - 1]!)) points.push(at);
       this.show(kind, points, at);
     }, listen);
     stage.svg.addEventListener("pointermove", (e) => this.show(kind, points, place(e)), listen);
     window.addEventListener("pointerup", (e) => {
-      if (kind === "path" || points.length === 0) return;
+      if (isClicked || points.length === 0) return;
       const [from, to] = [points[0]!, place(e)];
       // A click alone is no line.
       if (isNear(from, to)) return void (points.length = 0);
@@ -72,14 +83,14 @@ export class Sketching {
     }, listen);
     stage.svg.addEventListener("dblclick", (e) => {
       e.stopPropagation();
-      if (kind === "path") done(path(false));
+      if (isClicked) done(path(false));
     }, listen);
     window.addEventListener("keydown", (e) => {
       if (e.key !== "Escape" && e.key !== "Enter") return;
       e.stopPropagation();
       // The button that began it still has the focus, and would begin anew.
       e.preventDefault();
-      done(e.key === "Enter" && kind === "path" ? path(false) : null);
+      done(e.key === "Enter" && isClicked ? path(false) : null);
     }, listen);
   }
 
@@ -99,4 +110,23 @@ export class Sketching {
     this.line.setAttribute("d", "");
     this.stage.pick(null);
   }
+}
+
+/** A closed line through points as path data: smooth, with tangents parallel to the line between the neighbours, unless it turns a corner. */
+function around(points: XY[], text: (p: XY) => string): string {
+  const at = (i: number) => points[(i + points.length) % points.length]!;
+  const minus = ([ax, ay]: XY, [bx, by]: XY): XY => [ax - bx, ay - by];
+  const tangent = (i: number): XY => {
+    const [a, b] = [minus(at(i), at(i - 1)), minus(at(i + 1), at(i))];
+    const turn = Math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    const [x, y] = minus(at(i + 1), at(i - 1));
+    const length = Math.hypot(x, y) || 1;
+    return Math.abs(turn) > (CORNER * Math.PI) / 180 ? [0, 0] : [x / length, y / length];
+  };
+  const pieces = points.map((p, i) => {
+    const [q, s, t] = [at(i + 1), tangent(i), tangent(i + 1)];
+    const third = Math.hypot(...minus(q, p)) / 3;
+    return `C${text([p[0] + third * s[0], p[1] + third * s[1]])} ${text([q[0] - third * t[0], q[1] - third * t[1]])} ${text(q)}`;
+  });
+  return `M${text(points[0]!)} ${pieces.join(" ")} Z`;
 }

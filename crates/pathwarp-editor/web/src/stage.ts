@@ -3,11 +3,12 @@
 import type { App } from "./app";
 import { Camera } from "./camera";
 import { byId, s } from "./dom";
-import { Drawing, parse } from "./drawing";
+import { apart, Drawing } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
 import { Selection, together } from "./selection";
 import { nodesOf } from "./nodes";
+import { paramName } from "./names";
 import { toast } from "./toast";
 import type { Answer, Handle, XY } from "./types";
 
@@ -21,6 +22,11 @@ export const REACH = 18;
 
 /** The distance from which a path is picked, in px. */
 const PICKED = 8;
+/** Where the deformations are remembered whose handles have been pointed out. */
+const GREETED = "pathwarp-greeted";
+/** While something is dragged, the faint result may be off by this share of a px of the screen, and takes at most this long, in ms. */
+const DRAFT_OF_END = 1;
+const MOST_OF_END = 60;
 
 /** Two corners. */
 type Box = [number, number, number, number];
@@ -37,6 +43,8 @@ export class Stage {
   readonly behind = s("g", {});
   private art = s("g", { class: "art" });
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
+  /** The result of all steps, behind that of an earlier one. */
+  private aheadArt = s("g", { class: "ahead" });
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
   private arms = s("path", { class: "arms" });
@@ -56,6 +64,8 @@ export class Stage {
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
+  /** The value of the handle that is dragged. */
+  private value = s("text", { class: "value-of-drag" });
   private drawing = new Drawing(this.art);
   private elements = new Map<string, SVGGElement>();
   private lines: SVGPathElement[] = [];
@@ -76,11 +86,18 @@ export class Stage {
   isBefore = false;
   showsNodes = false;
   showsStretch = false;
-  /** The stretch has been asked for, and has to be asked for again. */
-  private isStretchAsked = false;
-  private isStretchWanted = false;
-  /** Takes the id of the path that is clicked next, instead of anything else. */
-  picks: ((id: string) => void) | null = null;
+  showsEnd = false;
+  /** The deformation whose handles are pointed out. */
+  private greeted = "";
+  /** The time that the last result of all steps took, in ms. */
+  private endTook = 0;
+  /** Takes the path that is clicked next, of those that a selector matches, and the place, instead of anything else. */
+  picks: ((path: SVGGraphicsElement, at: XY) => void) | null = null;
+  private pickable = "";
+  /** Takes the question for a path away. */
+  private answered: () => void = () => {};
+  /** Places in px of the drawing that Fit shows, too. */
+  around: () => XY[] = () => [];
   /** The names of the drawing's parts. */
   parts = new Set<string>();
   /** A part was clicked, or none. */
@@ -88,10 +105,10 @@ export class Stage {
   onFocus: (handle: Handle | null) => void = () => {};
   /** A handle has been moved by keys. */
   onKeys: (handle: Handle) => void = () => {};
-  onZoom: () => void = () => {};
+  readonly onLayout: (() => void)[] = [];
 
   constructor(private app: App, private modes: Modes) {
-    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.marquee);
+    this.svg.append(s("defs", {}, this.checks), ...this.shadows, this.sheet, this.behind, this.aheadArt, this.beforeArt, this.art, this.heat, this.arms, this.nodes, this.shield, this.lit, this.chosen, this.overlay, this.guides, this.marks, this.selection.layer, this.knobs, this.value, this.marquee);
     const stage = this;
     app.screen = {
       show: (answer) => this.show(answer),
@@ -102,6 +119,7 @@ export class Stage {
       if (change === "state") this.place();
       if (change === "handles") this.rebuild();
       if (change === "report" && this.showsStretch) void this.drawStretch();
+      if (change === "report" || change === "steps") void this.drawEnd();
     });
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
@@ -109,7 +127,7 @@ export class Stage {
       if (e.key === "Tab" && this.focusedHandle) this.panTo(this.focusedHandle);
     });
     this.svg.addEventListener("pointermove", (e) => {
-      if (this.picks) this.light(this.named(e, ".art [id]"));
+      if (this.picks) this.light(this.named(e, this.pickable));
       else if (this.modes.picksParts) this.light(this.named(e, ".art *"));
     });
     new ResizeObserver(() => this.resized()).observe(this.svg);
@@ -144,7 +162,8 @@ export class Stage {
     if (!this.app.state || x1 <= x0 || y1 <= y0) return;
     const handles = (this.app.handles?.handles ?? []).map((h) => this.camera.inPx(h.get())).filter((p) => p.every(Number.isFinite));
     const [a, b, c, d] = this.pageBox;
-    const [xs, ys] = [[a, c, ...handles.map((p) => p[0])], [b, d, ...handles.map((p) => p[1])]];
+    const all: XY[] = [[a, b], [c, d], ...handles, ...this.around()];
+    const [xs, ys] = [all.map((p) => p[0]), all.map((p) => p[1])];
     this.camera.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)], [x1 - x0, y1 - y0]);
     const [x, y] = this.camera.shift;
     this.camera.shift = [x + x0, y + y0];
@@ -246,9 +265,7 @@ export class Stage {
     this.isBefore = on;
     if (on && this.beforeArt.childElementCount === 0) {
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
-      const root = answer?.svg ? parse(answer.svg) : null;
-      // Ids must not be those of the picture itself.
-      if (root) this.beforeArt.replaceChildren(...Array.from(renamed(root).children));
+      this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
     }
     this.svg.classList.toggle("before", this.isBefore);
     this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
@@ -269,25 +286,30 @@ export class Stage {
   }
 
   /** Shows the stretch of the visible steps, or hides it. */
-  async drawStretch(): Promise<void> {
+  readonly drawStretch = latest(async () => {
     const { app } = this;
-    if (!this.showsStretch) return this.heat.replaceChildren();
-    this.isStretchWanted = true;
-    if (this.isStretchAsked) return;
-    this.isStretchAsked = true;
-    while (this.isStretchWanted) {
-      this.isStretchWanted = false;
-      const answer = await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible }));
-      const stretch = this.showsStretch ? answer?.stretch : null;
-      this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
-    }
-    this.isStretchAsked = false;
-  }
+    const answer = this.showsStretch ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
+    const stretch = this.showsStretch ? answer?.stretch : null;
+    this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
+  });
+
+  /** Shows the result of all steps behind that of an earlier one, or hides it. */
+  readonly drawEnd = latest(async () => {
+    const { app } = this;
+    const isEarlier = () => this.showsEnd && app.selected < app.steps.length - 1;
+    // A drag of a large drawing waits for nothing else.
+    const draft = app.isDragging ? DRAFT_OF_END * this.camera.pixel : null;
+    if (draft !== null && this.endTook > MOST_OF_END) return;
+    const start = performance.now();
+    const answer = isEarlier() ? await app.connection.ask({ do: "ahead", steps: app.steps, draft }).catch(() => null) : null;
+    if (answer) this.endTook = performance.now() - start;
+    this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : undefined, "ahead")?.children ?? []));
+  });
 
   /** Puts everything in its place on the screen. */
   layout(): void {
     const { camera } = this;
-    const layers = [...this.shadows, this.sheet, this.behind, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
+    const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
     for (const layer of layers) layer.setAttribute("transform", camera.transform);
     this.checks.setAttribute("patternTransform", `scale(${1 / camera.scale})`);
     for (const mark of Array.from(this.marks.children) as SVGGElement[]) {
@@ -296,7 +318,7 @@ export class Stage {
     }
     this.placeHandles();
     if (this.litParts.length > 0) this.lightParts(this.litParts);
-    this.onZoom();
+    for (const follow of this.onLayout) follow();
   }
 
   /** Puts handles and their lines where they are now. */
@@ -349,6 +371,7 @@ export class Stage {
     });
     this.guides.replaceChildren(...this.lines, ...this.reaches.filter((r) => r !== null));
     const had = document.activeElement?.closest(".knob") !== null && document.activeElement !== null;
+    this.greet();
     this.knobs.replaceChildren(...knobs.sort((a, b) => Number(a.classList.contains("node")) - Number(b.classList.contains("node"))));
     this.placeHandles();
     if (this.isToFit && handles) {
@@ -362,6 +385,15 @@ export class Stage {
       else if (had) again.focus({ preventScroll: true });
       else this.focus(this.focused);
     }
+  }
+
+  /** The first time that a deformation has handles here, they are pointed out. */
+  private greet(): void {
+    const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
+    this.knobs.classList.toggle("greeting", name !== undefined && (name === this.greeted || !known.has(name)));
+    if (!name || !this.app.handles || known.has(name)) return;
+    this.greeted = name;
+    localStorage.setItem(GREETED, [...known, name].join(" ").trim());
   }
 
   /** Selects a handle. */
@@ -411,20 +443,23 @@ export class Stage {
     return [e.clientX - box.left, e.clientY - box.top];
   }
 
-  /** The next click on the drawing names a path. */
-  pick(take: ((id: string) => void) | null): void {
-    this.picks = take;
+  /** The next click takes a path, of those that a selector matches; what is asked for is shown until then. */
+  pick(take: typeof this.picks, among = ".art [id]", wish = ""): void {
+    [this.picks, this.pickable] = [take, among];
     this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
+    this.svg.classList.toggle("outlining", take !== null && among !== ".art [id]");
     this.light(null);
+    this.answered();
+    this.answered = take && wish ? toast(wish, true) : () => {};
   }
 
   /** Names the path that was clicked; elsewhere, the question stays. */
   picked(e: PointerEvent): void {
-    const named = this.named(e, ".art [id]");
-    if (!named) return toast("No path with a name is there. Click one, or press Escape");
+    const named = this.named(e, this.pickable);
+    if (!named) return void toast("No path is there. Click one, or press Escape");
     const take = this.picks;
     this.pick(null);
-    take?.(partOf(named.closest("[id]")!.id));
+    take?.(named, this.camera.toUser(this.point(e)));
   }
 
   /** Names the part that was clicked. */
@@ -436,7 +471,16 @@ export class Stage {
       if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
     }
     this.light(null);
-    this.onPart(name, e.shiftKey);
+    if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
+  }
+
+  /** A part that is not shown has this place. */
+  private isHiddenAt(e: PointerEvent): boolean {
+    const { away } = this;
+    this.hideParts(new Set());
+    const isThere = this.named(e, ".art *") !== null;
+    this.hideParts(away);
+    return isThere;
   }
 
   /** The elements of parts in the picture. */
@@ -477,10 +521,25 @@ export class Stage {
     else this.lit.setAttribute("d", "");
   }
 
+  /** Shows the value of a handle beside it while it is dragged, or no longer does. */
+  tell(handle: Handle | null): void {
+    const { step } = this.app;
+    const param = this.app.deformation(step?.deformation)?.params.find(({ name }) => name === handle?.param);
+    const isNumber = param && ["number", "length", "angle", "count"].includes(param.kind);
+    const [x, y] = handle?.get() ?? [0, 0];
+    const digits = Math.max(0, Math.ceil(-Math.log10(this.camera.pixel)));
+    const place = [x, y].map((v) => v.toFixed(digits)).join(", ");
+    this.value.textContent = !handle ? "" : isNumber ? `${paramName(param)} ${step?.args[param.name]?.[0] ?? ""}${param.kind === "angle" ? "°" : ""}` : place;
+    const [sx, sy] = this.camera.toScreen([x, y]);
+    this.value.setAttribute("x", String(sx + REACH));
+    this.value.setAttribute("y", String(sy - REACH));
+  }
+
   /** Writes the values of a handle that has been moved, and asks for the picture. */
   changed(handle: Handle, since: number): void {
     this.app.handles!.write(handle.param);
     this.placeHandles();
+    if (this.app.hold) this.tell(handle);
     this.onFocus(handle);
     this.app.tell("values");
     this.app.draft(since);
@@ -583,8 +642,23 @@ export class Stage {
   }
 }
 
+/** Work that is asked for again and again: it is done once at a time, and once more if it was asked for meanwhile. */
+function latest(work: () => Promise<void>): () => Promise<void> {
+  let [isAsked, isWanted] = [false, false];
+  return async () => {
+    isWanted = true;
+    if (isAsked) return;
+    isAsked = true;
+    while (isWanted) {
+      isWanted = false;
+      await work();
+    }
+    isAsked = false;
+  };
+}
+
 /** The id in the drawing of an element of the picture, whose ids stand behind a prefix. */
-function partOf(id: string): string {
+export function partOf(id: string): string {
   return id.replace(/^art-/, "");
 }
 
@@ -600,16 +674,4 @@ function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, to: SVGPathElem
   to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
   if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);
   return to;
-}
-
-/** Gives the ids of a drawing other names, and its references with them. */
-function renamed(root: Element): Element {
-  for (const element of Array.from(root.querySelectorAll("*"))) {
-    for (const { name, value } of Array.from(element.attributes)) {
-      if (name === "id") element.setAttribute(name, `before-${value}`);
-      else if (value.includes("url(#")) element.setAttribute(name, value.replaceAll("url(#", "url(#before-"));
-      else if (name.endsWith("href") && value.startsWith("#")) element.setAttribute(name, `#before-${value.slice(1)}`);
-    }
-  }
-  return root;
 }

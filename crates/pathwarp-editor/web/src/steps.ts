@@ -5,18 +5,32 @@ import { byId, h, icon } from "./dom";
 import { stepName } from "./names";
 import type { Step } from "./types";
 
+/** The distance up to which a press is a click, in px. */
+const SHAKES = 5;
+
 export class Steps {
   private list = byId("steps");
   /** Where a row has been moved to. */
   private moved: number | null = null;
+  /** The steps on show whose letters are gone. */
+  private gone = "";
+  /** A row is being dragged, so its button is not clicked. */
+  private isDragged = false;
   private note = byId("steps-note");
   private add = byId<HTMLButtonElement>("add-step");
 
   constructor(private app: App) {
     app.listen((change) => {
       if (change === "steps" || change === "state") this.build();
+      // Which steps wait for their letters is known with the picture.
+      if (change === "report" && app.gone.join() !== this.gone) this.build();
     });
     this.add.addEventListener("click", () => this.append());
+    // The first click may have made the row anew.
+    this.list.addEventListener("dblclick", (e) => {
+      const button = (e.target as Element).closest("button.step");
+      if (button) this.rename(Array.from(this.list.children).indexOf(button.parentElement!));
+    });
   }
 
   /** Asks for the shape of a further step, or no longer does. */
@@ -31,6 +45,7 @@ export class Steps {
   private build(): void {
     const { app } = this;
     const { steps, selected, appends } = app;
+    this.gone = app.gone.join();
     const focused = this.list.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
     const kind = focused?.dataset.kind ?? "";
     const row = Array.from(this.list.children).indexOf(focused?.closest("li") as Element);
@@ -42,7 +57,8 @@ export class Steps {
     if (appends) this.list.append(h("li", { class: "wanted" }, `${steps.length + 1}. Choose a shape`));
     this.add.setAttribute("aria-pressed", String(appends));
     this.note.hidden = selected >= steps.length - 1;
-    this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. Saving uses all steps.`;
+    byId("end").hidden = this.note.hidden;
+    this.note.textContent = `The picture stops at step ${selected + 1}, so that you see what you drag. “End” (E) shows what all of them make. Saving uses all steps.`;
   }
 
   private row(step: Step, i: number): HTMLLIElement {
@@ -52,25 +68,86 @@ export class Steps {
     const title = stepName(step, app.deformation(step.deformation));
     const count = step.select?.length ?? 0;
     const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
-    const choose = h("button", { type: "button", class: "step", "data-kind": "step", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope);
-    choose.addEventListener("click", () => void app.select(i));
+    const gone = app.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
+    const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope, gone);
+    choose.addEventListener("click", () => {
+      if (!this.isDragged) void app.select(i);
+    });
+    choose.addEventListener("pointerdown", (e) => this.drag(e, i, first, moved));
     const moved = (to: number) => {
       const others = steps.filter((_, k) => k !== i);
       others.splice(to, 0, step);
       this.moved = to;
       void app.arrange(others, to);
     };
-    const button = (name: "up" | "down" | "close", label: string, action: () => void, disabled = false) => {
+    const hide = () => void app.arrange(steps.map((s, k) => (k === i ? { ...s, hidden: !step.hidden || undefined } : s)), selected);
+    const button = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, action: () => void, disabled = false) => {
       const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
       b.addEventListener("click", action);
       return b;
     };
     const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
-      "li", { class: i === selected ? "chosen" : "" }, choose,
+      "li", { class: `${i === selected ? "chosen" : ""} ${step.hidden ? "hidden" : ""}` }, choose,
+      !app.isProposal && button("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
       steps.length > 1 && button("up", `Move ${title} up`, () => moved(i - 1), i <= first),
       steps.length > 1 && button("down", `Move ${title} down`, () => moved(i + 1), i < first || i === steps.length - 1),
       !app.isProposal && button("close", `Remove ${title}`, remove),
+      !app.isProposal && i === selected && h("span", { class: "acts" },
+        button("pen", `Rename ${title}`, () => this.rename(i)),
+        i >= first && button("copy", `Duplicate ${title}`, () => void app.arrange(steps.toSpliced(i + 1, 0, structuredClone(step)), i + 1))),
     );
+  }
+
+  /** Asks for a name in the place of the present one. */
+  private rename(i: number): void {
+    const { app } = this;
+    const [row, step] = [this.list.children[i], app.steps[i]];
+    if (app.isProposal || !row || !step) return;
+    const title = stepName(step, app.deformation(step.deformation));
+    const input = h("input", { type: "text", class: "step", "aria-label": `Name of ${title}`, maxlength: 60, value: title });
+    const done = (name: string) => {
+      const wanted = name.trim() === "" ? undefined : name.trim();
+      if (!input.isConnected) return;
+      if (name === title) return this.build();
+      void app.arrange(app.steps.map((s) => (s === step ? { ...s, name: wanted } : s)), app.selected);
+    };
+    input.addEventListener("blur", () => done(input.value));
+    input.addEventListener("keydown", (e) => {
+      if (e.key !== "Enter" && e.key !== "Escape") return;
+      e.stopPropagation();
+      if (e.key === "Escape") input.value = title;
+      input.blur();
+    });
+    row.firstElementChild?.replaceWith(input);
+    input.select();
+  }
+
+  /** Follows a pointer that moves a row among those that may change places. */
+  private drag(e: PointerEvent, i: number, first: number, moved: (to: number) => void): void {
+    // Fingers scroll the list.
+    if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
+    const rows = Array.from(this.list.children);
+    const kin = (k: number) => k < first === i < first && k < this.app.steps.length;
+    this.isDragged = false;
+    let to = i;
+    const stop = new AbortController();
+    window.addEventListener("pointermove", (event) => {
+      if (event.pointerId !== e.pointerId) return;
+      this.isDragged ||= Math.abs(event.clientY - e.clientY) > SHAKES;
+      if (!this.isDragged) return;
+      const under = rows.findIndex((r, k) => kin(k) && event.clientY < r.getBoundingClientRect().bottom);
+      to = under >= 0 ? under : rows.findLastIndex((_, k) => kin(k));
+      rows.forEach((r, k) => {
+        r.classList.toggle("above", k === to && to < i);
+        r.classList.toggle("below", k === to && to > i);
+      });
+    }, stop);
+    for (const end of ["pointerup", "pointercancel"]) {
+      window.addEventListener(end, () => {
+        stop.abort();
+        if (to !== i && end === "pointerup") moved(to);
+      }, stop);
+    }
   }
 }

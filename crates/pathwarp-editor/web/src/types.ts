@@ -9,6 +9,10 @@ export interface Step {
   /** Selectors of the parts of the drawing that it holds for, and of what it leaves out. */
   select?: string[];
   exclude?: string[];
+  /** The user's name for it, in the draft alone. */
+  name?: string;
+  /** It bends nothing for the time being, and is in no result. */
+  hidden?: boolean;
 }
 
 /** A group or shape of the drawing. */
@@ -100,6 +104,8 @@ export interface Grip {
   /** Centre, radius, and the angles in degrees at which a circle or an arc begins and ends. */
   circle?: [number, number, number, number, number];
   value?: number;
+  /** A surface as typed, with its lengths in units of the drawing. */
+  surface?: { text: string; sizes: [string, number][] };
 }
 
 export interface StepGrips {
@@ -158,6 +164,8 @@ export interface Answer {
   error?: string;
   picture?: Picture;
   grips?: StepGrips[];
+  /** The places of steps for parts that the drawing lacks. */
+  gone?: number[];
   guides?: string[];
   warnings?: string[];
   /** Characters that no font has. */
@@ -169,10 +177,12 @@ export interface Answer {
   catalogue?: Deformation[];
   svg?: string;
   step?: Step;
+  /** How far a net with other points bends from where it did, in user units. */
+  moved?: number;
   at?: XY | null;
   text?: string;
-  /** The target as it was kept, with its content as base64. */
-  target?: { name: string; type: string; bytes: string; place: { x: number; y: number; width: number }; opacity: string } | null;
+  /** The background as it was kept, with its content as base64. */
+  background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
   written?: string;
   exists?: string;
   /** The reason why nothing could be written. */

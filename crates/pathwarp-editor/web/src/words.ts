@@ -5,7 +5,7 @@ import { byId, h } from "./dom";
 import { inUnits, inWords, reason } from "./fields";
 import { toast } from "./toast";
 
-const BUNDLED = "Noto Sans (bundled)";
+export const BUNDLED = "Noto Sans (bundled)";
 const LARGEST = 2000;
 
 export class WordsDialog {
@@ -18,9 +18,16 @@ export class WordsDialog {
   private message = byId("words-message");
   private families: string[] | null = null;
   private font: string | null = null;
+  /** Words are to be put on the drawing, with these values. */
+  onPlace: (args: Record<string, string[]>) => void = () => {};
 
   constructor(private app: App) {
     byId("words").addEventListener("click", () => void this.open());
+    byId("words-place").addEventListener("click", () => {
+      this.dialog.close();
+      const { value } = this.text;
+      this.onPlace({ ...(value.trim() && !this.app.state?.words && { words: value.split("\n") }), ...(this.font && { font: [this.font] }) });
+    });
     byId("words-cancel").addEventListener("click", () => this.dialog.close());
     this.search.addEventListener("input", () => this.list());
     this.fonts.addEventListener("change", () => (this.font = this.fonts.value === BUNDLED ? null : this.fonts.value));
@@ -36,6 +43,9 @@ export class WordsDialog {
   private show(): void {
     const { state } = this.app;
     byId("words").textContent = state?.words ? "Edit words…" : "Words…";
+    byId("words-set").textContent = state?.words ? "Set words" : "New drawing";
+    byId("words-place").classList.toggle("primary", !state?.words);
+    byId("words-set").classList.toggle("primary", !!state?.words);
     if (state?.program) byId("words").hidden = true;
   }
 

@@ -82,7 +82,7 @@ const openedAgain = async (editor, file, work) => {
 const setWords = async (page, button, fields) => {
   await page.getByRole("button", { name: button }).click();
   for (const [name, text] of Object.entries(fields)) await page.getByRole("textbox", { name }).fill(text);
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: button === "Words…" ? "New drawing" : "Set words" }).click();
   await page.getByRole("dialog").waitFor({ state: "hidden" });
   await quiet(page);
 };
@@ -93,7 +93,7 @@ export const job_arch = () => job("arch", "lettering.svg", async (page, dir) => 
   await field(page, "Bend", "30");
   check((await page.getByRole("textbox", { name: "Bend", exact: true }).inputValue()) === "30", "it is not 30");
   await backAndForth(page, 2);
-  await given(page, "Target", sample("badge.svg"));
+  await given(page, "Background", sample("badge.svg"));
   for (const [name, mm] of [["Width", "185"], ["X", "-2"], ["Y", "-32"]]) await field(page, new RegExp(`^${name} +mm`), mm);
   await saved(page, "PNG", "word.png");
   await saved(page, "PDF", "word.pdf");
@@ -119,6 +119,162 @@ export const job_flag_in_perspective = () => job("flag", "logo.svg", async (page
   await press(page, "Save");
   await page.getByText("Saved logo-bent.svg in").waitFor();
   await openedAgain(editor, join(dir, "logo-bent.svg"), (page2) => becomes(page2, picture, "opened again, it is another drawing"));
+});
+
+/** The command line that the dialog copies writes the file that *Save* has written, to the byte. */
+const sameByCommand = async (page, dir, file) => {
+  await page.evaluate(() => { navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }; });
+  await page.getByRole("button", { name: "Save as…" }).click();
+  await page.getByRole("textbox", { name: "Name", exact: true }).fill(`copied-${file}`);
+  await page.getByRole("button", { name: "Copy command line" }).click();
+  const line = await (await page.waitForFunction(() => window.copied)).jsonValue();
+  execFileSync("sh", ["-c", line.replace(/^pathwarp/, program)], { cwd: dir, stdio: "pipe" });
+  check(readFileSync(join(dir, `copied-${file}`)).equals(readFileSync(join(dir, file))), `${line} gives other bytes`);
+};
+
+/** A flag and then perspective; the flag is changed while the end lies faint behind it, and what lay there is what all steps make. */
+export const job_flag_with_the_end_in_view = () => job("flag-and-end", "logo.svg", async (page, dir) => {
+  await press(page, "Flag");
+  await press(page, "Add step");
+  await press(page, "Perspective");
+  const corners = await page.locator(".knob.node").evaluateAll((all) => all.map((k) => k.getAttribute("aria-label")));
+  await pull(page, await at(page, corners[1]), [-60, -50]);
+  check(!(await page.getByRole("button", { name: "End", exact: true }).isVisible()), "there is no later step to show");
+  const whole = await paths(page);
+  const ahead = () => page.$$eval("#stage .ahead path", (all) => all.map((p) => p.getAttribute("d")).join("|"));
+  await page.getByRole("button", { name: /^1\. Flag/ }).click();
+  await press(page, "End");
+  check((await ahead()) === whole && (await paths(page)) !== whole, "what lies behind is not the end");
+  await pull(page, await at(page, "Bend"), [0, -30]);
+  await keep(page, "flag-and-end-changed");
+  const end = await ahead();
+  check(end !== whole, "the end stays as it was");
+  await page.getByRole("button", { name: /^2\. / }).click();
+  await quiet(page);
+  check((await paths(page)) === end && (await ahead()) === "", "the end was another");
+  await page.getByRole("button", { name: /^1\. Flag/ }).click();
+  await quiet(page);
+  await page.keyboard.press("e");
+  check((await ahead()) === "", "the key does not hide the end");
+  await page.getByRole("button", { name: /^2\. / }).click();
+  await quiet(page);
+  await backAndForth(page, 4);
+  await press(page, "Save");
+  await page.getByText("Saved logo-bent.svg in").waitFor();
+  await sameByCommand(page, dir, "logo-bent.svg");
+});
+
+/** The distances of the round handles from the picture of a path of the background, in px. */
+const offTheRim = (page, index) => page.evaluate((index) => {
+  const rim = document.querySelectorAll(".outlines path")[index];
+  const [m, length] = [rim.getScreenCTM(), rim.getTotalLength()];
+  const places = Array.from({ length: 2000 }, (_, i) => rim.getPointAtLength((length * i) / 2000)).map((p) => [m.a * p.x + m.c * p.y + m.e, m.b * p.x + m.d * p.y + m.f]);
+  return Array.from(document.querySelectorAll(".knob.node .body"), (body) => {
+    const { x, y, width, height } = body.getBoundingClientRect();
+    return Math.min(...places.map(([px, py]) => Math.hypot(px - x - width / 2, py - y - height / 2)));
+  });
+}, index);
+
+/** A badge with a cup over a photographed sign: the sign is moved, scaled and turned, its rim lights up and is clicked, and the badge fills it; then
+ * by clicks around a photograph alone. */
+export const job_badge_over_a_sign = () => {
+  const photograph = execFileSync(program, ["render", sample("badge.svg"), "--width", "240", "--background", "#8ac", "--format", "png", "-o", "-"]);
+  const bolts = Array.from({ length: 34 }, (_, i) => `<circle cx="${20 + 8 * i}" cy="8" r="2" fill="#555"/>`).join("");
+  const sign = `<svg xmlns="http://www.w3.org/2000/svg" width="320" height="260" viewBox="0 0 320 260"><image x="0" y="0" width="320" height="260" preserveAspectRatio="none" href="data:image/png;base64,${photograph.toString("base64")}"/>
+    ${bolts}<path d="M40 130A120 100 0 0 1 280 130A120 100 0 0 1 40 130Z" fill="none" stroke="#c33" stroke-width="6"/></svg>`;
+  const badge = execFileSync(program, ["badge", "CUP", "OF 1962", "--center", sample("icons/cup.svg"), "-o", "-"], { encoding: "utf8" });
+  return job("badge-over-a-sign", "badge.svg", async (page, dir) => {
+    await given(page, "Background", { name: "Sign at Noon.svg", mimeType: "image/svg+xml", buffer: Buffer.from(sign) });
+    await page.getByText("Sign at Noon.svg").waitFor();
+    await press(page, "Fit");
+    const shown = async () => {
+      const { x, y, width, height } = await page.locator(".background").boundingBox();
+      const view = await page.locator("#view").boundingBox();
+      return [x >= view.x && y >= view.y && x + width <= view.x + view.width && y + height <= view.y + view.height, x, y, width];
+    };
+    const before = await shown();
+    check(before[0], "Fit does not show all of the background");
+    const knob = async (name) => {
+      const { x, y, width, height } = await page.locator(`.lie .part.${name} .body`).boundingBox();
+      return [x + width / 2, y + height / 2];
+    };
+    await pull(page, [before[1] + before[3] / 2, before[2] + before[3] / 3], [30, -20]);
+    const moved = await shown();
+    check(Math.abs(moved[1] - before[1] - 30) < 1 && Math.abs(moved[2] - before[2] + 20) < 1, `it was moved by ${moved[1] - before[1]}, ${moved[2] - before[2]}`);
+    const [corner, other] = [await knob("se"), await knob("nw")];
+    await pull(page, corner, [(corner[0] - other[0]) / 4, (corner[1] - other[1]) / 4]);
+    const scaled = await shown();
+    check(Math.abs(scaled[3] / moved[3] - 1.25) < 0.01 && Math.abs(scaled[1] - moved[1]) < 1, `it is ${scaled[3] / moved[3]} times as wide`);
+    await field(page, /^Turn/, "15");
+    await press(page, "Use its outline as the shape");
+    const rim = page.locator(".outlines path").last();
+    // The left end of the rim, in the middle of its stroke.
+    const [x, y] = await rim.evaluate((path) => {
+      const [p, m] = [path.getPointAtLength(0), path.getScreenCTM()];
+      return [m.a * p.x + m.c * p.y + m.e, m.b * p.x + m.d * p.y + m.f];
+    });
+    await page.mouse.move(x + 60, y + 60);
+    check((await page.locator("#stage > .lit").getAttribute("d")) === "", "something is lit off the rim");
+    await page.mouse.move(x, y);
+    await page.waitForFunction(() => document.querySelector("#stage > .lit").getAttribute("d") !== "");
+    await keep(page, "badge-over-a-sign-lit");
+    await page.mouse.click(x, y);
+    await quiet(page);
+    check((await page.locator("#steps").textContent()).includes("Closed shape") && !(await page.isVisible("#problem")), await page.textContent("#problem"));
+    const off = await offTheRim(page, 34);
+    check(off.length > 3 && Math.max(...off) < 1, `handles are off the rim by ${off.map((d) => d.toFixed(1))} px`);
+    check((await page.locator("#toast.on").count()) === 0, "the question is still on show");
+    await press(page, "Save");
+    await page.getByText("Saved badge-bent.svg in").waitFor();
+    check(!readFileSync(join(dir, "badge-bent.svg"), "utf8").includes("#c33"), "the sign is in the result");
+    await sameByCommand(page, dir, "badge-bent.svg");
+    await backAndForth(page, 1);
+    // A photograph alone: points around what it shows.
+    await press(page, "Background");
+    await given(page, "Another…", { name: "Sign.png", mimeType: "image/png", buffer: photograph });
+    await page.getByText("Sign.png").waitFor();
+    await quiet(page);
+    await press(page, "Use its outline as the shape");
+    const { x: bx, y: by, width, height } = await page.locator(".background").boundingBox();
+    const clicks = Array.from({ length: 12 }, (_, i) => [bx + width / 2 + 0.3 * width * Math.cos((Math.PI * i) / 6), by + height / 2 + 0.3 * height * Math.sin((Math.PI * i) / 6)]);
+    for (const [px, py] of clicks) await page.mouse.click(px, py);
+    await page.mouse.click(...clicks[0]);
+    await quiet(page);
+    const nodes = await page.locator(".knob.node").count();
+    check(nodes === 12 && (await page.locator(".knob.control").count()) === 24, `${nodes} points instead of a smooth line through 12`);
+  }, badge);
+};
+
+/** A sticker: a flag with its cut line 3 mm outside and the bleed beyond that, as SVG and PDF. */
+export const job_sticker = () => job("sticker", "badge.svg", async (page, dir) => {
+  await press(page, "Flag");
+  await press(page, "Add step");
+  await press(page, "Contour");
+  await field(page, "Distance", "3mm");
+  await page.getByText("More settings").click();
+  await field(page, "Bleed", "2mm");
+  await page.getByRole("button", { name: /^2\. Flag/ }).click();
+  await quiet(page);
+  check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  await saved(page, "SVG Can", "sticker.svg");
+  await saved(page, "PDF", "sticker.pdf");
+  await sameByCommand(page, dir, "sticker.svg");
+  check(readFileSync(join(dir, "sticker.pdf")).subarray(0, 5).toString() === "%PDF-", "there is no PDF");
+  // Hidden, the contour is in no picture; renamed and duplicated, steps are the same.
+  const picture = await paths(page);
+  await press(page, "Hide Contour");
+  check((await paths(page)) !== picture, "the hidden step is still seen");
+  await press(page, "Show Contour");
+  await becomes(page, picture, "shown again, it is another");
+  await page.getByRole("button", { name: /^2\. Flag/ }).dblclick();
+  await page.getByRole("textbox", { name: "Name of Flag" }).fill("Pennant");
+  await page.keyboard.press("Enter");
+  await page.getByRole("button", { name: /^2\. Pennant/ }).waitFor();
+  await quiet(page);
+  await press(page, "Duplicate Pennant");
+  check((await page.getByRole("list").getByRole("button", { name: /^[0-9]\. / }).allTextContents()).join() === "1. Contour,2. Pennant,3. Pennant", "there is no second one");
+  await press(page, "Undo");
+  await becomes(page, picture, "the second one cannot be undone");
 });
 
 /** A bottle's label: the neck by both upper corners, the belly by the lower side. */
@@ -194,7 +350,7 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
   await page.getByRole("textbox", { name: "Spacing" }).fill("10");
   const fonts = await page.getByRole("listbox", { name: "Font" }).locator("option").allTextContents();
   if (fonts.length > 1) await page.getByRole("listbox", { name: "Font" }).selectOption({ index: fonts.length - 1 });
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
   await quiet(page);
   check((await paths(page)) !== bent && (await page.locator("#steps").textContent()).includes("Bend"), "the bend is gone, or the words are as before");
   await backAndForth(page, 3);
@@ -208,6 +364,103 @@ export const job_words = () => job("words", "logo.svg", async (page, dir, editor
     await becomes(page2, picture, "the words cannot be undone");
     await page2.getByText("Saved as sign.svg").waitFor();
   });
+});
+
+/** Puts words on the drawing at a share of the sheet, and types them. */
+const typed = async (page, button, [x, y], words) => {
+  await page.getByRole("button", { name: button }).click();
+  await page.getByRole("button", { name: "Place on the drawing" }).click();
+  const sheet = await page.locator("#stage .sheet").boundingBox();
+  await page.mouse.click(sheet.x + x * sheet.width, sheet.y + y * sheet.height);
+  await page.getByRole("textbox", { name: "Words on the drawing" }).waitFor();
+  await page.keyboard.type(words);
+  await page.keyboard.press("Escape");
+  await quiet(page);
+};
+/** The pixels of a picture that have a colour, as their number and the box around them in shares of the picture. */
+const coloured = (page, file, [r, g, b]) => page.evaluate(async ([data, wanted]) => {
+  const image = new Image();
+  image.src = `data:image/jpeg;base64,${data}`;
+  await image.decode();
+  const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
+  const found = [];
+  for (let i = 0; i < pixels.length; i += 4) if (wanted.every((v, k) => Math.abs(pixels[i + k] - v) < 60)) found.push(i / 4);
+  const [xs, ys] = [found.map((i) => (i % image.width) / image.width), found.map((i) => Math.floor(i / image.width) / image.height)];
+  const ends = (all) => [all.reduce((a, v) => Math.min(a, v), 1), all.reduce((a, v) => Math.max(a, v), 0)];
+  return { count: found.length, x: ends(xs), y: ends(ys), width: image.width, height: image.height };
+}, [readFileSync(file).toString("base64"), [r, g, b]]);
+
+/** A caption is typed on a photograph, both are bent, and go out as JPEG and PDF; the saved file has the caption as words. */
+export const job_captioned_photograph = () => {
+  const photograph = execFileSync(program, ["render", sample("badge.svg"), "--width", "300", "--background", "#8ac", "--format", "jpg", "-o", "-"]);
+  return job("captioned", "badge.svg", async (page, dir, editor) => {
+    writeFileSync(join(dir, "seaside.jpg"), photograph);
+    await given(page, "Open…", join(dir, "seaside.jpg"));
+    await page.getByRole("heading", { name: "seaside.jpg" }).waitFor();
+    await quiet(page);
+    await typed(page, "Words…", [0.5, 0.95], "Seaside");
+    await field(page, "Colour", "#ff00ff");
+    await page.getByRole("radio", { name: "Center" }).locator("..").click();
+    await page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" });
+    await quiet(page);
+    await saved(page, "JPEG", "level.jpg");
+    const level = await coloured(page, join(dir, "level.jpg"), [255, 0, 255]);
+    check(level.width === 300 && level.count > 500, `${level.count} pixels are of the caption's colour`);
+    check(Math.abs(level.x[0] + level.x[1] - 1) < 0.04, `it is centred at ${(level.x[0] + level.x[1]) / 2}`);
+    check(level.y[1] > 0.92 && level.y[1] < 0.98 && level.y[0] > 0.84, `it stands from ${level.y[0]} to ${level.y[1]}`);
+    await press(page, "Flag");
+    await field(page, "Bend", "20");
+    await saved(page, "JPEG", "bent.jpg");
+    const bent = await coloured(page, join(dir, "bent.jpg"), [255, 0, 255]);
+    const rise = (of) => (of.y[1] - of.y[0]) * of.height;
+    check(bent.count > 500 && rise(bent) > 1.3 * rise(level), `the caption rises over ${rise(bent)} px, level over ${rise(level)}`);
+    await saved(page, "PDF", "bent.pdf");
+    const pdf = readFileSync(join(dir, "bent.pdf"), "latin1");
+    check(pdf.startsWith("%PDF") && pdf.includes("/Image"), "the PDF has no photograph");
+    await backAndForth(page, 6);
+    await saved(page, "SVG Can", "seaside.svg");
+    const picture = await paths(page);
+    await openedAgain(editor, join(dir, "seaside.svg"), async (page2) => {
+      await becomes(page2, picture, "opened again, it is another drawing");
+      await press(page2, "1. “Seaside”");
+      await page2.getByRole("textbox", { name: "Words", exact: true }).click({ clickCount: 3 });
+      await page2.keyboard.type("Seaside 1962");
+      await page2.keyboard.press("Tab");
+      await quiet(page2);
+      await press(page2, "2. Flag");
+      check((await paths(page2)).length > picture.length, "the words cannot be changed");
+      await press(page2, "Undo");
+      await becomes(page2, picture, "the words cannot be undone");
+    });
+  });
+};
+
+/** Three lines in a heart: no letter leaves it, and each line fills it. */
+export const job_heart = () => job("heart", "logo.svg", async (page) => {
+  await setWords(page, "Words…", { Text: "LOVE\nMUSIC\nALWAYS" });
+  await press(page, "Heart shape");
+  const { count, off, rows } = await page.evaluate(() => {
+    const heart = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    heart.setAttribute("d", Array.from(document.querySelectorAll("#stage .guides .line.path"), (l, i) => l.getAttribute("d").replace(/^M/, i === 0 ? "M" : "L")).join(" "));
+    document.querySelector("#stage").append(heart);
+    heart.style.strokeWidth = "6px";
+    heart.style.stroke = "#000";
+    const { x, y } = document.querySelector("#stage").getBoundingClientRect();
+    const letters = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) path"));
+    const points = letters.map((letter) => {
+      const [length, to] = [letter.getTotalLength(), letter.getScreenCTM()];
+      return Array.from({ length: 60 }, (_, i) => letter.getPointAtLength((i / 60) * length).matrixTransform(to)).map((p) => new DOMPoint(p.x - x, p.y - y));
+    });
+    const out = points.flat().filter((p) => !heart.isPointInFill(p) && !heart.isPointInStroke(p));
+    heart.remove();
+    return { count: letters.length, off: out.length, rows: new Set(letters.map((l) => l.parentElement)).size };
+  });
+  check(count === 15 && rows === 3, `${count} letters in ${rows} lines`);
+  check(off === 0, `${off} places of letters are outside of the heart`);
+  await backAndForth(page, 1);
 });
 
 /** A photograph with a caption: both follow the flag, are saved, and are there again. */
@@ -306,7 +559,7 @@ export const job_linked_photograph = () => {
   }, card);
 };
 
-/** Twenty steps of every kind are undone and redone, each with the picture that it had, with the page loaded anew on the way there and back. */
+/** Thirty steps of every kind are undone and redone, each with the picture that it had, with the page loaded anew on the way there and back. */
 export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page, dir, editor) => {
   await setWords(page, "Words…", { Text: "Harbour" });
   const corner = async () => at(page, (await page.locator(".knob.node").last().getAttribute("aria-label")));
@@ -317,6 +570,12 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
   const between = async (a, b) => {
     const [[ax, ay], [bx, by]] = [await at(page, a), await at(page, b)];
     return [(ax + bx) / 2, (ay + by) / 2];
+  };
+  const caption = async (name, change) => {
+    await page.getByRole("list").getByRole("button", { name: new RegExp(`^[0-9]+\\. ${name}$`) }).click();
+    await quiet(page);
+    await change();
+    await quiet(page);
   };
   const steps = [
     () => press(page, "Bend"),
@@ -358,6 +617,20 @@ export const job_undone_and_redone = () => job("twenty", "logo.svg", async (page
       await quiet(page);
     },
     () => press(page, "Remove Perspective"),
+    () => typed(page, "Edit words…", [0.1, 0.9], "Since"),
+    () => caption("“Since”", () => field(page, "Colour", "#c30")),
+    () => caption("“Since”", () => page.getByRole("combobox", { name: "Weight" }).selectOption({ label: "Bold" })),
+    () => caption("“Since”", () => page.getByRole("switch", { name: "Italic" }).locator("..").click()),
+    () => typed(page, "Edit words…", [0.6, 0.1], "1887"),
+    () => caption("“1887”", async () => pull(page, await at(page, "At"), [-20, 10])),
+    () => caption("“1887”", () => field(page, "Size", "20")),
+    () => caption("“1887”", async () => {
+      await page.mouse.dblclick(...(await at(page, "At")));
+      await page.keyboard.type("1887\nand on");
+      await page.keyboard.press("Escape");
+    }),
+    () => caption("“1887 and on”", () => page.getByRole("radio", { name: "Right" }).locator("..").click()),
+    () => caption("“1887 and on”", () => field(page, "Line spacing", "90")),
   ];
   // All steps are seen while the last one is being changed.
   const last = async () => {

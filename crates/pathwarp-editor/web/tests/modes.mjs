@@ -235,3 +235,41 @@ export const modes_end_with_their_buttons = () => within(async (page) => {
   await choose(page, "Arc");
   await pans("with one part, parts are picked");
 });
+
+/** Selected points move when the ground in their box is dragged, or its edge; a click there lets them go. */
+export const a_selection_is_moved_by_its_box = () => within(async (page) => {
+  const all = [CORNER, OPPOSITE];
+  const selected = async () => {
+    await page.mouse.click(...(await middle(page, CORNER)));
+    await page.keyboard.down("Shift");
+    await page.mouse.click(...(await middle(page, OPPOSITE)));
+    await page.keyboard.up("Shift");
+    await quiet(page);
+  };
+  const dragged = async ([x, y], dx, dy) => {
+    const before = await Promise.all(all.map((k) => middle(page, k)));
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx, y + dy, { steps: 8 });
+    await page.mouse.up();
+    await quiet(page);
+    const after = await Promise.all(all.map((k) => middle(page, k)));
+    const off = after.flatMap((p, i) => [p[0] - before[i][0] - dx, p[1] - before[i][1] - dy]);
+    check(Math.max(...off.map(Math.abs)) < 1.5, `the points are ${off} px off`);
+  };
+  await selected();
+  const box = async () => {
+    const { x, y, width, height } = await page.locator("#stage .selection > path.line").last().boundingBox();
+    // The handle that turns stands above.
+    return { x, y: y + 26, width, height: height - 26 };
+  };
+  const inside = await box();
+  await dragged([inside.x + inside.width * 0.4, inside.y + inside.height * 0.75], 25, 40);
+  const edge = await box();
+  await dragged([edge.x + edge.width * 0.3, edge.y + edge.height + 2], -15, 20);
+  check((await page.locator("#stage .selection").last().getAttribute("visibility")) === "visible", "the selection is lost");
+  const again = await box();
+  await page.mouse.click(again.x + again.width * 0.4, again.y + again.height * 0.75);
+  await quiet(page);
+  check((await page.locator("#stage .selection").last().getAttribute("visibility")) === "hidden", "a click does not let go");
+});

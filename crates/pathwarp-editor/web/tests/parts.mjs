@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { check, choose, edit, folder, keep, open, paths, program, quiet, sample } from "./harness.mjs";
+import { check, choose, drag, edit, folder, keep, keys, open, paths, program, quiet, sample } from "./harness.mjs";
 
 async function within(drawing, test, options = {}) {
   const dir = folder(drawing.includes("<") ? { "art.svg": drawing } : { "art.svg": sample(drawing) });
@@ -173,13 +173,13 @@ export const the_sheet_changes = () => within(`<svg xmlns="http://www.w3.org/200
 });
 
 /** A drawing behind the artwork, at its own place; its outline becomes the shape, and it is in no result. */
-export const a_target_is_fitted_to = () => within("lettering.svg", async (page, dir) => {
+export const a_background_is_fitted_to = () => within("lettering.svg", async (page, dir) => {
   const leaf = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200" width="400" height="200"><path id="leaf" fill="#8b8" d="M10 100Q200-60 390 100Q200 260 10 100Z"/></svg>`;
-  await page.setInputFiles("#target-file", { name: "leaf.svg", mimeType: "image/svg+xml", buffer: Buffer.from(leaf) });
+  await page.setInputFiles("#background-file", { name: "leaf.svg", mimeType: "image/svg+xml", buffer: Buffer.from(leaf) });
   const width = page.getByRole("textbox", { name: "Width" });
   await width.waitFor();
   check((await width.inputValue()) === "105.83", `400 px are ${await width.inputValue()} mm`);
-  const image = page.locator("#stage image.target");
+  const image = page.locator("#stage image.background");
   const before = await image.boundingBox();
   await width.fill("50+2.915");
   await page.keyboard.press("Enter");
@@ -187,22 +187,25 @@ export const a_target_is_fitted_to = () => within("lettering.svg", async (page, 
   check(Math.abs(before.width / after.width - 2) < 0.01 && Math.abs(before.height / after.height - 2) < 0.01, "it is not half as large");
   await page.getByRole("slider", { name: "Opacity" }).fill("80");
   check((await image.getAttribute("opacity")) === "0.8", "its opacity is another");
+  const lie = () => image.evaluate((e) => ["x", "y", "width", "height"].map((side) => e.getAttribute(side)).join(" "));
+  const there = await lie();
   await page.getByRole("slider", { name: "Opacity" }).press("ArrowRight");
   await quiet(page);
   await page.reload();
   await image.waitFor();
   await quiet(page);
-  const [again, faint] = [await image.boundingBox(), await image.getAttribute("opacity")];
-  check(faint === "0.81" && ["x", "y", "width", "height"].every((side) => Math.abs(again[side] - after[side]) < 1), `loaded anew, the target is ${JSON.stringify(again)}, ${faint}`);
-  await press(page, "Target");
+  const [again, faint] = [await lie(), await image.getAttribute("opacity")];
+  check(faint === "0.81" && again === there, `loaded anew, the background is at ${again}, ${faint}`);
+  await press(page, "Background");
   const was = await paths(page);
   await press(page, "Use its outline as the shape");
   check((await paths(page)) !== was && !(await page.isVisible("#problem")), await page.textContent("#problem"));
-  await keep(page, "target");
+  await keep(page, "background");
   await page.click("#save");
   await page.locator("#toast.on", { hasText: "Saved art-bent.svg" }).waitFor();
-  check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the target is in the result");
-  await press(page, "Remove target");
+  check(!readFileSync(join(dir, "art-bent.svg"), "utf8").includes("#8b8"), "the background is in the result");
+  await press(page, "Background");
+  await press(page, "Remove background");
   check(!(await image.isVisible()), "it is still there");
 });
 
@@ -257,12 +260,12 @@ export const flat_artwork_is_seen = () => within(`<svg xmlns="http://www.w3.org/
   check((await paths(page)) === line, "undone, it is another drawing");
 });
 
-/** Steps for letters that other words do not have are gone with them, and come back with them; a preset is for no part of another drawing. */
-export const parts_go_with_their_words = () => within("lettering.svg", async (page) => {
+/** Steps for letters that other words do not have wait until they are back, eyes and locks stay; a preset is for no part of another drawing. */
+export const parts_go_with_their_words = () => within("lettering.svg", async (page, dir) => {
   const setWords = async (text) => {
     await page.getByRole("button", { name: /words…$/i }).click();
     await page.getByRole("textbox", { name: "Text" }).fill(text);
-    await page.getByRole("button", { name: "Set words" }).click();
+    await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
     await page.getByRole("dialog").waitFor({ state: "hidden" });
     await quiet(page);
   };
@@ -270,14 +273,23 @@ export const parts_go_with_their_words = () => within("lettering.svg", async (pa
   await choose(page, "Flag");
   await page.click("#parts-list summary");
   await press(page, "Lock: Path “u”");
+  await press(page, "Hide here: Path “a”");
   await page.getByRole("button", { name: "Add step", exact: true }).click();
   await choose(page, "Arch");
   await press(page, "Path “b”");
   const bent = await paths(page);
   await setWords("Ho");
-  check((await page.locator("#steps li").allTextContents()).join() === "1. Flag" && !(await page.isVisible("#problem")), await page.textContent("#steps"));
+  await page.locator("#steps li", { hasText: "2. Arch one part (its letter is gone)" }).waitFor();
+  check((await page.locator("#steps li").count()) === 2 && !(await page.isVisible("#problem")), await page.textContent("#steps"));
+  await savedAsCopied(page, dir);
+  await setWords("Harbour");
+  check((await paths(page)) === bent, "the step does not work again");
+  check((await page.getAttribute('[aria-label="Lock: Path “u”"]', "aria-pressed")) === "true", "the lock is open");
+  check((await page.getAttribute('[aria-label="Hide here: Path “a”"]', "aria-pressed")) === "true", "what was hidden is not");
   await press(page, "Undo");
-  await page.locator("#steps li").nth(1).waitFor();
+  await page.locator("#steps li", { hasText: "gone" }).waitFor();
+  await press(page, "Undo");
+  await page.locator("#steps li", { hasText: "gone" }).waitFor({ state: "hidden" });
   check((await paths(page)) === bent, "the letters do not come back");
   await page.click("#keep-preset");
   await page.fill("#preset-name", "Two letters");
@@ -333,3 +345,104 @@ export const the_view_moves_while_parts_are_picked = () => within(SQUARES, async
   await clicked(page, 2);
   check((await paths(page)) !== picture, "a click does not pick");
 }, { hasTouch: true });
+
+/** A click on what is locked or hidden does nothing: neither is that bent, nor everything. */
+export const what_is_locked_or_hidden_is_not_picked = () => within(SQUARES, async (page) => {
+  const before = await each(page);
+  await press(page, "Pick parts");
+  await choose(page, "Flag");
+  await clicked(page, 1);
+  await press(page, "Lock: Rectangle");
+  const [first] = await page.locator("#parts .lock").evaluateAll((all) => all.map((b) => b.ariaPressed));
+  check(first === "true", "it is not locked");
+  const hidden = await page.locator("#stage .art:not([visibility=hidden]) path").nth(2).boundingBox();
+  await page.locator("#parts .eye").nth(3).click();
+  await quiet(page);
+  const bent = await paths(page);
+  const undone = await page.evaluate(() => document.querySelector("#steps").textContent);
+  await clicked(page, 0);
+  await page.mouse.click(hidden.x + 5, hidden.y + hidden.height / 2);
+  await quiet(page);
+  check((await paths(page)) === bent && (await page.textContent("#steps")) === undone, "the step bends something else");
+  check(moved(before, await each(page)) === "1", `${moved(before, await each(page))} are bent instead of the second`);
+  // A place that nothing covers still means everything.
+  await page.mouse.click(hidden.x + 5, hidden.y + hidden.height + 60);
+  await quiet(page);
+  check((await page.textContent("#parts-scope")) === "This step bends everything.", "it does not bend everything");
+});
+
+/** Words on a bent drawing stand where they are put; a step holds for one of their letters, waits while that is gone, and the copied command
+ * line gives the same bytes; with nothing typed, nothing is there. */
+export const captions_have_letters_as_parts = () => within(SQUARES, async (page, dir) => {
+  const place = async (x, y) => {
+    await page.click("#words");
+    await press(page, "Place on the drawing");
+    await page.mouse.click(x, y);
+    await page.locator("#caption-text").waitFor();
+  };
+  await choose(page, "Turn and scale");
+  const { x, y, width, height } = await page.locator("#stage .sheet").boundingBox();
+  await place(x + 10, y + 10);
+  await page.keyboard.press("Escape");
+  await page.locator("#caption-text").waitFor({ state: "hidden" });
+  await quiet(page);
+  check((await page.locator("#steps li").count()) === 1, "words that were not typed are there");
+  await drag(page, (await keys(page)).at(-1), -60, 40);
+  await place(x + 0.3 * width, y + 0.7 * height);
+  await page.keyboard.type("HHH");
+  await page.keyboard.press("Escape");
+  await quiet(page);
+  await press(page, "2. Turn and scale");
+  const off = await page.$$eval("#stage .art:not([visibility=hidden]) path", (all, [x, y]) => {
+    const letter = all.at(-3);
+    const [length, to] = [letter.getTotalLength(), letter.getScreenCTM()];
+    const points = Array.from({ length: 400 }, (_, i) => letter.getPointAtLength((i / 400) * length).matrixTransform(to));
+    return Math.min(...points.map((p) => Math.hypot(p.x - x, p.y - y)));
+  }, [x + 0.3 * width, y + 0.7 * height]);
+  check(off < 8, `the first letter stands ${off} px beside the place that was clicked`);
+  const before = await each(page);
+  await press(page, "Add step");
+  await choose(page, "Flag");
+  await press(page, "Pick parts");
+  await clicked(page, 5);
+  const bent = await each(page);
+  check(moved(before, bent) === "5", `${moved(before, bent)} are bent instead of the second letter`);
+  await savedAsCopied(page, dir);
+  const words = async (text) => {
+    await press(page, "1. “HHH”".replace("HHH", await page.locator("#steps li").first().textContent().then((t) => /“(.*)”/.exec(t)[1])));
+    await page.locator("#set-words").click({ clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press("Tab");
+    await quiet(page);
+    await page.locator("#steps .step").last().click();
+    await quiet(page);
+  };
+  await words("H");
+  await page.locator("#steps li", { hasText: "(its letter is gone)" }).waitFor();
+  check(!(await page.isVisible("#problem")), await page.textContent("#problem"));
+  await words("HHH");
+  check((await each(page)).join() === bent.join(), "the step does not work again");
+});
+
+/** Words without a step are saved in any format, with the bytes of the copied command line, and are words without a step when they are opened again. */
+export const words_alone_are_saved = () => within("lettering.svg", async (page, dir) => {
+  await page.click("#words");
+  await page.fill("#words-text", "Word");
+  await press(page, "New drawing");
+  await page.getByRole("heading", { name: "word.svg" }).waitFor();
+  await quiet(page);
+  const level = await each(page);
+  await savedAsCopied(page, dir);
+  await page.click("#save-as");
+  await page.getByRole("radio", { name: /^PDF/ }).check();
+  await page.fill("#save-name", "word.pdf");
+  await page.locator("#save-dialog").getByRole("button", { name: "Save", exact: true }).click();
+  await page.getByText("Saved word.pdf").waitFor();
+  check(readFileSync(join(dir, "word.pdf"), "latin1").startsWith("%PDF"), "it is no PDF");
+  await page.setInputFiles("#open-file", join(dir, "own.svg"));
+  await page.getByRole("heading", { name: "own.svg" }).waitFor();
+  await quiet(page);
+  check((await page.textContent("#words")) === "Edit words…" && (await page.isDisabled("#undo")), "they are no words any more");
+  const off = (await each(page)).filter((d, i) => d !== level[i]);
+  check(off.length === 0, `opened again, ${off.length} letters are others`);
+});

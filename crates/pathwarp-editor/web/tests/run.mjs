@@ -15,9 +15,10 @@ import * as jobs from "./jobs.mjs";
 import * as parts from "./parts.mjs";
 import * as drawn from "./drawn.mjs";
 import * as first from "./first.mjs";
+import * as details from "./details.mjs";
 
 const wanted = process.argv.slice(2);
-const tests = Object.entries({ ...dragging, ...files, ...keeping, ...points, ...modes, ...choosing, ...working, ...several, ...jobs, ...parts, ...drawn, ...first, ...safety, ...access, ...inkscape })
+const tests = Object.entries({ ...dragging, ...files, ...keeping, ...points, ...modes, ...choosing, ...working, ...several, ...jobs, ...parts, ...drawn, ...first, ...details, ...safety, ...access, ...inkscape })
   .filter(([name]) => wanted.length === 0 || wanted.some((word) => name.includes(word)));
 let failed = 0;
 

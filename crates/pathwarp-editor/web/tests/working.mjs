@@ -293,6 +293,44 @@ export const grids_keep_their_shape = () => within("Grid", async (page) => {
   for (let i = 0; i < 4; i++) await page.keyboard.press("Control+z");
 });
 
+/** A grid of a lower degree is the nearest there is, and a line says how far it has moved: an arch 2h·t(1 − t) high, of which a level line at h/3 is
+ * nearest, is off by h/3 at its ends. */
+export const a_lower_degree_says_how_far_it_moves = () => within("Grid", async (page) => {
+  const degree = async (text) => {
+    await page.click("#set-degree", { clickCount: 3 });
+    await page.keyboard.type(text);
+    await page.keyboard.press("Enter");
+    await quiet(page);
+  };
+  await page.locator("#settings summary").click();
+  await degree("2x1");
+  const before = await middle(page, "at/4");
+  await drag(page, "at/1", 0, -60);
+  await drag(page, "at/4", 0, -60);
+  const [after, zoom] = [await middle(page, "at/4"), Number.parseFloat(await page.textContent("#zoom")) / 100];
+  await degree("1x1");
+  const said = await page.locator("#toast.on", { hasText: "so few points cannot hold it" }).textContent();
+  const [mm, wanted] = [Number(/by up to ([\d.]+) mm/.exec(said)[1]), ((before[1] - after[1]) / zoom / 3) * (25.4 / 96)];
+  // The nearest one is found over some dozen places.
+  check(Math.abs(mm - wanted) < 0.08 * wanted, `${said}, and ${wanted} mm are right`);
+});
+
+/** Letters move together until they lie upon each other, and in no other order. */
+export const spacing_ends_where_letters_would_pass_each_other = () => within(null, async (page) => {
+  const lefts = async (spacing) => {
+    await page.click("#words");
+    await page.fill("#words-text", "nnnn");
+    await page.fill("#words-spacing", spacing);
+    await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
+    await page.getByRole("dialog").waitFor({ state: "hidden" });
+    await quiet(page);
+    return page.$$eval("#stage .art:not([visibility=hidden]) path", (all) => all.map((p) => p.getBoundingClientRect().left));
+  };
+  const [near, ended] = [await lefts("-40"), await lefts("-150")];
+  check(near.every((x, i) => i === 0 || x > near[i - 1]), `at -40 %: ${near}`);
+  check(ended.length === 4 && ended.every((x) => Math.abs(x - ended[0]) < 0.5), `at -150 %: ${ended}`);
+});
+
 /** The same for a triangular net. */
 export const triangles_keep_their_shape = () => within("Triangle net", async (page) => {
   await drag(page, "at/3", 40, 20);
@@ -541,7 +579,7 @@ export const sizes_of_words_are_added = () => within(null, async (page) => {
   await page.click("#words");
   await page.fill("#words-text", "Word");
   await page.fill("#words-size", "1 cm + 2.5");
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
   await page.getByRole("dialog").waitFor({ state: "hidden" });
   await page.click("#words");
   await page.getByRole("dialog").waitFor();
@@ -573,6 +611,6 @@ export const results_are_opened_as_saved = () => within("Arc", async (page, dir)
 export const letters_that_are_missing_are_named = () => within(null, async (page) => {
   await page.click("#words");
   await page.fill("#words-text", "Tea 茶");
-  await page.getByRole("button", { name: "Set words" }).click();
+  await page.getByRole("button", { name: /^(Set words|New drawing)$/ }).click();
   await page.locator("#toast.on", { hasText: "The font lacks 茶." }).waitFor();
 });

@@ -2,7 +2,7 @@
 
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
-use pathwarp::map::{Abilities, Called, Callee};
+use pathwarp::engine::{Abilities, Called, Callee};
 use pathwarp::param::{Axis, Settings};
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -80,6 +80,13 @@ pub fn option_names() -> impl Iterator<Item = (&'static str, String)> {
     OPTIONS.iter().filter(|o| !OF_THE_PROGRAM.contains(&o.name)).map(|o| (o.name, o.help()))
 }
 
+/// Names that a parameter of a plug-in cannot have, since options and arguments of the program, of Python or of C have them.
+pub fn reserved_names() -> impl Iterator<Item = &'static str> {
+    const ARGUMENTS: [&str; 9] =
+        [INVERSE, "plugin", "plugins", "help", "version", "points", "jacobian", "INPUT", "size"];
+    OPTIONS.iter().map(|o| o.name).chain(ARGUMENTS)
+}
+
 /// The words that an option's value can be; none if it is no choice.
 #[must_use]
 pub fn option_words(name: &str) -> Vec<&'static str> {

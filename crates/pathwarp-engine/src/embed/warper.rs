@@ -5,7 +5,7 @@ use super::function::{Function, is_function};
 use super::{PointMap, check_option, meaning, option_names};
 use crate::edits::{self, EDITS};
 use crate::failure::Failure;
-use crate::input::{PlainArtwork, planned};
+use crate::input::{PlainArtwork, hatching, planned};
 use crate::links::Destination;
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
 use crate::report::Fold;
@@ -14,11 +14,12 @@ use crate::steps::{self, in_lower_case};
 use crate::{advice, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
+use pathwarp::check::{self, Check};
 use pathwarp::deform::{Deformation as _, Info, Registry};
+use pathwarp::engine::{Abilities, Callee};
 use pathwarp::fit::{self, Degree};
 use pathwarp::fold::Survey;
 use pathwarp::kurbo::{PathEl, Rect};
-use pathwarp::map::{Abilities, Callee};
 use pathwarp::param::{Args, Frame, Kind, Param, Settings};
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp::refit::{self, Assurance};
@@ -271,6 +272,22 @@ impl Warper {
         })
     }
 
+    /// Checks the map over the option `frame`, or over the box 0,0,100,100, as authors of deformations do: [`pathwarp::check::map`].
+    ///
+    /// # Errors
+    /// A value is wrong, the geometry does not allow the deformation, or a plug-in or function failed.
+    pub fn check(&self) -> Result<Vec<Check>, Error> {
+        guarded(&self.registry, || {
+            let options = self.options()?;
+            let frame = plain_frame(&options, || Some(check::frame().rect))?;
+            let budget = Arc::new(Budget::new(options.reading.limits));
+            let whole = self.build(&options, &frame, &hatching(frame.rect), &budget)?;
+            let mut checks = Vec::new();
+            check::map(&whole.as_one(), frame.rect, |done| checks.push(done));
+            whole.failure().map_or(Ok(checks), |e| Err(Failure::of_recipe(e)))
+        })
+    }
+
     /// Bends a path: SVG path data.
     ///
     /// # Errors
@@ -340,7 +357,7 @@ impl Warper {
             let path = match edit.map(|planned| planned.edit) {
                 None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
-                Some(edit) => pathwarp_svg::edit_path(outline, edit, &refit, digits),
+                Some(edit) => pathwarp_svg::engine::edit_path(outline, edit, &refit, digits),
             };
             // A map that has failed gives no numbers, which is not the geometry's fault.
             built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;

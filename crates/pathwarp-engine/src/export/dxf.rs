@@ -47,7 +47,7 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     }
     let mut warnings = lost_in_dxf(&plot);
     let frame = Frame::new(doc.view_box()).with_units_per_px(units_per_px(doc));
-    let refit = refit::Options::new(tolerance * mm_per_unit).with_suited(suited);
+    let refit = refit::Options::new(tolerance * mm_per_unit).with_nodes(refit::Nodes::Source).with_suited(suited);
     let machine = Machine {
         kerf: options.kerf.map(|kerf| 0.5 * kerf.in_units(Axis::Diagonal, &frame) * mm_per_unit),
         engraved: &engraved,

@@ -8,6 +8,7 @@ mod pdf;
 
 pub use exported::Exported;
 pub use kerf::KerfReport;
+pub use pathwarp_dxf::{MAX_DEGREE, Spline, write_splines};
 
 use crate::failure::Failure;
 use crate::format::Format;
@@ -16,7 +17,8 @@ use crate::options::CommonOptions;
 use pathwarp::kurbo::Size;
 use pathwarp::param::LengthUnit;
 use pathwarp_gimp::{GimpPath, Stroke, new_xcf, to_json, to_svg};
-use pathwarp_svg::{Document, PageFit, ReadOptions, compressed};
+use pathwarp_svg::engine::compressed;
+use pathwarp_svg::{Document, PageFit, ReadOptions};
 use std::path::Path;
 
 /// Writes a document in another format.

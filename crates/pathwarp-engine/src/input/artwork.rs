@@ -11,12 +11,14 @@ use crate::page::PageNews;
 use crate::readable::listed;
 use crate::report::{ReportedShape, SkippedShape};
 use pathwarp::budget::Budget;
+use pathwarp::engine::BuiltParts;
 use pathwarp::fold::Orientation;
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::{Frame, Letter};
-use pathwarp::recipe::{BuiltParts, Recipe, Step};
+use pathwarp::recipe::{Recipe, Step};
 use pathwarp::{Error, Outline};
-use pathwarp_svg::{CutLine, Edit};
+use pathwarp_svg::Edit;
+use pathwarp_svg::engine::CutLine;
 use std::collections::HashMap;
 use std::sync::Arc;
 

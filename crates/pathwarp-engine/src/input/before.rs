@@ -2,6 +2,7 @@
 
 use crate::advice;
 use crate::bitmap::Bender;
+use crate::caption::{captioned, is_caption};
 use crate::edits;
 use crate::failure::Failure;
 use crate::options::{CommonOptions, TOLERANCE_OF_DIAGONAL, distance, measurable};
@@ -13,7 +14,8 @@ use pathwarp::map::AffineMap;
 use pathwarp::param::{Frame, Length, Settings};
 use pathwarp::recipe::Step;
 use pathwarp::refit;
-use pathwarp_svg::{CutLine, Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
+use pathwarp_svg::engine::CutLine;
+use pathwarp_svg::{Document, Edit, PageFit, Painter, ReadOptions, Selection, WarpOptions};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -82,6 +84,7 @@ pub(crate) fn planned(
             let contour = Contour { by, holes, join: s.flag("join")? };
             (Edit::Contour(contour), held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
         }
+        "caption" => return Err(Failure::usage("a caption is set on a drawing, which a path is not")),
         "unite" => {
             (Edit::Unite { by_fill: s.choice("by")? == "fill" }, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
         }
@@ -153,14 +156,8 @@ pub(super) struct Edited {
 }
 
 impl Wanted {
-    pub(super) fn new(
-        document: &Document,
-        edits: &[Step],
-        whole: Selection,
-        steps: Vec<Selection>,
-    ) -> Result<Self, Failure> {
-        steps.iter().try_for_each(|s| document.check_selection(s))?;
-        Ok(Self { edits: edits.to_vec(), whole, steps })
+    pub(super) fn new(edits: &[Step], whole: Selection, steps: Vec<Selection>) -> Self {
+        Self { edits: edits.to_vec(), whole, steps }
     }
 
     /// What is bent at all.
@@ -201,15 +198,29 @@ impl Wanted {
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Places shift.
-        let text = if self.names_places() { source.with_ids().into() } else { source.source().to_vec() };
-        let mut document = Document::read(&text, name, read)?;
-        for step in &self.edits {
+        let named =
+            self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
+        let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
+        let mut document = match named {
+            named if !captions.is_empty() => {
+                let (document, lacking) = captioned(named.as_ref().unwrap_or(source), &captions, read, options)?;
+                warnings.extend(lacking);
+                document
+            }
+            Some(named) => named,
+            None => Document::read(source.source(), name, read)?,
+        };
+        self.steps.iter().try_for_each(|s| document.check_selection(s))?;
+        for step in &edits {
             let selection = self.concerned(&document, step);
             let bounds = document.seen_box(&selection).unwrap_or_else(|| document.view_box());
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
             let painted = document.painted_box(&selection);
             let Planned { edit, line, tolerance, suited } = planned(step, options, (painted, &frame), false)?;
-            let refit = refit::Options::new(tolerance).with_suited(suited).with_budget(document.budget().clone());
+            let refit = refit::Options::new(tolerance)
+                .with_nodes(refit::Nodes::Source)
+                .with_suited(suited)
+                .with_budget(document.budget().clone());
             let warp = WarpOptions::new(refit)
                 .with_selection(selection)
                 .with_text(options.text)

@@ -6,6 +6,7 @@ use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use super::gimp::GimpPaths;
 use crate::bitmap::Bender;
+use crate::caption::is_caption;
 use crate::export::{self, KerfReport};
 use crate::failure::Failure;
 use crate::format::{Choice, DRAWINGS, Format};
@@ -25,9 +26,10 @@ use pathwarp::recipe::{BuiltRecipe, Step};
 use pathwarp::refit::Nodes;
 use pathwarp::{Error, Outline, refit};
 use pathwarp_raster::Picture;
+use pathwarp_svg::engine::{LetterPlaces, LetteringFrame};
 use pathwarp_svg::{
-    Document, Edit, Filters, Gradients, Images, LetterPlaces, LetteringFrame, Origin, PageFit, Painter, ReadOptions,
-    Selection, ShapeReport, Strokes, Structure, Warning, WarpOptions, WarpedDocument,
+    Document, Edit, Filters, Gradients, Images, Origin, PageFit, Painter, ReadOptions, Selection, ShapeReport, Strokes,
+    Structure, Warning, WarpOptions, WarpedDocument,
 };
 use rayon::prelude::*;
 use std::cell::LazyCell;
@@ -202,7 +204,8 @@ impl SvgArtwork {
     /// A result, all of it scaled and moved.
     fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
         let doc = Document::read(svg.as_bytes(), &self.name, &bending(&self.read))?;
-        let refit = refit::Options::new(own.refit.tolerance).with_budget(doc.budget().clone());
+        let refit =
+            refit::Options::new(own.refit.tolerance).with_nodes(Nodes::Source).with_budget(doc.budget().clone());
         let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
         let options = options.with_structure(own.structure).with_clones(own.clones);
         Ok(doc.warp(&AffineMap(to), &options)?.svg)
@@ -477,7 +480,10 @@ impl Artwork for SvgArtwork {
             return Ok(());
         }
         let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
-        let wanted = Wanted::new(self.document(), edits, self.selection.clone(), steps)?;
+        if self.paths.is_some() && edits.iter().any(is_caption) {
+            return Err(Failure::usage("GIMP's paths have no fills; caption is for drawings"));
+        }
+        let wanted = Wanted::new(edits, self.selection.clone(), steps);
         if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
             return Ok(());
         }

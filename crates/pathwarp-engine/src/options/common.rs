@@ -3,15 +3,14 @@
 use crate::failure::Failure;
 use crate::format::Format;
 use pathwarp::budget::{Limit, Limits};
+use pathwarp::engine::RESOLUTION;
 use pathwarp::kurbo::{Point, Rect, Size};
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit};
 use pathwarp::recipe::Step;
-use pathwarp::refit::{Nodes, RESOLUTION};
+use pathwarp::refit::Nodes;
 use pathwarp_raster::Picture;
-use pathwarp_svg::{
-    Clones, Filters, GenericFamilies, Gradients, LetteringFrame, OnError, PageFit, Patterns, ReadOptions, Strokes,
-    Structure, TextMode, check_fonts,
-};
+use pathwarp_svg::engine::{GenericFamilies, LetteringFrame, check_fonts};
+use pathwarp_svg::{Clones, Filters, Gradients, OnError, PageFit, Patterns, ReadOptions, Strokes, Structure, TextMode};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 

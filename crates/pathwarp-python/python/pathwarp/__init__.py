@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import difflib
 import os
-from typing import Any, Callable, Dict, Iterable, Mapping, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -22,9 +22,10 @@ from ._catalog import Info, Parameter, deformations, find, options, python_name
 from ._deformation import Deformation, Frame, Steps, Warped, WarpedPath
 from ._errors import GeometryError, InputError, InternalError, LimitError, PathwarpError, UsageError
 from ._native import __version__, use_threads
-from ._reports import PathReport, Report, Selection, ShapeReport, Skipped
+from ._reports import Check, PathReport, Report, Selection, ShapeReport, Skipped
 
 __all__ = [
+    "Check",
     "Deformation",
     "Frame",
     "GeometryError",
@@ -156,9 +157,34 @@ def offset(
     return _edited("offset", {"by": by, "join": join, "side": side}, shapes, name, options)
 
 
-def outline(svg: Any, /, *, name: Union[str, "os.PathLike[str]", None] = None, **options: Any) -> Warped:
-    """Turns the strokes and text of a drawing into filled outlines, as `pathwarp outline` does, and returns the file."""
-    return Deformation._edit("outline", {}).warp_svg(svg, name=name, **options)
+def outline(
+    shapes: Any,
+    /,
+    *,
+    width: Optional[float] = None,
+    join: str = "miter",
+    cap: str = "butt",
+    name: Union[str, "os.PathLike[str]", None] = None,
+    **options: Any,
+) -> Any:
+    """Turns strokes and text into filled outlines, as `pathwarp outline` does.
+
+    `shapes` and the result are as those of `simplify`. A path has no stroke of its own: `width` is that of its line, `join` is miter, round
+    or bevel, and `cap` butt, round or square.
+
+        >>> import pathwarp
+        >>> pathwarp.outline("M0,0 H40", width=10)
+        'M0,5 L40,5 L40,-5 L0,-5 Z'
+    """
+    if not _inputs.is_path(shapes):
+        if width is not None:
+            raise UsageError("width: the strokes of a drawing have their own")
+        return Deformation._edit("outline", {}).warp_svg(shapes, name=name, **options)
+    if width is None or not float(width) > 0:
+        raise UsageError("width: give that of the line along a path, above 0")
+    data = _inputs.path(shapes)
+    done = Deformation._edit("outline", {}).warp_svg(_inputs.stroked(data, float(width), join, cap), **options)
+    return _inputs.like(shapes, _inputs.data_of(done), _tolerance(data, options))
 
 
 def unite(
@@ -191,11 +217,15 @@ def _edited(
     if not _inputs.is_path(shapes):
         return made.warp_svg(shapes, name=name, **options)
     path = made.warp_path(shapes, **options)
+    return _inputs.like(shapes, path, _tolerance(path, options))
+
+
+def _tolerance(path: str, options: Mapping[str, Any]) -> float:
+    """The tolerance of a path, in user units."""
     try:
-        tolerance = float(options.get("tolerance", 0)) or _inputs.size(path) * 1e-4
+        return float(options.get("tolerance", 0)) or _inputs.size(path) * 1e-4
     except (TypeError, ValueError):
-        tolerance = _inputs.size(path) * 1e-4
-    return _inputs.like(shapes, path, tolerance)
+        return _inputs.size(path) * 1e-4
 
 
 def _divided(deformation: Steps, values: Mapping[str, Any]) -> Tuple[Deformation, Dict[str, Any]]:

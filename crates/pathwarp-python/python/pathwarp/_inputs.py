@@ -189,6 +189,28 @@ def like(given: Any, data: str, tolerance: float) -> Any:
     return points[:, 0] + 1j * points[:, 1] if np.asarray(given).dtype.kind == "c" else points
 
 
+def stroked(data: str, width: float, join: str, cap: str) -> bytes:
+    """A drawing of a line along path data."""
+    for name, word, words in (("join", join, ("miter", "round", "bevel")), ("cap", cap, ("butt", "round", "square"))):
+        if word not in words:
+            raise UsageError(f"{name}: `{word}` is none of {', '.join(words)}")
+    if _native.path_box(data) is None:
+        # The error that names the first bad place; nothing is drawn for no path.
+        _native.Warper.edit("simplify", []).warp_path(data)
+        raise UsageError("path data: is empty")
+    x, y, w, h = (repr(v) for v in _native.path_box(data) or ())
+    style = f"fill='none' stroke='#000' stroke-width='{width!r}' stroke-linejoin='{join}' stroke-linecap='{cap}'"
+    page = f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='{x} {y} {float(w) or 1!r} {float(h) or 1!r}'>"
+    return f"{page}<path {style} d='{data}'/></svg>".encode()
+
+
+def data_of(drawing: bytes) -> str:
+    """The data of the only path of a drawing."""
+    from xml.etree import ElementTree
+
+    return " ".join(str(e.get("d")) for e in ElementTree.fromstring(drawing).iter() if e.get("d"))
+
+
 def size(data: str) -> float:
     """The diagonal of the box of path data, above 0."""
     box = _native.path_box(data) or [0.0, 0.0, 0.0, 0.0]

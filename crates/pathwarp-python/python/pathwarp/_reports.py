@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
-from typing import List, Literal, Optional, Tuple, TypedDict
+from typing import List, Literal, NamedTuple, Optional, Tuple, TypedDict
 
 Assurance = Literal["exact", "certified", "checked", "sampled"]
+
+
+class Check(NamedTuple):
+    """One check of a map."""
+
+    name: str
+    detail: str
+    """What was checked."""
+    faults: List[str]
+    """What is wrong; empty if nothing is."""
+
+    def __str__(self) -> str:
+        return "\n    ".join([f"{'FAIL' if self.faults else 'ok  '} {self.name}: {self.detail}", *self.faults])
 
 
 class PathReport(TypedDict):
@@ -15,9 +28,9 @@ class PathReport(TypedDict):
     max_error: float
     """The largest distance from the exact result."""
     assurance: Assurance
-    over_budget: List[Tuple[float, float]]
+    unresolved: List[Tuple[float, float]]
     """Places where the tolerance was not met."""
-    unresolved: Optional[float]
+    resolution: Optional[float]
     """The resolution of the coordinates, if the tolerance is below it."""
     folds: int
     """Number of orientation changes along the path, if it folds."""
@@ -41,8 +54,8 @@ class ShapeReport(_Shape, total=False):
     steps: List[int]
     copies: int
     folded_at: List[float]
-    over_budget: List[List[float]]
-    unresolved: float
+    unresolved: List[List[float]]
+    resolution: float
     paint_residual: Optional[float]
     pictures: int
     stroke_error: Optional[float]

@@ -1,7 +1,8 @@
 //! A map that its tangents continue beyond a box where it folds or is not defined.
 
 use kurbo::{Point, Rect};
-use pathwarp::map::{Batches, Cost, Creases, Jet, Map};
+use pathwarp::engine::{Batches, Cost};
+use pathwarp::map::{Creases, Jet, Map};
 use std::fmt;
 
 /// The corners of a box divided into cells, of which `cells` lie along each side.

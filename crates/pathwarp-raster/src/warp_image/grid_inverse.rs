@@ -9,7 +9,8 @@
 
 use super::image_warp::in_pixels;
 use kurbo::{Affine, Point, Rect, Vec2};
-use pathwarp::map::{Batches, Cost, Creases, Jet, Map};
+use pathwarp::engine::{Batches, Cost};
+use pathwarp::map::{Creases, Jet, Map};
 use std::fmt;
 
 /// Pixels of the result per side of a cell.

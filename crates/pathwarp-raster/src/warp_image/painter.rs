@@ -9,7 +9,8 @@ use crate::error::Error;
 use crate::pixmap::{for_each_chunk, new_pixmap};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::budget::Limits;
-use pathwarp::map::{Batches, Creases, Gathered, Jet, Map};
+use pathwarp::engine::{Batches, Gathered};
+use pathwarp::map::{Creases, Jet, Map};
 use tiny_skia::Pixmap;
 
 /// Warps a bitmap.

@@ -16,7 +16,7 @@ use crate::settings::{Box3, Settings3};
 use glam::{DMat3, DQuat, DVec3};
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info};
-use pathwarp::map::{Joint, bspline};
+use pathwarp::engine::{Joint, bspline};
 use pathwarp::param::{Kind, Param};
 use pathwarp::setters;
 use std::sync::Arc;

@@ -4,14 +4,15 @@
 //! deformations*, SIGGRAPH 1992.
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
+use crate::hull::HullMap;
 use crate::lattice::{Lattice3, LatticeMap3};
 use crate::settings::{Box3, Settings3, show};
 use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::deform::{Example, Info, SavedFile};
+use pathwarp::engine::solve::{misses, smallest_change};
 use pathwarp::param::{Kind, Param};
 use pathwarp::setters;
-use pathwarp::solve::{misses, smallest_change};
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -271,7 +272,7 @@ fn one() -> [usize; 3] {
 }
 
 /// Reads a lattice. The flag is `true` if the file specifies its region; otherwise the region is `frame`.
-fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, bool), Error> {
+pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, bool), Error> {
     let file: LatticeFile = serde_json::from_str(text).map_err(|e| {
         Error::input(format!("{name}:{}:{}", e.line(), e.column()), format!("is not a lattice in space: {e}"))
     })?;
@@ -332,6 +333,14 @@ fn write(lattice: &Lattice3) -> String {
     )
 }
 
+/// A lattice of any shape.
+pub(super) const HULL: Param = Param::new(
+    "hull",
+    Kind::File,
+    "Use a saved lattice (JSON) of any shape, such as a ring around an axis, as the \
+one that is still at rest: points within it get its coordinates, nothing moves outside, and I,J,K are its control points.",
+);
+
 static ABOUT: About3 = About3 {
     info: Info::new("ffd", "pull a model about by a box of control points")
         .group("Lattices")
@@ -342,7 +351,8 @@ change.\n\nWith an explicit region (--region) nothing moves outside it. To keep 
 freeze the outermost layer of points there (--freeze left:1); two keep it smooth, three keep its curvature.")
         .source("T. W. Sederberg, S. R. Parry, Free-form deformation of solid geometric models, SIGGRAPH 1986; P. Kalra et al., \
 Simulation of facial muscle actions based on rational free form deformations, 1992; for --pin: W. M. Hsu, J. F. Hughes, \
-H. Kaufman, Direct manipulation of free-form deformations, SIGGRAPH 1992")
+H. Kaufman, Direct manipulation of free-form deformations, SIGGRAPH 1992; for --hull: S. Coquillart, Extended free-form deformation, \
+SIGGRAPH 1990")
         .params(&[
             Param::new("degree", Kind::Text("LxMxN"), "Degrees along x, y and z, 1 to 10 each: one less than the control points \
 there. One number stands for all three.")
@@ -367,6 +377,7 @@ right, bottom, top, back, front."),
 cells control points. Default with --spline: 4x4x4."),
             Param::new("lattice", Kind::File, "Start from a saved box of points (JSON) instead of --degree and a regular one; with \
 --region it is laid onto that."),
+            HULL,
             Param::new("save-lattice", Kind::Save, "Save the box with everything that was moved, to use it again."),
         ])
         .demo(&[("degree", "2x2x1"), ("move", "1,2,0:0,40,0"), ("move", "2,1,1:15,0,20"), ("weight", "1,1,1:2")])
@@ -379,6 +390,11 @@ cells control points. Default with --spline: 4x4x4."),
                 what: "Stretch only the right part, smoothly joined to the rest",
                 command: "solid ffd samples/solid/teapot.obj --region 60%,-10%,-10%,60%,120%,120% --degree 4x2x2 --freeze left:2 \
 --move 3,1,1:30%,20%,0 -o out.obj",
+            },
+            Example {
+                what: "Give a pot a waist, by a ring of control points around it",
+                command: "solid ffd samples/solid/teapot.obj --hull samples/solid/ring.json --move 0,2,2:0,0,40 --move 1,2,2:-160,0,40 \
+--move 2,2,2:-80,0,-120 --move 3,2,2:80,0,-120 --move 4,2,2:160,0,40 --move 5,2,2:0,0,40 -o out.obj",
             },
             Example {
                 what: "Take one place of a model elsewhere and hold another, with a finer box that is saved for use again",
@@ -413,7 +429,8 @@ cells control points. Default with --spline: 4x4x4."),
 
 /// Reads the deformation from text.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
-    let (lattice, from_file) = lattice(s)?;
+    let hull = hull(s, &["degree", "region", "lattice", "spline", "cells", "pin", "freeze", "extend"])?;
+    let (lattice, from_file) = hull.clone().map_or_else(|| lattice(s), |hull| Ok((hull, true)))?;
     let extended = s.flat().flag("extend")? || (s.box_if("region")?.is_none() && !from_file);
     let mut ffd = Ffd3::new(lattice).freeze(frozen(s)?).extend(extended);
     for (node, change) in changes(s)? {
@@ -423,23 +440,37 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
         ffd = ffd.pin(from, to);
     }
     let (mut built, lattice) = ffd.build_with_lattice()?;
+    if let Some(hull) = hull {
+        // Those of a curved hull are far from what they show.
+        built.guides.clear();
+        built.map = Arc::new(HullMap::new(&hull, &lattice)?);
+    }
     if let Some(name) = s.last("save-lattice") {
         built.saves.push(SavedFile { name: name.to_owned(), text: write(&lattice) });
     }
     Ok(built)
 });
 
+/// Reads the lattice of `hull`, with which other parameters make no sense.
+pub(super) fn hull(s: &Settings3<'_>, others: &[&str]) -> Result<Option<Lattice3>, Error> {
+    let Some(named) = s.file_if("hull")? else { return Ok(None) };
+    alone(s, "hull", others)?;
+    Ok(Some(read(&named.name, &named.text, s.bounds())?.0))
+}
+
+/// Refuses parameters beside a file with a whole lattice.
+fn alone(s: &Settings3<'_>, file: &str, others: &[&str]) -> Result<(), Error> {
+    let Some(name) = others.iter().find(|n| s.flat().given(n)) else { return Ok(()) };
+    let problem = format!("cannot go with `{file}`, which is a whole box of points");
+    Err(Error::usage(name, s.words(name).join(" "), problem))
+}
+
 /// Reads the initial lattice. The flag is `true` if a file specifies its region.
 fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {
     let region = s.box_if("region")?;
     let frame = s.bounds();
     if let Some(named) = s.file_if("lattice")? {
-        for name in ["degree", "spline", "cells"] {
-            if s.flat().given(name) {
-                let problem = "cannot go with `lattice`, which is a whole box of points";
-                return Err(Error::usage(name, s.words(name).join(" "), problem));
-            }
-        }
+        alone(s, "lattice", &["degree", "spline", "cells"])?;
         let (lattice, has_region) = read(&named.name, &named.text, region.unwrap_or(frame))?;
         return Ok(match region {
             Some(r) => (lattice.on(r), true),

@@ -16,9 +16,9 @@ use crate::scene::geometry::is_invertible;
 use crate::scene::model::{Bitmap, Part, Scene};
 use crate::source::elements::ElementId;
 use crate::source::threads::map_parallel;
+use pathwarp::engine::{Gathered, KnownShapes};
 use pathwarp::kurbo::Affine;
-use pathwarp::map::{Gathered, Map};
-use pathwarp::refit::{self, KnownShapes};
+use pathwarp::map::Map;
 use pathwarp::{Error, GeometryError, Outline};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
@@ -177,10 +177,10 @@ fn shared<'a>(
         let placed: Vec<_> = (0..of.len()).filter(|&i| of[i] == Some(k)).map(outline).collect();
         let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));
         if simplifies {
-            let borders = refit::Borders::among(&all.collect::<Vec<_>>(), refit.tolerance);
+            let borders = pathwarp::engine::Borders::among(&all.collect::<Vec<_>>(), refit.tolerance);
             bend.options.refit.borders = Arc::new(borders);
         } else {
-            bend.options.refit.shared = Arc::new(refit::SharedEdges::held(all));
+            bend.options.refit.shared = Arc::new(pathwarp::engine::SharedEdges::held(all));
         }
     }
     (bend, contours)

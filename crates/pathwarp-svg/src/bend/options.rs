@@ -388,7 +388,7 @@ pub(super) fn has_lines_that_stay(edit: Edit, part: &Part) -> bool {
 /// Placement of letters one by one.
 #[derive(Clone, Default)]
 pub struct LetterPlaces {
-    /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::Lettering::letters). If empty, letters are bent
+    /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::engine::Lettering::letters). If empty, letters are bent
     /// like everything else.
     pub places: Vec<Vec<Affine>>,
     /// They are the places of [objects](crate::Document::objects).

@@ -220,8 +220,8 @@ impl WarpedPart {
         let stays = r.segments_out >= r.segments_in;
         if stays {
             (r.segments_out, r.max_error, r.share, self.rounding) = (r.segments_in, 0.0, 0.0, 0.0);
-            (r.assurance, r.unresolved) = (Assurance::Exact, None);
-            r.over_budget.clear();
+            (r.assurance, r.resolution) = (Assurance::Exact, None);
+            r.unresolved.clear();
         }
         stays
     }

@@ -6,8 +6,9 @@ use super::task::PartTask;
 use super::width::StrokeWidth;
 use crate::scene::areas::{spend_dashes, spend_stroke, stroke_outlines};
 use crate::scene::geometry::stretch;
+use pathwarp::engine::SharedEdges;
 use pathwarp::kurbo::{Affine, BezPath, Point};
-use pathwarp::refit::{self, Assurance, PathReport, SharedEdges};
+use pathwarp::refit::{self, Assurance, PathReport};
 use pathwarp::{GeometryError, Outline, fit};
 use usvg::Stroke;
 

@@ -10,9 +10,10 @@ use crate::scene::geometry::stretch;
 use crate::scene::model::Part;
 use crate::scene::selected_lettering::{LetterSubpaths, letters_by_part};
 use crate::source::number::arcs_data;
+use pathwarp::engine::{KnownShapes, RESOLUTION};
 use pathwarp::kurbo::{Affine, BezPath, Rect};
 use pathwarp::map::Map;
-use pathwarp::refit::{self, KnownShapes, Nodes, PathReport, RESOLUTION, RefittedPath, suited};
+use pathwarp::refit::{self, Nodes, PathReport, RefittedPath, suited};
 use pathwarp::{GeometryError, Outline};
 use std::ops::Range;
 use std::sync::Arc;
@@ -152,7 +153,7 @@ impl<'a> PartTask<'a> {
         }
         let [error, share] = self.digits.errors(&spans, &warped.spans);
         report.max_error = report.max_error.max(error - self.rounding);
-        let missed = if report.unresolved.is_some() { report.max_error / self.finest } else { 0.0 };
+        let missed = if report.resolution.is_some() { report.max_error / self.finest } else { 0.0 };
         report.share = share.max(missed);
         let data = self.digits.path_data(&path, outline, &spans, &warped.spans);
         Ok(BentPath { path, data: Some(data), report })

@@ -144,7 +144,7 @@ impl Seen<'_> {
             return Ok(shown);
         };
         let traced = opacity.traced().transformed(b.frame);
-        let options = refit::Options::new(self.fine.max(UNKNOWN * stretch(b.frame)));
+        let options = refit::Options::new(self.fine.max(UNKNOWN * stretch(b.frame))).with_nodes(refit::Nodes::Source);
         let outline = Outline::from(&refit::simplified(&traced, None, &options, &[])?.path);
         Area::of(&outline, false, self.fine)?.intersection(&shown, self.fine)
     }

@@ -7,7 +7,7 @@ use crate::source::elements::INKSCAPE;
 use crate::source::elements::{declarations, with_declaration};
 use pathwarp::Error;
 use pathwarp::budget::Limits;
-use pathwarp::decimal::matrix;
+use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
 use pathwarp_reader::xml::name_end;

@@ -6,7 +6,7 @@
 use crate::source::elements::ElementId;
 use crate::source::text::SourceText;
 use pathwarp::Outline;
-use pathwarp::decimal::single;
+use pathwarp::engine::decimal::single;
 use pathwarp::kurbo::{Affine, Point, Rect, Size, Vec2};
 use pathwarp::outline::{Builder, EllipticArc, Seg, Subpath};
 use std::collections::VecDeque;

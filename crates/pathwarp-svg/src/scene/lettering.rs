@@ -1,7 +1,7 @@
 //! Lettering in a drawing: lines with their baselines and letters.
 //!
 //! It comes from two sources, which behave alike: text (from usvg's layout), and outlines with data attributes, as
-//! [`write_lettering`](crate::write_lettering) makes them:
+//! [`write_lettering`](crate::engine::write_lettering) makes them:
 //!
 //! ```xml
 //! <g data-ascent="57" data-descent="16" data-cap-height="38" data-x-height="29">

@@ -20,6 +20,7 @@ pub(crate) type Rgba = [f64; 4];
 
 /// A Coons patch: the control points of its sides, which lead around it from corner to corner, and the colours of the corners in the same
 /// order: red, green, blue and opacity, 0 to 1, bilinear between them.
+#[cfg(feature = "usvg")]
 pub type CoonsPatch = ([Point; 12], [[f64; 4]; 4]);
 
 /// A mesh gradient. The patch in row r and column c lies between `across[r][c]` above and `across[r + 1][c]` below, which lead to the
@@ -114,6 +115,7 @@ impl MeshGradient {
     }
 
     /// The patches. Those with smooth colours are cut until bilinear ones look so.
+    #[cfg(feature = "usvg")]
     pub(crate) fn patches(&self) -> Vec<CoonsPatch> {
         /// Parts of a patch with smooth colours, along each side; Inkscape draws as many.
         const PARTS: usize = 8;

@@ -1,6 +1,6 @@
 //! Writes numbers and path data, rounded once and in the shortest form.
 
-use pathwarp::decimal::{push_trimmed, together};
+use pathwarp::engine::decimal::{push_trimmed, together};
 use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};

@@ -28,8 +28,10 @@ pub(crate) struct Missed {
     /// The links among `images` that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
     /// Content and style that are not drawn, worded for people. Only [`lacking`](Self::lacking) fills this in.
+    #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) undrawn: Vec<String>,
     /// Small differences from what browsers show, as the reader notes them. Only [`lacking`](Self::lacking) fills this in.
+    #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
 

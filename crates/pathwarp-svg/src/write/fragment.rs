@@ -22,7 +22,7 @@ use crate::scene::model::{Group, Node, Part};
 use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
 use crate::source::number::{MAX_DECIMALS, outline_data, rectangle, short, shorts, single, singles};
-use pathwarp::decimal::matrix;
+use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::PaintProperty::{self, Fill, FillOpacity, Stroke, StrokeOpacity};
 use pathwarp_reader::xml::escape;

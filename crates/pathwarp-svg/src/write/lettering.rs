@@ -3,7 +3,7 @@
 use crate::bend::path::WarpedPath;
 use crate::source::number::{path_data, push};
 use pathwarp::Error;
-use pathwarp::kurbo::{Rect, Shape};
+use pathwarp::kurbo::{Rect, Shape, Vec2};
 use pathwarp::param::LengthUnit;
 use pathwarp_reader::xml::escape;
 use pathwarp_text::OutlinedText;
@@ -63,30 +63,22 @@ const DIGITS: i32 = 10;
 pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
     let page = lettering.ink().filter(|_| options.around_ink).unwrap_or_else(|| lettering.page());
     let mut sheet = Sheet::new(page, &lettering.text, options)?;
-    let decimals = sheet.decimals;
-    let heights = |scale: f64| {
-        let number = |v: f64| {
-            let mut out = String::new();
-            push(&mut out, v, decimals);
-            out
-        };
-        let m = lettering.metrics.scaled(scale);
-        let [ascent, descent, cap, x] = [m.ascent, m.descent, m.cap_height, m.x_height].map(number);
-        format!(" data-ascent=\"{ascent}\" data-descent=\"{descent}\" data-cap-height=\"{cap}\" data-x-height=\"{x}\"")
-    };
-    sheet.begin(&lettering.text, &heights(1.0));
-    for line in &lettering.lines {
-        let own = if line.scale == 1.0 { String::new() } else { heights(line.scale) };
-        let baseline = sheet.numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
-        let _ = writeln!(sheet.out, "<g data-baseline=\"{baseline}\"{own}>");
-        for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
-            let place = format!(" data-glyph=\"{}\"", sheet.numbers(&[c.origin.x, c.origin.y, c.advance]));
-            sheet.letter(&c.text, &place, &path_data(&c.outline, sheet.decimals));
-        }
-        sheet.out.push_str("</g>\n");
-    }
-    sheet.out.push_str("</g>\n");
+    sheet.lettering(lettering, "", None);
     Ok(sheet.finish())
+}
+
+/// Lettering as a group of elements, as [`write_lettering`] has it, for a drawing that has other content: with ids `ID`, `ID-line-1` and so on for
+/// its lines, and `ID-1` and so on for its letters; moved, and in a CSS colour.
+///
+/// # Errors
+/// Returns [`Error::Usage`] if the fill is not a colour.
+pub fn lettering_group(lettering: &OutlinedText, id: &str, fill: &str, by: Vec2) -> Result<String, Error> {
+    let options = LetteringOptions { fill: Some(fill.to_owned()), ..LetteringOptions::default() };
+    let mut sheet = Sheet::new(lettering.page(), "", &options)?;
+    sheet.out.clear();
+    let place = format!(" id=\"{id}\" transform=\"translate({})\" stroke=\"none\"", sheet.numbers(&[by.x, by.y]));
+    sheet.lettering(lettering, &place, Some(id));
+    Ok(sheet.out)
 }
 
 /// A path in its last place.
@@ -189,6 +181,35 @@ impl Sheet {
             out
         };
         v.iter().map(number).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Writes the group of a text, with these attributes, and with ids for its lines and letters if it has one.
+    fn lettering(&mut self, lettering: &OutlinedText, attributes: &str, id: Option<&str>) {
+        let heights = |sheet: &Self, scale: f64| {
+            let m = lettering.metrics.scaled(scale);
+            let [ascent, descent, cap, x] =
+                [m.ascent, m.descent, m.cap_height, m.x_height].map(|v| sheet.numbers(&[v]));
+            format!(
+                " data-ascent=\"{ascent}\" data-descent=\"{descent}\" data-cap-height=\"{cap}\" data-x-height=\"{x}\""
+            )
+        };
+        let own = |name: String| id.map_or_else(String::new, |id| format!(" id=\"{id}-{name}\""));
+        self.begin(&lettering.text, &(attributes.to_owned() + &heights(self, 1.0)));
+        let mut letters = 0;
+        for (i, line) in lettering.lines.iter().enumerate() {
+            let heights = if line.scale == 1.0 { String::new() } else { heights(self, line.scale) };
+            let baseline = self.numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
+            let id = own(format!("line-{}", i + 1));
+            let _ = writeln!(self.out, "<g{id} data-baseline=\"{baseline}\"{heights}>");
+            for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
+                letters += 1;
+                let origin = self.numbers(&[c.origin.x, c.origin.y, c.advance]);
+                let place = format!("{} data-glyph=\"{origin}\"", own(letters.to_string()));
+                self.letter(&c.text, &place, &path_data(&c.outline, self.decimals));
+            }
+            self.out.push_str("</g>\n");
+        }
+        self.out.push_str("</g>\n");
     }
 
     /// Begins the group of a text.

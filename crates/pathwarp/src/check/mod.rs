@@ -10,49 +10,52 @@
 //!
 //! [`report`] gives the same check by check, for people.
 
+mod breaks;
 mod counted;
 #[cfg(test)]
 mod tests;
+mod values;
 
 pub use counted::{Counted, operations};
 
 use crate::deform::{Built, Deformation, Info, Law, Pairs};
 use crate::error::Error;
-use crate::map::{CreaseKind, Creases, Jet, Map, RationalBezier, detail_in};
+use crate::map::{CreaseKind, Creases, Map, RationalBezier, detail_in};
 use crate::outline::{EllipticArc, Outline, Seg};
 use crate::param::{Args, Frame, Kind, Settings};
 use crate::refit;
-use kurbo::{CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape, Vec2};
+use kurbo::{Circle, CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape, Vec2};
 use std::cell::Cell;
+use std::f64::consts::PI;
 
 /// Returns a message for every fault of `entry`; none if it is sound.
 #[must_use]
 pub fn entry(entry: &dyn Deformation) -> Vec<String> {
     let name = entry.info().name;
-    report(entry).into_iter().flat_map(|c| c.faults).map(|fault| format!("{name}: {fault}")).collect()
+    let mut faults = Vec::new();
+    report(entry, |check| faults.extend(check.faults.into_iter().map(|fault| format!("{name}: {fault}"))));
+    faults
 }
 
-/// Runs every check of `entry`.
-#[must_use]
-pub fn report(entry: &dyn Deformation) -> Vec<Check> {
-    let mut checks = table(entry.info()).to_vec();
+/// Runs every check of `entry`, and hands over each as soon as it is done.
+pub fn report(entry: &dyn Deformation, mut done: impl FnMut(Check)) {
+    table(entry.info()).into_iter().for_each(&mut done);
     let mut build = Check::new("build");
     match entry.build_from(&Args::from_pairs(entry.info().demo), &frame()) {
         Ok(built) => {
             build.detail = "from the defaults and the demo".into();
-            checks.push(build);
-            checks.extend(all(&built));
-            if checks.last().is_some_and(|c| !c.faults.is_empty() && c.name == "values") {
-                return checks;
+            done(build);
+            if !map(&built, frame().rect, &mut done) {
+                return;
             }
         }
         Err(e) => {
             build.fault(format!("does not build from its defaults and demo: {e}"));
-            checks.push(build);
+            done(build);
         }
     }
-    checks.extend([laws(entry), cases(entry)]);
-    checks
+    done(laws(entry));
+    done(cases(entry));
 }
 
 /// The failure of a map that asks another program, if it has failed: values after that mean nothing.
@@ -61,7 +64,7 @@ fn failure(built: &Built) -> Option<Error> {
 }
 
 /// One check with its outcome.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Check {
     /// A word for what is checked.
@@ -70,6 +73,8 @@ pub struct Check {
     pub detail: String,
     /// What is wrong; empty if nothing is.
     pub faults: Vec<String>,
+    /// Places that faults were seen at.
+    places: Vec<Point>,
 }
 
 /// Limit on listed faults of one kind: a wrong formula is wrong at every sample.
@@ -77,7 +82,7 @@ const LISTED: usize = 3;
 
 impl Check {
     fn new(name: &'static str) -> Self {
-        Self { name, detail: String::new(), faults: Vec::new() }
+        Self { name, detail: String::new(), faults: Vec::new(), places: Vec::new() }
     }
 
     fn fault(&mut self, what: impl Into<String>) {
@@ -177,30 +182,63 @@ fn parameters(info: &Info) -> Check {
     check
 }
 
-// The map of a deformation: derivatives, batches, exact images, inverse, and a refit.
+// The map of a deformation: values, derivatives, creases, exact images, inverse, and a refit.
 
-/// Runs all checks of a map; only the first if it gives two answers for one point, which makes the others meaningless.
-fn all(built: &Built) -> Vec<Check> {
-    let domain = Domain::of(built);
-    if let Some(fault) = two_answers(&*built.map, &domain) {
-        let mut check = Check::new("values");
-        check.fault(fault);
-        return vec![check.unless_failed(built)];
+/// Runs the checks of a map over a box, and hands over each as soon as it is done. Returns `false` if the map gives two answers for one
+/// point, so that nothing else can be said of it.
+pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
+    let tested = Tested::new(built, frame);
+    if let Some(fault) = tested.two_answers(&[]) {
+        let detail = format!("{} points", tested.samples.len());
+        done(Check { detail, faults: vec![fault], ..Check::new("values") }.unless_failed(built));
+        return false;
     }
-    [derivatives, exact_images, inverse, refitting].map(|check| check(&*built.map, &domain).unless_failed(built)).into()
+    let mut is_smooth = true;
+    for (number, check) in [values::values, creases, exact_images, inverse, refitting].into_iter().enumerate() {
+        // What is wrong with values would be seen again as kinks, and both as errors of the refit.
+        if !is_smooth && (number == 1 || number == 4) {
+            continue;
+        }
+        let mut check = check(&tested);
+        if let Some(fault) = (!check.faults.is_empty()).then(|| tested.two_answers(&check.places)).flatten() {
+            check.faults = vec![fault];
+        }
+        is_smooth &= number >= 2 || check.faults.is_empty();
+        done(check.unless_failed(built));
+        if number == 0 && !tested.has_values() {
+            break;
+        }
+    }
+    true
 }
 
-/// Where a map is defined.
-struct Domain<'a> {
-    creases: Creases,
+/// A map over a box.
+struct Tested<'a> {
     built: &'a Built,
+    map: &'a dyn Map,
+    frame: Rect,
+    creases: Creases,
+    /// Places in the box where the map is defined.
+    samples: Vec<Point>,
+    /// Their images when the map was asked first.
+    images: Vec<Point>,
+    /// The number of places that are outside of the domain.
+    outside: usize,
 }
 
-impl<'a> Domain<'a> {
-    fn of(built: &'a Built) -> Self {
+impl<'a> Tested<'a> {
+    fn new(built: &'a Built, frame: Rect) -> Self {
         let mut creases = Creases::default();
         built.map.creases(&mut creases);
-        Self { creases, built }
+        let (map, samples, images) = (&*built.map, Vec::new(), Vec::new());
+        let mut tested = Self { built, map, frame, creases, samples, images, outside: 0 };
+        // Away from likely creases.
+        let grid = (0..81).map(|n| (3.7 + 11.3 * f64::from(n / 9), 4.3 + 11.1 * f64::from(n % 9)));
+        let at = |(u, v)| Point::new(frame.x0 + u * frame.width() / 100.0, frame.y0 + v * frame.height() / 100.0);
+        tested.samples = grid.map(at).filter(|p| tested.contains(*p)).collect();
+        tested.outside = 81 - tested.samples.len();
+        tested.images = tested.values(&tested.samples);
+        tested
     }
 
     /// Returns `true` if the map may be undefined somewhere, so that NaN is no fault.
@@ -212,13 +250,52 @@ impl<'a> Domain<'a> {
         self.creases.defined_at(p) && self.built.undefined.as_ref().is_none_or(|why| why(p).is_none())
     }
 
-    /// Points of the frame where the map is defined, away from likely creases, and the number of those where it is not.
-    fn samples(&self) -> (Vec<Point>, usize) {
-        let grid =
-            (0..9).flat_map(|i| (0..9).map(move |j| Point::new(3.7 + 11.3 * f64::from(i), 4.3 + 11.1 * f64::from(j))));
-        let (inside, outside): (Vec<Point>, Vec<Point>) = grid.partition(|p| self.contains(*p));
-        (inside, outside.len())
+    /// Returns `true` if a declared crease lies between `p` − `reach` and `p` + `reach`.
+    fn declares(&self, p: Point, reach: Vec2) -> bool {
+        self.creases.items().iter().any(|c| c.level.at(p - reach * 2.0) * c.level.at(p + reach * 2.0) <= 0.0)
     }
+
+    fn has_values(&self) -> bool {
+        self.images.iter().any(|q| q.is_finite())
+    }
+
+    /// The images of some points, asked for in one batch.
+    fn values(&self, ps: &[Point]) -> Vec<Point> {
+        let mut out = ps.to_vec();
+        self.map.points(ps, &mut out);
+        out
+    }
+
+    /// Looks for a point for which the map gives two answers: at first and now, in a batch or alone. `more` are points beside the samples.
+    fn two_answers(&self, more: &[Point]) -> Option<String> {
+        let differ = |(p, (a, b)): (&Point, (&Point, &Point)), why: &str| {
+            // Only one is a number, or they are apart.
+            let apart =
+                a.is_finite() != b.is_finite() || a.is_finite() && a.distance(*b) > 1e-12 * (1.0 + a.to_vec2().hypot());
+            let [at, a, b] = [place(*p), format!("{},{}", a.x, a.y), format!("{},{}", b.x, b.y)];
+            apart.then(|| format!("gives two answers for the point {at}: {a} and then {b}{why}"))
+        };
+        const CHANGED: &str = "; its answer may depend on nothing but the point: no random numbers, no counters";
+        const ALONE: &str = ", asked for alone; its answer may not depend on the other points of a batch";
+        let between = |ps: &[Point], first: &[Point]| {
+            let again = self.values(ps);
+            let changed = ps.iter().zip(first.iter().zip(&again)).find_map(|pair| differ(pair, CHANGED));
+            let alone = |(p, a): (&Point, &Point)| differ((p, (a, &self.map.point(*p))), ALONE);
+            changed.or_else(|| ps.iter().zip(first).find_map(alone))
+        };
+        between(&self.samples, &self.images).or_else(|| between(more, &self.values(more)))
+    }
+}
+
+/// Writes a point as messages do.
+fn place(p: Point) -> String {
+    format!("{},{}", number(p.x), number(p.y))
+}
+
+/// Writes a number with six digits.
+fn number(v: f64) -> String {
+    let short = format!("{v:.5e}").parse().unwrap_or(v) + 0.0;
+    if short == 0.0 || (1e-4..1e9).contains(&short.abs()) { short.to_string() } else { format!("{short:e}") }
 }
 
 /// Words for points that were skipped.
@@ -226,66 +303,16 @@ fn skipped(count: usize) -> String {
     if count == 0 { String::new() } else { format!("; {count} outside of the domain are skipped") }
 }
 
-/// Looks for a point for which the map gives two answers: in one batch, in another, or alone.
-fn two_answers(map: &dyn Map, domain: &Domain<'_>) -> Option<String> {
-    let (ps, _) = domain.samples();
-    let mut answers = [ps.clone(), ps.clone()];
-    for a in &mut answers {
-        map.points(&ps, a);
-    }
-    let [first, second] = answers;
-    let differ = |p: &Point, a: Point, b: Point| {
-        let size = 1.0 + a.to_vec2().hypot();
-        // Only one is a number, or they are apart.
-        let apart = a.is_finite() != b.is_finite() || a.is_finite() && a.distance(b) > 1e-12 * size;
-        apart.then(|| {
-            format!("gives two answers for the point {},{}: {},{} and then {},{}", p.x, p.y, a.x, a.y, b.x, b.y)
-        })
-    };
-    let mut pairs = ps.iter().zip(first.iter().zip(&second));
-    pairs.find_map(|(p, (a, b))| differ(p, *a, *b).or_else(|| differ(p, *a, map.point(*p))))
-}
-
-fn derivatives(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    let mut check = Check::new("values");
-    let mut largest: f64 = 0.0;
-    let (ps, mut outside) = domain.samples();
-    let (mut jets, mut points) = (vec![Jet::default(); ps.len()], vec![Point::ORIGIN; ps.len()]);
-    map.jets(&ps, &mut jets);
-    map.points(&ps, &mut points);
-    for ((p, j), q) in ps.iter().zip(&jets).zip(&points) {
-        if !j.is_finite() {
-            check.fault(format!("is not finite at {p:?}"));
-            continue;
-        }
-        let size = 1.0 + j.p.to_vec2().hypot();
-        if map.jet(*p).p.distance(j.p) > 1e-12 * size || q.distance(j.p) > 1e-12 * size {
-            check.fault(format!("single and batched values differ at {p:?}"));
-        }
-        // Central differences: truncation h², rounding ε/h; both near 1e-8 here.
-        const H: f64 = 1e-4;
-        let slope = |d: Vec2| (map.point(*p + d) - map.point(*p - d)) / (2.0 * H);
-        let (dx, dy) = (slope(Vec2::new(H, 0.0)), slope(Vec2::new(0.0, H)));
-        if domain.is_partial() && !(dx + dy).is_finite() {
-            outside += 1;
-            continue;
-        }
-        let steep = 1.0 + j.dx.hypot() + j.dy.hypot();
-        largest = largest.max((dx - j.dx).hypot() / steep).max((dy - j.dy).hypot() / steep);
-        let off = |d: Vec2, own: Vec2| (d - own).hypot() > 1e-5 * steep || (d - own).is_nan();
-        if off(dx, j.dx) || off(dy, j.dy) {
-            check.fault(format!("derivatives at {p:?}: {j:?}, differences give {dx:?} {dy:?}"));
-        }
-    }
-    check.detail = format!(
-        "{} points are finite, alone and in batches; derivatives differ from differences by {largest:.0e}{}",
-        ps.len(),
-        skipped(outside)
-    );
+/// Kinks and jumps that the map does not declare.
+fn creases(t: &Tested<'_>) -> Check {
+    let mut check = Check::new("creases");
+    check.detail = format!("{} are declared; others were looked for on lines across the box", t.creases.items().len());
+    (check.faults, check.places) = breaks::undeclared(t).into_iter().unzip();
     check
 }
 
-fn exact_images(map: &dyn Map, domain: &Domain<'_>) -> Check {
+fn exact_images(tested: &Tested<'_>) -> Check {
+    let map = tested.map;
     let mut check = Check::new("images");
     check.detail = "it gives no exact images of curves".into();
     let segs = [
@@ -300,8 +327,8 @@ fn exact_images(map: &dyn Map, domain: &Domain<'_>) -> Check {
                 let t = f64::from(i) / 12.0;
                 let (a, b) = (image.eval(t), map.point(source.eval(t)));
                 let off = a.distance(b);
-                if off > 1e-9 * (1.0 + b.to_vec2().hypot()) || off.is_nan() && !domain.is_partial() {
-                    check.fault(format!("the exact image at {t} is {a:?}, the map says {b:?}"));
+                if off > 1e-9 * (1.0 + b.to_vec2().hypot()) || off.is_nan() && !tested.is_partial() {
+                    check.fault(format!("the exact image at {} is {}, the map says {}", number(t), place(a), place(b)));
                 }
             }
         }
@@ -309,80 +336,142 @@ fn exact_images(map: &dyn Map, domain: &Domain<'_>) -> Check {
     check
 }
 
-fn inverse(map: &dyn Map, domain: &Domain<'_>) -> Check {
+fn inverse(t: &Tested<'_>) -> Check {
     let mut check = Check::new("inverse");
-    let Some(back) = map.inverse() else {
+    let Some(back) = t.map.inverse() else {
         check.detail = "it gives none; Newton's method finds it".into();
         return check;
     };
     let mut largest: f64 = 0.0;
-    let (ps, outside) = domain.samples();
-    for p in ps {
-        let q = back.point(map.point(p));
-        largest = largest.max(q.distance(p));
-        if q.distance(p).is_nan() || q.distance(p) > 1e-8 * (1.0 + p.to_vec2().hypot()) {
-            check.fault(format!("the inverse takes the image of {p:?} to {q:?}"));
+    let (mut wrong, mut first) = (0, None);
+    for (p, image) in t.samples.iter().zip(&t.images) {
+        let q = back.point(*image);
+        largest = largest.max(q.distance(*p));
+        if q.distance(*p).is_nan() || q.distance(*p) > 1e-8 * (1.0 + p.to_vec2().hypot()) {
+            wrong += 1;
+            check.places.push(*p);
+            // Two points with one image: the map folds.
+            let folds = t.map.point(q).distance(*image) < 1e-8 * (1.0 + image.to_vec2().hypot());
+            let why = if folds {
+                ", which has the same image: the map folds, so no inverse leads back everywhere"
+            } else {
+                ""
+            };
+            let back = if q.is_finite() { place(q) } else { "no point".to_owned() };
+            first.get_or_insert_with(|| {
+                format!("it takes the image of {}, {}, to {back}{why}", place(*p), place(*image))
+            });
         }
     }
-    check.detail = format!("it leads back, within {largest:.0e}{}", skipped(outside));
+    if let Some(first) = first {
+        check.fault(format!("the inverse does not lead back at {wrong} of {} places: {first}", t.samples.len()));
+    }
+    check.detail = format!("it leads back, within {largest:.0e}{}", skipped(t.outside));
     check
 }
 
 /// Compares what a circle and lines become with dense samples of the true image. The lines are from 1 to 400 of the map's details long, of
 /// which none counts as larger than a hundredth of the frame, or as smaller than a hundredth of that.
-fn refitting(map: &dyn Map, domain: &Domain<'_>) -> Check {
-    const TOLERANCE: f64 = 0.01;
+fn refitting(t: &Tested<'_>) -> Check {
     const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
     /// Samples of a detail, to which a prime number is added for each line.
     const SAMPLES: u32 = 12;
     let mut check = Check::new("refitting");
-    let frame = frame().rect;
-    let (size, hundredth) = (detail_in(map, frame).unwrap_or(f64::INFINITY), 0.01 * frame.size().to_vec2().hypot());
-    let size = size.clamp(0.01 * hundredth, hundredth);
-    let mut art = vec![(Outline::from_svg("M20,50 A30,30 0 1 1 80,50 A30,30 0 1 1 20,50 Z").unwrap_or_default(), 101)];
+    let (map, frame) = (t.map, t.frame);
+    check.detail = "a circle and 12 lines".to_owned();
+    // Within the domain, so that short lines are in it.
+    let inner = t.samples.get(t.samples.len() / 2).copied();
+    let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
+    let hundredth = 0.01 * frame.size().to_vec2().hypot();
+    // A hundredth of a unit in the box of checks.
+    let tolerance = hundredth / 2_f64.sqrt() * 0.01;
+    let declared = detail_in(map, frame);
+    let size = declared.unwrap_or(f64::INFINITY).clamp(0.01 * hundredth, hundredth);
+    let circle = Circle::new(center, 0.3 * frame.width().min(frame.height()));
+    let mut art = vec![(Outline::from(&circle.to_path(1e-9)), 101)];
     art.extend(DETAILS.iter().enumerate().map(|(i, n)| {
         let half = Vec2::from_angle(0.618 * i as f64) * (0.5 * size * f64::from(*n));
-        (Outline::from_points(&[frame.center() - half, frame.center() + half], false), SAMPLES * n + 97)
+        (Outline::from_points(&[center - half, center + half], false), SAMPLES * n + 97)
     }));
     let all = art.len();
-    art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| domain.contains(g.eval(f64::from(i) / 100.0)))));
+    art.retain(|(art, _)| art.segs().all(|g| (0..=100).all(|i| t.contains(g.eval(f64::from(i) / 100.0)))));
     let mut pieces = 0;
     for (art, samples) in &art {
-        let w = match refit::warp_path(art, map, &refit::Options::new(TOLERANCE)) {
+        let w = match refit::warp_path(art, map, &refit::Options::new(tolerance).with_nodes(refit::Nodes::Source)) {
             Ok(w) => w,
             Err(e) => {
-                check.fault(format!("refitting its demo fails: {e}"));
+                check.fault(format!("no curves could be fitted: {e}"));
                 return check;
             }
         };
         pieces += w.report.segments_out;
         let segs: Vec<_> = w.path.segments().collect();
-        let off = art.segs().find_map(|seg| away(map, seg, &segs, *samples, TOLERANCE));
-        if let (Some((p, off)), true) = (off, w.report.over_budget.is_empty()) {
-            check.fault(format!("refitted within {TOLERANCE}, a sample at {p:?} is {off} away"));
+        let off = art.segs().find_map(|seg| Some((seg, away(map, seg, &segs, *samples, tolerance)?)));
+        if let (Some((seg, (p, off))), true) = (off, w.report.unresolved.is_empty()) {
+            let told = declared.map_or_else(|| "none is declared".to_owned(), |d| format!("{} is declared", number(d)));
+            let length = seg.eval(0.0).distance(seg.eval(1.0));
+            let advice = wave(map, p, length).map_or_else(String::new, |wave| {
+                let (wave, detail) = (number(wave), number(0.25 * wave));
+                format!("; its waves are down to {wave} long there: declare a detail of {detail} ({told})")
+            });
+            check.places.push(p);
+            check.fault(format!(
+                "a curve fitted within {} is {} away from the image of {}{advice}",
+                number(tolerance),
+                number(off),
+                place(p)
+            ));
+            return check;
         }
         if !w.path.bounding_box().is_finite() {
             check.fault("refitting gives numbers that are not finite");
         }
     }
     let (fitted, lines) = (art.len(), all - 1);
-    check.detail = format!("{fitted} of a circle and {lines} lines become {pieces} curves within {TOLERANCE}");
+    check.detail =
+        format!("{fitted} of a circle and {lines} lines become {pieces} curves within {}", number(tolerance));
     if fitted < all {
         check.detail += "; the others leave the domain and are skipped";
+    }
+    if declared.is_none() {
+        check.detail += "; it declares no detail, so reports say sampled";
     }
     check
 }
 
-/// The first of evenly spaced samples of the true image that is further than `tolerance` from a path, and its distance.
+/// The length of the shortest wave of a map on lines of a length through a point, from the number of times that their images bend the
+/// other way; `None` if ever finer samples do not agree on that.
+fn wave(map: &dyn Map, p: Point, length: f64) -> Option<f64> {
+    let turns = |along: Vec2, n: usize| {
+        let at: Vec<Point> = (0..=n).map(|i| p + along * (i as f64 / n as f64 - 0.5)).collect();
+        let mut q = at.clone();
+        map.points(&at, &mut q);
+        let bends = q.windows(3).map(|q| q[0].to_vec2() + q[2].to_vec2() - 2.0 * q[1].to_vec2());
+        let bends: Vec<Vec2> = bends.filter(|b| b.is_finite()).collect();
+        let largest = bends.iter().copied().reduce(|a, b| if b.hypot() > a.hypot() { b } else { a })?;
+        let sides = bends.iter().map(|b| b.dot(largest)).filter(|d| d.abs() > 0.01 * largest.hypot2());
+        let sides: Vec<bool> = sides.map(|d| d > 0.0).collect();
+        Some(sides.windows(2).filter(|s| s[0] != s[1]).count())
+    };
+    let waves = |along: Vec2| {
+        let counts: Vec<usize> = (8..=15).filter_map(|k| turns(along, 1 << k)).collect();
+        let settled = counts.windows(2).enumerate().find(|(k, c)| c[0] > 1 && c[0] == c[1] && c[0] < 32 << k)?.1[0];
+        Some(2.0 * length / settled as f64)
+    };
+    (0..8).filter_map(|k| waves(Vec2::from_angle(f64::from(k) * PI / 8.0) * length)).reduce(f64::min)
+}
+
+/// The first of evenly spaced samples that is further than `tolerance` from its place on a path after the map: the sample, and its distance.
 fn away(map: &dyn Map, seg: &Seg, path: &[PathSeg], samples: u32, tolerance: f64) -> Option<(Point, f64)> {
     let mut at = 0;
     (0..=samples).find_map(|i| {
-        let p = map.point(seg.eval(f64::from(i) / f64::from(samples)));
+        let source = seg.eval(f64::from(i) / f64::from(samples));
+        let p = map.point(source);
         let off = |k: &usize| path[*k].nearest(p, tolerance * 1e-4).distance_sq.sqrt();
         // Samples follow each other, so the nearest piece is that of the one before, or comes soon after it.
         match (at..path.len()).chain(0..at).find(|k| off(k) <= tolerance * (1.0 + 1e-6)) {
             Some(k) => at = k,
-            None => return Some((p, (0..path.len()).map(|k| off(&k)).fold(f64::INFINITY, f64::min))),
+            None => return Some((source, (0..path.len()).map(|k| off(&k)).fold(f64::INFINITY, f64::min))),
         }
         None
     })
@@ -407,23 +496,33 @@ fn cases(entry: &dyn Deformation) -> Check {
     let mut check = Check::new("cases");
     check.detail = format!("{} known values", entry.info().cases.len());
     for case in entry.info().cases {
+        let args = written(case.args);
         match build(entry, case.args) {
             Ok(built) => {
-                let got = built.map.point(case.at.into());
-                let off = got.distance(case.to.into());
+                let (at, to) = (Point::from(case.at), Point::from(case.to));
+                let got = built.map.point(at);
+                let off = got.distance(to);
                 if let Some(failure) = failure(&built) {
-                    check.fault(format!("{:?}: {failure}", case.args));
+                    check.fault(format!("{args}: {failure}"));
                 } else if off.is_nan() || off > case.tolerance {
-                    check.fault(format!(
-                        "{:?} takes {:?} to {got:?}, {off:e} away from {:?}",
-                        case.args, case.at, case.to
-                    ));
+                    let changed = Tested::new(&built, frame().rect).two_answers(&[at]);
+                    let [at, got, to] = [at, got, to].map(place);
+                    let fault =
+                        changed.unwrap_or_else(|| format!("takes {at} to {got}, {} away from {to}", number(off)));
+                    check.fault(format!("{args} {fault}"));
                 }
             }
-            Err(e) => check.fault(format!("{:?} does not build: {e}", case.args)),
+            Err(e) => check.fault(format!("{args} does not build: {e}")),
         }
     }
     check
+}
+
+/// Writes values as the entry of a plug-in does.
+fn written(pairs: Pairs) -> String {
+    let value = |v: &str| if v.parse::<f64>().is_ok() { v.to_owned() } else { format!("\"{v}\"") };
+    let pairs: Vec<String> = pairs.iter().map(|(name, v)| format!("\"{name}\": {}", value(v))).collect();
+    format!("{{{}}}", pairs.join(", "))
 }
 
 fn build(entry: &dyn Deformation, pairs: Pairs) -> Result<Built, Error> {
@@ -439,52 +538,62 @@ fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
 
 /// Checks a law, and returns the number of samples that were skipped.
 fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
-    let values = match *law {
-        Law::Same(a, b) | Law::Undoes(a, b) => vec![a, b],
-        Law::Identity(a)
-        | Law::KeepsLines(a)
-        | Law::KeepsLinesAlong(a, _)
-        | Law::FixedOutside(a, _)
-        | Law::Area(a, _)
-        | Law::KeepsAngles(a) => vec![a],
+    // The keys are those of the entry of a plug-in.
+    let (key, values) = match *law {
+        Law::Identity(a) => ("identity", vec![a]),
+        Law::Same(a, b) => ("same", vec![a, b]),
+        Law::KeepsLines(a) => ("keeps-lines", vec![a]),
+        Law::KeepsLinesAlong(a, _) => ("keeps-lines-along", vec![a]),
+        Law::FixedOutside(a, _) => ("fixed-outside", vec![a]),
+        Law::Area(a, _) => ("area", vec![a]),
+        Law::KeepsAngles(a) => ("keeps-angles", vec![a]),
+        Law::Undoes(a, b) => ("undoes", vec![a, b]),
     };
     let mut built = Vec::with_capacity(values.len());
     for pairs in &values {
         match build(entry, pairs) {
             Ok(b) => built.push(b),
-            Err(e) => check.fault(format!("{pairs:?} does not build: {e}")),
+            Err(e) => check.fault(format!("{} does not build: {e}", written(pairs))),
         }
     }
     let (Some(first), Some(last)) = (built.first(), built.last().filter(|_| built.len() == values.len())) else {
         return 0;
     };
-    let domain = Domain::of(first);
-    let (samples, outside) = domain.samples();
-    let is_partial = domain.is_partial() || Domain::of(last).is_partial();
-    let skips = Cell::new(outside);
+    let (tested, later) = (Tested::new(first, frame().rect), Tested::new(last, frame().rect));
+    let is_partial = tested.is_partial() || later.is_partial();
+    let skips = Cell::new(tested.outside);
+    let tried = Cell::new(0);
     // The place of the largest value of the last call of `worst`.
-    let place = Cell::new(None);
+    let seen = Cell::new(None);
     let worst = |f: &dyn Fn(Point) -> f64| {
-        place.set(None);
+        seen.set(None);
         let mut largest = 0.0_f64;
-        for &p in &samples {
+        for &p in &tested.samples {
             let off = f(p);
             if off.is_nan() && is_partial {
                 skips.set(skips.get() + 1);
-            } else if off > largest || off.is_nan() {
-                place.set(Some(p));
+                continue;
+            }
+            tried.set(tried.get() + 1);
+            if off > largest || off.is_nan() {
+                seen.set(Some(p));
                 largest = if off.is_nan() { f64::INFINITY } else { off };
             }
         }
         largest
     };
     let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);
-    // Values after a failure mean nothing.
+    let more = Vec::from_iter(seen.get());
+    // Values after a failure mean nothing, and neither do those that change.
     if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
-        check.fault(format!("{pairs:?}: {e}"));
+        check.fault(format!("{}: {e}", written(pairs)));
+    } else if tried.get() == 0 {
+        check.fault(format!("{key} {}: the map has no value at any place", written(values[0])));
     } else if let Some(fault) = fault {
-        let place = place.get().map(|p: Point| format!(", worst at {},{}", p.x, p.y)).unwrap_or_default();
-        check.fault(fault + &place);
+        let changed = tested.two_answers(&more).map(|fault| (values[0], fault));
+        let changed = changed.or_else(|| Some((*values.last()?, later.two_answers(&more)?)));
+        let worst = more.first().map(|p| format!(", worst at {}", place(*p))).unwrap_or_default();
+        check.fault(changed.map_or(fault + &worst, |(pairs, fault)| format!("{} {fault}", written(pairs))));
     }
     skips.get()
 }
@@ -494,40 +603,45 @@ type Worst<'a> = &'a dyn Fn(&dyn Fn(Point) -> f64) -> f64;
 
 /// Says how `f` and `g` break a law, if they do. A law about one map gets it twice.
 fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> Option<String> {
-    let by = |off: f64| if off.is_finite() { format!("{off:e}") } else { "what is no number".to_owned() };
+    let by = |off: f64| if off.is_finite() { number(off) } else { "what is no number".to_owned() };
+    let args = written(pairs);
     match *law {
         Law::Identity(_) => {
             let off = worst(&|p| f.point(p).distance(p));
-            (off > NEAR).then(|| format!("{pairs:?} should be the identity; it moves a point by {}", by(off)))
+            (off > NEAR).then(|| format!("{args} should be the identity; it moves a point by {}", by(off)))
         }
         Law::Same(a, b) => {
             let off = worst(&|p| f.point(p).distance(g.point(p)));
-            (off > NEAR).then(|| format!("{a:?} and {b:?} should be one map; they differ by {}", by(off)))
+            (off > NEAR)
+                .then(|| format!("{} and {} should be one map; they differ by {}", written(a), written(b), by(off)))
         }
         Law::KeepsLines(_) => {
             let off = worst(&|p| bent(f, p, Point::new(97.0 - p.x, 0.3 * p.y + 11.0)));
-            (off > NEAR).then(|| format!("{pairs:?} should keep lines straight; it bends one by {}", by(off)))
+            (off > NEAR).then(|| format!("{args} should keep lines straight; it bends one by {}", by(off)))
         }
         Law::KeepsLinesAlong(_, (x, y)) => {
             let off = worst(&|p| bent(f, p, p + Vec2::new(x, y) * (9.0 / x.hypot(y))));
             (off > NEAR)
-                .then(|| format!("{pairs:?} should keep lines along {x},{y} straight; it bends one by {}", by(off)))
+                .then(|| format!("{args} should keep lines along {x},{y} straight; it bends one by {}", by(off)))
         }
         Law::FixedOutside(_, [x0, y0, x1, y1]) => {
             let inside = Rect::new(x0, y0, x1, y1);
             if worst(&|p| f.point(p).distance(p)) > 0.0 {
                 let off = worst(&|p| if inside.contains(p) { 0.0 } else { f.point(p).distance(p) });
                 (off > 0.0).then(|| {
-                    format!("{pairs:?} should move nothing outside {inside:?}; it moves a point by {}", by(off))
+                    format!(
+                        "{args} should move nothing outside {x0},{y0} to {x1},{y1}; it moves a point by {}",
+                        by(off)
+                    )
                 })
             } else {
-                Some(format!("{pairs:?} moves nothing at all"))
+                Some(format!("{args} moves nothing at all"))
             }
         }
         Law::Area(_, factor) => {
             let off = worst(&|p| (f.jet(p).det() - factor).abs());
             (off > NEAR * (1.0 + factor.abs()))
-                .then(|| format!("{pairs:?} should multiply areas by {factor}; it is off by {}", by(off)))
+                .then(|| format!("{args} should multiply areas by {factor}; it is off by {}", by(off)))
         }
         Law::KeepsAngles(_) => {
             // Cauchy–Riemann equations: ∂F/∂y is ∂F/∂x rotated by 90°.
@@ -535,11 +649,12 @@ fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> O
                 let j = f.jet(p);
                 (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)
             });
-            (off > NEAR).then(|| format!("{pairs:?} should keep angles; one is off by {}", by(off)))
+            (off > NEAR).then(|| format!("{args} should keep angles; one is off by {}", by(off)))
         }
         Law::Undoes(there, back) => {
             let off = worst(&|p| g.point(f.point(p)).distance(p));
-            (off > NEAR).then(|| format!("{back:?} should undo {there:?}; a point ends {} away", by(off)))
+            (off > NEAR)
+                .then(|| format!("{} should undo {}; a point ends {} away", written(back), written(there), by(off)))
         }
     }
 }

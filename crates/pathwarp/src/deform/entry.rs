@@ -1,7 +1,8 @@
 //! A deformation as the registry sees it: the trait [`Deformation`] and the data that describes one.
 
 use crate::error::Error;
-use crate::map::{Called, Map};
+use crate::map::Map;
+use crate::map::called::Called;
 use crate::param::{Args, Frame, Param, Settings};
 use kurbo::{Affine, BezPath, Point, Rect};
 use std::fmt;

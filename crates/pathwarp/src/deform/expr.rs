@@ -118,6 +118,7 @@ static INFO: Info = Info::new("expr", "move every point by a formula for x and y
     .group("Formulas")
     .by_hand(ByHand {
         label: Some("Formula"),
+        showing: &[("y", "y + h*((2*u-1)^2/2 - 0.2)")],
         ..ByHand::NONE
     })
     .about("Formulas for the new x and y; a coordinate without one stays. Numbers, + - * / and ^ or ** (power), brackets, and\n  \

@@ -122,10 +122,11 @@ static INFO: Info = Info::new("mls", "move points of the artwork, and let the re
             ("pair", "0%,100%:0%,100%"),
             ("pair", "50%,50%:50%,50%"),
         ],
+        showing: &[("pair", "0%,50%:0%,75%"), ("pair", "50%,50%:50%,25%"), ("pair", "100%,50%:100%,75%")],
         ..ByHand::NONE
     })
     .guides(&["to", "from"], 2)
-    .about("Moves points of the artwork; everything else follows smoothly, most where it is near. --pair moves a \
+    .about("Moves points of the artwork; everything else follows smoothly, most where it is near, also across gaps. --pair moves a \
 point, --pin holds one where it is, --from and --to take the anchors of two paths, in order.\n\n--kind rigid keeps shapes as stiff as \
 it can, similar also lets them grow and shrink, affine lets them shear as well (it needs three pairs that are not on one line).")
     .source("S. Schaefer, T. McPhail, J. Warren, Image deformation using moving least squares, SIGGRAPH 2006")

@@ -376,7 +376,7 @@ mod tests {
             let frame = Frame::new(Rect::new(0.0, 0.0, 300.0, 70.0));
             let built = recipe.build(&Registry::builtin(), frame, &std::iter::once(&art)).unwrap();
             let warped = refit::warp_path(&art, &built.map, &refit::Options::new(0.01)).unwrap();
-            assert!(warped.report.over_budget.is_empty() && warped.report.max_error <= 0.01, "{:?}", warped.report);
+            assert!(warped.report.unresolved.is_empty() && warped.report.max_error <= 0.01, "{:?}", warped.report);
             // The distance from 0,0 is the height, the angle from the vertical, turned back, the width.
             let mut apart: f64 = 0.0;
             for p in art.segs().flat_map(|s| (1..200).map(move |i| s.eval(f64::from(i) / 200.0))) {

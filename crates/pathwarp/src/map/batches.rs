@@ -1,12 +1,83 @@
 //! Maps whose calls are expensive, such as those of another program: a cache in front of them, and ways to invert them in few calls.
 
-use super::{Batches, Class, Cost, Creases, Enclosure, Jet, Map, RationalBezier};
+use super::{Class, Creases, Enclosure, Jet, Map, RationalBezier};
+use crate::budget::Budget;
 use kurbo::{Point, Rect, Vec2};
 use std::collections::HashMap;
 use std::fmt;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// The cost of evaluating a map.
+#[derive(Clone, Copy)]
+pub struct Cost<'a> {
+    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
+    pub work: f64,
+    /// The cost of a single jet, as Newton's method asks for it. With many parts, a jet takes longer alone than in a batch.
+    pub jet: f64,
+    /// Set if each call is expensive and each point cheap, as when another program is asked.
+    pub batches: Option<&'a dyn Batches>,
+    /// Set if the map searches for its values, as inverses do, and may take more than `work`.
+    pub searches: Option<&'a dyn Searches>,
+}
+
+/// A map that searches for its values.
+pub trait Searches {
+    /// The same map, which charges to `budget` what its searches take beyond [`Cost::work`], and finds nothing once that is used up.
+    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
+}
+
+impl<'a> Cost<'a> {
+    /// The cost of a bicubic net.
+    pub const NET: Self = Self::new(1.0);
+
+    /// The cost of a map whose evaluation takes `work`.
+    #[must_use]
+    pub const fn new(work: f64) -> Self {
+        const SINGLY: f64 = 3.0;
+        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
+    }
+
+    setters! {
+        /// The same cost for a map that should be asked in batches.
+        batched(by: &'a dyn Batches) => batches: Some(by);
+        /// The same cost for a map that searches.
+        searching(by: &'a dyn Searches) => searches: Some(by);
+    }
+}
+
+impl fmt::Debug for Cost<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
+    }
+}
+
+/// Points, and a slot for the result at each.
+pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
+
+/// A map whose calls are expensive and whose points are cheap. Its [`cost`](Map::cost) says so, and callers then collect the points they
+/// need.
+pub trait Batches: Map {
+    /// Maps some points and computes the jets at others, in one call where possible.
+    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
+        self.points(ps, images);
+        self.jets(qs, jets);
+    }
+
+    /// Returns `true` if each derivative is a difference of several values. Callers then use values where they can.
+    fn differentiates(&self) -> bool {
+        false
+    }
+
+    /// Returns `true` if the map caches results, so that announcing points to [`prepare`](Self::prepare) pays.
+    fn remembers(&self) -> bool {
+        false
+    }
+
+    /// Announces the points whose values, and those whose jets, will be asked for next.
+    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
+}
 
 /// Results kept before the cache is cleared: about 40 MB.
 const MAX_CACHED: usize = 1 << 19;

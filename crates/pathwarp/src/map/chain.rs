@@ -2,7 +2,7 @@
 
 use super::{
     AffineMap, Batches, Class, Cost, Crease, Creases, Enclosure, Field, Images, Jet, Level, Map, RationalBezier,
-    RationalDegree, Searches, detail_in, inverse_over, middle_and_corners, most_stretched,
+    RationalDegree, Searches, detail_in, inverse_of, middle_and_corners, most_stretched,
 };
 use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
@@ -90,7 +90,7 @@ impl Chain {
     pub fn inverse_over(&self, area: Rect) -> Self {
         let (mut area, mut back) = (area, Vec::with_capacity(self.steps.len()));
         for step in &self.steps {
-            back.push(inverse_over(step, area));
+            back.push(inverse_of(step, area));
             area = image_box(&**step, area).unwrap_or(area);
         }
         Self::new(back.into_iter().rev())

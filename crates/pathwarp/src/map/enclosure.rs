@@ -5,8 +5,8 @@
 //! the bounds, and g ∘ f has Σ gₖ·(f₁τ + f₂τ² + …)ᵏ, with bounds gₖ for the coefficients of g on f's range (R. E. Moore, *Methods and
 //! Applications of Interval Analysis*, SIAM 1979, chapter 3).
 
-use super::Real;
 use super::real::operators;
+use super::{Map, Real};
 use crate::outline::Seg;
 use kurbo::{Point, Rect};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -246,6 +246,11 @@ impl Real for Enclosure {
     /// The middle of the range.
     fn value(self) -> f64 {
         0.5 * (self.lo + self.hi)
+    }
+
+    fn image<M: Map + ?Sized>(map: &M, at: [Self; 2]) -> (Self, Self) {
+        let unknown = || Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, d: [f64::INFINITY; ORDER] };
+        map.enclose(at).unwrap_or_else(|| [unknown(), unknown()]).into()
     }
 
     fn sqrt(self) -> Self {

@@ -61,6 +61,7 @@ pub trait Formula: Send + Sync {
     }
 
     /// See [`Map::cost`].
+    #[doc(hidden)]
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
@@ -69,61 +70,68 @@ pub trait Formula: Send + Sync {
     fn detail(&self, _area: Rect) -> Option<f64> {
         None
     }
+
+    /// [`Map::jet`], which pointers to maps forward, as the methods below.
+    #[doc(hidden)]
+    #[inline]
+    fn dual(&self, p: Point) -> Jet {
+        let (x, y) = self.f(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
+        Jet { p: Point::new(x.v, y.v), dx: (x.x, y.x).into(), dy: (x.y, y.y).into() }
+    }
+
+    #[doc(hidden)]
+    #[inline]
+    fn value(&self, p: Point) -> Point {
+        self.f(p.x, p.y).into()
+    }
+
+    #[doc(hidden)]
+    #[inline]
+    fn duals(&self, ps: &[Point], out: &mut [Jet]) {
+        ps.iter().zip(out).for_each(|(p, o)| *o = self.dual(*p));
+    }
+
+    #[doc(hidden)]
+    #[inline]
+    fn values(&self, ps: &[Point], out: &mut [Point]) {
+        ps.iter().zip(out).for_each(|(p, o)| *o = self.value(*p));
+    }
+
+    #[doc(hidden)]
+    fn enclosed(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]>
+    where
+        Self: Sized,
+    {
+        let area = Enclosure::area(&along);
+        let [x, y] = along;
+        Some(Formula::detail(self, area).map_or_else(|| self.f(x, y).into(), |d| estimated(self, along, area, d)))
+    }
 }
 
 impl<F: Formula> Map for F {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let (x, y) = self.f(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
-        Jet { p: Point::new(x.v, y.v), dx: (x.x, y.x).into(), dy: (x.y, y.y).into() }
+        self.dual(p)
     }
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        self.f(p.x, p.y).into()
+        self.value(p)
     }
 
-    fn class(&self) -> Class {
-        Formula::class(self)
+    fn jets(&self, ps: &[Point], out: &mut [Jet]) {
+        self.duals(ps, out);
     }
 
-    fn creases(&self, out: &mut Creases) {
-        Formula::creases(self, out);
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Formula::branch(self, inside)
-    }
-
-    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        Formula::image(self, curve)
-    }
-
-    fn denominator(&self, p: Point) -> f64 {
-        Formula::denominator(self, p)
-    }
-
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Formula::inverse(self)
-    }
-
-    fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-        Formula::preimages(self, q)
-    }
-
-    fn cost(&self) -> Cost<'_> {
-        Formula::cost(self)
+    fn points(&self, ps: &[Point], out: &mut [Point]) {
+        self.values(ps, out);
     }
 
     fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
-        let area = Enclosure::area(&along);
-        let [x, y] = along;
-        Some(Formula::detail(self, area).map_or_else(|| self.f(x, y).into(), |d| estimated(self, along, area, d)))
+        self.enclosed(along)
     }
 
-    fn detail(&self, area: Rect) -> Option<f64> {
-        Formula::detail(self, area)
-    }
+    forward_common!(self => Formula, self);
 }
 
 /// A map from a closure that gives the image of a point. Its derivatives are differences of values, good to nine digits or so where the map

@@ -5,7 +5,7 @@
 //!
 //! # Writing a map
 //!
-//! [`from_fn`] makes a map from a closure.
+//! [`from_fn`] makes a map from a closure. References, boxes and [`Arc`]s of maps are maps.
 //!
 //! Implement [`Formula`]: one function from (x, y) to (x, y), generic over the number type ([`Real`]). Run on `f64` it gives
 //! values, run on [`Dual`] numbers it gives derivatives. Implement [`Map`] itself if derivatives have a cheaper closed form; only
@@ -34,11 +34,67 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-mod batches;
+/// Forwards the methods that a [`Map`] and a [`Formula`] have in common.
+macro_rules! forward_common {
+    ($self:ident => $trait:ident, $to:expr) => {
+        fn class(&$self) -> Class {
+            $trait::class($to)
+        }
+        fn creases(&$self, out: &mut Creases) {
+            $trait::creases($to, out);
+        }
+        fn branch(&$self, inside: Point) -> Option<Arc<dyn Map>> {
+            $trait::branch($to, inside)
+        }
+        fn image(&$self, curve: &RationalBezier) -> Option<RationalBezier> {
+            $trait::image($to, curve)
+        }
+        fn denominator(&$self, p: Point) -> f64 {
+            $trait::denominator($to, p)
+        }
+        fn inverse(&$self) -> Option<Arc<dyn Map>> {
+            $trait::inverse($to)
+        }
+        fn preimages(&$self, q: Point) -> Option<Vec<Point>> {
+            $trait::preimages($to, q)
+        }
+        fn cost(&$self) -> Cost<'_> {
+            $trait::cost($to)
+        }
+        fn detail(&$self, area: Rect) -> Option<f64> {
+            $trait::detail($to, area)
+        }
+    };
+}
+
+/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
+macro_rules! forward {
+    ($jet:ident $point:ident $jets:ident $points:ident $enclose:ident) => {
+        fn $jet(&self, p: Point) -> Jet {
+            (**self).jet(p)
+        }
+        fn $point(&self, p: Point) -> Point {
+            (**self).point(p)
+        }
+        fn $jets(&self, ps: &[Point], out: &mut [Jet]) {
+            (**self).jets(ps, out);
+        }
+        fn $points(&self, ps: &[Point], out: &mut [Point]) {
+            (**self).points(ps, out);
+        }
+        fn $enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
+            (**self).enclose(along)
+        }
+        forward_common!(self => Map, &**self);
+    };
+}
+
+pub(crate) mod batches;
 mod bicubic;
 mod birational;
+#[doc(hidden)]
 pub mod bspline;
-mod called;
+pub(crate) mod called;
 mod chain;
 mod coons;
 mod crease;
@@ -46,7 +102,7 @@ pub(crate) mod curves;
 mod enclosure;
 mod formula;
 mod homography;
-mod joint;
+pub(crate) mod joint;
 mod lattice;
 mod local;
 mod newton;
@@ -63,11 +119,10 @@ use kurbo::{Affine, Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;
 
-pub use batches::Gathered;
+pub(crate) use batches::{Batches, Cost, Gathered, Images, Searches};
 pub(crate) use bicubic::complete_net;
 pub use bicubic::{BicubicNet, Net};
 pub use birational::{Birational, BirationalInverse, Monoid, Rows};
-pub use called::{Abilities, Ask, Called, Callee};
 pub use chain::Chain;
 pub use coons::{Coons, Sides};
 pub use crease::{Crease, CreaseKind, Creases, Field, Level};
@@ -76,7 +131,7 @@ pub use enclosure::Enclosure;
 pub(crate) use enclosure::along;
 pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
-pub use joint::Joint;
+pub(crate) use joint::Joint;
 pub use lattice::{Lattice, LatticeMap};
 pub use newton::{NewtonInverse, inverse_over};
 pub use preimages::preimages;
@@ -86,7 +141,7 @@ pub use real::{Dual, Real};
 
 pub(crate) use curves::{Along, Guide, increasing_root};
 pub(crate) use local::Local;
-pub(crate) use newton::INVERSE_WORK;
+pub(crate) use newton::{INVERSE_WORK, inverse_of};
 pub(crate) use patch::{Patch, powers};
 pub(crate) use preimages::Polynomials;
 pub(crate) use quotient::{Plane, Quotient, source_coordinates};
@@ -160,6 +215,7 @@ pub trait Map: Send + Sync {
     }
 
     /// The cost of an evaluation, for [`budget`](crate::budget). A map whose work grows with its number of parts says so here.
+    #[doc(hidden)]
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
@@ -213,97 +269,31 @@ pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
     map.detail(area).or_else(told)
 }
 
-/// The cost of evaluating a map.
-#[derive(Clone, Copy)]
-pub struct Cost<'a> {
-    /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
-    pub work: f64,
-    /// The cost of a single jet, as Newton's method asks for it. With many parts, a jet takes longer alone than in a batch.
-    pub jet: f64,
-    /// Set if each call is expensive and each point cheap, as when another program is asked.
-    pub batches: Option<&'a dyn Batches>,
-    /// Set if the map searches for its values, as inverses do, and may take more than `work`.
-    pub searches: Option<&'a dyn Searches>,
-}
-
-/// A map that searches for its values.
-pub trait Searches {
-    /// The same map, which charges to `budget` what its searches take beyond [`Cost::work`], and finds nothing once that is used up.
-    fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
-}
-
-impl<'a> Cost<'a> {
-    /// The cost of a bicubic net.
-    pub const NET: Self = Self::new(1.0);
-
-    /// The cost of a map whose evaluation takes `work`.
-    #[must_use]
-    pub const fn new(work: f64) -> Self {
-        const SINGLY: f64 = 3.0;
-        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
-    }
-
-    setters! {
-        /// The same cost for a map that should be asked in batches.
-        batched(by: &'a dyn Batches) => batches: Some(by);
-        /// The same cost for a map that searches.
-        searching(by: &'a dyn Searches) => searches: Some(by);
-    }
-}
-
-impl fmt::Debug for Cost<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Cost").field("work", &self.work).field("jet", &self.jet).finish_non_exhaustive()
-    }
-}
-
-/// Points, and a slot for the result at each.
-pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
-
-/// A map whose calls are expensive and whose points are cheap. Its [`cost`](Map::cost) says so, and callers then collect the points they
-/// need.
-pub trait Batches: Map {
-    /// Maps some points and computes the jets at others, in one call where possible.
-    fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
-        self.points(ps, images);
-        self.jets(qs, jets);
-    }
-
-    /// Returns `true` if each derivative is a difference of several values. Callers then use values where they can.
-    fn differentiates(&self) -> bool {
-        false
-    }
-
-    /// Returns `true` if the map caches results, so that announcing points to [`prepare`](Self::prepare) pays.
-    fn remembers(&self) -> bool {
-        false
-    }
-
-    /// Announces the points whose values, and those whose jets, will be asked for next.
-    fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
-}
-
 /// Shorthands for parts of the cost and the class.
 impl dyn Map + '_ {
     /// See [`Cost::work`].
+    #[doc(hidden)]
     #[must_use]
     pub fn work(&self) -> f64 {
         self.cost().work
     }
 
     /// The same map with its searches charged to `budget`; `None` if it does not search.
+    #[doc(hidden)]
     #[must_use]
     pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
         self.cost().searches.map(|s| s.within(budget))
     }
 
     /// Returns `true` if calls are expensive and points cheap; see [`Batches`].
+    #[doc(hidden)]
     #[must_use]
     pub fn prefers_batches(&self) -> bool {
         self.cost().batches.is_some()
     }
 
     /// Announces the points whose values, and those whose jets, will be asked for next. Only maps that cache results listen.
+    #[doc(hidden)]
     pub fn prepare(&self, points: &[Point], jets: &[Point]) {
         if let Some(batches) = self.cost().batches {
             batches.prepare(points, jets);
@@ -317,66 +307,24 @@ impl dyn Map + '_ {
     }
 }
 
-/// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
-macro_rules! forward {
-    () => {
-        fn jet(&self, p: Point) -> Jet {
-            (**self).jet(p)
-        }
-        fn point(&self, p: Point) -> Point {
-            (**self).point(p)
-        }
-        fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-            (**self).jets(ps, out);
-        }
-        fn points(&self, ps: &[Point], out: &mut [Point]) {
-            (**self).points(ps, out);
-        }
-        fn class(&self) -> Class {
-            (**self).class()
-        }
-        fn creases(&self, out: &mut Creases) {
-            (**self).creases(out);
-        }
-        fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-            (**self).branch(inside)
-        }
-        fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-            (**self).image(curve)
-        }
-        fn denominator(&self, p: Point) -> f64 {
-            (**self).denominator(p)
-        }
-        fn inverse(&self) -> Option<Arc<dyn Map>> {
-            (**self).inverse()
-        }
-        fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-            (**self).preimages(q)
-        }
-        fn cost(&self) -> Cost<'_> {
-            (**self).cost()
-        }
-        fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
-            (**self).enclose(along)
-        }
-        fn detail(&self, area: Rect) -> Option<f64> {
-            (**self).detail(area)
-        }
-    };
-}
-
 impl<M: Map + ?Sized> Map for Arc<M> {
-    forward!();
+    forward!(jet point jets points enclose);
 }
 
-/// Other pointers are maps only if they point to `dyn Map`: every [`Formula`] is a map, and any crate may implement `Formula` for a
-/// reference or a box of its own type.
-impl Map for &(dyn Map + '_) {
-    forward!();
+/// A reference or a box is a map by being a formula: any crate may implement [`Formula`] for those of its own types, which rules out that
+/// they are maps beside it.
+impl<M: Map + ?Sized> Formula for &M {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        S::image(*self, [x, y])
+    }
+    forward!(dual value duals values enclosed);
 }
 
-impl Map for Box<dyn Map + '_> {
-    forward!();
+impl<M: Map + ?Sized> Formula for Box<M> {
+    fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
+        S::image(&**self, [x, y])
+    }
+    forward!(dual value duals values enclosed);
 }
 
 impl fmt::Debug for dyn Map + '_ {
@@ -508,7 +456,7 @@ mod tests {
         let expected: Vec<Point> = ps.iter().map(|p| OnlyJet.jet(*p).p).collect();
         let shared: Arc<dyn Map> = Arc::new(OnlyJet);
         let mut out = vec![Point::ORIGIN; ps.len()];
-        for map in [&OnlyJet as &dyn Map, &shared] {
+        for map in [&OnlyJet as &dyn Map, &shared, &&OnlyJet, &Box::new(OnlyJet)] {
             map.points(&ps, &mut out);
             assert_eq!(out, expected);
         }

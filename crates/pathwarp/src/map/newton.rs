@@ -426,7 +426,12 @@ impl Searches for NewtonInverse {
 /// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
 /// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
 #[must_use]
-pub fn inverse_over(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
+pub fn inverse_over(map: impl Map + 'static, area: Rect) -> Arc<dyn Map> {
+    inverse_of(&(Arc::new(map) as Arc<dyn Map>), area)
+}
+
+/// As [`inverse_over`], of a map that is shared already.
+pub(crate) fn inverse_of(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
     const REACH: f64 = 0.25;
     let by_newton = || CreasedInverse::of(map, NewtonInverse::over(Arc::clone(map), area, REACH));
     map.inverse().unwrap_or_else(by_newton)

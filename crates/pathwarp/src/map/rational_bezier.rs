@@ -122,6 +122,22 @@ impl RationalBezier {
         self
     }
 
+    /// This curve written with degree `n`, if that is higher than its own.
+    #[must_use]
+    pub fn raised(&self, n: usize) -> Self {
+        let mut points = self.points.clone();
+        while !points.is_empty() && points.len() <= n {
+            let d = points.len();
+            let between = |i: usize, k: usize| {
+                let t = i as f64 / d as f64;
+                let before = if i > 0 { t * points[i - 1][k] } else { 0.0 };
+                before + if i < d { (1.0 - t) * points[i][k] } else { 0.0 }
+            };
+            points = (0..=d).map(|i| [0, 1, 2].map(|k| between(i, k))).collect();
+        }
+        Self { points }
+    }
+
     /// The curve whose homogeneous control points are `f` of these: the exact image for linear `f`.
     #[must_use]
     pub fn mapped(&self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Self {

@@ -4,6 +4,8 @@
 //! A dual number is v + x·ε₁ + y·ε₂ with εᵢεⱼ = 0. Arithmetic on dual numbers computes values and applies the chain rule at
 //! the same time (forward-mode automatic differentiation), exact to rounding.
 
+use super::Map;
+use kurbo::Point;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number, or a type that computes like one.
@@ -59,6 +61,12 @@ pub trait Real:
     /// The largest integer that is not larger; without derivatives.
     fn floor(self) -> Self {
         Self::from(self.value().floor())
+    }
+    /// The image under a map that is no formula; without derivatives, unless the type asks the map for them.
+    #[doc(hidden)]
+    fn image<M: Map + ?Sized>(map: &M, at: [Self; 2]) -> (Self, Self) {
+        let p = map.point(Point::new(at[0].value(), at[1].value()));
+        (p.x.into(), p.y.into())
     }
 }
 
@@ -150,6 +158,11 @@ impl Real for Dual {
     #[inline]
     fn value(self) -> f64 {
         self.v
+    }
+    fn image<M: Map + ?Sized>(map: &M, [x, y]: [Self; 2]) -> (Self, Self) {
+        let jet = map.jet(Point::new(x.v, y.v));
+        let (dx, dy) = (jet.push((x.x, y.x).into()), jet.push((x.y, y.y).into()));
+        (Self { v: jet.p.x, x: dx.x, y: dy.x }, Self { v: jet.p.y, x: dx.y, y: dy.y })
     }
     #[inline]
     fn sqrt(self) -> Self {

@@ -3,8 +3,10 @@
 
 use super::{EllipticArc, Outline, Seg, Subpath};
 use crate::error::Error;
-use kurbo::{BezPath, Circle, CubicBez, Ellipse, Line, PathEl, Point, QuadBez, Rect, Shape, Vec2};
-use std::f64::consts::FRAC_PI_2;
+use kurbo::{Affine, BezPath, Circle, CubicBez, Ellipse, Line, PathEl, Point, QuadBez, Rect, Shape, Vec2};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
+use std::str::FromStr;
 use svgtypes::{PathParser, PathSegment};
 
 /// SVG path data that cannot be read. The message names the position of the error.
@@ -33,6 +35,65 @@ impl Outline {
     pub fn from_svg_lossy(data: &str) -> Self {
         parse(data).unwrap_or_else(|(_, sound)| sound)
     }
+}
+
+/// As [`Outline::from_svg`].
+impl FromStr for Outline {
+    type Err = PathDataError;
+
+    fn from_str(data: &str) -> Result<Self, PathDataError> {
+        Self::from_svg(data)
+    }
+}
+
+/// SVG path data with absolute commands, which reads back as the same outline: to the last bit, but for the radii and angles of arcs, which
+/// are rounded.
+///
+/// ```
+/// use pathwarp::Outline;
+///
+/// let drop: Outline = "m50 0l30 50a30 30 0 0 1-60 0z".parse()?;
+/// assert_eq!(drop.to_string(), "M50,0 L80,50 A30,30 0 0 1 20,50 Z");
+/// # Ok::<(), pathwarp::outline::PathDataError>(())
+/// ```
+impl fmt::Display for Outline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, s) in self.subpaths.iter().enumerate() {
+            write!(f, "{}M{}", if i > 0 { " " } else { "" }, Pair(s.start))?;
+            let drawn =
+                s.segs.len() - usize::from(s.closed && matches!(s.segs.last(), Some(Seg::Line(l)) if l.p0 != l.p1));
+            for seg in &s.segs[..drawn] {
+                match seg {
+                    Seg::Line(l) => write!(f, " L{}", Pair(l.p1))?,
+                    Seg::Quad(q) => write!(f, " Q{} {}", Pair(q.p1), Pair(q.p2))?,
+                    Seg::Cubic(c) => write!(f, " C{} {} {}", Pair(c.p1), Pair(c.p2), Pair(c.p3))?,
+                    // The command draws at most a turn less than a whole one.
+                    Seg::Arc(a) if a.sweep.abs() > 1.5 * PI => {
+                        write_arc(&a.subsegment(0.0, 0.5), f)?;
+                        write_arc(&a.subsegment(0.5, 1.0), f)?;
+                    }
+                    Seg::Arc(a) => write_arc(a, f)?,
+                }
+            }
+            f.write_str(if s.closed { " Z" } else { "" })?;
+        }
+        Ok(())
+    }
+}
+
+struct Pair(Point);
+
+impl fmt::Display for Pair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0.x, self.0.y)
+    }
+}
+
+fn write_arc(a: &EllipticArc, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let (radii, turn) = Ellipse::from_affine(Affine::new([a.a.x, a.a.y, a.b.x, a.b.y, 0.0, 0.0])).radii_and_rotation();
+    let turn = if radii.x == radii.y { 0.0 } else { turn.to_degrees() };
+    let [large, sweep] = [a.sweep.abs() > PI, (a.sweep > 0.0) == (a.a.cross(a.b) > 0.0)].map(u8::from);
+    write!(f, " A{} {turn} {large} {sweep} {}", Pair(radii.to_point()), Pair(a.p1))
 }
 
 /// The path, or the error and the part before it.
@@ -256,6 +317,32 @@ mod tests {
         assert_eq!(ours.len(), theirs.len());
         for (a, b) in ours.iter().zip(&theirs) {
             assert!(a.distance(*b) < 1e-12, "{a:?} {b:?}");
+        }
+    }
+
+    /// Arcs of every kind, also mirrored and sheared, go where they went; everything else is the same to the last bit.
+    #[test]
+    fn what_is_written_reads_back() {
+        let rest = "M0.1,2 L3,4e-7 Q5,6 7,8 C1,2 3,4 5,6 Z M9,9 M1,1 L1,1 Z M0,0 L5,0 L5,5 Z";
+        let outline: Outline = rest.parse().unwrap();
+        assert_eq!(outline.to_string().parse(), Ok(outline));
+        let arcs = "M80,50 A30,20 15 1 1 20,50 A30,30 0 0 1 80,51 A40,40 0 0 0 20,50 Z";
+        let ring = Outline::from(Circle::new((3.0, 4.0), 5.0));
+        for outline in [Outline::from_svg(arcs).unwrap(), ring] {
+            for m in [[1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [2.0, 0.3, -0.4, -1.0, 7.0, 1.0], [0.0, 1.0, 1.0, 0.0, 0.0, 0.0]]
+            {
+                let moved = outline.transformed(Affine::new(m));
+                let back: Outline = moved.to_string().parse().unwrap();
+                let length = |o: &Outline| {
+                    o.to_bez_path(1e-7).segments().map(|s| kurbo::ParamCurveArclen::arclen(&s, 1e-7)).sum::<f64>()
+                };
+                assert!((length(&moved) - length(&back)).abs() < 1e-4, "{moved}");
+                let (path, middles) = (back.to_bez_path(1e-7), moved.segs().map(|s| s.eval(0.3)));
+                for p in middles {
+                    let off = path.segments().map(|s| kurbo::ParamCurveNearest::nearest(&s, p, 1e-9).distance_sq);
+                    assert!(off.fold(f64::INFINITY, f64::min) < 1e-12, "{moved}");
+                }
+            }
         }
     }
 

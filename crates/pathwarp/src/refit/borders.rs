@@ -152,15 +152,6 @@ impl Nodes {
 ///
 /// # Errors
 /// A coordinate is not finite.
-///
-/// ```
-/// use pathwarp::{Outline, refit::{Options, simplified}};
-///
-/// let stairs = Outline::from_svg("M0,0H1V1H2V2H3V3H4V4H5V5H6V6H7V7H8V8")?;
-/// let line = simplified(&stairs, None, &Options::new(1.0), &[])?;
-/// assert_eq!(line.path.to_svg(), "M0,0 L8,8");
-/// # Ok::<(), pathwarp::Error>(())
-/// ```
 pub fn simplified(
     outline: &Outline,
     corner: Option<f64>,
@@ -172,7 +163,7 @@ pub fn simplified(
     let mut fitted = |segs: Vec<Seg>, closed: bool, tolerance: f64| -> Result<BezPath, GeometryError> {
         let arcs = if segs.iter().any(|g| matches!(g, Seg::Arc(_))) { ARCS * tolerance } else { 0.0 };
         let source = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs, closed }] }.to_bez_path(arcs);
-        let options = bezierfit::Options::new(tolerance - arcs).with_prove(options.certify).with_nodes(nodes);
+        let options = bezierfit::Options::new(tolerance - arcs).with_certify(options.certify).with_nodes(nodes);
         let fitted = bezierfit::simplify(&source, &corner.map_or(options, |c| options.with_corner(c)))?;
         report.add(PathReport::fitted(&fitted.report, tolerance));
         Ok(fitted.path)

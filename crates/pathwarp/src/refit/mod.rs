@@ -9,24 +9,25 @@
 //!
 //! `docs/refitting.md` derives the method.
 
-mod borders;
+pub(crate) mod borders;
+mod curve;
 mod limits;
 mod merge;
 mod options;
 mod overview;
 mod path;
 mod repeats;
-mod report;
+pub(crate) mod report;
 mod segment;
-mod shared;
+pub(crate) mod shared;
 mod source;
 
 pub use bezierfit::{Assurance, Nodes};
-pub use borders::{Borders, simplified};
+pub use borders::simplified;
+pub use curve::warp_curve;
 pub(crate) use limits::ARCS;
 pub use options::{Options, suited};
-pub use report::{PathReport, RESOLUTION, RefittedPath, SpanReport};
-pub use shared::{SharedEdges, Span};
+pub use report::{PathReport, RefittedPath};
 
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Gathered, Jet, Map};
@@ -34,6 +35,7 @@ use crate::outline::{Outline, Seg};
 use kurbo::Point;
 use merge::MergeMemory;
 use repeats::Shapes;
+use shared::SharedEdges;
 use std::sync::Arc;
 
 /// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
@@ -43,7 +45,7 @@ use std::sync::Arc;
 /// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
 /// remain lines.
 ///
-/// Sets [`PathReport::unresolved`] if coordinates are so large that their rounding exceeds the tolerance.
+/// Sets [`PathReport::resolution`] if coordinates are so large that their rounding exceeds the tolerance.
 ///
 /// # Errors
 /// [`GeometryError::Tolerance`] if a tolerance is not a positive, finite number, [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
@@ -84,20 +86,7 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 /// for those again, and none waits for another.
 ///
 /// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
-///
-/// ```
-/// use pathwarp::{Outline, map::Formula, map::Real, refit::{KnownShapes, Nodes, Options}};
-///
-/// struct Square;
-/// impl Formula for Square {
-///     fn f<S: Real>(&self, x: S, y: S) -> (S, S) { (x, y + x * x * 0.01) }
-/// }
-/// let ring = |x: f64| Outline::from_svg(&format!("M{x} 0A5 5 0 0 1 {} 0A5 5 0 0 1 {x} 0Z", x + 10.0)).unwrap();
-/// let drawing: Vec<Outline> = (0..400).map(|i| ring(f64::from(i) / 10.0)).collect();
-/// let options = Options::new(0.1).with_nodes(Nodes::Fewest);
-/// let known = KnownShapes::among(&drawing, &Square, &options);
-/// assert!(known.warp_path(&drawing[7], &Square, &options).unwrap().report.max_error <= 0.1);
-/// ```
+#[doc(hidden)]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KnownShapes(Arc<Shapes>);
 

@@ -38,13 +38,13 @@ pub struct Options {
 }
 
 impl Options {
-    /// Checked by dense sampling against `tolerance`; nodes where the source has them.
+    /// Checked by dense sampling against `tolerance`, with the fewest nodes, as the fitter's own options.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
             certify: false,
-            nodes: Nodes::Source,
+            nodes: Nodes::default(),
             shared: Arc::default(),
             borders: Arc::default(),
             suited: false,

@@ -162,8 +162,8 @@ pub(super) fn subpath(
             let mut report = PathReport::default();
             report.add_pieces(found);
             report.share = report.max_error / tolerance;
-            if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.over_budget.is_empty() {
-                report.over_budget.extend(segs.first().map(Seg::start));
+            if !spans.is_empty() && report.max_error > tolerance * (1.0 + SUMMED) && report.unresolved.is_empty() {
+                report.unresolved.extend(segs.first().map(Seg::start));
             }
             all.push((span, pieces, report));
         }

@@ -27,10 +27,10 @@ pub struct PathReport {
     /// Basis of `max_error`: the weakest of all segments.
     pub assurance: Assurance,
     /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
-    pub over_budget: Vec<Point>,
+    pub unresolved: Vec<Point>,
     /// Resolution of the coordinates, [`RESOLUTION`] times the largest in source or image, if the tolerance is below it. The
-    /// image is then known no better; `max_error` is at least this, and `over_budget` holds a place.
-    pub unresolved: Option<f64>,
+    /// image is then known no better; `max_error` is at least this, and `unresolved` holds a place.
+    pub resolution: Option<f64>,
 }
 
 impl Default for PathReport {
@@ -41,8 +41,8 @@ impl Default for PathReport {
             max_error: 0.0,
             share: 0.0,
             assurance: Assurance::Exact,
-            over_budget: Vec::new(),
-            unresolved: None,
+            unresolved: Vec::new(),
+            resolution: None,
         }
     }
 }
@@ -52,7 +52,7 @@ impl PathReport {
     pub(crate) fn fitted(report: &Report, tolerance: f64) -> Self {
         let mut out = Self::default();
         (out.max_error, out.share, out.assurance) = (report.max_error, report.max_error / tolerance, report.assurance);
-        out.over_budget.clone_from(&report.unresolved);
+        out.unresolved.clone_from(&report.unresolved);
         out
     }
 
@@ -61,13 +61,13 @@ impl PathReport {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
         if resolution > tolerance {
-            self.unresolved = Some(resolution);
+            self.resolution = Some(resolution);
             self.add_error(resolution, Assurance::Checked);
             missed = true;
         }
         self.share = self.share.max(self.max_error / tolerance);
-        if missed && self.over_budget.is_empty() {
-            self.over_budget.extend(outline.subpaths.first().map(|s| s.start));
+        if missed && self.unresolved.is_empty() {
+            self.unresolved.extend(outline.subpaths.first().map(|s| s.start));
         }
     }
 
@@ -75,14 +75,14 @@ impl PathReport {
     pub fn add(&mut self, part: Self) {
         self.add_error(part.max_error, part.assurance);
         self.share = self.share.max(part.share);
-        self.over_budget.extend(part.over_budget);
-        self.unresolved = larger(self.unresolved, part.unresolved);
+        self.unresolved.extend(part.unresolved);
+        self.resolution = larger(self.resolution, part.resolution);
     }
 
     /// Adds what is known of some pieces.
     pub(super) fn add_pieces(&mut self, part: Report) {
         self.add_error(part.max_error, part.assurance);
-        self.over_budget.extend(part.unresolved);
+        self.unresolved.extend(part.unresolved);
     }
 
     /// Accounts for a piece with this error.

@@ -11,7 +11,7 @@ use kurbo::{Point, Vec2};
 use std::cmp::Ordering;
 
 /// The image of a segment under a map of at most this degree, that of a bicubic net, is told by a few samples.
-const LOW_DEGREE: usize = 6;
+pub(super) const LOW_DEGREE: usize = 6;
 
 /// A source segment in its canonical direction, with the smooth map that holds on it.
 #[derive(Clone, Copy)]

@@ -3,6 +3,7 @@
 use super::args::Own;
 use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
 use super::report::Run;
+use crate::commands::exact::dxf;
 use crate::pipeline::Job;
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::param::Axis;
@@ -254,6 +255,7 @@ pub(super) fn bend_surfaces(
     };
     let bytes = match format {
         ModelFormat::Bpt => bpt::write(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
+        ModelFormat::Dxf => dxf(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
         ModelFormat::Surfaces => {
             json::write(&surfaces).map_err(|e| Failure::Output(format!("{name}: {e}")))?.into_bytes()
         }

@@ -56,6 +56,10 @@ impl Model {
         let content = match format {
             ModelFormat::Bpt => Content::Surfaces(bpt::read(&bytes).map_err(about)?),
             ModelFormat::Surfaces => Content::Surfaces(json::read(&bytes).map_err(about)?),
+            ModelFormat::Dxf => {
+                let advice = "write its curves as JSON (`pathwarp help solid` names the formats)";
+                return Err(Failure::Input(format!("{name}: DXF files are written, not read; {advice}")));
+            }
             ModelFormat::Obj => Content::Mesh(obj::read(&bytes).map_err(about)?),
             ModelFormat::Stl => Content::Mesh(stl::read(&bytes).map_err(about)?),
             ModelFormat::Ply => Content::Mesh(ply::read(&bytes).map_err(about)?),
@@ -90,8 +94,8 @@ pub(super) fn mesh_file(mesh: &Mesh, format: ModelFormat, precision: Option<u8>)
         ModelFormat::Ply => ply::write(mesh).map_err(failed),
         ModelFormat::Glb => gltf::write_binary(mesh).map_err(failed),
         ModelFormat::Gltf => gltf::write_text(mesh).map_err(failed),
-        ModelFormat::Bpt | ModelFormat::Surfaces => Err(Failure::usage(
-            "polygons are not curved surfaces: write .obj, .stl, .ply, .glb or .gltf, not .bpt or .json",
+        ModelFormat::Bpt | ModelFormat::Surfaces | ModelFormat::Dxf => Err(Failure::usage(
+            "polygons are not curved surfaces: write .obj, .stl, .ply, .glb or .gltf, not .bpt, .json or .dxf",
         )),
     }
 }
@@ -131,13 +135,15 @@ pub(super) enum ModelFormat {
     Bpt,
     /// Surfaces as JSON.
     Surfaces,
+    /// Curves in space as splines; written only.
+    Dxf,
 }
 
 /// Names, among the properties that a format has no room for.
 pub(super) const NAMES: &str = "names";
 
 /// Extensions and their formats.
-const EXTENSIONS: [(&str, ModelFormat); 7] = [
+const EXTENSIONS: [(&str, ModelFormat); 8] = [
     ("obj", ModelFormat::Obj),
     ("stl", ModelFormat::Stl),
     ("ply", ModelFormat::Ply),
@@ -145,6 +151,7 @@ const EXTENSIONS: [(&str, ModelFormat); 7] = [
     ("gltf", ModelFormat::Gltf),
     ("bpt", ModelFormat::Bpt),
     ("json", ModelFormat::Surfaces),
+    ("dxf", ModelFormat::Dxf),
 ];
 
 impl ModelFormat {
@@ -191,9 +198,9 @@ impl ModelFormat {
         }
     }
 
-    /// Returns `true` for curved surfaces.
+    /// Returns `true` for curved surfaces and curves.
     pub(super) fn is_curved(self) -> bool {
-        matches!(self, Self::Bpt | Self::Surfaces)
+        matches!(self, Self::Bpt | Self::Surfaces | Self::Dxf)
     }
 
     /// The properties of a mesh for which the format has no room.

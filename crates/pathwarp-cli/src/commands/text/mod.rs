@@ -18,14 +18,15 @@ use pathwarp_engine::format::{Choice, DRAWINGS, Format};
 use pathwarp_engine::lettering::{REGULAR, bundled, find_font, laid_out_with_installed, read_font};
 use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
-use pathwarp_engine::readable::listed;
-use pathwarp_engine::{Warper, input, output};
-use pathwarp_svg::{FontFile, LetteringOptions, ReadOptions, write_lettering, write_set_groups};
+use pathwarp_engine::weights::{Wanted, with_variations};
+use pathwarp_engine::{Warper, advice, input, output};
+use pathwarp_svg::ReadOptions;
+use pathwarp_svg::engine::{FontFile, LetteringOptions, write_lettering, write_set_groups};
 use pathwarp_text::{Align, Font, TextStyle};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use style::{Em, Wanted};
+use style::Em;
 
 pub(super) fn text_command(registry: &Registry) -> Command {
     Command::new("text")
@@ -114,7 +115,7 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
         let asked = m.get_one::<String>("weight").map_or("", String::as_str);
         said.push(format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
     }
-    let fonts = style::with_variations(chosen, &style::axis_positions(m)?, &wanted)?;
+    let fonts = with_variations(chosen, &style::axis_positions(m)?, &wanted)?;
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
     said.extend(mistakes::unit_as_text(words, &lines));
     if !m.get_flag("quiet") {
@@ -158,7 +159,7 @@ impl Setting<'_> {
     ) -> Result<Status, Failure> {
         let Drawn { svg, mut warnings, missing } = draw(self, texts, &self.page(fill, target)?)?;
         let lacking: Vec<char> = missing.into_iter().collect();
-        warnings.extend((!lacking.is_empty()).then(|| self::missing(&lacking)));
+        warnings.extend((!lacking.is_empty()).then(|| advice::missing_letters(&lacking)));
         let exported = export::drawing(svg, (self.format, &Destination::Back), &self.read, &self.options, None)?;
         let Exported { bytes, warnings: lost, kerf } = exported;
         if !self.m.get_flag("quiet") {
@@ -226,14 +227,6 @@ fn welded(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Fa
     }
     let drawing = unite.warp_drawing(svg.as_bytes(), None).map_err(|e| Failure::Geometry(e.to_string()))?;
     Ok(String::from_utf8(drawing.bytes).unwrap_or(svg))
-}
-
-/// The warning about characters that no font has.
-fn missing(chars: &[char]) -> String {
-    /// Number of characters that fit a line or two.
-    const SHOWN: usize = 12;
-    let shown: Vec<String> = chars.iter().map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
-    format!("no font has {}; install one that has them, or name it with --font", listed(&shown, SHOWN))
 }
 
 const SPACING: &str = "Spacing and lines";

@@ -21,7 +21,7 @@ use pathwarp_engine::input::{self, PlainArtwork};
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::session::Session;
-use pathwarp_svg::{SetGroup, SetPath};
+use pathwarp_svg::engine::{SetGroup, SetPath};
 use pathwarp_text::{Cluster, OutlinedText};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -55,8 +55,12 @@ pub(super) fn drawn(
     options: &CommonOptions,
 ) -> Result<SetPath, Failure> {
     let tolerance = options.tolerance_for(path.bounding_box(), &Frame::new(path.bounding_box().unwrap_or_default()))?;
-    let path =
-        pathwarp_svg::warp_path(path, &AffineMap(Affine::IDENTITY), &refit::Options::new(tolerance), options.precision);
+    let path = pathwarp_svg::warp_path(
+        path,
+        &AffineMap(Affine::IDENTITY),
+        &refit::Options::new(tolerance).with_nodes(refit::Nodes::Source),
+        options.precision,
+    );
     Ok(SetPath { label: label.to_owned(), path: path.map_err(Error::from)?, line })
 }
 

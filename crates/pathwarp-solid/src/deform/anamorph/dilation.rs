@@ -18,7 +18,8 @@ pub(super) const MAX_DEGREE: usize = 10;
 /// δ as a function on space.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Dilation3 {
-    /// Over a tetrahedron: the barycentric coordinates as linear forms in (x, y, z, 1).
+    /// Over a tetrahedron: the barycentric coordinates as linear forms in (x, y, z, 1); over a pentahedron those in its triangle, and the
+    /// fourth along its edges.
     Tetrahedron { forms: [DVec4; 4], terms: Simplex },
     /// Over a box.
     Cuboid { local: Local, tensor: Tensor<1> },
@@ -67,9 +68,23 @@ impl Simplex {
         Self { degree, terms: values.map(|(node, delta)| (node, delta * coefficient(&node))).collect() }
     }
 
+    /// The tensor product of Bernstein polynomials over a triangle of degree `n` and over 0..1 of degree `m`, whose variable is the
+    /// fourth: (1 − w)^(m−l)·w^l is expanded in powers of w.
+    fn prism([n, m]: [usize; 2], values: impl Iterator<Item = ([usize; 4], f64)>) -> Self {
+        let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
+        let mut out = Self { degree: n + m, terms: Vec::new() };
+        for ([i, j, k, l], delta) in values {
+            let c = delta * choose(n, i) * choose(n - i, j) * choose(m, l);
+            let power =
+                |e: usize| ([i, j, k, l + e], c * choose(m - l, e) * if e.is_multiple_of(2) { 1.0 } else { -1.0 });
+            out.terms.extend((0..=m - l).map(power));
+        }
+        out
+    }
+
     /// Substitutes polynomials for the barycentric coordinates.
     fn in_terms_of(&self, u: &[Poly3; 4]) -> Poly3 {
-        let powers = u.each_ref().map(|u| u.powers(self.degree));
+        let powers = u.each_ref().map(|u| u.powers(self.degree.min(MAX_DEGREE)));
         let term = |node: &[usize; 4]| {
             (0..4).map(|a| &powers[a][node[a]]).fold(Poly3::constant(1.0), |product, p| product.times(p))
         };
@@ -82,7 +97,7 @@ impl Simplex {
     fn jet(&self, u: [f64; 4]) -> (f64, [f64; 4]) {
         let mut powers = [[1.0; MAX_DEGREE + 1]; 4];
         for (row, u) in powers.iter_mut().zip(u) {
-            for k in 1..=self.degree {
+            for k in 1..=self.degree.min(MAX_DEGREE) {
                 row[k] = row[k - 1] * u;
             }
         }
@@ -115,13 +130,20 @@ impl Dilation3 {
             Reference3::Tetrahedron(corners, n) => {
                 Self::Tetrahedron { forms: barycentric(corners.map(|b| b.extend(1.0))), terms: simplex(*n) }
             }
+            Reference3::Prism([a, b, c, d], degree) => {
+                // p = Σ uᵢ·bᵢ + w·(D − A).
+                let forms = barycentric([a.extend(1.0), b.extend(1.0), c.extend(1.0), (*d - *a).extend(0.0)]);
+                let values = reference.nodes().into_iter().zip(values.iter().copied());
+                Self::Tetrahedron { forms, terms: Simplex::prism(*degree, values) }
+            }
             Reference3::Triangle([a, b, c], n) => {
                 // (p, 1) = Σ u'ᵢ·(bᵢ, 1) + t·O.
                 let [f, g, h, _] = barycentric([a.extend(1.0), b.extend(1.0), c.extend(1.0), eye.homogeneous()]);
                 Self::Sheet { forms: [f, g, h, f + g + h], net: Net::Triangle(simplex(*n)) }
             }
-            // The map of B-splines is that of a rational lattice; here only their box counts.
-            Reference3::Cuboid(b, _) | Reference3::Spline(b, ..) => {
+            // The map of B-splines and of a hull is that of a rational lattice; here only their box counts.
+            Reference3::Cuboid(..) | Reference3::Spline(..) | Reference3::Hull(_) => {
+                let b = reference.bounds();
                 let local = Local { middle: b.center(), scale: 2.0 / b.size() };
                 let tensor = match reference {
                     Reference3::Cuboid(_, degree) => tensor(degree.map(|d| d + 1)),
@@ -232,6 +254,9 @@ impl Dilation3 {
     /// Linear forms in (x, y, z, 1) that are nonnegative inside the reference, or inside the pyramid of a sheet's rays.
     pub(super) fn sides(&self, reference: &Reference3) -> Vec<DVec4> {
         match self {
+            Self::Tetrahedron { forms, .. } if matches!(reference, Reference3::Prism(..)) => {
+                forms.iter().copied().chain([DVec4::W - forms[3]]).collect()
+            }
             Self::Tetrahedron { forms, .. } => forms.to_vec(),
             Self::Sheet { forms, net: Net::Triangle(_) } => forms[..3].to_vec(),
             Self::Sheet { forms, .. } => (0..3).flat_map(|a| [forms[3] + forms[a], forms[3] - forms[a]]).collect(),

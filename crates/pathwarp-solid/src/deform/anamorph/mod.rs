@@ -15,6 +15,8 @@ mod reference;
 mod sight;
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
+use super::ffd::{HULL, hull};
+use crate::hull::HullMap;
 use crate::lattice::{Lattice3, LatticeMap3};
 use crate::map::{Chart, Collineation, Creases3, Fraction3, Jet3, Map3, Poly3, Radial, for_all};
 use crate::settings::{Box3, Extent, Settings3, show};
@@ -54,12 +56,7 @@ impl Push3 {
     fn text(self, reference: &Reference3) -> String {
         match self {
             Self::By(n, _) | Self::Away(n, _) | Self::To(n, _) => {
-                let count = match reference {
-                    Reference3::Tetrahedron(..) => 4,
-                    Reference3::Tetrahedra(..) => 1,
-                    _ => 3,
-                };
-                n[..count].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
+                n[..reference.indices()].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
             Self::Prescribe(p, by) => format!("{}:{by}", show(p)),
         }
@@ -135,18 +132,21 @@ impl Anamorph3 {
         let linear = dilation.linear().filter(|_| !self.local);
         let map: Arc<dyn Map3> = match (linear, &self.reference) {
             (Some(form), _) => Arc::new(Collineation::about(perspective(self.eye, form), base)),
-            (None, Reference3::Spline(region, degree, cells)) => {
+            (None, Reference3::Spline(..) | Reference3::Hull(_)) => {
                 // A rational lattice whose control points have moved, with δ as weights.
-                let region = Box3 { min: region.min + base, max: region.max + base };
-                let mut lattice = Lattice3::regular(region, *degree, *cells);
+                let rest = self.lattice(base);
+                let mut lattice = rest.clone();
                 for ([i, j, k, _], delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
-                    let (node, from) = ([*i, *j, *k], lattice.regular_point([*i, *j, *k]));
-                    lattice.place(node, self.eye.moved(from - base, *delta) + base);
+                    let node = [*i, *j, *k];
+                    lattice.place(node, self.eye.moved(rest.point(node) - base, *delta) + base);
                     if let Eye3::At(_) = self.eye {
-                        lattice.set_weight(node, *delta);
+                        lattice.set_weight(node, *delta * rest.weight(node));
                     }
                 }
-                Arc::new(LatticeMap3::new(&lattice, !self.local))
+                match self.reference {
+                    Reference3::Hull(_) => Arc::new(HullMap::new(&rest, &lattice)?),
+                    _ => Arc::new(LatticeMap3::new(&lattice, !self.local)),
+                }
             }
             (None, reference) => {
                 let range = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
@@ -184,12 +184,30 @@ impl Anamorph3 {
         Ok(built)
     }
 
+    /// Returns the lattice at rest of a reference that has one, moved by `base`.
+    fn lattice(&self, base: DVec3) -> Lattice3 {
+        match self.reference.clone().relative_to(-base) {
+            Reference3::Hull(lattice) => lattice,
+            Reference3::Spline(region, degree, cells) => Lattice3::regular(region, degree, cells),
+            other => Lattice3::regular(other.bounds(), [1; 3], [1; 3]),
+        }
+    }
+
     /// Returns the influence of every control point at `p`: δ with 1 at it and 0 elsewhere.
     fn influence(&self, p: DVec3, nodes: &[[usize; 4]]) -> Vec<f64> {
         let mut out = vec![0.0; nodes.len()];
-        if let Reference3::Spline(region, degree, cells) = self.reference.clone() {
-            let lattice = Lattice3::regular(region, degree, cells);
-            lattice.influence(p).into_iter().for_each(|(node, v)| out[lattice.index(node)] = v);
+        if let Reference3::Spline(..) | Reference3::Hull(_) = self.reference {
+            let lattice = self.lattice(DVec3::ZERO);
+            let local = match self.reference {
+                Reference3::Hull(_) => {
+                    HullMap::new(&lattice, &lattice).ok().and_then(|hull| hull.local(p)).map(|u| u.p)
+                }
+                _ => Some(p),
+            };
+            local
+                .map_or_else(Vec::new, |u| lattice.influence(u))
+                .into_iter()
+                .for_each(|(node, v)| out[lattice.index(node)] = v);
             return out;
         }
         let unit = |i: usize| (0..nodes.len()).map(|k| if k == i { 1.0 } else { 0.0 }).collect::<Vec<_>>();
@@ -510,6 +528,9 @@ impl Map3 for RadialInverse {
     }
 }
 
+/// A pentahedron in the frame of laws and cases, as deep as that.
+const PRISM: &str = "0,0,0 100,0,0 0,100,0 0,0,100 100,0,100 0,100,100";
+
 /// A tetrahedron in the frame of laws and cases, with its eye.
 const TETRAHEDRON: &str = "0,0,0 100,0,0 0,100,0 0,0,100";
 
@@ -520,6 +541,7 @@ static ABOUT: About3 = About3 {
 everywhere else the model is distorted: Ames rooms, sculptures that come together at one spot, reliefs.\n\n\
 Control points of a reference (--reference) are pushed along their rays, and the model follows:\n  \
 four points: a tetrahedron, whose control points I,J,K,L add up to the degree. At degree 1 planes stay plane.\n  \
+six points: a pentahedron, three corners and those opposite. I,J,K add up to the degree, and L counts along the edges.\n  \
 two points: a box with control points I,J,K from the left, bottom and back; if it is flat, a sheet.\n  \
 three points: a triangle as a sheet, control points I,J,K. All points of a ray through a sheet are moved by one factor.\n\n\
 With --local nothing outside the reference moves: leave the control points of the face where the model leaves the reference in \
@@ -530,15 +552,16 @@ Anamorphic 3D geometry, Computing 79, 2007")
             Param::new("eye", Kind::Text("X,Y,Z|inf:DX,DY,DZ"), "The place from which the model looks unchanged; inf: and a direction, or two \
 angles to the right and up from the front such as inf:30deg,20deg, for an eye at infinity, where the picture is a parallel projection.")
             .needed(),
-            Param::new("reference", Kind::Text("X,Y,Z …"), "Corners of the reference: four points, three, or two opposite corners of a \
+            Param::new("reference", Kind::Text("X,Y,Z …"), "Corners of the reference: four points, six, three, or two opposite corners of a \
 box. Default: the model's box."),
-            Param::new("degree", Kind::Text("N|LxMxN"), "Degree of the reference, 1 to 10; a box may have one along each axis.").default("1"),
+            Param::new("degree", Kind::Text("N|LxMxN"), "Degree of the reference, 1 to 10; a box may have one along each axis, a pentahedron NxNxM.").default("1"),
             Param::flag("spline", "B-splines over the box: each control point has influence on a few cells only."),
             Param::new("cells", Kind::Text("LxMxN"), "Cells of the B-splines along x, y and z, 1 to 16 each: there are degree + cells \
 control points. Default with --spline: 4x4x4."),
             Param::new("tetrahedra", Kind::Text("I,J,K,L …"), "Several tetrahedra at once, by the numbers of their corners among the points \
 of the --reference, from 0; pushes name a point by its number, such as 4:150%. Nothing moves outside, and shared faces do not tear.")
             .repeated(),
+            HULL,
             Param::new("collineation", Kind::Text("DX,DY,DZ,D"), "A collineation by its numbers: δ(p) = (DX,DY,DZ)·(p − eye) + D, as \
 --explain prints them. For an eye at infinity p is not relative to it, and 1 − δ is the length of the move."),
             Param::new("axis", Kind::Text("X,Y,Z X,Y,Z X,Y,Z"), "A collineation by three points of its axis, the plane that stays; one \
@@ -619,6 +642,14 @@ printed result, as a negative volume of the slicer, it leaves a hole through whi
             &[("eye", "inf:0,0,2"), ("reference", TETRAHEDRON), ("away", "0,0,0,1:30")],
             &[("eye", "inf:0deg,0deg"), ("collineation", "0,0,-0.3,1")],
         ),
+        Law3::Identity(&[("eye", "50,50,300"), ("reference", PRISM), ("degree", "3x3x2"), ("push", "1,1,1,1:1")]),
+        Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", PRISM), ("degree", "2x2x3"), ("push", "1,1,0,2:1.3 0,0,2,0:0.8")], [50.0, 60.0, 300.0]),
+        Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", PRISM), ("push", "1,0,0,1:1.4"), ("local", "true")], [50.0, 60.0, 300.0]),
+        // Along its edges alone a pentahedron is a box: δ depends on z.
+        Law3::Same(
+            &[("eye", "50,60,300"), ("reference", PRISM), ("degree", "1x1x2"), ("push", "1,0,0,1:1.25 0,1,0,1:1.25 0,0,1,1:1.25")],
+            &[("eye", "50,60,300"), ("degree", "1x1x2"), ("push", "0,0,1:1.25 1,0,1:1.25 0,1,1:1.25 1,1,1:1.25")],
+        ),
         Law3::FixedOutside(LOCAL, [[20.0, 20.0, 20.0], [80.0, 80.0, 80.0]]),
     ],
     cases: &[
@@ -698,7 +729,9 @@ fn built(s: &Settings3<'_>) -> Result<Built3, Error> {
     if points.is_empty() {
         points = vec![s.bounds().min, s.bounds().max];
     }
+    let hull = hull(s, &["reference", "degree", "cells", "spline", "tetrahedra", "axis", "local"])?;
     let reference = match (cells, &points[..]) {
+        _ if let Some(hull) = hull => Reference3::Hull(hull),
         (None, _) if !s.words("tetrahedra").is_empty() => tetrahedra(s, points)?,
         (Some(cells), [a, b]) => Reference3::spline(Box3::new(*a, *b), degree, cells)?,
         (Some(_), _) => return Err(Error::usage("cells", "", "are for a box: give two corners of the `reference`")),
@@ -767,16 +800,10 @@ fn nodes_pushed(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>,
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
-            let (node, value) = match reference {
-                Reference3::Tetrahedron(..) => s.flat().node_in::<4>(name, word)?,
-                Reference3::Tetrahedra(..) => {
-                    let ([i], value) = s.flat().node_in::<1>(name, word)?;
-                    ([i, 0, 0, 0], value)
-                }
-                _ => {
-                    let ([i, j, k], value) = s.flat().node_in::<3>(name, word)?;
-                    ([i, j, k, 0], value)
-                }
+            let (node, value) = match reference.indices() {
+                4 => s.flat().node_in::<4>(name, word)?,
+                1 => s.flat().node_in::<1>(name, word).map(|([i], value)| ([i, 0, 0, 0], value))?,
+                _ => s.flat().node_in::<3>(name, word).map(|([i, j, k], value)| ([i, j, k, 0], value))?,
             };
             out.push(match name {
                 "push" => Push3::By(node, s.flat().number_in(name, value)?),

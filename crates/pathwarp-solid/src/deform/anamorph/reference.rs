@@ -1,10 +1,11 @@
 //! The reference of an anamorphosis.
 
 use super::dilation::Dilation3;
+use crate::lattice::Lattice3;
 use crate::settings::{Box3, show};
 use glam::{DVec3, DVec4};
 use pathwarp::Error;
-use pathwarp::map::bspline;
+use pathwarp::engine::bspline;
 use std::collections::BTreeMap;
 
 /// The eye of an anamorphosis.
@@ -61,6 +62,11 @@ impl Eye3 {
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
     Tetrahedron([DVec3; 4], usize),
+    /// A pentahedron: over the triangle A, B, C of this degree and edges parallel to A–D of that one, points
+    /// (i·A + j·B + k·C)/n + l·(D − A)/m with i + j + k = n and l from 0 to m.
+    Prism([DVec3; 4], [usize; 2]),
+    /// Control points that need not be regular, between which a rational lattice finds its own coordinates.
+    Hull(Lattice3),
     /// A sheet: points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([DVec3; 3], usize),
     /// Points i, j, k of a box, with degrees along the axes.
@@ -84,13 +90,28 @@ impl Reference3 {
     pub fn new(points: &[DVec3], degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
         let eye = eye.into();
         let wrong = |problem: &str| Error::usage("reference", "", problem);
-        let even = degree[0] == degree[1] && degree[1] == degree[2];
+        let even = degree[0] == degree[1] && (degree[1] == degree[2] || points.len() == 6);
         if points.len() > 2 && !even {
             let text = format!("{}x{}x{}", degree[0], degree[1], degree[2]);
-            return Err(Error::usage("degree", text, "must be one number for a tetrahedron or a triangle"));
+            let problem = "must be one number for a tetrahedron or a triangle, NxNxM for a pentahedron";
+            return Err(Error::usage("degree", text, problem));
         }
         let in_plane = || wrong("is a sheet seen edge-on: the eye lies in its plane; move the eye or the reference");
         match *points {
+            [a, b, c, d, e, f] => {
+                let (edge, base) = (d - a, (b - a).cross(c - a));
+                let size = edge.length().max((b - a).length()).max((c - a).length());
+                if (e - b - edge).length().max((f - c - edge).length()) > 1e3 * FLAT * size {
+                    return Err(wrong(
+                        "has six corners whose edges from the first three to the last are not parallel and equal; cut it into tetrahedra (`tetrahedra`)",
+                    ));
+                }
+                let volume = base.dot(edge).abs();
+                if volume.is_nan() || volume <= FLAT * size.powi(3) {
+                    return Err(wrong("is a flat pentahedron; move one of its corners"));
+                }
+                Ok(Self::Prism([a, b, c, d], [degree[0], degree[2]]))
+            }
             [a, b, c, d] => {
                 let size = (b - a).length().max((c - a).length()).max((d - a).length());
                 let volume = (b - a).cross(c - a).dot(d - a).abs();
@@ -135,7 +156,7 @@ impl Reference3 {
                 }
             }
             _ => Err(wrong(
-                "must have four points (a tetrahedron), three (a triangle) or two (a box, or a rectangle if flat)",
+                "must have four points (a tetrahedron), six (a pentahedron), three (a triangle) or two (a box, or a rectangle if flat)",
             )),
         }
     }
@@ -203,13 +224,13 @@ impl Reference3 {
 
     /// Returns the bounding box.
     pub(super) fn bounds(&self) -> Box3 {
-        let corners = |all: &[DVec3]| {
-            let (min, max) = all.iter().fold((all[0], all[0]), |(a, b), p| (a.min(*p), b.max(*p)));
-            Box3 { min, max }
-        };
+        let corners =
+            |all: &[DVec3]| Box3::around(all.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         match self {
             Self::Tetrahedron(c, _) => corners(c),
             Self::Triangle(c, _) => corners(c),
+            Self::Prism([a, b, c, d], _) => corners(&[*a, *b, *c, *d, *b + (*d - *a), *c + (*d - *a)]),
+            Self::Hull(lattice) => corners(&lattice.nodes().map(|n| lattice.point(n)).collect::<Vec<_>>()),
             Self::Tetrahedra(points, _) => corners(points),
             Self::Cuboid(b, _) | Self::Spline(b, ..) | Self::Rectangle(b, ..) => *b,
         }
@@ -221,6 +242,11 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, n) => Self::Tetrahedron(c.map(|p| p - base), n),
             Self::Triangle(c, n) => Self::Triangle(c.map(|p| p - base), n),
+            Self::Prism(c, n) => Self::Prism(c.map(|p| p - base), n),
+            Self::Hull(mut lattice) => {
+                lattice.nodes().for_each(|n| lattice.shift(n, -base));
+                Self::Hull(lattice)
+            }
             Self::Tetrahedra(points, all) => Self::Tetrahedra(points.iter().map(|p| *p - base).collect(), all),
             Self::Cuboid(b, d) => Self::Cuboid(less(b), d),
             Self::Spline(b, d, c) => Self::Spline(less(b), d, c),
@@ -228,7 +254,7 @@ impl Reference3 {
         }
     }
 
-    /// Lists the numbers of the control points. Only those of a tetrahedron have a fourth.
+    /// Lists the numbers of the control points. Only those of a tetrahedron and of a pentahedron have a fourth.
     #[must_use]
     pub fn nodes(&self) -> Vec<[usize; 4]> {
         match *self {
@@ -237,8 +263,12 @@ impl Reference3 {
                 rows.flat_map(|(k, l)| (0..=n - l - k).map(move |j| [n - j - k - l, j, k, l])).collect()
             }
             Self::Triangle(_, n) => (0..=n).flat_map(|k| (0..=n - k).map(move |j| [n - j - k, j, k, 0])).collect(),
+            Self::Prism(_, [n, m]) => {
+                let rows = (0..=m).flat_map(|l| (0..=n).map(move |k| (k, l)));
+                rows.flat_map(|(k, l)| (0..=n - k).map(move |j| [n - j - k, j, k, l])).collect()
+            }
             Self::Tetrahedra(ref points, _) => (0..points.len()).map(|i| [i, 0, 0, 0]).collect(),
-            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) | Self::Hull(_) => {
                 let [l, m, n] = self.last();
                 let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
                 rows.flat_map(|(j, k)| (0..=l).map(move |i| [i, j, k, 0])).collect()
@@ -248,10 +278,20 @@ impl Reference3 {
 
     /// Returns the last numbers along the axes of a box.
     fn last(&self) -> [usize; 3] {
-        match *self {
-            Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => degree,
+        match self {
+            Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => *degree,
             Self::Spline(_, degree, cells) => [0, 1, 2].map(|a| degree[a] + cells[a] - 1),
-            Self::Tetrahedron(..) | Self::Triangle(..) | Self::Tetrahedra(..) => [0; 3],
+            Self::Hull(lattice) => lattice.size().map(|n| n - 1),
+            _ => [0; 3],
+        }
+    }
+
+    /// Returns how many numbers a control point has.
+    pub(super) fn indices(&self) -> usize {
+        match self {
+            Self::Tetrahedron(..) | Self::Prism(..) => 4,
+            Self::Tetrahedra(..) => 1,
+            _ => 3,
         }
     }
 
@@ -264,6 +304,8 @@ impl Reference3 {
         match self {
             Self::Tetrahedron(c, n) => weighted(c, *n),
             Self::Triangle(c, n) => weighted(c, *n),
+            Self::Prism(c, [n, m]) => weighted(&c[..3], *n) + (c[3] - c[0]) * (node[3] as f64 / *m as f64),
+            Self::Hull(lattice) => lattice.point([node[0], node[1], node[2]]),
             Self::Tetrahedra(points, _) => points[node[0]],
             Self::Spline(b, degree, cells) => {
                 let t = DVec3::from_array([0, 1, 2].map(|a| bspline::regular(degree[a], cells[a])[node[a]]));
@@ -283,22 +325,23 @@ impl Reference3 {
             Self::Tetrahedron(_, n) => format!("I,J,K,L must add up to {n}, the degree"),
             Self::Tetrahedra(points, _) => format!("the points have the numbers 0 to {}", points.len() - 1),
             Self::Triangle(_, n) => format!("I,J,K must add up to {n}, the degree"),
-            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+            Self::Prism(_, [n, m]) => format!("I,J,K must add up to {n}, and L runs from 0 to {m}"),
+            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) | Self::Hull(_) => {
                 let [l, m, n] = self.last();
                 format!("I runs from 0 to {l}, J from 0 to {m}, K from 0 to {n}")
             }
         }
     }
 
-    /// Whether a prescribed point must not move a control point: those on the face ABC of a tetrahedron, the side AB of a triangle,
+    /// Whether a prescribed point must not move a control point: those on the face ABC of a tetrahedron or pentahedron, the side AB of a triangle,
     /// and, if `local`, the boundary of a box or rectangle.
     #[must_use]
     pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
         match self {
             Self::Tetrahedra(..) => false,
-            Self::Tetrahedron(..) => node[3] == 0,
+            Self::Tetrahedron(..) | Self::Prism(..) => node[3] == 0,
             Self::Triangle(..) => node[2] == 0,
-            Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
+            Self::Hull(..) | Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
                 let last = self.last();
                 local && (0..3).any(|a| last[a] > 0 && (node[a] == 0 || node[a] == last[a]))
             }

@@ -14,7 +14,7 @@ use crate::source::edit::Edits;
 use crate::source::elements::{Element, ElementId, Unpatchable, is_live, is_shape};
 use crate::source::number::rectangle;
 use crate::source::text::SourceText;
-use pathwarp::decimal::matrix;
+use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::guarded;
 

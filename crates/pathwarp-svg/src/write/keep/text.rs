@@ -6,7 +6,7 @@ use crate::scene::lettering::{inside, is_named, is_naming};
 use crate::scene::model::Group;
 use crate::source::elements::{ElementId, Namespace, is_live};
 use crate::source::text::SourceText;
-use pathwarp::decimal::matrix;
+use pathwarp::engine::decimal::matrix;
 use pathwarp::map::Class;
 use std::ops::Range;
 

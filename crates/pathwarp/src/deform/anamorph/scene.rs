@@ -117,7 +117,9 @@ impl Scene {
         let r = self.frame;
         let tolerance = 1e-3 * (r.width() + r.height());
         let outline = Outline::from_points(&Frame::new(r).corners(), true);
-        refit::warp_path(&outline, map, &refit::Options::new(tolerance)).ok().map(|w| w.path)
+        refit::warp_path(&outline, map, &refit::Options::new(tolerance).with_nodes(refit::Nodes::Source))
+            .ok()
+            .map(|w| w.path)
     }
 
     /// Returns the box of the result.

@@ -105,17 +105,22 @@ impl BendMap {
         }
         let (there, p) = worst?;
         let on = det(p.x, self.to_strip.base);
-        // The linear determinant vanishes at the centre of curvature.
-        let centre = self.to_strip.d(p.y).abs() * on / (on - there);
         let names: Vec<&str> = over.iter().map(|l| l.name.as_str()).collect();
         let (who, reaches) = match names.len() {
             0 => ("the artwork folds over itself".to_owned(), "it reaches"),
             1 => (format!("the letter {} folds over itself", listed(&names)), "it reaches"),
             _ => (format!("the letters {} fold over themselves", listed(&names)), "they reach"),
         };
+        let why = if on > 0.0 {
+            // The linear determinant vanishes at the centre of curvature.
+            let centre = self.to_strip.d(p.y).abs() * on / (on - there);
+            format!("{reaches} more than {centre:.6} away from it, beyond the centre of curvature")
+        } else {
+            "what lies on the skeleton is turned over already".to_owned()
+        };
         Some(format!(
-            "bend: {who}, worst near {} of the skeleton, where {reaches} more than {centre:.6} away from it, beyond the centre of \
-curvature; a smaller `width`, another `baseline` or a gentler bend avoids that",
+            "bend: {who}, worst near {} of the skeleton, where {why}; a smaller `width`, another `baseline` or a gentler \
+bend avoids that",
             show(self.point(Point::new(p.x, self.to_strip.base)))
         ))
     }

@@ -91,6 +91,10 @@ fn folds_are_reported_with_the_radius() {
     assert!(w.iter().any(|w| w.contains("folds") && w.contains("more than 30.0000")), "{w:?}");
     let w = build(&[("along", ring), ("baseline", "0")]).unwrap().explanation.warnings;
     assert!(w.is_empty(), "{w:?}");
+    // At a sharp corner even what lies on the skeleton is turned over: no distance says how far is too far.
+    let corner = "M35,63 C64,65 45,84 58,59 C44,72 92,71 92,58";
+    let w = build(&[("along", corner), ("baseline", "74%")]).unwrap().explanation.warnings;
+    assert!(w.iter().any(|w| w.contains("folds")) && !w.iter().any(|w| w.contains("more than -")), "{w:?}");
     let w = build(&[("along", "M0,0 L50,0")]).unwrap().explanation.warnings;
     assert!(w.iter().any(|w| w.contains("continues straight")), "{w:?}");
 }

@@ -27,7 +27,7 @@ parameters! {
     /// use pathwarp::{Outline, deform::Shaper, kurbo::{Point, Rect}, map::Map};
     ///
     /// let cage = Outline::from_svg("M10,90 Q40,110 95,85 L90,15 5,10 Z")?;
-    /// let built = Shaper::new(&cage).frame(Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
+    /// let built = Shaper::new(Rect::new(0.0, 0.0, 100.0, 100.0), &cage).build()?;
     /// assert!(built.map.point(Point::new(50.0, 50.0)).distance(Point::new(46.875, 55.625)) < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -53,7 +53,7 @@ parameters! {
         /// Take the target's anchors in the order they were drawn.
         target_as_drawn: bool = flag("target-as-drawn");
         let bottom: Bottom = bottom(s)?;
-        let frame: Option<Rect> = Some(s.frame().rect);
+        let frame: Rect = s.frame().rect;
     }
 }
 
@@ -66,29 +66,23 @@ enum Cage {
 }
 
 impl Shaper {
-    /// Creates a shaper from a closed path of four lines, curves or arcs. Of the eight ways to lay the base's corners on its
+    /// Lays the box `frame`, or what [`base`](Self::base) names, into a closed path of four lines, curves or arcs. Of the eight ways to lay the base's corners on its
     /// own, the one that is nearest to a similitude is chosen; among near ties the paper's: the bottom is the side that lies
     /// lowest on the screen, run left to right.
     #[must_use]
-    pub fn new(cage: &Outline) -> Self {
-        Self::with(Cage::Path(NamedPath { name: "shaper".into(), outline: cage.clone() }))
+    pub fn new(frame: Rect, cage: &Outline) -> Self {
+        Self::defaults(frame, Cage::Path(NamedPath { name: "shaper".into(), outline: cage.clone() }))
     }
 
-    /// Creates a shaper from all 16 control points, row by row, the bottom row first, each left to right.
+    /// Lays the box `frame`, or what [`base`](Self::base) names, onto all 16 control points, row by row, the bottom row first, each left to right.
     #[must_use]
-    pub fn from_net(net: [[Point; 4]; 4]) -> Self {
-        Self::with(Cage::Net(Box::new(net), "net".into()))
-    }
-
-    fn with(cage: Cage) -> Self {
-        Self { frame: None, ..Self::defaults(Rect::ZERO, cage) }
+    pub fn from_net(frame: Rect, net: [[Point; 4]; 4]) -> Self {
+        Self::defaults(frame, Cage::Net(Box::new(net), "net".into()))
     }
 
     setters! {
         /// Sets the bottom side of the closed path: 1 to 4, in the order they were drawn.
         bottom(side: usize) => bottom: Bottom::Side(side);
-        /// Sets the box that is laid onto the shaper, corner on corner, if there is no [`base`](Self::base).
-        frame(frame: Rect) => frame: Some(frame);
     }
 
     /// Takes the side that lies lowest on the screen for the bottom, however much that distorts.
@@ -101,7 +95,7 @@ impl Shaper {
     ///
     /// # Errors
     /// [`Error::Geometry`] if the path does not close or has other than four sides, if anchors coincide, or if three of four lie
-    /// on a line and a projective map needs them: those of base and target, and the shaper's if the target has four; [`Error::Missing`] without base and frame; [`Error::Usage`] for a bottom side out of range.
+    /// on a line and a projective map needs them: those of base and target, and the shaper's if the target has four; [`Error::Usage`] for a bottom side out of range.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let mut explanation = Explanation::default();
@@ -143,7 +137,7 @@ impl Shaper {
             }
         };
         let map = compose(&anchors::to_standard("base", &base)?, net, after);
-        let map = anchors::settled(map, self.extent(&base));
+        let map = anchors::settled(map, self.frame);
 
         let mut built = Built::new(map);
         built.explanation.notes = explanation.notes;
@@ -193,17 +187,10 @@ impl Shaper {
     }
 
     fn base_anchors(&self) -> Result<Anchors, Error> {
-        match (&self.base, self.frame) {
-            (Some(path), _) => anchors::of_path(path, self.base_as_drawn),
-            (None, Some(frame)) => anchors::frame_corners(&Frame::new(frame)),
-            (None, None) => Err(Error::missing("base", "two or four anchors, or the artwork's box")),
+        match &self.base {
+            Some(path) => anchors::of_path(path, self.base_as_drawn),
+            None => anchors::frame_corners(&Frame::new(self.frame)),
         }
-    }
-
-    /// Returns the artwork's box, or the base's.
-    fn extent(&self, base: &Anchors) -> Rect {
-        let p = base.points();
-        self.frame.unwrap_or_else(|| p.iter().fold(Rect::from_points(p[0], p[0]), |r, p| r.union_pt(*p)))
     }
 }
 

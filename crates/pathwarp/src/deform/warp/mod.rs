@@ -30,7 +30,7 @@ parameters! {
     /// ```
     /// use pathwarp::{deform::{Style, Warp}, kurbo::{Point, Rect}, map::Map};
     ///
-    /// let arch = Warp::new(Style::named("arch").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).bend(1.0).build()?;
+    /// let arch = Warp::new(Rect::new(0.0, 0.0, 100.0, 100.0), Style::named("arch").unwrap()).bend(1.0).build()?;
     /// assert!(arch.map.point(Point::new(50.0, 0.0)).distance(Point::new(50.0, -50.0)) < 1e-12);
     /// # Ok::<(), pathwarp::Error>(())
     /// ```
@@ -56,7 +56,7 @@ impl Warp {
     /// Creates a warp of the box `frame` by 50 %. Bends beyond 100 % continue by the same formula, up to the style's
     /// [limit](Style::limit).
     #[must_use]
-    pub fn new(style: Style, frame: Rect) -> Self {
+    pub fn new(frame: Rect, style: Style) -> Self {
         Self::defaults(frame, style)
     }
 

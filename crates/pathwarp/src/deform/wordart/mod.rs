@@ -29,7 +29,7 @@ parameters! {
     /// ```
     /// use pathwarp::{deform::{TextShape, WordArt}, kurbo::{Point, Rect}, map::Map};
     ///
-    /// let roof = WordArt::new(TextShape::named("triangle").unwrap(), Rect::new(0.0, 0.0, 100.0, 100.0)).build()?;
+    /// let roof = WordArt::new(Rect::new(0.0, 0.0, 100.0, 100.0), TextShape::named("triangle").unwrap()).build()?;
     /// assert!(roof.map.point(Point::new(75.0, 50.0)).distance(Point::new(75.0, 62.5)) < 1e-12);
     /// # Ok::<(), pathwarp::Error>(())
     /// ```
@@ -67,7 +67,7 @@ const GUIDE_TOLERANCE: f64 = 1e-4;
 impl WordArt {
     /// Creates the text shape with its default adjust values over the box `frame`.
     #[must_use]
-    pub fn new(shape: TextShape, frame: Rect) -> Self {
+    pub fn new(frame: Rect, shape: TextShape) -> Self {
         Self::defaults(frame, shape)
     }
 

@@ -1,0 +1,79 @@
+// Words on the drawing: placed by a click, and typed there while they are drawn.
+
+import type { App } from "./app";
+import { byId } from "./dom";
+import { isCaption } from "./names";
+import type { Sketching } from "./sketch";
+import type { Stage } from "./stage";
+import type { Step } from "./types";
+import { short } from "./values";
+
+/** The distance of the field from the words, in px. */
+const BELOW = 14;
+
+export class Caption {
+  private box = byId("caption-box");
+  private text = byId<HTMLTextAreaElement>("caption-text");
+  private step: Step | null = null;
+  private before = "";
+
+  constructor(private app: App, private stage: Stage, private sketching: Sketching) {
+    this.text.addEventListener("input", () => this.typed());
+    this.text.addEventListener("blur", () => this.done());
+    this.text.addEventListener("keydown", (e) => {
+      if (e.key === "Escape") this.text.blur();
+    });
+    stage.svg.addEventListener("dblclick", () => {
+      if (app.step && isCaption(app.step)) this.open(app.step, (app.step.args.words ?? []).join("\n"));
+    });
+  }
+
+  /** Asks for the place of words with these values. */
+  begin(args: Record<string, string[]>): void {
+    this.sketching.begin("point", async (value) => {
+      const [x, y] = await this.app.source(value.split(",").map(Number) as [number, number]);
+      const step = await this.app.caption({ ...args, at: [`${short(x)},${short(y)}`] });
+      if (step) this.open(step, (args.words ?? []).join("\n"), "");
+    });
+  }
+
+  private open(step: Step, text: string, before = text): void {
+    [this.step, this.before, this.text.value] = [step, before, text];
+    this.box.hidden = false;
+    this.place();
+    this.text.focus();
+    this.text.select();
+  }
+
+  /** Puts the field below the words. */
+  place(): void {
+    const at = this.stage.handle("at")?.get();
+    if (this.box.hidden || !at) return;
+    const [x, y] = this.stage.camera.toScreen(at);
+    const { clientWidth, clientHeight } = this.stage.svg;
+    const within = (v: number, most: number) => Math.min(Math.max(v, 0), Math.max(most, 0));
+    this.box.style.left = `${within(x, clientWidth - this.box.offsetWidth)}px`;
+    this.box.style.top = `${within(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+  }
+
+  private typed(): void {
+    this.text.rows = this.text.value.split("\n").length;
+    if (!this.step || this.text.value.trim() === "") return;
+    this.step.args.words = this.text.value.split("\n");
+    this.app.draft(performance.now());
+    this.app.tell("values");
+  }
+
+  /** Keeps what was typed; where nothing was, the words go. */
+  private done(): void {
+    const { app, step, text, before } = this;
+    // Another picture may have brought the steps anew.
+    const at = step ? app.steps.indexOf(step) : -1;
+    this.step = null;
+    this.box.hidden = true;
+    if (at < 0) return;
+    if (text.value.trim() !== "") return text.value === before ? undefined : void app.commit();
+    if (before === "" && app.state) void app.load(app.state);
+    else void app.arrange(app.steps.toSpliced(at, 1), at);
+  }
+}

@@ -1,0 +1,103 @@
+//! Weights and italics that are asked for: which fonts have them, by themselves or by an axis, and what is made where they lack them.
+
+use crate::failure::Failure;
+use pathwarp_text::{Font, Variation};
+
+/// Names of weights (OpenType 1.9.1, OS/2 usWeightClass).
+pub const WEIGHTS: [(&str, u16); 9] = [
+    ("thin", 100),
+    ("extralight", 200),
+    ("light", 300),
+    ("regular", 400),
+    ("medium", 500),
+    ("semibold", 600),
+    ("bold", 700),
+    ("extrabold", 800),
+    ("black", 900),
+];
+
+/// The style asked for.
+pub struct Wanted {
+    /// From 1 to 1000; `None` for that of the font.
+    pub weight: Option<u16>,
+    /// Upright otherwise.
+    pub italic: bool,
+    /// Make what a font lacks.
+    pub synthesize: bool,
+}
+
+impl Wanted {
+    /// The weight, if a font has neither it nor an axis for it.
+    pub fn weight_lacking(&self, font: &Font<'_>) -> Option<u16> {
+        /// Weights this far apart look alike: neighbouring names.
+        const NEAR: f64 = 150.0;
+        self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
+    }
+
+    /// The weight that a font has instead of the one asked for.
+    pub fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
+        let wanted = f64::from(self.weight?);
+        let axis = font.axes().into_iter().find(|a| a.tag == "wght");
+        let has = axis.map_or(font.weight(), |a| wanted.max(a.min).min(a.max));
+        let made = self.synthesize && self.weight_lacking(font).is_some();
+        ((has - wanted).abs() >= 1.0 && !made).then_some(has)
+    }
+
+    /// Returns `true` if a font should be italic, and has neither that nor an axis for it.
+    pub fn italic_lacking(&self, font: &Font<'_>) -> bool {
+        self.italic && !font.is_italic() && !has_axis(font, &["ital", "slnt"])
+    }
+
+    /// Makes what a font lacks.
+    fn synthesized<'a>(&self, font: Font<'a>) -> Font<'a> {
+        /// Thickness of stems, as a share of the em, for each step of weight: em/24 from regular to bold (FreeType's
+        /// FT_GlyphSlot_Embolden).
+        const PER_WEIGHT: f64 = 1.0 / 24.0 / 300.0;
+        /// The angle of a synthesised oblique, degrees (CSS Fonts 4, font-style).
+        const SLANT: f64 = 14.0;
+        if !self.synthesize {
+            return font;
+        }
+        let (weight, slanted) = (self.weight_lacking(&font), self.italic_lacking(&font));
+        let more = weight.map_or(0.0, |w| f64::from(w) - font.weight()).max(0.0);
+        font.emboldened(more * PER_WEIGHT).slanted(if slanted { SLANT } else { 0.0 })
+    }
+}
+
+fn has_axis(font: &Font<'_>, tags: &[&str]) -> bool {
+    font.axes().iter().any(|a| tags.contains(&a.tag.as_str()))
+}
+
+/// Sets the fonts to their variations: `--variation` applies to the first font, `--weight` to every font with a weight axis.
+pub fn with_variations<'a>(
+    fonts: Vec<Font<'a>>,
+    positions: &[Variation],
+    wanted: &Wanted,
+) -> Result<Vec<Font<'a>>, Failure> {
+    let mut out = Vec::with_capacity(fonts.len());
+    for (i, font) in fonts.into_iter().enumerate() {
+        let mut own = Vec::new();
+        let font = wanted.synthesized(font);
+        if let Some(w) = wanted.weight
+            && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
+        {
+            own.extend(Variation::new("wght", f64::from(w).max(axis.min).min(axis.max)).ok());
+        }
+        let slant = font.axes().into_iter().find(|a| wanted.italic && matches!(a.tag.as_str(), "ital" | "slnt"));
+        if let Some(axis) = slant {
+            // An italic axis runs from 0 to 1, a slant axis counts degrees counterclockwise.
+            let end = if axis.tag == "ital" { axis.max } else { axis.min };
+            own.extend(Variation::new(&axis.tag, end).ok());
+        }
+        if i == 0 {
+            own.extend_from_slice(positions);
+        }
+        let font = if own.is_empty() {
+            font
+        } else {
+            font.with_variations(&own).map_err(|e| Failure::usage(format!("--variation: {e}")))?
+        };
+        out.push(font);
+    }
+    Ok(out)
+}

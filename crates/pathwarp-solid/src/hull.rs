@@ -1,0 +1,97 @@
+//! Lattices of any hull: extended free-form deformation.
+//!
+//! > F(p) = X̂(u) with X(u) = p
+//!
+//! where X is the volume of a lattice whose control points need not be regular, such as a ring around an axis, and X̂ that of the
+//! lattice with moved points and weights (S. Coquillart, *Extended free-form deformation*, SIGGRAPH 1990). Nothing moves outside the
+//! hull, so its faces are creases.
+
+use crate::lattice::{Lattice3, LatticeMap3};
+use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
+use crate::settings::{Box3, show};
+use glam::DVec3;
+use pathwarp::Error;
+use pathwarp::budget::Budget;
+use std::sync::Arc;
+
+/// Extended free-form deformation of space.
+#[derive(Debug, Clone)]
+pub(crate) struct HullMap {
+    region: Box3,
+    cells: [usize; 3],
+    hull: Arc<LatticeMap3>,
+    moved: Arc<LatticeMap3>,
+    /// The local coordinates of a point.
+    inner: NewtonInverse3,
+}
+
+/// Part of the region's size up to which local coordinates are found beyond it.
+const BEYOND: f64 = 1.0 / 16.0;
+
+impl HullMap {
+    /// Makes the map from a hull, and the same lattice with changed points and weights.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a hull that folds or is flat.
+    pub(crate) fn new(hull: &Lattice3, moved: &Lattice3) -> Result<Self, Error> {
+        /// Places along each axis at which the hull's orientation is compared.
+        const PLACES: u32 = 12;
+        let region = hull.region();
+        let [x, y] = [hull, moved].map(|l| Arc::new(LatticeMap3::new(l, true)));
+        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
+        let places =
+            (0..PLACES.pow(3)).map(|n| DVec3::new(at(n % PLACES), at(n / PLACES % PLACES), at(n / PLACES.pow(2))));
+        let mut jets = places.map(|t| x.jet(region.min + t * region.size()));
+        let first = jets.next().map_or(0.0, |j| j.det());
+        if let Some(j) = jets.find(|j| (j.det() * first).is_nan() || j.det() * first <= 0.0) {
+            let problem = format!("is flat or folds at {}; put its control points in order", show(j.p));
+            return Err(Error::usage("hull", "", problem));
+        }
+        Ok(Self::between(x, y, region, hull.cells()))
+    }
+
+    fn between(hull: Arc<LatticeMap3>, moved: Arc<LatticeMap3>, region: Box3, cells: [usize; 3]) -> Self {
+        let domain = region.inflate(BEYOND * region.size());
+        let reach = 1e-9 * region.diagonal();
+        let inner = NewtonInverse3::with_core(Arc::clone(&hull) as Arc<dyn Map3>, region, domain, reach, cells);
+        Self { region, cells, hull, moved, inner }
+    }
+
+    /// The local coordinates of a point in the hull, and their derivatives.
+    pub(crate) fn local(&self, p: DVec3) -> Option<Jet3> {
+        /// Rounding of local coordinates.
+        const ROUNDING: f64 = 1e-12;
+        self.inner.solve(p).filter(|u| self.depth(u.p) >= -ROUNDING)
+    }
+
+    /// The distance of local coordinates from the nearest face, as a share of the region; positive inside.
+    fn depth(&self, u: DVec3) -> f64 {
+        ((u - self.region.min).min(self.region.max - u) / self.region.size()).min_element()
+    }
+}
+
+impl Map3 for HullMap {
+    fn jet(&self, p: DVec3) -> Jet3 {
+        match self.local(p) {
+            Some(local) => local.then(&self.moved.jet(local.p)),
+            None => Jet3::identity(p),
+        }
+    }
+
+    fn creases(&self, out: &mut Creases3) {
+        let own = self.clone();
+        out.kink(move |p| own.inner.solve(p).map_or(-BEYOND, |u| own.depth(u.p)));
+    }
+
+    fn inverse(&self) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(Self::between(Arc::clone(&self.moved), Arc::clone(&self.hull), self.region, self.cells)))
+    }
+
+    fn work(&self) -> f64 {
+        self.inner.work() + self.moved.work()
+    }
+
+    fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
+        Some(Arc::new(Self { inner: self.inner.spending(budget), ..self.clone() }))
+    }
+}

@@ -1,0 +1,206 @@
+//! Kinks and jumps that a map does not declare: found along lines across its box, and named as the creases to declare.
+
+use super::{Tested, number, place};
+use kurbo::{Point, Vec2};
+
+/// Lines across the box in either direction.
+const LINES: u32 = 16;
+/// Intervals between the places on a line.
+const INTERVALS: u32 = 192;
+/// Places on a line that are looked at closely, at most.
+const CLOSE: usize = 24;
+/// Halvings of the interval around such a place.
+const HALVINGS: usize = 20;
+/// The halvings between two looks that tell a kink from a bend: in a smooth map, the change of slope falls to 1/128 between them.
+const APART: usize = 7;
+/// The least change of slope that counts, in parts of the slope or of 1.
+const LEAST: f64 = 1e-4;
+
+/// A place on a line, with half the length of the interval around it.
+#[derive(Clone, Copy)]
+struct Place {
+    at: Point,
+    half: Vec2,
+    /// Changes of slope in that interval, from the first halving on.
+    turns: [f64; HALVINGS],
+}
+
+/// A place where a map is not smooth.
+#[derive(Clone, Copy)]
+struct Break {
+    at: Point,
+    /// The change of slope, or for a jump the distance.
+    by: f64,
+    is_jump: bool,
+}
+
+/// Describes every curve on which the map has a kink or jump that it does not declare, each with the place where it is worst.
+pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
+    let mut left = closer(tested, candidates(tested));
+    let size = tested.frame.size().to_vec2().hypot();
+    let mut faults = Vec::new();
+    while !left.is_empty() {
+        let points: Vec<Point> = left.iter().map(|b| b.at).collect();
+        let curve = curve_through_most(&points, 2e-7 * size);
+        // All that is left lies on other curves.
+        let (on, others): (Vec<Break>, Vec<Break>) =
+            left.into_iter().partition(|b| curve.is_none_or(|c| c.distance(b.at) < 1e-5 * size));
+        left = others;
+        let Some(worst) = on.iter().copied().reduce(|a, b| if b.by > a.by { b } else { a }) else { break };
+        let (at, by) = (place(worst.at), number(worst.by));
+        let (more, there) = match curve {
+            Some(curve) => (String::new(), format!("at {}", curve.text())),
+            None if on.len() == 1 => (String::new(), "there".to_owned()),
+            None => (format!(" and {} other places", on.len() - 1), "there".to_owned()),
+        };
+        let fault = if worst.is_jump {
+            format!(
+                "jumps by {by} at {at}{more}; declare a crease {there} (lines connect its sides), or make it continuous"
+            )
+        } else {
+            format!("has a kink at {at}{more}, where its slope changes by {by}; declare a crease {there}")
+        };
+        faults.push((fault, worst.at));
+    }
+    faults
+}
+
+/// The places on lines across the box where fourth differences of the values are largest.
+fn candidates(tested: &Tested<'_>) -> Vec<Place> {
+    let frame = tested.frame;
+    let mut all = Vec::new();
+    for (k, along_x) in (0..LINES).flat_map(|k| [(k, true), (k, false)]) {
+        // No line goes through a center or a corner.
+        let share = (f64::from(k) + 0.382) / f64::from(LINES);
+        let at = |i: u32| {
+            let t = f64::from(i) / f64::from(INTERVALS);
+            let (x, y) = if along_x { (t, share) } else { (share, t) };
+            Point::new(frame.x0 + x * frame.width(), frame.y0 + y * frame.height())
+        };
+        let places: Vec<Point> = (0..=INTERVALS).map(at).collect();
+        let values = tested.values(&places);
+        let fourth = |v: &[Point]| {
+            let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|i| v[i].to_vec2());
+            (a + e - 4.0 * (b + d) + 6.0 * c).hypot()
+        };
+        let fourth: Vec<f64> = values.windows(5).map(fourth).collect();
+        let is_larger = |i: Option<usize>, than: f64| i.and_then(|i| fourth.get(i)).is_some_and(|v| *v > than);
+        let is_peak = |i: &usize| {
+            fourth[*i] > 0.0 && !is_larger(i.checked_sub(1), fourth[*i]) && !is_larger(Some(i + 1), fourth[*i])
+        };
+        let mut peaks: Vec<usize> = (0..fourth.len()).filter(is_peak).collect();
+        peaks.sort_by(|a, b| fourth[*b].total_cmp(&fourth[*a]));
+        let half = places[2] - places[0];
+        all.extend(peaks.iter().take(CLOSE).map(|i| Place { at: places[i + 2], half, turns: [0.0; HALVINGS] }));
+    }
+    all
+}
+
+/// Halves the intervals around places towards the largest change of slope, and returns those where it does not vanish.
+fn closer(tested: &Tested<'_>, mut places: Vec<Place>) -> Vec<Break> {
+    let size = tested.frame.size().to_vec2().hypot();
+    let mut found = Vec::new();
+    for round in 0..HALVINGS {
+        // One more on either side, as rounding may push a jump over the end of the interval.
+        let around = |p: &Place| (-3..=3).map(|k| p.at + p.half * (0.5 * f64::from(k))).collect::<Vec<_>>();
+        let values = tested.values(&places.iter().flat_map(around).collect::<Vec<_>>());
+        let mut kept = Vec::new();
+        for (p, v) in places.iter().zip(values.chunks_exact(7)) {
+            let half = 0.5 * p.half;
+            let turn =
+                |k: usize| (v[k - 1].to_vec2() + v[k + 1].to_vec2() - 2.0 * v[k].to_vec2()).hypot() / half.hypot();
+            let larger = |a: usize, b: usize| if turn(b) > turn(a) { b } else { a };
+            let Some(k) = [3, 2, 4, 1, 5].into_iter().filter(|k| turn(*k).is_finite()).reduce(larger) else { continue };
+            let mut next = Place { at: p.at + half * (k as f64 - 3.0), half, ..*p };
+            next.turns[round] = turn(k);
+            let before = round.checked_sub(APART).map_or(0.0, |i| next.turns[i]);
+            let is_left = turn(k) > 0.05 * LEAST && turn(k) > 0.3 * before;
+            if is_left && round + 1 < HALVINGS {
+                kept.push(next);
+            } else if is_left && tested.contains(next.at) && !tested.declares(next.at, half) {
+                let slope = (v[k + 1] - v[k - 1]).hypot() / (2.0 * half.hypot());
+                let is_jump = turn(k) > 32.0 * before;
+                let by = if is_jump { turn(k) * half.hypot() } else { turn(k) };
+                // Two peaks beside each other lead to one place.
+                let is_new = found.iter().all(|b: &Break| b.at.distance(next.at) > 1e-5 * size);
+                if is_new && by > if is_jump { 1e-7 * size } else { LEAST * slope.max(1.0) } {
+                    found.push(Break { at: next.at, by, is_jump });
+                }
+            }
+        }
+        places = kept;
+    }
+    found
+}
+
+/// A curve that can be declared as a crease.
+#[derive(Clone, Copy)]
+enum Curve {
+    /// a·x + b·y + c, the larger of a and b being 1 or −1.
+    Line([f64; 3]),
+    /// Center and radius.
+    Circle([f64; 3]),
+}
+
+impl Curve {
+    fn distance(self, p: Point) -> f64 {
+        match self {
+            Self::Line([a, b, c]) => (a * p.x + b * p.y + c).abs() / a.hypot(b),
+            Self::Circle([x, y, r]) => (p.distance(Point::new(x, y)) - r).abs(),
+        }
+    }
+
+    /// The crease as plug-ins and functions declare it.
+    fn text(self) -> String {
+        let (word, numbers) = match self {
+            Self::Line(numbers) => ("line", numbers),
+            Self::Circle(numbers) => ("circle", numbers),
+        };
+        // The places are known to a hundred millionth of the box.
+        let [a, b, c] = numbers.map(|v| number(if v.abs() < 1e-5 { 0.0 } else { v }));
+        format!("{word} {a} {b} {c}")
+    }
+}
+
+/// The line or circle through the most of some points, at least four; `None` if there is none.
+fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
+    // Curves are drawn through 24 of them.
+    let tried: Vec<Point> = points.iter().step_by(points.len().div_ceil(24).max(1)).copied().collect();
+    let count = |c: &Curve| points.iter().filter(|p| c.distance(**p) < near).count();
+    let mut best: Option<(usize, Curve)> = None;
+    let mut consider = |curve: Option<Curve>| {
+        let counted = curve.map(|c| (count(&c), c)).filter(|(n, _)| *n >= 4);
+        best = counted.filter(|(n, _)| best.is_none_or(|(most, _)| *n > most)).or(best);
+    };
+    for (i, a) in tried.iter().enumerate() {
+        for (j, b) in tried.iter().enumerate().skip(i + 1) {
+            consider(line(*a, *b, near));
+            tried.iter().skip(j + 1).for_each(|c| consider(circle(*a, *b, *c)));
+        }
+    }
+    best.map(|(_, curve)| curve)
+}
+
+/// The line through two points, unless they are too close to tell its direction.
+fn line(a: Point, b: Point, near: f64) -> Option<Curve> {
+    let along = b - a;
+    let n = along.turn_90() / along.x.abs().max(along.y.abs());
+    (along.hypot() > 1e5 * near).then(|| {
+        // Of both signs, the one that begins without a minus.
+        let n = if n.x < -1e-6 || (n.x.abs() <= 1e-6 && n.y < 0.0) { -n } else { n };
+        Curve::Line([n.x, n.y, -n.dot(a.to_vec2())])
+    })
+}
+
+/// The circle through three points; `None` if they lie on a line, or nearly so.
+fn circle(a: Point, b: Point, c: Point) -> Option<Curve> {
+    let (p, q) = (b - a, c - a);
+    let d = 2.0 * p.cross(q);
+    let size = p.hypot().max(q.hypot());
+    if d.abs() < 1e-2 * size * size {
+        return None;
+    }
+    let to_center = Vec2::new(q.y * p.hypot2() - p.y * q.hypot2(), p.x * q.hypot2() - q.x * p.hypot2()) / d;
+    let center = a + to_center;
+    Some(Curve::Circle([center.x, center.y, to_center.hypot()]))
+}

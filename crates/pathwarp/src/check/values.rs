@@ -1,0 +1,153 @@
+//! Values, alone and in batches, and derivatives against differences.
+
+use super::{Check, Tested, number, place, skipped};
+use crate::map::{Batches, Jet};
+use kurbo::{Point, Vec2};
+use std::f64::consts::PI;
+
+/// Checks values and derivatives at the samples.
+pub(super) fn values(t: &Tested<'_>) -> Check {
+    let mut check = Check::new("values");
+    let count = t.samples.len();
+    if !t.has_values() {
+        let (places, f) = (if count == 0 { t.outside } else { count }, t.frame);
+        check
+            .fault(format!("has no value at any of {places} places in the box {},{} to {},{}", f.x0, f.y0, f.x1, f.y1));
+        return check;
+    }
+    check.detail = format!("{count} points");
+    if let Some(fault) = rounding(t) {
+        check.fault(fault);
+        return check;
+    }
+    let mut jets = vec![Jet::default(); count];
+    t.map.jets(&t.samples, &mut jets);
+    // Derivatives that are computed from values miss some digits of narrow waves.
+    let own = !t.map.cost().batches.is_some_and(Batches::differentiates);
+    let near = if own { 1e-5 } else { 1e-2 };
+    let mut outside = t.outside;
+    let mut slopes = Slopes::default();
+    let mut bad: [Vec<Point>; 3] = [const { Vec::new() }; 3];
+    for (((p, j), q), found) in t.samples.iter().zip(&jets).zip(&t.images).zip(differences(t)) {
+        if !q.is_finite() || !j.is_finite() {
+            bad[usize::from(q.is_finite())].push(*p);
+            continue;
+        }
+        if apart(t.map.jet(*p).p, j.p) || apart(*q, j.p) {
+            bad[2].push(*p);
+        }
+        if t.is_partial() && !(found[0] + found[1]).is_finite() {
+            outside += 1;
+        } else {
+            slopes.add(*p, j, found, near);
+        }
+    }
+    const WORDS: [&str; 3] = [
+        "has no value, which an edge of its domain would explain,",
+        "has no derivatives",
+        "gives another value with derivatives than without, or alone than in a batch,",
+    ];
+    for (words, places) in WORDS.iter().zip(bad).filter(|(_, places)| !places.is_empty()) {
+        check.fault(format!("{words} at {} of {count} places, such as {}", places.len(), place(places[0])));
+        check.places.extend(places);
+    }
+    check.faults.extend(slopes.faults(own));
+    let places = match slopes.mirrored {
+        0 => String::new(),
+        n if n == slopes.compared => "; it mirrors, as one does that swaps x and y".to_owned(),
+        n => format!("; it folds: {n} of them are mirrored"),
+    };
+    let (off, skipped) = (slopes.largest, skipped(outside));
+    check.detail = format!(
+        "{count} points, alone and in batches; derivatives differ from differences by {off:.0e}{skipped}{places}"
+    );
+    check
+}
+
+/// Returns `true` if two values for one point are not the same but for rounding.
+fn apart(a: Point, b: Point) -> bool {
+    a.distance(b) > 1e-12 * (1.0 + a.to_vec2().hypot())
+}
+
+/// Both partial derivatives at the samples by central differences at two steps, extrapolated: truncation h⁴, rounding ε/h.
+fn differences(t: &Tested<'_>) -> Vec<[Vec2; 2]> {
+    let h = 1e-6 * t.frame.width().max(t.frame.height());
+    let steps = [Vec2::new(h, 0.0), Vec2::new(0.0, h)].map(|d| [d, -d, 0.5 * d, -0.5 * d]);
+    let places: Vec<Point> = t.samples.iter().flat_map(|p| steps.as_flattened().iter().map(|d| *p + *d)).collect();
+    let slope = |q: &[Point]| (8.0 * (q[2] - q[3]) - (q[0] - q[1])) / (6.0 * h);
+    t.values(&places).chunks_exact(8).map(|q| [slope(&q[..4]), slope(&q[4..])]).collect()
+}
+
+/// The entries of a Jacobian, by columns.
+const ENTRIES: [&str; 4] = ["∂x'/∂x", "∂y'/∂x", "∂x'/∂y", "∂y'/∂y"];
+
+/// Derivatives that a map gives beside those found by differences.
+#[derive(Default)]
+struct Slopes {
+    compared: usize,
+    /// The largest difference, in parts of the slope.
+    largest: f64,
+    /// For every entry, the number of places where it is wrong, and the first of these.
+    wrong: [(usize, Option<String>); 4],
+    /// Places where they would be wrong if they were transposed, too.
+    not_transposed: usize,
+    /// Places around which all images lie on one curve, or at one point.
+    flat: usize,
+    mirrored: usize,
+}
+
+impl Slopes {
+    fn add(&mut self, p: Point, j: &Jet, [dx, dy]: [Vec2; 2], near: f64) {
+        let steep = 1.0 + j.dx.hypot() + j.dy.hypot();
+        self.largest = self.largest.max((dx - j.dx).hypot().max((dy - j.dy).hypot()) / steep);
+        let off = |a: f64, b: f64| (a - b).abs() > near * steep || (a - b).is_nan();
+        let (own, found) = ([j.dx.x, j.dx.y, j.dy.x, j.dy.y], [dx.x, dx.y, dy.x, dy.y]);
+        for (k, (n, first)) in self.wrong.iter_mut().enumerate().filter(|(k, _)| off(own[*k], found[*k])) {
+            *n += 1;
+            let (own, found) = (number(own[k]), number(found[k]));
+            first.get_or_insert_with(|| format!("{own} at {}, where differences give {found}", place(p)));
+        }
+        self.not_transposed += usize::from([0, 2, 1, 3].iter().zip(found).any(|(k, v)| off(own[*k], v)));
+        self.compared += 1;
+        self.flat += usize::from(dx.cross(dy).abs() <= 1e-7 * dx.hypot() * dy.hypot() + 1e-14);
+        self.mirrored += usize::from(dx.cross(dy) < 0.0);
+    }
+
+    /// Describes what is wrong; `own` says that the map gives derivatives itself.
+    fn faults(&self, own: bool) -> Vec<String> {
+        if self.compared > 0 && self.flat == self.compared {
+            return vec!["sends all points to one, or to one curve, so artwork has no area after it".to_owned()];
+        }
+        let worst = self.wrong.iter().map(|(n, _)| *n).max().unwrap_or(0);
+        if worst > 0 && !own {
+            let why = "its features are so small that derivatives computed from values are wrong";
+            return vec![format!("{why} at {worst} of {} places; give derivatives, too", self.compared)];
+        }
+        if worst > 0 && self.not_transposed == 0 {
+            return vec![format!("its derivatives are transposed: {} and {} change places", ENTRIES[1], ENTRIES[2])];
+        }
+        let told = |((n, first), entry): (&(usize, Option<String>), &str)| {
+            Some(format!("{entry} is wrong at {n} of {} places: {}", self.compared, first.as_ref()?))
+        };
+        self.wrong.iter().zip(ENTRIES).filter_map(told).collect()
+    }
+}
+
+/// Tells of images whose coordinates are rounded, while their places have all digits.
+fn rounding(t: &Tested<'_>) -> Option<String> {
+    let aside = Vec2::new(t.frame.width(), t.frame.height()) * (0.01 / PI);
+    let places: Vec<Point> = t.samples.iter().map(|p| *p + aside).filter(|p| t.contains(*p)).collect();
+    let images: Vec<Point> = t.values(&places).into_iter().filter(|q| q.is_finite()).collect();
+    let [xs, ys]: [Vec<f64>; 2] = [images.iter().map(|q| q.x).collect(), images.iter().map(|q| q.y).collect()];
+    let is_varied = |values: &[f64]| values.len() >= 9 && values.iter().any(|v| *v != values[0]);
+    [("x'", xs), ("y'", ys)].into_iter().filter(|(_, values)| is_varied(values)).find_map(|(name, values)| {
+        if values.iter().all(|v| f64::from(*v as f32) == *v) {
+            return Some(format!(
+                "{name} has the digits of single precision (float32) only; compute in double precision"
+            ));
+        }
+        let whole = |v: f64| (v - v.round()).abs() < 1e-6 * v.abs().min(1.0);
+        let digits = (0..=6).find(|d| values.iter().all(|v| whole(v * 10_f64.powi(*d))))?;
+        Some(format!("{name} is rounded to {digits} decimals; write all digits (%.17g in C and awk, repr in Python)"))
+    })
+}
