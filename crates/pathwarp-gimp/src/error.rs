@@ -1,4 +1,4 @@
-//! Errors with their place in the file.
+//! Errors with their offset in the file.
 
 use pathwarp::budget::Exceeded;
 use thiserror::Error;
@@ -23,7 +23,7 @@ pub enum ErrorKind {
     Io,
 }
 
-/// An error at a place in a file.
+/// An error at an offset in a file.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("byte {offset}: {problem}")]
 #[non_exhaustive]
@@ -59,13 +59,13 @@ impl Error {
         Self::new(ErrorKind::Io, offset, format!("cannot be read: {error}"))
     }
 
-    /// Reports that only `left` bytes remain. `needed` is a clause that says what takes more.
+    /// Reports that only `left` bytes remain. `needed` is a clause that names the part that takes more.
     pub(crate) fn truncated(offset: u64, needed: &str, left: u64) -> Self {
         Self::new(ErrorKind::Truncated, offset, format!("{needed}, but only {left} are left"))
     }
 
     /// Adds to a truncation that the length word of `owner` limits the bytes left.
-    pub(crate) fn within(mut self, length: u64, owner: &str) -> Self {
+    pub(crate) fn limited_by(mut self, length: u64, owner: &str) -> Self {
         if self.kind == ErrorKind::Truncated {
             self.problem += &format!(" of the {length} bytes given for {owner}");
         }

@@ -7,7 +7,7 @@
 //! * [`to_svg`], [`to_json`] and [`new_xcf`] write paths to new files.
 //!
 //! Only the bytes of an XCF that hold paths are read, whatever its size. Every count is checked against the bytes left, so a
-//! damaged file gives an [`Error`] with its place and never exhausts memory.
+//! damaged file gives an [`Error`] with its offset and never exhausts memory.
 //!
 //! ```
 //! let text = "Name: slope\n#POINTS: 5\nCLOSED: 0\nDRAW: 0\nSTATE: 2\nTYPE: 1 X: 0 Y: 0\nTYPE: 2 X: 0 Y: 0\n\
@@ -37,7 +37,7 @@ pub use xcf::{new_xcf, rewrite};
 /// Reads the paths of a file in memory, topmost first.
 ///
 /// # Errors
-/// As for [`open`].
+/// [`ErrorKind::UnknownFormat`] for other files; [`ErrorKind::Damaged`], [`ErrorKind::Truncated`] and [`ErrorKind::TooLarge`].
 pub fn read(bytes: &[u8]) -> Result<Vec<GimpPath>, Error> {
     open(std::io::Cursor::new(bytes)).map(|f| f.paths)
 }

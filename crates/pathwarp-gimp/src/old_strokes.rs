@@ -65,7 +65,7 @@ pub(crate) fn listed(s: &Stroke) -> Vec<TypedPoint> {
     rest.chain(first).collect()
 }
 
-/// Whether the form of GIMP 1 can hold the strokes, of which only the last may be open.
+/// Returns `true` if the form of GIMP 1 can hold the strokes: only the last may be open.
 pub(crate) fn can_hold(strokes: &[Stroke]) -> bool {
     strokes.iter().rev().skip(1).all(|s| s.closed)
 }

@@ -10,25 +10,25 @@ use std::io::{Read, Seek};
 /// Reads the paths of a file, seeking past everything else, within the default limits.
 ///
 /// # Errors
-/// The file has an unknown format, is damaged, or cannot be read; the error contains the byte offset.
+/// [`ErrorKind::UnknownFormat`], [`ErrorKind::Damaged`] or [`ErrorKind::Io`], for instance; the error contains the byte offset.
 pub fn open(file: impl Read + Seek) -> Result<PathFile, Error> {
     let salvaged = salvage(file)?;
     salvaged.damage.map_or(Ok(salvaged.file), Err)
 }
 
-/// Reads the paths of a file like [`open`], but returns those before the damage if an XCF or a text is damaged.
+/// Reads the paths of a file within the default limits. If an XCF or a text is damaged, returns the paths before the damage.
 ///
 /// # Errors
-/// Nothing can be read: the file has an unknown format, or its header is damaged.
+/// [`ErrorKind::UnknownFormat`] for other files, [`ErrorKind::Damaged`] and others when nothing can be read.
 pub fn salvage(file: impl Read + Seek) -> Result<Salvaged, Error> {
     salvage_within(file, &Limits::default())
 }
 
-/// Reads a file like [`salvage`], within limits for its size. They apply to the bytes of text and of paths, and to the unpacked bytes
-/// of compressed files, in which paths lie among pictures.
+/// Reads the paths of a file, or those before any damage, within limits for its size. They apply to the bytes of text and of paths,
+/// and to the unpacked bytes of compressed files, in which paths lie among pictures.
 ///
 /// # Errors
-/// As for [`salvage`].
+/// [`ErrorKind::UnknownFormat`] for other files, [`ErrorKind::Damaged`] and others when nothing can be read.
 pub fn salvage_within(mut file: impl Read + Seek, limits: &Limits) -> Result<Salvaged, Error> {
     let file: &mut dyn ReadSeek = &mut file;
     let packing = packing(&head(file)?);
@@ -122,7 +122,7 @@ pub fn may_begin(head: &[u8]) -> bool {
         }
 }
 
-/// Whether a file holds paths of GIMP: an XCF, GIMP 1 text, a valid point list, or an SVG as GIMP exports it.
+/// Returns `true` if a file holds paths of GIMP: an XCF, GIMP 1 text, a valid point list, or an SVG as GIMP exports it.
 #[must_use]
 pub fn sniff(mut file: impl Read + Seek) -> bool {
     let file: &mut dyn ReadSeek = &mut file;

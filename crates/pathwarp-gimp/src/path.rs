@@ -116,8 +116,8 @@ pub struct Salvaged {
     pub damage: Option<Error>,
 }
 
-/// The shortest text that parses to the same number: in single precision if the number has no more, as in GIMP's files, else in
-/// double precision.
+/// The shortest text that parses to a number: in single precision if the number has no more, as in GIMP's files, else in double
+/// precision.
 pub(crate) fn shortest(v: f64) -> String {
     let single = v as f32;
     // Adding 0.0 turns -0 into 0.

@@ -59,28 +59,28 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
 /// Checks a path and converts it.
 fn path(p: JsonPath) -> Result<GimpPath, String> {
     let stroke = |(i, s): (usize, JsonStroke)| {
-        let place = || format!("path `{}`, stroke {}", p.name, i + 1);
+        let position = || format!("path `{}`, stroke {}", p.name, i + 1);
         if s.kind != 0 {
-            return Err(format!("{}: type {} is unknown; 0 is a Bézier stroke", place(), s.kind));
+            return Err(format!("{}: type {} is unknown; 0 is a Bézier stroke", position(), s.kind));
         }
         let points = match (s.controlpoints, s.points) {
             (Some(flat), None) if flat.len().is_multiple_of(2) => flat.chunks_exact(2).map(|c| [c[0], c[1]]).collect(),
             (None, Some(points)) => points,
-            (Some(flat), None) => return Err(format!("{}: an odd number of coordinates, {}", place(), flat.len())),
-            _ => return Err(format!("{}: needs either controlpoints or points", place())),
+            (Some(flat), None) => return Err(format!("{}: an odd number of coordinates, {}", position(), flat.len())),
+            _ => return Err(format!("{}: needs either controlpoints or points", position())),
         };
         if s.num_points.is_some_and(|n| n != 2 * points.len()) {
-            return Err(format!("{}: num_points differs from its {} numbers", place(), 2 * points.len()));
+            return Err(format!("{}: num_points differs from its {} numbers", position(), 2 * points.len()));
         }
         if !points.len().is_multiple_of(3) {
             return Err(format!(
                 "{}: {} points, not a multiple of three (every anchor has two handles)",
-                place(),
+                position(),
                 points.len()
             ));
         }
         if points.as_flattened().iter().any(|v| !v.is_finite()) {
-            return Err(format!("{}: a coordinate is out of range", place()));
+            return Err(format!("{}: a coordinate is out of range", position()));
         }
         Ok(Stroke { closed: s.closed, points })
     };

@@ -47,18 +47,18 @@ impl<'a> ByteSource<'a> {
         Self { backend, at: 0, end: limits.of(Limit::Bytes) as u64, limits, unpacked: 0 }
     }
 
-    /// Checks that `count` bytes are left. If not, returns an error at byte `place` that says what `needed` them. A stream ends at the
-    /// limit, unless a length word ends it before.
-    pub(crate) fn need(&self, count: u64, place: u64, needed: impl FnOnce() -> String) -> Result<(), Error> {
+    /// Checks that `count` bytes are left. Otherwise returns an error at byte `at` with the clause `needed`. A stream ends at the limit,
+    /// unless a length word ends it before.
+    pub(crate) fn need(&self, count: u64, at: u64, needed: impl FnOnce() -> String) -> Result<(), Error> {
         if count <= self.left() {
             return Ok(());
         }
-        let known = Error::truncated(place, &needed(), self.left());
-        let of_limit = self.end == self.limits.of(Limit::Bytes) as u64;
-        Err(if of_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
+        let known = Error::truncated(at, &needed(), self.left());
+        let ends_at_limit = self.end == self.limits.of(Limit::Bytes) as u64;
+        Err(if ends_at_limit { self.beyond(self.at.saturating_add(count), known) } else { known })
     }
 
-    /// Chooses the error about a byte `to` beyond the end: `known` for a file, and the limit for a stream.
+    /// Chooses the error about a byte `to` beyond the end: the limit if a stream exceeds it, else `known`.
     pub(crate) fn beyond(&self, to: u64, known: Error) -> Error {
         match (&self.backend, self.limits.check(Limit::Bytes, to as f64)) {
             (Backend::Stream(_), Err(e)) => Error::too_large(known.offset, "unpacked, the file takes", e.cut_short()),
@@ -66,7 +66,7 @@ impl<'a> ByteSource<'a> {
         }
     }
 
-    pub(crate) fn at(&self) -> u64 {
+    pub(crate) fn offset(&self) -> u64 {
         self.at
     }
 

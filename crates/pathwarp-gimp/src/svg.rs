@@ -19,10 +19,10 @@ const DOCTYPE: &str = "-//W3C//DTD SVG 20010904//EN";
 /// The attributes that distinguish GIMP's exports from other SVG files.
 const ATTRIBUTES: [(&str, &str); 3] = [("fill", "none"), ("stroke", "black"), ("stroke-width", "1")];
 
-/// Our own attribute for GIMP's visibility switch, on paths that are switched off. GIMP ignores it.
+/// An attribute for GIMP's visibility switch, on paths that are switched off. GIMP ignores it.
 const VISIBLE: &str = "data-gimp-visible";
 
-/// Whether a file with these first bytes can be an export from GIMP.
+/// Returns `true` if a file with these first bytes can be an export from GIMP.
 pub(crate) fn may_be_export(head: &[u8]) -> bool {
     head.windows(DOCTYPE.len()).any(|w| w == DOCTYPE.as_bytes())
 }
@@ -40,10 +40,10 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
     })
 }
 
-/// Whether parsing takes time and memory in proportion to the text: there are no entities, which may expand to entities, and no
-/// elements with very many attributes, which the parser compares with each other.
+/// Returns `true` if parsing takes time and memory in proportion to the text: there are no entities, which may expand to entities, and
+/// no elements with very many attributes, which the parser compares with each other.
 fn is_plain(text: &str) -> bool {
-    /// GIMP writes six.
+    /// Far more than the six that GIMP writes.
     const MAX_ATTRIBUTES: usize = 1000;
     let many = |tag: &str| {
         tag.len() > MAX_ATTRIBUTES && tag.bytes().filter(|b| matches!(b, b'"' | b'\'')).count() / 2 > MAX_ATTRIBUTES
@@ -51,7 +51,7 @@ fn is_plain(text: &str) -> bool {
     !text.contains("<!ENTITY") && !text.split('<').any(|tag| many(tag.split('>').next().unwrap_or_default()))
 }
 
-/// Whether an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
+/// Returns `true` if an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
 pub(crate) fn is_export(text: &str) -> bool {
     let Ok(doc) = parse(text) else { return false };
     let mut paths = doc.root_element().children().filter(Node::is_element).peekable();
@@ -96,7 +96,7 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
         let strokes =
             outline.subpaths.iter().map(|s| single_anchor_loop(s).unwrap_or_else(|| Stroke::from_subpath(s))).collect();
         let name = p.attribute("id").unwrap_or_default().to_owned();
-        // Paths in GIMP's own exports count as visible.
+        // Paths in GIMP's exports count as visible.
         let visible = p.attribute(VISIBLE) != Some("false");
         paths.push(GimpPath { name, visible, strokes });
     }
@@ -176,7 +176,7 @@ fn data(s: &Stroke, decimals: Option<u8>) -> String {
     out
 }
 
-/// Whether a name is a valid XML id.
+/// Returns `true` if a name is a valid XML id.
 fn is_id(name: &str) -> bool {
     let mut chars = name.chars();
     chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')
@@ -192,7 +192,7 @@ fn escaped(text: &str) -> String {
             '<' => out += "&lt;",
             '>' => out += "&gt;",
             '"' => out += "&quot;",
-            // An XML reader would turn them into spaces.
+            // An XML reader would turn these into spaces.
             '\t' | '\n' | '\r' => {
                 let _ = write!(out, "&#{};", u32::from(c));
             }

@@ -4,10 +4,10 @@ use crate::error::{Error, ErrorKind};
 use crate::old_strokes::{self, TypedPoint};
 use crate::path::GimpPath;
 
-/// The first bytes of such a file.
+/// The first bytes of a file in this format.
 pub(crate) const FIRST: &[u8] = b"Name: ";
 
-/// Reads all records. Those before an error remain in `paths`.
+/// Reads all records. After an error, `paths` holds the records before it.
 pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
     /// A lower bound on the length of a point's line.
     const MIN_LINE: u64 = 16;

@@ -1,4 +1,4 @@
-//! Path data as curves: commands by svgtypes, arcs by the formulas of SVG's appendix. Nothing here is shared with the program's reader.
+//! Path data as curves: svgtypes parses commands; arcs follow the formulas of SVG's appendix. No code is shared with the program's reader.
 
 use kurbo::{BezPath, CubicBez, PathSeg, Point, Vec2};
 use svgtypes::{PathParser, PathSegment};
@@ -39,13 +39,13 @@ impl Curve {
 
     /// The directions in which the curve starts and ends, of no particular length.
     pub fn directions(&self) -> [Vec2; 2] {
-        let (some, points): (_, &[Point]) = match self {
+        let (has_polygon, points): (_, &[Point]) = match self {
             Self::Line(p) => (true, p),
             Self::Quad(p) => (true, p),
             Self::Cubic(p) => (true, p),
             Self::Arc { ends, .. } => (false, ends),
         };
-        if !some {
+        if !has_polygon {
             return [self.at(1e-4) - self.at(0.0), self.at(1.0) - self.at(1.0 - 1e-4)];
         }
         let (first, last) = (points[0], points[points.len() - 1]);
@@ -99,7 +99,7 @@ impl From<CubicBez> for Curve {
     }
 }
 
-/// What consists of curves.
+/// An object that consists of curves.
 pub trait Curved {
     /// The curves, one after the other.
     fn curves(&self) -> Vec<Curve>;

@@ -1,9 +1,9 @@
 //! The distance between two curves, in both directions.
 //!
-//! Both are sampled until no chord is farther from its arc than a tenth of a height, as the turns of the chords tell. Every sample of one
-//! is then compared with the other: first with its chords, and, farthest samples first, with the curve itself over every chord beside
-//! which the nearest point may lie. So cusps, hairpins and crossings need no good start. A sample's distance is true, and the
-//! largest one falls short of the true distance by no more than what the distance grows by between two samples.
+//! Both are sampled until no chord is farther from its arc than a tenth of a height, estimated from the turns of the chords. Every sample
+//! of one is then compared with the other: first with its chords, and, farthest samples first, with the curve over every chord near which
+//! the nearest point may lie. So cusps, hairpins and crossings need no good start. The distance of a sample is exact, and the largest
+//! one falls short of the distance of the curves by at most its growth between two samples.
 
 use crate::curves::{Curve, Curved};
 use crate::polygon::{Polygon, to_edge};
@@ -11,13 +11,13 @@ use kurbo::{Point, Vec2};
 use std::slice::from_ref;
 
 /// A piece of a curve, and a parameter from 0 to 1 on it.
-pub type Place = (usize, f64);
+pub type Position = (usize, f64);
 
 /// Maps points, many at a time.
 pub type Image<'a> = &'a (dyn Fn(&[Point], &mut [Point]) + 'a);
 
-/// The points at many places.
-type At<'a> = Box<dyn Fn(&[Place], &mut [Point]) + 'a>;
+/// A function that gives the points at many positions.
+type At<'a> = Box<dyn Fn(&[Position], &mut [Point]) + 'a>;
 
 /// A curve in pieces.
 pub struct Run<'a> {
@@ -26,9 +26,9 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// A curve of so many pieces that a function describes.
-    pub fn new(pieces: usize, at: impl Fn(Place) -> Point + 'a) -> Self {
-        Self { pieces, at: Box::new(move |places, out| places.iter().zip(out).for_each(|(p, out)| *out = at(*p))) }
+    /// A curve of `pieces` pieces that a function describes.
+    pub fn new(pieces: usize, at: impl Fn(Position) -> Point + 'a) -> Self {
+        Self { pieces, at: Box::new(move |all, out| all.iter().zip(out).for_each(|(p, out)| *out = at(*p))) }
     }
 
     pub fn of(curves: &'a [Curve]) -> Self {
@@ -37,8 +37,8 @@ impl<'a> Run<'a> {
 
     /// The image of curves under a map.
     pub fn image(curves: &'a [Curve], image: Image<'a>) -> Self {
-        let at = move |places: &[Place], out: &mut [Point]| {
-            let points: Vec<Point> = places.iter().map(|(i, t)| curves[*i].at(*t)).collect();
+        let at = move |positions: &[Position], out: &mut [Point]| {
+            let points: Vec<Point> = positions.iter().map(|(i, t)| curves[*i].at(*t)).collect();
             image(&points, out);
         };
         Self { pieces: curves.len(), at: Box::new(at) }
@@ -48,15 +48,15 @@ impl<'a> Run<'a> {
         self.pieces
     }
 
-    pub fn at(&self, place: Place) -> Point {
+    pub fn at(&self, position: Position) -> Point {
         let mut out = [Point::ORIGIN];
-        (self.at)(&[place], &mut out);
+        (self.at)(&[position], &mut out);
         out[0]
     }
 
-    fn points(&self, places: &[Place]) -> Vec<Point> {
-        let mut out = vec![Point::ORIGIN; places.len()];
-        (self.at)(places, &mut out);
+    fn points(&self, positions: &[Position]) -> Vec<Point> {
+        let mut out = vec![Point::ORIGIN; positions.len()];
+        (self.at)(positions, &mut out);
         out
     }
 
@@ -64,84 +64,84 @@ impl<'a> Run<'a> {
     pub fn sampled(&self, n: usize, height: f64) -> Sampled<'_> {
         const MOST: usize = 40_000;
         let even = |i: usize| (0..=n).map(move |k| (i, k as f64 / n as f64));
-        let mut places: Vec<Place> = (0..self.pieces).flat_map(even).collect();
-        let mut points = self.points(&places);
-        let mut changed = vec![true; places.len()];
+        let mut positions: Vec<Position> = (0..self.pieces).flat_map(even).collect();
+        let mut points = self.points(&positions);
+        let mut changed = vec![true; positions.len()];
         for _ in 0..40 {
-            let steps = steps(&places, &points);
+            let steps = steps(&positions, &points);
             let halved: Vec<usize> = (0..steps.len())
                 .filter(|&k| {
-                    let same = places[k].0 == places[k + 1].0 && places[k + 1].1 - places[k].1 > 1e-13;
+                    let same = positions[k].0 == positions[k + 1].0 && positions[k + 1].1 - positions[k].1 > 1e-13;
                     let looked_at =
                         changed[k] || changed[k + 1] || (k > 0 && changed[k - 1]) || changed.get(k + 2) == Some(&true);
                     same && looked_at && bulge(&steps, k) > 0.1 * height
                 })
                 .collect();
-            if halved.is_empty() || places.len() > MOST {
+            if halved.is_empty() || positions.len() > MOST {
                 break;
             }
-            let middle = |k: usize| (places[k].0, 0.5 * (places[k].1 + places[k + 1].1));
-            let new: Vec<Place> = halved.iter().map(|k| middle(*k)).collect();
+            let middle = |k: usize| (positions[k].0, 0.5 * (positions[k].1 + positions[k + 1].1));
+            let new: Vec<Position> = halved.iter().map(|k| middle(*k)).collect();
             let images = self.points(&new);
             let mut next = 0;
-            let mut all = Vec::with_capacity(places.len() + new.len());
-            for k in 0..places.len() {
-                all.push((places[k], (points[k], false)));
+            let mut all = Vec::with_capacity(positions.len() + new.len());
+            for k in 0..positions.len() {
+                all.push((positions[k], (points[k], false)));
                 if halved.get(next) == Some(&k) {
                     all.push((new[next], (images[next], true)));
                     next += 1;
                 }
             }
-            (places, (points, changed)) = all.into_iter().unzip();
+            (positions, (points, changed)) = all.into_iter().unzip();
         }
-        let steps = steps(&places, &points);
-        let to = |k: usize| if places[k].0 == places[k + 1].0 { points[k + 1] } else { points[k] };
+        let steps = steps(&positions, &points);
+        let to = |k: usize| if positions[k].0 == positions[k + 1].0 { points[k + 1] } else { points[k] };
         let chords = Polygon::new((0..steps.len()).map(|k| [points[k], to(k)]).collect());
         let rooms: Vec<f64> = (0..steps.len()).map(|k| 2.0 * bulge(&steps, k)).collect();
         let room = rooms.iter().copied().fold(0.0, f64::max);
-        Sampled { run: self, places, points, chords, rooms, room }
+        Sampled { run: self, positions, points, chords, rooms, room }
     }
 }
 
-/// From each sample to the next of the same piece.
-fn steps(places: &[Place], points: &[Point]) -> Vec<Vec2> {
-    let step = |k: usize| if places[k].0 == places[k + 1].0 { points[k + 1] - points[k] } else { Vec2::ZERO };
+/// The steps from each sample to the next of the piece; zero from one piece to the next.
+fn steps(positions: &[Position], points: &[Point]) -> Vec<Vec2> {
+    let step = |k: usize| if positions[k].0 == positions[k + 1].0 { points[k + 1] - points[k] } else { Vec2::ZERO };
     (0..points.len().saturating_sub(1)).map(step).collect()
 }
 
-/// How far an arc may be from its chord: its height is an eighth of the chord times the turn to the next chord. The first and the last
-/// chord of a piece may hide a turn back, after which they are short.
+/// Estimates the distance of an arc from its chord: its height is an eighth of the chord times the turn to the next chord. The first and the
+/// last chord of a piece may hide a turn back, after which they are short.
 fn bulge(steps: &[Vec2], k: usize) -> f64 {
-    let own = steps[k];
+    let chord = steps[k];
     let [before, after] =
         [k.checked_sub(1), Some(k + 1)].map(|k| k.and_then(|k| steps.get(k)).copied().unwrap_or_default());
     let turn = |other: Vec2| {
-        let (sin, cos) = (own.cross(other).abs(), own.dot(other));
+        let (sin, cos) = (chord.cross(other).abs(), chord.dot(other));
         // The tangent of a small angle is hardly more than the angle.
         if sin < 0.2 * cos { sin / cos } else { sin.atan2(cos) }
     };
-    let hidden = |other: Vec2| if own.hypot() < 0.4 * other.hypot() { other.hypot() } else { 0.0 };
+    let hidden = |other: Vec2| if chord.hypot() < 0.4 * other.hypot() { other.hypot() } else { 0.0 };
     let at_an_end = before == Vec2::ZERO || after == Vec2::ZERO;
     let hidden = if at_an_end { hidden(before).max(hidden(after)) } else { 0.0 };
-    0.125 * (own.hypot() * turn(before).max(turn(after))).max(hidden)
+    0.125 * (chord.hypot() * turn(before).max(turn(after))).max(hidden)
 }
 
-/// A sampled curve: the samples and their places.
+/// The samples of a curve and their positions.
 pub struct Sampled<'a> {
     pub run: &'a Run<'a>,
-    pub places: Vec<Place>,
+    pub positions: Vec<Position>,
     pub points: Vec<Point>,
     /// The lines between consecutive samples of a piece.
     pub chords: Polygon,
-    /// How far the curve may be from each chord, generously, and the most of that.
+    /// Generous bounds on the distance of the curve from each chord, and the largest bound.
     rooms: Vec<f64>,
     room: f64,
 }
 
 impl Sampled<'_> {
-    /// Goes on from a chord to its neighbours as long as they are nearer to a point. Returns a distance that the curve has at most.
+    /// Goes on from a chord to its neighbours as long as they are nearer to a point. Returns an upper bound on the distance of the curve.
     fn walk(&self, p: Point, chord: &mut usize) -> f64 {
-        let most = |k: usize| self.chords.to(k, p) + self.rooms[k];
+        let most = |k: usize| self.chords.edge_distance(k, p) + self.rooms[k];
         let mut best = most(*chord);
         loop {
             let ahead = if *chord + 1 < self.rooms.len() { most(*chord + 1) } else { f64::INFINITY };
@@ -157,10 +157,10 @@ impl Sampled<'_> {
     }
 
     /// The distance of a point from the arc over a chord. Each round divides a bracket by nine and goes on with the nearest part and its
-    /// neighbours, so that the lines between the last places are within 1e-9 of the arc's height. At a jump, the line across it counts.
-    fn beside(&self, p: Point, k: usize) -> f64 {
+    /// neighbours, so that the lines between the last samples are within 1e-9 of the arc's height. At a jump, the line across it counts.
+    fn arc_distance(&self, p: Point, k: usize) -> f64 {
         const PARTS: usize = 9;
-        let ((i, mut from), (j, mut to)) = (self.places[k], self.places[k + 1]);
+        let ((i, mut from), (j, mut to)) = (self.positions[k], self.positions[k + 1]);
         let mut points = [Point::ORIGIN; PARTS + 1];
         (points[0], points[PARTS]) = (self.points[k], self.points[k + 1]);
         if i != j {
@@ -168,14 +168,14 @@ impl Sampled<'_> {
         }
         let mut best = f64::INFINITY;
         for _ in 0..10 {
-            let place = |m: usize| from + (to - from) * m as f64 / PARTS as f64;
-            let places: [Place; PARTS - 1] = std::array::from_fn(|m| (i, place(m + 1)));
-            (self.run.at)(&places, &mut points[1..PARTS]);
+            let position = |m: usize| from + (to - from) * m as f64 / PARTS as f64;
+            let positions: [Position; PARTS - 1] = std::array::from_fn(|m| (i, position(m + 1)));
+            (self.run.at)(&positions, &mut points[1..PARTS]);
             let parts: [f64; PARTS] = std::array::from_fn(|m| to_edge([points[m], points[m + 1]], p));
             let m = (1..PARTS).fold(0, |m, n| if parts[n] < parts[m] { n } else { m });
             best = parts[m];
             let bracket = [m.saturating_sub(1), (m + 2).min(PARTS)];
-            [from, to] = bracket.map(place);
+            [from, to] = bracket.map(position);
             [points[0], points[PARTS]] = bracket.map(|m| points[m]);
             if points[0].distance(points[PARTS]) <= 1e-5 * best {
                 break;
@@ -185,7 +185,7 @@ impl Sampled<'_> {
     }
 }
 
-/// A path as a polygon that is so close to it. Open subpaths stay open.
+/// Approximates a path by a polygon at a distance of at most `within`. Open subpaths stay open.
 pub fn flat(path: &dyn Curved, within: f64) -> Polygon {
     Run::of(&path.curves()).sampled(8, 10.0 * within).chords
 }
@@ -198,7 +198,7 @@ pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
         if p.is_nan() {
             return (f64::NAN, *p);
         }
-        // The nearest chord is near that of the last point, mostly, and else found anew.
+        // Mostly, the nearest chord is near the nearest chord of the last point.
         let mut most = near.as_mut().map_or(f64::INFINITY, |(s, k)| s.walk(*p, k));
         if most > 4.0 * last {
             for s in to {
@@ -219,7 +219,7 @@ pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
         if most <= worst.0 {
             break;
         }
-        let d = exactly(p, to, near, worst.0);
+        let d = exact_distance(p, to, near, worst.0);
         if d > worst.0 {
             worst = (d, p);
         }
@@ -229,13 +229,13 @@ pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
 
 type Chord<'a> = (&'a Sampled<'a>, usize);
 
-/// The distance of a point from curves, of which one chord may be the nearest. Below `enough` it need not be exact.
-fn exactly(p: Point, to: &[Sampled<'_>], near: Option<Chord<'_>>, enough: f64) -> f64 {
-    let mut best = near.map_or(f64::INFINITY, |(s, k)| s.beside(p, k));
+/// The distance of a point from curves, of which `near` may be the nearest chord. Below `enough` it need not be exact.
+fn exact_distance(p: Point, to: &[Sampled<'_>], near: Option<Chord<'_>>, enough: f64) -> f64 {
+    let mut best = near.map_or(f64::INFINITY, |(s, k)| s.arc_distance(p, k));
     for s in to {
         s.chords.search(p, best + s.room, |k, d| {
             if best > enough && d - s.rooms[k] < best {
-                best = best.min(s.beside(p, k));
+                best = best.min(s.arc_distance(p, k));
             }
             if best > enough { best + s.room } else { 0.0 }
         });
@@ -243,7 +243,7 @@ fn exactly(p: Point, to: &[Sampled<'_>], near: Option<Chord<'_>>, enough: f64) -
     best
 }
 
-/// The largest distance between two curves, in either direction, with the place that is so far away.
+/// The largest distance between two curves, in either direction, with the point that is so far away.
 pub fn apart(a: &Sampled<'_>, b: &Sampled<'_>) -> (f64, Point) {
     let (there, back) = (far(&a.points, from_ref(b)), far(&b.points, from_ref(a)));
     if there.0 > back.0 || there.0.is_nan() { there } else { back }

@@ -67,7 +67,7 @@ pub fn rendered(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     out
 }
 
-/// Renders at four times the size and averages. The renderer's own antialiasing has few levels, and an edge on the border of
+/// Renders at four times the size and averages. The renderer's antialiasing has few levels, and an edge on the border of
 /// two levels flips between them at the slightest change (the renderer's arcs are correct to a tenth of a unit).
 fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     const OVER: usize = 4;
@@ -89,14 +89,14 @@ fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
 /// A pixel differs if a channel is off by more than this.
 const VISIBLE: u8 = 16;
 
-/// Asserts that not more than a thousandth of the pixels differ.
+/// Asserts that at most a thousandth of the pixels differ.
 pub fn alike(what: &str, expected: &Pixmap, found: &Pixmap) {
     let d = difference(expected, found);
     assert!(d.painted > 0.0, "{what}: nothing to compare");
     assert!(d.share(VISIBLE) <= 0.001, "{what}: {:.3} % of pixels differ", d.share(VISIBLE) * 100.0);
 }
 
-/// Warps `svg` by a hidden affine map and compares with the renderer's own transform of the original.
+/// Warps `svg` by a hidden affine map and compares with the original as the renderer transforms it.
 pub fn check(what: &str, svg: &str, map: Affine, options: &WarpOptions) -> WarpedDocument {
     const SIZE: u32 = 300;
     let document = read(svg);
@@ -118,7 +118,7 @@ pub const FINE: u32 = 16;
 pub struct Gap {
     /// Mean difference of channels, of 255, over all pixels with any paint.
     pub mean: f64,
-    /// Fraction of these pixels that differ by more than 16 of 255.
+    /// Fraction of the pixels with any paint that differ by more than 16 of 255.
     pub share: f64,
 }
 
@@ -137,8 +137,8 @@ const OVER: u32 = 4;
 const FROM: f64 = -20.0;
 const SIDE: u32 = 140;
 
-/// The places whose images under [`Bend`] are the samples of the comparison, pixel by pixel. The inverse is a fixed-point
-/// iteration, which contracts by 0.2 · 0.32.
+/// The points whose images under [`Bend`] are the samples of the comparison, pixel by pixel. The inverse is a fixed-point iteration, which
+/// contracts by 0.2 · 0.32.
 fn sources() -> &'static [Point] {
     static ALL: OnceLock<Vec<Point>> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -161,7 +161,7 @@ fn sources() -> &'static [Point] {
 
 /// A drawing's picture bent by [`Bend`]: its rendering at four times the resolution, sampled through the inverse map. (The renderer
 /// rounds a pattern's tile to whole pixels, which moves the tiles apart. Tiles must therefore be whole at [`FINE`] pixels per unit.)
-fn bent(svg: &str) -> Arc<Pixmap> {
+fn warped_picture(svg: &str) -> Arc<Pixmap> {
     static KNOWN: Mutex<BTreeMap<String, Arc<Pixmap>>> = Mutex::new(BTreeMap::new());
     if let Some(known) = KNOWN.lock().unwrap().get(svg) {
         return Arc::clone(known);
@@ -194,7 +194,7 @@ fn bent(svg: &str) -> Arc<Pixmap> {
     out
 }
 
-/// From the units of a drawing to pixels of its visible area.
+/// Maps the units of a drawing to pixels of its visible area.
 fn window(scale: u32) -> Affine {
     Affine::scale(f64::from(scale)) * Affine::translate((-FROM, -FROM))
 }
@@ -203,7 +203,7 @@ fn window(scale: u32) -> Affine {
 pub fn gap(svg: &str, warped: &str) -> Gap {
     let tree = parse_tree(warped.as_bytes(), "warped", &options()).unwrap();
     let found = picture(&tree, SIDE * SCALE, window(SCALE) * read(svg).user_to_px().inverse());
-    let d = difference(&bent(svg), &found);
+    let d = difference(&warped_picture(svg), &found);
     assert!(d.painted * f64::from((SIDE * SCALE).pow(2)) > 1000.0, "nothing to compare");
     Gap { mean: d.mean / d.painted, share: d.share(VISIBLE) / d.painted }
 }

@@ -1,5 +1,5 @@
-//! What tests, benchmarks and fuzz targets measure with: distances both ways, painted areas, pictures. Nothing here shares code with what
-//! is measured.
+//! Measures for tests, benchmarks and fuzz targets: distances both ways, painted areas, pictures. They share no code with the measured
+//! libraries.
 
 pub mod curves;
 mod distance;
@@ -7,7 +7,7 @@ mod polygon;
 mod random;
 mod turns;
 
-pub use distance::{Image, Place, Run, Sampled, apart, far, flat};
+pub use distance::{Image, Position, Run, Sampled, apart, far, flat};
 pub use polygon::Polygon;
 pub use random::Random;
 pub use turns::{arriving, kink, largest_turn, leaving, turn};

@@ -204,8 +204,8 @@ impl Formula for Ripple {
     }
 }
 
-/// The distance between the image of a path and what was made of it, in either direction. Of each segment there are `n` samples, and as
-/// many of the result; more where they turn sharply for a distance of `tolerance`.
+/// The larger distance, in either direction, between the image of a path and the result. Each segment of the source has `n` samples, and
+/// the result about as many in total; more where they turn sharply for a distance of `tolerance`.
 pub fn distance(source: &dyn Curved, map: &dyn Map, result: &dyn Curved, n: usize, tolerance: f64) -> f64 {
     let (source, result) = (source.curves(), result.curves());
     let image = |points: &[Point], out: &mut [Point]| map.points(points, out);

@@ -1,4 +1,4 @@
-//! Painted areas as polygons, with strokes expanded by the renderer's own stroker.
+//! Painted areas as polygons, with strokes expanded by the renderer.
 
 use crate::polygon::Polygon;
 use kurbo::{CubicBez, ParamCurve as _, Point, QuadBez};
@@ -25,9 +25,8 @@ fn collect(g: &usvg::Group, out: &mut Vec<Vec<Point>>) {
     }
 }
 
-/// The outline of a stroke. The renderer's stroker takes what is shorter than 1/4096 for nothing and works to a quarter of a unit,
-/// so everything is enlarged; and it takes a cubic for a line if its middle is off by up to a 450th of its length, so curves are
-/// divided.
+/// The outline of a stroke. The renderer's stroker ignores lengths below 1/4096 and works to a quarter of a unit, so everything is
+/// enlarged. It also takes a cubic for a line if its middle is off by up to a 450th of its length, so curves are divided.
 fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
     const LARGE: f32 = 64.0;
     let scaled = |k: f32, path: Path| path.transform(Transform::from_scale(k, k)).unwrap();
@@ -42,7 +41,7 @@ fn stroked(path: &Path, stroke: &usvg::Stroke) -> Path {
     scaled(1.0 / LARGE, divided(&path).stroke(&style, 100.0).unwrap())
 }
 
-/// The same path with each curve in sixteen parts.
+/// Divides each curve of a path into sixteen parts.
 fn divided(path: &Path) -> Path {
     const PARTS: u32 = 16;
     let point = |p: resvg::tiny_skia::Point| Point::new(f64::from(p.x), f64::from(p.y));
@@ -82,7 +81,7 @@ fn divided(path: &Path) -> Path {
     out.finish().unwrap()
 }
 
-/// Points close enough for chords of images.
+/// Samples a path so finely that the images of its chords are close to the image of the path.
 fn flatten(path: &Path, out: &mut Vec<Vec<Point>>) {
     const MIN: f64 = 16.0;
     const LONGEST: f64 = 0.35;

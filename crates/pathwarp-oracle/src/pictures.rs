@@ -1,4 +1,4 @@
-//! How much two pictures differ.
+//! Differences of pictures.
 
 use kurbo::Rect;
 use resvg::tiny_skia::Pixmap;
@@ -56,12 +56,12 @@ pub fn on_white(mut picture: Pixmap) -> Pixmap {
     picture
 }
 
-/// Pixels that are painted in one picture and bare in the other, their neighbours being so, too.
+/// The number of pixels that are painted in one picture and bare in the other, as are all their neighbours.
 pub fn beyond_edges(a: &Pixmap, b: &Pixmap) -> usize {
     let (w, h) = (a.width() as usize, a.height() as usize);
     let alpha = |p: &Pixmap, x: usize, y: usize| p.data()[4 * (y * w + x) + 3];
-    let all = |p: &Pixmap, x: usize, y: usize, of: fn(u8) -> bool| {
-        (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| of(alpha(p, x, y))))
+    let all = |p: &Pixmap, x: usize, y: usize, holds: fn(u8) -> bool| {
+        (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| holds(alpha(p, x, y))))
     };
     let off = |x: usize, y: usize| {
         let full: fn(u8) -> bool = |v| v > 127;

@@ -1,4 +1,4 @@
-//! Edges in a tree of boxes: how far a point is from them, and how often they wind around it.
+//! Edges in a tree of boxes, for distances from points and winding numbers.
 
 use kurbo::{Point, Rect, Vec2};
 
@@ -8,7 +8,7 @@ const LEAF: usize = 4;
 /// Edges. Where they form closed rings, they bound an area by the nonzero rule.
 pub struct Polygon {
     pub edges: Vec<[Point; 2]>,
-    /// The box of node `i` holds those of `2i` and `2i + 1`; the root is 1, and the last half are leaves.
+    /// The box of node `i` holds the boxes of nodes `2i` and `2i + 1`; the root is 1, and the last half are leaves.
     boxes: Vec<Rect>,
 }
 
@@ -104,12 +104,12 @@ impl Polygon {
         count
     }
 
-    /// The polygon whose corners are the images of these.
-    pub fn bent(&self, image: impl Fn(Point) -> Point) -> Self {
+    /// The polygon whose corners are the images of these corners.
+    pub fn mapped(&self, image: impl Fn(Point) -> Point) -> Self {
         Self::new(self.edges.iter().map(|e| e.map(&image)).collect())
     }
 
-    /// Shows `visit` all edges with their distances from a point that may be nearer than `within`, which it returns anew every time.
+    /// Calls `visit` with each edge that may be nearer to a point than `within`, and its distance. `visit` returns a new `within`.
     pub(crate) fn search(&self, p: Point, mut within: f64, mut visit: impl FnMut(usize, f64) -> f64) {
         let leaves = self.boxes.len() / 2;
         let far = |node: usize| {
@@ -132,13 +132,13 @@ impl Polygon {
             }
             let from = (node - leaves) * LEAF;
             for i in from..(from + LEAF).min(self.edges.len()) {
-                within = visit(i, self.to(i, p));
+                within = visit(i, self.edge_distance(i, p));
             }
         }
     }
 
     /// The distance of a point from one of the edges.
-    pub(crate) fn to(&self, edge: usize, p: Point) -> f64 {
+    pub(crate) fn edge_distance(&self, edge: usize, p: Point) -> f64 {
         to_edge(self.edges[edge], p)
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers that look random, and are the same on every machine.
+//! Pseudorandom numbers that are equal on every machine.
 
 /// A generator: xorshift64* (Vigna, An experimental exploration of Marsaglia's xorshift generators, scrambled, 2016).
 pub struct Random(u64);
@@ -15,7 +15,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
     }
 
-    /// One of the numbers below `n`.
+    /// A number below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }

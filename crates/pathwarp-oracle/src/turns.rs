@@ -1,4 +1,4 @@
-//! How sharply curves turn at their joints.
+//! Turns of curves at their joints.
 
 use crate::curves::Curve;
 use crate::distance::Sampled;
@@ -24,11 +24,12 @@ pub fn arriving(c: &CubicBez) -> Vec2 {
     [c.p2, c.p1, c.p0].iter().map(|p| c.p3 - *p).find(|v| v.hypot() > 1e-9).unwrap_or_default()
 }
 
-/// The sharpest turn, in degrees, at a joint of what was written where the exact image is smooth.
+/// The sharpest turn, in degrees, at a joint of a result where the exact image is smooth, and its position. The result may be
+/// `room` away from the image.
 pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64)) -> (f64, Point) {
     /// Share of a curve over which directions are taken.
     const STEP: f64 = 1e-4;
-    // What is too short to be seen has no direction.
+    // Curves that are too short to be seen have no direction.
     let written: Vec<&Curve> = written.iter().filter(|c| c.at(0.0).distance(c.at(0.5)) > 1e-3 * room).collect();
     let (n, m) = (written.len(), exact.run.pieces());
     let is_short = |i: usize| {
@@ -48,10 +49,10 @@ pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64))
         if turn.abs().to_degrees() <= 0.5 {
             continue;
         }
-        // The places of the source that come near the joint: where the path meets itself, several.
+        // The samples of the exact image near the joint. There may be several parts if the path meets itself.
         let reach = room + exact.points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
-        let near = (0..exact.points.len()).filter(|k| exact.points[*k].distance(p) <= reach).map(|k| exact.places[k]);
-        let near = near.filter(|(at, _)| !short[*at]);
+        let is_near = |k: &usize| exact.points[*k].distance(p) <= reach && !short[exact.positions[*k].0];
+        let near = (0..exact.points.len()).filter(is_near).map(|k| exact.positions[k]);
         let mut corner = 0.0_f64;
         for (at, t) in near {
             // The image just before and after, across a joint of the source.
@@ -70,9 +71,9 @@ pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64))
                 (after.0, after.1 + beside),
                 (after.0, after.1 + beside + STEP),
             ]
-            .map(|place| exact.run.at(place));
+            .map(|position| exact.run.at(position));
             let (u, v) = (q[1] - q[0], q[3] - q[2]);
-            // At a tear the image leaves for the other side, whatever the directions.
+            // At a tear the image jumps, whatever the directions.
             let torn = q[1].distance(q[2]) > 10.0 * (2.0 * beside / STEP) * u.hypot().max(v.hypot());
             let turned = if torn || u == Vec2::ZERO || v == Vec2::ZERO {
                 std::f64::consts::PI

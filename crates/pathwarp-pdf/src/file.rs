@@ -19,13 +19,13 @@ pub(crate) struct File<'a> {
     pub(crate) options: &'a Options<'a>,
     /// Number of groups that became pictures.
     pub(crate) pictures: usize,
-    /// Number of these with fewer pixels than requested.
+    /// Number of these pictures that have fewer pixels than requested.
     pub(crate) coarser: usize,
     /// Bounds the work on pictures.
     pub(crate) budget: Budget,
     /// The first error about a picture. Since the file will be dropped, later pictures are not drawn.
     pub(crate) failed: Option<Error>,
-    /// The objects of embedded pictures, by their data and whether they are smooth.
+    /// The objects of embedded pictures, by their data, with `true` if they are interpolated.
     pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
     last: i32,
     states: HashMap<State, Ref>,
@@ -64,7 +64,7 @@ impl State {
         self
     }
 
-    /// Inks are printed over what lies below.
+    /// Prints inks over the paint below.
     pub(crate) fn overprint(mut self) -> Self {
         self.overprint = true;
         self
@@ -75,7 +75,7 @@ impl State {
         self
     }
 
-    /// Whether the state changes nothing.
+    /// Returns `true` if the state changes nothing.
     pub(crate) fn is_plain(self) -> bool {
         self == Self::default()
     }
@@ -147,8 +147,8 @@ impl<'a> File<'a> {
         at
     }
 
-    /// Returns the colour space of an ink, adding it if it is new. A device without that ink shows it as magenta, or if it stands for all
-    /// plates, as all of them.
+    /// Returns the colour space of an ink, adding it if it is new. A device without that ink shows it as magenta, or `All` as all process
+    /// colours.
     pub(crate) fn ink(&mut self, name: &str) -> Ref {
         if let Some(known) = self.inks.get(name) {
             return *known;

@@ -24,7 +24,7 @@ const EDGE: f64 = 1e-4;
 
 /// A gradient over the range of offsets that covers the painted area.
 pub(crate) struct Gradient {
-    /// To the user space of the painted path.
+    /// Maps the gradient's coordinates to the user space of the painted path.
     transform: Affine,
     shape: Shape,
     /// Offset over the range from 0 to 1, colour and opacity.
@@ -46,7 +46,7 @@ impl Gradient {
     }
 
     /// Reads the gradient of a paint, for painting `area`. Returns `None` for other paints.
-    pub(crate) fn of(paint: &Paint, area: Rect) -> Option<Self> {
+    pub(crate) fn from_paint(paint: &Paint, area: Rect) -> Option<Self> {
         let point = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
         match paint {
             Paint::LinearGradient(g) => {
@@ -80,14 +80,14 @@ impl Gradient {
         }
     }
 
-    /// Whether any colour is translucent.
+    /// Returns `true` if any colour is translucent.
     pub(crate) fn is_translucent(&self) -> bool {
         let in_mesh = || matches!(&self.shape, Shape::Mesh(all) if all.iter().any(|p| p.1.iter().any(|c| c[3] < 1.0)));
         self.stops.iter().any(|(_, _, opacity)| *opacity < 1.0) || in_mesh()
     }
 
-    /// Adds the colours as a pattern. `to_start` maps the user space of the painted path to that at the start of the content
-    /// stream.
+    /// Adds the colours as a pattern. `to_start` maps the user space of the painted path to the coordinates at the start of the
+    /// content stream.
     pub(crate) fn colors(&self, file: &mut File<'_>, to_start: Affine) -> Ref {
         if let Shape::Mesh(patches) = &self.shape {
             return mesh(file, to_start, patches, 0..3, Name(b"DeviceRGB"));
@@ -149,7 +149,7 @@ fn mesh(
     let all = || patches.iter().flat_map(|p| p.0);
     let bounds = all().map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or_default();
     // Coordinates are counted from the corner, in whole numbers of 32 bits.
-    let share = |v: f64, size: f64| if size > 0.0 { (v / size * f64::from(u32::MAX)).round() as u32 } else { 0 };
+    let share = |v: f64, size: f64| if size > 0.0 { ((v / size) * f64::from(u32::MAX)).round() as u32 } else { 0 };
     let mut data = Vec::new();
     for (points, colors) in patches {
         // This patch shares no side with the one before.
@@ -185,7 +185,7 @@ fn corners(transform: Affine, area: Rect) -> Option<[Point; 4]> {
     back.is_finite().then(|| all.map(|p| back * Point::from(p)))
 }
 
-/// The whole periods of a repeating line that cover these points.
+/// The range of whole periods of a repeating axis from `p` to `q` that covers these points.
 fn periods_of_line(p: Point, q: Point, points: [Point; 4]) -> (i32, i32) {
     let along: Vec2 = q - p;
     let at = points.map(|c| (c - p).dot(along) / along.hypot2());
@@ -211,11 +211,11 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
     let mut out = Vec::new();
     let span = f64::from(last - first);
     for k in first..last {
-        let place = |at: f64| (f64::from(k - first) + at) / span;
+        let offset = |at: f64| (f64::from(k - first) + at) / span;
         if spread == SpreadMethod::Reflect && k.rem_euclid(2) == 1 {
-            out.extend(period.iter().rev().map(|(at, color, opacity)| (place(1.0 - at), *color, *opacity)));
+            out.extend(period.iter().rev().map(|(at, color, opacity)| (offset(1.0 - at), *color, *opacity)));
         } else {
-            out.extend(period.iter().map(|(at, color, opacity)| (place(*at), *color, *opacity)));
+            out.extend(period.iter().map(|(at, color, opacity)| (offset(*at), *color, *opacity)));
         }
     }
     out

@@ -11,29 +11,29 @@ use resvg::tiny_skia::Transform;
 use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, MaskType, Node};
 
 /// Draws a group.
-pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
-    let transform = affine(g.transform());
-    let is_plain = !g.should_isolate();
+pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+    let transform = affine(group.transform());
+    let is_plain = !group.should_isolate();
     if is_plain && transform == Affine::IDENTITY {
-        children(file, stream, g);
+        children(file, stream, group);
         return;
     }
     stream.save();
     stream.transform(transform);
     if is_plain {
-        children(file, stream, g);
-    } else if g.filters().is_empty() {
-        isolated(file, stream, g);
+        children(file, stream, group);
+    } else if group.filters().is_empty() {
+        isolated(file, stream, group);
     } else {
-        filtered(file, stream, g);
+        filtered(file, stream, group);
     }
     stream.restore();
 }
 
-fn children(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
-    for child in g.children() {
+fn children(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+    for child in group.children() {
         match child {
-            Node::Group(g) => draw(file, stream, g),
+            Node::Group(group) => draw(file, stream, group),
             Node::Path(p) => paint::draw(file, stream, p),
             Node::Image(i) => image::draw(file, stream, i),
             Node::Text(t) => draw(file, stream, t.flattened()),
@@ -41,21 +41,21 @@ fn children(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
     }
 }
 
-/// Draws an isolated group, in its own coordinates.
-fn isolated(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
-    let bounds = roomy(rect(g.layer_bounding_box().to_rect()));
+/// Draws an isolated group, in the coordinates of its content.
+fn isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+    let bounds = roomy(rect(group.layer_bounding_box().to_rect()));
     let mut masks = Vec::new();
-    if let Some(clip) = g.clip_path() {
+    if let Some(clip) = group.clip_path() {
         masks.extend(apply(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
     }
-    masks.extend(g.mask().map(|m| mask(file, m, stream.shift)));
-    let state = State::default().opacity(g.opacity().get()).blend(g.blend_mode());
+    masks.extend(group.mask().map(|m| mask(file, m, stream.shift)));
+    let state = State::default().opacity(group.opacity().get()).blend(group.blend_mode());
     // A clip path alone does not need a group.
-    if masks.is_empty() && state.is_plain() && !g.isolate() {
-        children(file, stream, g);
+    if masks.is_empty() && state.is_plain() && !group.isolate() {
+        children(file, stream, group);
         return;
     }
-    let mut content = file.group(bounds, stream.shift, |file, stream| children(file, stream, g));
+    let mut content = file.group(bounds, stream.shift, |file, stream| children(file, stream, group));
     while masks.len() > 1 {
         let Some((kind, mask)) = masks.pop() else { break };
         content = file.group(bounds, stream.shift, |file, stream| {
@@ -94,11 +94,11 @@ fn mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskKind, Ref) {
 }
 
 /// Draws a group with a filter as a picture.
-fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
+fn filtered(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     if file.failed.is_some() {
         return;
     }
-    let drawn = of_group(file, g).and_then(|drawn| {
+    let drawn = rendered(file, group).and_then(|drawn| {
         let Some(picture) = drawn else { return Ok(None) };
         let object = image::add(file, &picture.pixmap, true)?;
         Ok(Some((object, picture.area)))
@@ -112,11 +112,11 @@ fn filtered(file: &mut File<'_>, stream: &mut Stream, g: &Group) {
         }
     };
     file.pictures += 1;
-    if g.blend_mode() != BlendMode::Normal {
-        let state = file.state(State::default().blend(g.blend_mode()));
+    if group.blend_mode() != BlendMode::Normal {
+        let state = file.state(State::default().blend(group.blend_mode()));
         stream.state(state);
     }
-    image::place(stream, object, area);
+    image::draw_over(stream, object, area);
 }
 
 /// Restricts drawing to a clip path. If outlines cannot express it, returns the group of a mask that does.
@@ -142,16 +142,16 @@ fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect
 
 /// Expresses a clip path as an intersection of outlines. Returns `None` if that is impossible.
 fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>> {
-    let mut own = Vec::new();
-    collect(file, clip.root(), affine(clip.transform()), &mut own)?;
-    let rule = own.first().map_or(FillRule::NonZero, |(_, rule)| *rule);
-    let boxes: Vec<Rect> = own.iter().map(|(path, _)| path.bounding_box()).collect();
+    let mut content = Vec::new();
+    collect(file, clip.root(), affine(clip.transform()), &mut content)?;
+    let rule = content.first().map_or(FillRule::NonZero, |(_, rule)| *rule);
+    let boxes: Vec<Rect> = content.iter().map(|(path, _)| path.bounding_box()).collect();
     // The winding numbers of outlines that overlap would add up.
-    if own.iter().any(|(_, r)| *r != rule) || !are_apart(&boxes) {
+    if content.iter().any(|(_, r)| *r != rule) || !are_apart(&boxes) {
         return None;
     }
     let mut path = BezPath::new();
-    own.iter().for_each(|(p, _)| path.extend(p.iter()));
+    content.iter().for_each(|(p, _)| path.extend(p.iter()));
     if path.elements().is_empty() {
         // An empty clip path hides everything, but an empty outline would not clip at all.
         path = Rect::ZERO.to_path(1.0);
@@ -161,7 +161,7 @@ fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>
     Some(out)
 }
 
-/// Whether no two boxes overlap. Returns `false` for many boxes, since comparing all pairs would take long.
+/// Returns `true` if no two boxes overlap; `false` for many boxes, since comparing all pairs would take long.
 fn are_apart(boxes: &[Rect]) -> bool {
     const MAX_BOXES: usize = 256;
     let overlap = |a: &Rect, b: &Rect| a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
@@ -169,11 +169,11 @@ fn are_apart(boxes: &[Rect]) -> bool {
 }
 
 /// Collects the outlines of a clip path's content. Returns `None` if a part of it is clipped in turn.
-fn collect(file: &File<'_>, g: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
-    for child in g.children() {
+fn collect(file: &File<'_>, group: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
+    for child in group.children() {
         match child {
-            Node::Group(g) if g.clip_path().is_some() => return None,
-            Node::Group(g) => collect(file, g, to_user * affine(g.transform()), out)?,
+            Node::Group(group) if group.clip_path().is_some() => return None,
+            Node::Group(group) => collect(file, group, to_user * affine(group.transform()), out)?,
             Node::Text(t) => collect(file, t.flattened(), to_user * affine(t.flattened().transform()), out)?,
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
@@ -187,10 +187,10 @@ fn collect(file: &File<'_>, g: &Group, to_user: Affine, out: &mut Vec<(BezPath, 
 }
 
 /// Fills the content of a clip path with the current colour.
-fn silhouette(file: &mut File<'_>, stream: &mut Stream, g: &Group, bounds: Rect) {
-    for child in g.children() {
+fn silhouette(file: &mut File<'_>, stream: &mut Stream, group: &Group, bounds: Rect) {
+    for child in group.children() {
         let group = match child {
-            Node::Group(g) => &**g,
+            Node::Group(group) => &**group,
             Node::Text(t) => t.flattened(),
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
@@ -221,7 +221,7 @@ fn silhouette(file: &mut File<'_>, stream: &mut Stream, g: &Group, bounds: Rect)
 
 const PX_PER_INCH: f64 = 96.0;
 
-/// Limit on halvings of a picture's sides to stay within the limits, from print to a thumbnail.
+/// Largest number of halvings of a picture's sides to stay within the limits.
 const MAX_HALVINGS: i32 = 4;
 
 /// A picture in the coordinates of a group.
@@ -232,26 +232,26 @@ struct Picture {
 
 /// Renders a group with its filters, clip path, mask and opacity, with fewer pixels if the limits do not allow the resolution.
 /// Returns `None` if it shows nothing.
-fn of_group(file: &mut File<'_>, g: &Group) -> Result<Option<Picture>, Error> {
-    let area = rect(g.layer_bounding_box().to_rect());
+fn rendered(file: &mut File<'_>, group: &Group) -> Result<Option<Picture>, Error> {
+    let area = rect(group.layer_bounding_box().to_rect());
     let dpi = file.options.picture_dpi.unwrap_or(PRINT);
-    let wanted = affine(g.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
+    let wanted = affine(group.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
     // The renderer moves the picture's corner to the origin and applies the group's transform; undo both.
-    let back = affine(g.transform()).inverse();
+    let back = affine(group.transform()).inverse();
     if !back.is_finite() || !wanted.is_finite() {
         return Ok(None);
     }
-    let moved = g.abs_layer_bounding_box();
+    let layer = group.abs_layer_bounding_box();
     let to_area = Affine::translate(-area.origin().to_vec2())
         * back
-        * Affine::translate((f64::from(moved.x()), f64::from(moved.y())));
+        * Affine::translate((f64::from(layer.x()), f64::from(layer.y())));
     let mut halvings = 0;
     loop {
         let scale = wanted * 0.5_f64.powi(halvings);
         let size = [area.width(), area.height()].map(|v| (v * scale).ceil().max(1.0));
         let to_pixels = Affine::scale_non_uniform(size[0] / area.width(), size[1] / area.height()) * to_area;
         let [a, b, c, d, e, f] = to_pixels.as_coeffs().map(|v| v as f32);
-        match render_group(g, Transform::from_row(a, b, c, d, e, f), size, &file.budget) {
+        match render_group(group, Transform::from_row(a, b, c, d, e, f), size, &file.budget) {
             Err(Error::TooLarge { .. } | Error::TooMuch(_)) if halvings < MAX_HALVINGS => halvings += 1,
             Err(e) => return Err(e),
             Ok(drawn) => {

@@ -35,7 +35,7 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
         }
     };
     if let Some(object) = object {
-        place(stream, object, area);
+        draw_over(stream, object, area);
     }
 }
 
@@ -51,18 +51,18 @@ fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Re
 }
 
 /// Draws a bitmap over an area.
-pub(crate) fn place(stream: &mut Stream, object: Ref, area: Rect) {
+pub(crate) fn draw_over(stream: &mut Stream, object: Ref, area: Rect) {
     // A bitmap fills the unit square, with its first row on top.
     let unit = Affine::new([area.width(), 0.0, 0.0, -area.height(), area.x0, area.y1]);
-    stream.placed(object, unit);
+    stream.object_at(object, unit);
 }
 
-/// Adds the pixels of a picture. One that cannot be decoded is not drawn, as in browsers; one that is too large is an error.
+/// Adds the pixels of a picture. If it cannot be decoded, it is not drawn, as in browsers; if it is too large, that is an error.
 fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     if file.failed.is_some() {
         return None;
     }
-    let added = count(file, header_size(data).ok()?, DECODING)
+    let added = spend(file, header_size(data).ok()?, DECODING)
         .and_then(|()| Picture::read_stored_within(data, &file.options.limits.for_input(data.len())))
         .and_then(|picture| add(file, &picture.pixmap, smooth));
     match added {
@@ -79,14 +79,14 @@ const DECODING: f64 = 4.0;
 /// Work of compressing a pixel, in pixels painted.
 const COMPRESSING: f64 = 20.0;
 
-fn count(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
+fn spend(file: &File<'_>, (width, height): (u32, u32), work: f64) -> Result<(), Error> {
     Ok(file.budget.spend(cost::PIXEL * work * f64::from(width) * f64::from(height))?)
 }
 
 /// Adds a bitmap, with its transparency if it has any.
 pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<Ref, Error> {
     let (width, height) = (pixmap.width(), pixmap.height());
-    count(file, (width, height), COMPRESSING)?;
+    spend(file, (width, height), COMPRESSING)?;
     let mut colors = Vec::with_capacity(pixmap.pixels().len() * 3);
     let mut opacities = Vec::with_capacity(pixmap.pixels().len());
     for p in pixmap.pixels() {
@@ -113,7 +113,7 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
 
 /// Adds a JPEG as it is, if PDF programs show it as browsers do, which takes one or three components of 8 bits.
 fn jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
-    let frame = JpegFrame::of(data)?;
+    let frame = JpegFrame::find(data)?;
     let space = match frame.components {
         1 => Name(b"DeviceGray"),
         3 => Name(b"DeviceRGB"),
@@ -137,7 +137,7 @@ struct JpegFrame {
 
 impl JpegFrame {
     /// Finds a frame of 8 bits in a mode that PDF allows: baseline, extended or progressive.
-    fn of(data: &[u8]) -> Option<Self> {
+    fn find(data: &[u8]) -> Option<Self> {
         let mut rest = data.strip_prefix(b"\xff\xd8")?;
         loop {
             let &[0xff, marker, high, low, ..] = rest else { return None };

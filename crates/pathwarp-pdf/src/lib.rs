@@ -1,6 +1,6 @@
 //! Writes a resolved SVG drawing as a PDF of one page.
 //!
-//! Shapes, strokes, gradients, patterns, clip paths, masks, opacity and blend modes become the PDF's own. Letters are written as
+//! Shapes, strokes, gradients, patterns, clip paths, masks, opacity and blend modes become their counterparts in PDF. Letters are written as
 //! outlines, and JPEG images byte for byte. Only groups with filters become pictures, as PDF has no filters. The page has the physical
 //! size of the drawing: 1 px is ¾ pt.
 //!
@@ -43,14 +43,14 @@ pub struct Written {
     pub bytes: Vec<u8>,
     /// Number of groups that became pictures because of a filter.
     pub pictures: usize,
-    /// Number of these with fewer pixels than requested, to stay within the limits.
+    /// Number of these pictures that have fewer pixels than requested, to stay within the limits.
     pub coarser: usize,
 }
 
 /// Writes a drawing as a PDF of one page.
 ///
 /// # Errors
-/// Its pictures exceed the limits, or the renderer fails on a filter.
+/// [`Error::TooLarge`] and [`Error::TooMuch`] when its pictures exceed the limits; other variants when the renderer fails on a filter.
 pub fn write(tree: &usvg::Tree, options: &Options<'_>) -> Result<Written, Error> {
     let mut file = File::new(options);
     let [catalog, pages, page, info, content] = [(); 5].map(|()| file.new_ref());

@@ -23,10 +23,10 @@ struct Use<'a> {
 fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw: impl FnOnce(&mut Stream)) {
     let area = roomy(rect(painted.path.stroke_bounding_box()));
     let mesh = (file.options.mesh)(painted.paint, rect(painted.path.bounding_box()));
-    let gradient = mesh.map(Gradient::mesh).or_else(|| Gradient::of(painted.paint, area));
+    let gradient = mesh.map(Gradient::mesh).or_else(|| Gradient::from_paint(painted.paint, area));
     let mut state = State::default().opacity(painted.opacity);
     if let Some(gradient) = gradient.as_ref().filter(|g| g.is_translucent()) {
-        // The same gradient in shades of grey serves as a mask.
+        // The opacities as shades of grey serve as a mask.
         let group = file.group(area, stream.shift, |file, stream| {
             let shift = stream.shift;
             let grey = gradient.opacities(file, stream.to_start);
@@ -69,7 +69,7 @@ fn with_paint(file: &mut File<'_>, stream: &mut Stream, painted: &Use<'_>, draw:
     }
 }
 
-/// The exact outline of a path, if there is one, or else usvg's.
+/// The exact outline of a path, or else the outline in usvg.
 pub(crate) fn outline(file: &File<'_>, p: &Path) -> BezPath {
     (file.options.exact)(p).unwrap_or_else(|| from_usvg(p.data()))
 }
@@ -153,7 +153,7 @@ fn pen(stream: &mut Stream, stroke: &Stroke) {
 
 /// Gives lines of no length a minute length, since SVG draws their square caps and PDF does not.
 fn with_dots(outline: &BezPath, width: f32) -> BezPath {
-    /// As a fraction of the width.
+    /// The length as a fraction of the width.
     const MINUTE: f64 = 1e-4;
     let elements = outline.elements();
     let starts = |i: usize| elements.get(i).is_none_or(|e| matches!(e, PathEl::MoveTo(_)));
@@ -175,7 +175,7 @@ fn offset(dashes: &[f32], offset: f32) -> f32 {
     if period > 0.0 { offset.rem_euclid(period) } else { 0.0 }
 }
 
-/// Adds a pattern. `to_start` maps the user space of the painted path to that at the start of the content stream.
+/// Adds a pattern. `to_start` maps the user space of the painted path to the coordinates at the start of the content stream.
 fn add_pattern(file: &mut File<'_>, pattern: &usvg::Pattern, to_start: Affine) -> Ref {
     let mut stream = Stream::new();
     group::draw(file, &mut stream, pattern.root());

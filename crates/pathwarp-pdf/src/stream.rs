@@ -32,7 +32,7 @@ pub(crate) struct Used(BTreeSet<(Kind, i32)>);
 pub(crate) struct Stream {
     pub(crate) content: Content,
     used: Used,
-    /// From the current coordinates to those at the start of the stream, to which patterns refer.
+    /// Maps the current coordinates to the coordinates at the start of the stream, to which patterns refer.
     pub(crate) to_start: Affine,
     /// Subtracted from the current coordinates before they are written, since the single precision of PDF is too coarse for maps in
     /// metres. Zero unless the page's corner is far away.
@@ -74,7 +74,7 @@ impl Stream {
     }
 
     /// Draws an object that fills the unit square, transformed by `unit`.
-    pub(crate) fn placed(&mut self, object: Ref, unit: Affine) {
+    pub(crate) fn object_at(&mut self, object: Ref, unit: Affine) {
         self.content.save_state();
         self.content.transform(matrix(Affine::translate(-self.shift) * unit));
         self.object(object);
@@ -123,7 +123,7 @@ impl Stream {
         }
     }
 
-    /// Sets all of an ink as the paint of strokes.
+    /// Sets an ink at its full tint as the paint of strokes.
     pub(crate) fn ink(&mut self, space: Ref) {
         let name = self.used.name(Kind::Ink, space);
         let space = ColorSpaceOperand::Named(Name(name.as_bytes()));
@@ -211,7 +211,7 @@ fn write(out: &mut Content, path: &BezPath) {
     }
 }
 
-/// Whether the outline has an area to fill.
+/// Returns `true` if the outline has an area to fill.
 pub(crate) fn has_area(path: &BezPath) -> bool {
     let r = path.bounding_box();
     r.width() > 0.0 && r.height() > 0.0
@@ -241,7 +241,7 @@ pub(crate) fn pdf_rect(r: Rect) -> pdf_writer::Rect {
 
 /// Inflates a rectangle to make up for rounding and antialiasing.
 pub(crate) fn roomy(r: Rect) -> Rect {
-    /// A fraction of the size, and a pixel.
+    /// The margin as a fraction of the size, and in pixels.
     const MARGIN: (f64, f64) = (0.01, 1.0);
     r.inflate(MARGIN.0 * r.width() + MARGIN.1, MARGIN.0 * r.height() + MARGIN.1)
 }

@@ -43,135 +43,135 @@ impl Value {
 }
 
 /// Reads a descriptor: its name and class, then its items.
-pub(crate) fn read(b: &mut ByteReader<'_>) -> Result<Items, Error> {
-    descriptor(b, 0)
+pub(crate) fn read(input: &mut ByteReader<'_>) -> Result<Items, Error> {
+    descriptor(input, 0)
 }
 
-fn descriptor(b: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
+fn descriptor(input: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
     if depth > MAX_DEPTH {
-        return Err(b.error(format!("descriptors are nested more than {MAX_DEPTH} deep")));
+        return Err(input.error(format!("descriptors are nested more than {MAX_DEPTH} deep")));
     }
-    text(b)?;
-    id(b)?;
-    let count = counted(b)?;
+    text(input)?;
+    id(input)?;
+    let count = count(input)?;
     let mut out = Items::new();
     for _ in 0..count {
-        let key = id(b)?;
-        let kind = b.tag()?;
-        out.push((key, value(b, kind, depth)?));
+        let key = id(input)?;
+        let kind = input.tag()?;
+        out.push((key, value(input, kind, depth)?));
     }
     Ok(out)
 }
 
 /// Reads a number of elements that take at least a byte each.
-fn counted(b: &mut ByteReader<'_>) -> Result<usize, Error> {
-    let n = b.u32()? as usize;
-    if n > b.left() { Err(b.error(format!("{n} elements do not fit into the bytes left"))) } else { Ok(n) }
+fn count(input: &mut ByteReader<'_>) -> Result<usize, Error> {
+    let n = input.u32()? as usize;
+    if n > input.left() { Err(input.error(format!("{n} elements do not fit into the bytes left"))) } else { Ok(n) }
 }
 
 /// Reads UTF-16 with its length, without a final zero.
-pub(crate) fn text(b: &mut ByteReader<'_>) -> Result<String, Error> {
-    let n = counted(b)?;
-    let bytes = b.take(2 * n)?;
+pub(crate) fn text(input: &mut ByteReader<'_>) -> Result<String, Error> {
+    let n = count(input)?;
+    let bytes = input.take(2 * n)?;
     let units: Vec<u16> = bytes.chunks_exact(2).map(|c| u16::from_be_bytes([c[0], c[1]])).collect();
     Ok(String::from_utf16_lossy(&units).trim_end_matches('\0').to_owned())
 }
 
 /// Reads a key: four bytes if its length word is zero, else that many bytes.
-fn id(b: &mut ByteReader<'_>) -> Result<String, Error> {
-    let n = counted(b)?;
-    let bytes = b.take(if n == 0 { 4 } else { n })?;
+fn id(input: &mut ByteReader<'_>) -> Result<String, Error> {
+    let n = count(input)?;
+    let bytes = input.take(if n == 0 { 4 } else { n })?;
     Ok(String::from_utf8_lossy(bytes).trim_end().to_owned())
 }
 
-fn doubles(b: &mut ByteReader<'_>) -> Result<Vec<f64>, Error> {
-    let n = counted(b)?;
-    let mut inside = b.window(8 * n)?;
+fn doubles(input: &mut ByteReader<'_>) -> Result<Vec<f64>, Error> {
+    let n = count(input)?;
+    let mut inside = input.window(8 * n)?;
     (0..n).map(|_| inside.f64()).collect()
 }
 
-fn value(b: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error> {
+fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error> {
     Ok(match &kind {
-        b"doub" => Value::Number(b.f64()?),
+        b"doub" => Value::Number(input.f64()?),
         b"UntF" => {
-            b.tag()?;
-            Value::Number(b.f64()?)
+            input.tag()?;
+            Value::Number(input.f64()?)
         }
         b"UnFl" => {
-            b.tag()?;
-            Value::Numbers(doubles(b)?)
+            input.tag()?;
+            Value::Numbers(doubles(input)?)
         }
-        b"long" => Value::Number(f64::from(b.i32()?)),
+        b"long" => Value::Number(f64::from(input.i32()?)),
         b"comp" => {
-            b.take(8)?;
+            input.take(8)?;
             Value::Other
         }
-        b"bool" => Value::Number(f64::from(b.u8()?)),
+        b"bool" => Value::Number(f64::from(input.u8()?)),
         b"enum" => {
-            id(b)?;
-            Value::Name(id(b)?)
+            id(input)?;
+            Value::Name(id(input)?)
         }
-        b"TEXT" => Value::Name(text(b)?),
-        b"Objc" | b"GlbO" => Value::Items(descriptor(b, depth + 1)?),
-        b"ObAr" => Value::Items(array(b, depth + 1)?),
+        b"TEXT" => Value::Name(text(input)?),
+        b"Objc" | b"GlbO" => Value::Items(descriptor(input, depth + 1)?),
+        b"ObAr" => Value::Items(array(input, depth + 1)?),
         b"VlLs" => {
             if depth > MAX_DEPTH {
-                return Err(b.error(format!("lists are nested more than {MAX_DEPTH} deep")));
+                return Err(input.error(format!("lists are nested more than {MAX_DEPTH} deep")));
             }
-            let n = counted(b)?;
+            let n = count(input)?;
             let mut numbers = Vec::new();
             for _ in 0..n {
-                let kind = b.tag()?;
-                numbers.push(value(b, kind, depth + 1)?.number());
+                let kind = input.tag()?;
+                numbers.push(value(input, kind, depth + 1)?.number());
             }
             numbers.into_iter().collect::<Option<Vec<f64>>>().map_or(Value::Other, Value::Numbers)
         }
         b"type" | b"GlbC" => {
-            text(b)?;
-            id(b)?;
+            text(input)?;
+            id(input)?;
             Value::Other
         }
         b"alis" | b"tdta" | b"Pth " => {
-            let n = counted(b)?;
-            b.take(n)?;
+            let n = count(input)?;
+            input.take(n)?;
             Value::Other
         }
         b"obj " => {
-            reference(b)?;
+            reference(input)?;
             Value::Other
         }
-        other => return Err(b.error(format!("unknown type of value `{}`", String::from_utf8_lossy(other)))),
+        other => return Err(input.error(format!("unknown type of value `{}`", String::from_utf8_lossy(other)))),
     })
 }
 
-/// Reads objects of one class: each key with all its values.
-fn array(b: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
-    b.u32()?;
-    descriptor(b, depth)
+/// Reads objects of one class as a descriptor of each key with all its values.
+fn array(input: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
+    input.u32()?;
+    descriptor(input, depth)
 }
 
-fn reference(b: &mut ByteReader<'_>) -> Result<(), Error> {
-    for _ in 0..counted(b)? {
-        let kind = b.tag()?;
-        text_and_class(b)?;
+fn reference(input: &mut ByteReader<'_>) -> Result<(), Error> {
+    for _ in 0..count(input)? {
+        let kind = input.tag()?;
+        text_and_class(input)?;
         match &kind {
-            b"prop" => drop(id(b)?),
+            b"prop" => drop(id(input)?),
             b"Clss" => {}
             b"Enmr" => {
-                id(b)?;
-                id(b)?;
+                id(input)?;
+                id(input)?;
             }
-            b"rele" | b"Idnt" | b"indx" => drop(b.u32()?),
-            b"name" => drop(text(b)?),
-            other => return Err(b.error(format!("unknown type of reference `{}`", String::from_utf8_lossy(other)))),
+            b"rele" | b"Idnt" | b"indx" => drop(input.u32()?),
+            b"name" => drop(text(input)?),
+            other => return Err(input.error(format!("unknown type of reference `{}`", String::from_utf8_lossy(other)))),
         }
     }
     Ok(())
 }
 
-fn text_and_class(b: &mut ByteReader<'_>) -> Result<(), Error> {
-    text(b)?;
-    id(b)?;
+fn text_and_class(input: &mut ByteReader<'_>) -> Result<(), Error> {
+    text(input)?;
+    id(input)?;
     Ok(())
 }
 

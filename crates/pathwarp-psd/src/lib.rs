@@ -26,23 +26,23 @@ pub use warp::{LayerWarp, LayerWarps, WarpMesh};
 /// # Errors
 /// [`Error::NotPsd`] for other files; [`Error::Format`] with the byte offset for damaged ones.
 pub fn warps(data: &[u8]) -> Result<LayerWarps, Error> {
-    let mut b = ByteReader::new(data);
-    if b.tag().ok() != Some(*b"8BPS") {
+    let mut input = ByteReader::new(data);
+    if input.tag().ok() != Some(*b"8BPS") {
         return Err(Error::NotPsd);
     }
-    let wide = match b.u16() {
+    let wide = match input.u16() {
         Ok(1) => false,
         Ok(2) => true,
         _ => return Err(Error::NotPsd),
     };
-    b.take(6 + 2 + 4 + 4 + 2 + 2)?;
+    input.take(6 + 2 + 4 + 4 + 2 + 2)?;
     // Skip colour mode data and image resources.
     for _ in 0..2 {
-        let n = b.u32()? as usize;
-        b.take(n)?;
+        let n = input.u32()? as usize;
+        input.take(n)?;
     }
-    let n = b.length(wide)?;
-    let mut section = b.window(n)?;
+    let n = input.length(wide)?;
+    let mut section = input.window(n)?;
     let mut out = Vec::new();
     if section.left() > 0 {
         let n = section.length(wide)?;

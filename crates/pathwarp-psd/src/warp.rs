@@ -3,54 +3,54 @@
 use crate::descriptor::{self, ByteReader, Error, Items, Value, get};
 use serde::Serialize;
 
-/// Reads `SoLd`: identifier, version, and a descriptor of everything.
-pub(crate) fn smart_object(b: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
-    b.take(8)?;
-    version(b)?;
-    let items = descriptor::read(b)?;
-    let quilt = get(&items, "quiltWarp").and_then(Value::items).and_then(|w| warp(w, b).transpose());
+/// Reads `SoLd`: identifier, version, and a descriptor that includes the warp.
+pub(crate) fn smart_object(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
+    input.take(8)?;
+    version(input)?;
+    let items = descriptor::read(input)?;
+    let quilt = get(&items, "quiltWarp").and_then(Value::items).and_then(|w| warp(w, input).transpose());
     match quilt {
         Some(quilt) => quilt.map(Some),
-        None => get(&items, "warp").and_then(Value::items).map_or(Ok(None), |w| warp(w, b)),
+        None => get(&items, "warp").and_then(Value::items).map_or(Ok(None), |w| warp(w, input)),
     }
 }
 
 /// Reads `PlLd`: identifier, version, unique name, pages and corners, and the descriptor of the warp.
-pub(crate) fn placed(b: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
-    b.take(8)?;
-    let n = usize::from(b.u8()?);
-    b.take(n + 16 + 64 + 4)?;
-    version(b)?;
-    let items = descriptor::read(b)?;
-    warp(&items, b)
+pub(crate) fn placed(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
+    input.take(8)?;
+    let n = usize::from(input.u8()?);
+    input.take(n + 16 + 64 + 4)?;
+    version(input)?;
+    let items = descriptor::read(input)?;
+    warp(&items, input)
 }
 
-/// Reads `TySh`: a transform, the descriptor of the text, and that of the warp.
-pub(crate) fn text(b: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
-    b.take(2 + 48 + 2)?;
-    version(b)?;
-    descriptor::read(b)?;
-    b.take(2)?;
-    version(b)?;
-    let items = descriptor::read(b)?;
-    warp(&items, b)
+/// Reads `TySh`: a transform, the descriptor of the text, and the descriptor of the warp.
+pub(crate) fn text(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
+    input.take(2 + 48 + 2)?;
+    version(input)?;
+    descriptor::read(input)?;
+    input.take(2)?;
+    version(input)?;
+    let items = descriptor::read(input)?;
+    warp(&items, input)
 }
 
 /// Checks the version of a descriptor.
-fn version(b: &mut ByteReader<'_>) -> Result<(), Error> {
-    match b.u32()? {
+fn version(input: &mut ByteReader<'_>) -> Result<(), Error> {
+    match input.u32()? {
         16 => Ok(()),
-        other => Err(b.error(format!("descriptor version {other} is unknown"))),
+        other => Err(input.error(format!("descriptor version {other} is unknown"))),
     }
 }
 
 /// Converts the descriptor of a warp; `None` if it has no style.
-fn warp(items: &Items, b: &ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
+fn warp(items: &Items, input: &ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
     let Some(style) = get(items, "warpStyle").and_then(Value::name) else { return Ok(None) };
     let number = |key: &str| get(items, key).and_then(Value::number).unwrap_or(0.0);
     let custom = get(items, "customEnvelopeWarp").and_then(Value::items);
     let mesh = match custom {
-        Some(points) if style == "warpCustom" => Some(mesh(items, points).map_err(|problem| b.error(problem))?),
+        Some(points) if style == "warpCustom" => Some(mesh(items, points).map_err(|problem| input.error(problem))?),
         _ => None,
     };
     Ok(Some(LayerWarp {
@@ -64,11 +64,11 @@ fn warp(items: &Items, b: &ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
     }))
 }
 
-/// Converts the points of a custom warp: sixteen, or those of a quilt.
+/// Converts the points of a custom warp: sixteen, or more for a quilt.
 fn mesh(items: &Items, custom: &Items) -> Result<WarpMesh, String> {
     let points = get(custom, "meshPoints").and_then(Value::items).ok_or("a custom warp has no points")?;
-    let of = |key: &str| get(points, key).and_then(Value::numbers).ok_or(format!("the points have no {key}"));
-    let (x, y) = (of("Hrzn")?, of("Vrtc")?);
+    let coordinates = |key: &str| get(points, key).and_then(Value::numbers).ok_or(format!("the points have no {key}"));
+    let (x, y) = (coordinates("Hrzn")?, coordinates("Vrtc")?);
     if x.len() != y.len() {
         return Err(format!("the points have {} x and {} y coordinates", x.len(), y.len()));
     }
@@ -97,13 +97,13 @@ fn mesh(items: &Items, custom: &Items) -> Result<WarpMesh, String> {
             _ => None,
         }
     };
-    let place = |j: usize, i: usize| [x[j * columns + i], y[j * columns + i]];
+    let point = |j: usize, i: usize| [x[j * columns + i], y[j * columns + i]];
     Ok(WarpMesh {
         region: [left, top, right - left, bottom - top],
         fit: true,
         x: slices("quiltSliceX", (columns - 1) / 3, left, right),
         y: slices("quiltSliceY", (rows - 1) / 3, top, bottom),
-        points: (0..rows).map(|j| (0..columns).map(|i| place(j, i)).collect()).collect(),
+        points: (0..rows).map(|j| (0..columns).map(|i| point(j, i)).collect()).collect(),
     })
 }
 
@@ -142,7 +142,7 @@ pub struct LayerWarp {
 pub struct WarpMesh {
     /// x, y, width and height of the warped box, in the units of the points.
     pub region: [f64; 4],
-    /// Always `true`: the mesh is fitted to the artwork, whatever its place.
+    /// Always `true`: the mesh is fitted to the artwork, whatever its position.
     pub fit: bool,
     /// Boundaries between patches along x, as fractions of the width; `None` if they are even.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -155,33 +155,33 @@ pub struct WarpMesh {
 }
 
 /// Reads the layer records; the pixels after them are ignored.
-pub(crate) fn layers(b: &mut ByteReader<'_>, wide: bool, out: &mut Vec<LayerWarp>) -> Result<(), Error> {
-    if b.left() < 2 {
+pub(crate) fn layers(input: &mut ByteReader<'_>, wide: bool, out: &mut Vec<LayerWarp>) -> Result<(), Error> {
+    if input.left() < 2 {
         return Ok(());
     }
     // A negative count means that the first alpha channel is the transparency of the merged picture.
-    let count = b.u16()?.cast_signed().unsigned_abs();
+    let count = input.u16()?.cast_signed().unsigned_abs();
     for _ in 0..count {
-        b.take(16)?;
-        let channels = usize::from(b.u16()?);
-        b.take(channels * if wide { 10 } else { 6 })?;
-        b.take(12)?;
-        let n = b.u32()? as usize;
-        let mut extra = b.window(n)?;
+        input.take(16)?;
+        let channels = usize::from(input.u16()?);
+        input.take(channels * if wide { 10 } else { 6 })?;
+        input.take(12)?;
+        let n = input.u32()? as usize;
+        let mut extra = input.window(n)?;
         for _ in 0..2 {
             let n = extra.u32()? as usize;
             extra.take(n)?;
         }
         let short = usize::from(extra.u8()?);
         let mut name = String::from_utf8_lossy(extra.take(short)?).into_owned();
-        let padding = (4 - (short + 1) % 4) % 4;
+        let padding = (4 - ((short + 1) % 4)) % 4;
         extra.take(padding)?;
         let mut warp: Option<LayerWarp> = None;
         blocks(&mut extra, wide, 1, &mut |key, mut block| {
             match key {
                 b"luni" => name = descriptor::text(&mut block)?,
                 b"SoLd" | b"SoLE" => warp = smart_object(&mut block)?.or(warp.take()),
-                // The older form of the same data; the newer one has precedence.
+                // The older form of `SoLd`, which has precedence.
                 b"PlLd" if warp.is_none() => warp = placed(&mut block)?,
                 b"TySh" => warp = text(&mut block)?,
                 _ => {}
@@ -200,7 +200,7 @@ type BlockHandler<'f, 'a> = dyn FnMut(&[u8; 4], ByteReader<'a>) -> Result<(), Er
 
 /// Reads the blocks of additional information, which are padded to `unit` bytes.
 pub(crate) fn blocks<'a>(
-    b: &mut ByteReader<'a>,
+    input: &mut ByteReader<'a>,
     wide: bool,
     unit: usize,
     each: &mut BlockHandler<'_, 'a>,
@@ -210,18 +210,18 @@ pub(crate) fn blocks<'a>(
         b"LMsk", b"Lr16", b"Lr32", b"Layr", b"Mt16", b"Mt32", b"Mtrn", b"Alph", b"FMsk", b"lnk2", b"FEid", b"FXid",
         b"PxSD",
     ];
-    while b.left() >= 12 {
-        let signature = b.tag()?;
+    while input.left() >= 12 {
+        let signature = input.tag()?;
         if &signature != b"8BIM" && &signature != b"8B64" {
             // Only padding follows.
             return Ok(());
         }
-        let key = b.tag()?;
-        let n = b.length(wide && WIDE.contains(&&key))?;
-        let block = b.window(n)?;
+        let key = input.tag()?;
+        let n = input.length(wide && WIDE.contains(&&key))?;
+        let block = input.window(n)?;
         each(&key, block)?;
-        let padding = (unit - n % unit) % unit;
-        b.take(padding.min(b.left()))?;
+        let padding = (unit - (n % unit)) % unit;
+        input.take(padding.min(input.left()))?;
     }
     Ok(())
 }

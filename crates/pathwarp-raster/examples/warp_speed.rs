@@ -79,13 +79,13 @@ fn main() {
         times.sort_by(f64::total_cmp);
         println!("{name}: {:.3} s (least {:.3})", times[RUNS / 2], times[0]);
         if let Some(folder) = &folder {
-            write_places(&Path::new(folder).join(format!("{name}.f32")), &*inverse, warp.shown);
+            write_points(&Path::new(folder).join(format!("{name}.f32")), &*inverse, warp.shown);
             std::fs::write(Path::new(folder).join(format!("{name}.rgba")), warp_image(&warp).unwrap().data()).unwrap();
         }
     }
 }
 
-/// Rings whose period falls to two pixels in the far corner, different in each channel: whatever is sampled too sparsely shows.
+/// Rings whose period falls to two pixels in the far corner, different in each channel, so that sparse sampling shows.
 fn rings(pixel: usize, channel: usize) -> u8 {
     let (x, y) = ((pixel % SIDE as usize) as f64, (pixel / SIDE as usize) as f64);
     let r2 = (x * x + y * y) / (4.0 * f64::from(SIDE) * std::f64::consts::SQRT_2);
@@ -105,8 +105,8 @@ fn cpu_time() -> f64 {
     ticks.map_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64(), |t| t / TICKS)
 }
 
-/// Writes the source place of every pixel.
-fn write_places(file: &Path, inverse: &dyn Map, shown: Affine) {
+/// Writes the source point of every pixel.
+fn write_points(file: &Path, inverse: &dyn Map, shown: Affine) {
     let mut out = BufWriter::new(std::fs::File::create(file).unwrap());
     for (j, i) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (j, i))) {
         let p = inverse.point(shown * Point::new(f64::from(i) + 0.5, f64::from(j) + 0.5));

@@ -25,7 +25,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Whether the pictures are equal pixel for pixel.
+    /// Returns `true` if the pictures are equal pixel for pixel.
     pub fn is_same(&self) -> bool {
         self.max_channel == 0
     }
@@ -44,7 +44,7 @@ impl Difference {
 /// Measures the difference of two pictures.
 ///
 /// # Errors
-/// [`Error::SizesDiffer`].
+/// [`Error::SizesDiffer`] when the pictures differ in size.
 pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
     check_sizes(a, b)?;
     let mut histogram = Box::new([0u64; 256]);
@@ -62,7 +62,7 @@ pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
 /// Visualises the difference: `a` in pale grey, and red where `b` differs, stronger for larger differences.
 ///
 /// # Errors
-/// [`Error::SizesDiffer`].
+/// [`Error::SizesDiffer`] when the pictures differ in size.
 pub fn diff_image(a: &Pixmap, b: &Pixmap) -> Result<Pixmap, Error> {
     check_sizes(a, b)?;
     let limits = Limits::default().for_input(a.data().len());
@@ -102,7 +102,7 @@ fn pale(pixel: PremultipliedColorU8) -> ColorU8 {
     ColorU8::from_rgba(grey, grey, grey, 255)
 }
 
-/// Light red for the smallest difference up to full red at a quarter of the range.
+/// A light red for the smallest difference up to full red at a quarter of the range.
 fn red(difference: u8) -> ColorU8 {
     let rest = 160u8.saturating_sub(difference.saturating_mul(3));
     ColorU8::from_rgba(230, rest, rest, 255)

@@ -1,10 +1,10 @@
 //! Estimates the work of rendering a drawing beforehand: pixels painted, pixels held, and how far geometry extends.
 //!
-//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits of its own. It paints
+//! The renderer, resvg 0.49 (<https://github.com/linebender/resvg/tree/v0.49.0/crates/resvg>), has no limits. It paints
 //! every isolated group, mask and filter on layers that may be larger than the picture, evaluates filters at any size, decodes
 //! pictures of any stated size, and aborts on coordinates that its fixed-point numbers cannot hold.
 //!
-//! A unit of work is about five nanoseconds, the time to composite a pixel with a little arithmetic.
+//! A unit of work is the time to composite a pixel with a little arithmetic.
 
 use crate::error::Error;
 use crate::picture::header_size;
@@ -45,11 +45,11 @@ const PIXEL_BYTES: f64 = 4.0;
 /// Further octaves of turbulence change no colour of eight bits, and overflow in the renderer.
 const MAX_OCTAVES: u32 = 24;
 
-/// Charges for drawing a group with `transform` on a picture of `width` × `height` pixels.
+/// Charges `budget` for drawing a group with `transform` on a picture of `width` × `height` pixels.
 ///
 /// # Errors
-/// The work exceeds the limits, or geometry extends too far.
-pub(crate) fn of_group(
+/// [`Error::TooMuch`] when the work or memory exceeds the limits, [`Error::TooFar`] when geometry extends too far, [`Error::Octaves`].
+pub(crate) fn charge_group(
     group: &Group,
     transform: Transform,
     [width, height]: [f32; 2],
@@ -72,16 +72,16 @@ struct Canvas {
 
 impl Canvas {
     /// Width and height of the visible part of a box, in pixels.
-    fn seen(&self, r: Rect) -> [f64; 2] {
-        self.within(r, 0.0)
+    fn visible_size(&self, r: Rect) -> [f64; 2] {
+        self.clipped_size(r, 0.0)
     }
 
     /// Width and height of a layer for a box, which may extend past the canvas.
-    fn layer(&self, r: Rect) -> [f64; 2] {
-        self.within(r, LAYER_REACH)
+    fn layer_size(&self, r: Rect) -> [f64; 2] {
+        self.clipped_size(r, LAYER_REACH)
     }
 
-    fn within(&self, r: Rect, reach: f32) -> [f64; 2] {
+    fn clipped_size(&self, r: Rect, reach: f32) -> [f64; 2] {
         let side = |from: f32, to: f32, size: f32| {
             let (min, max) = (-reach * size, (1.0 + reach) * size);
             f64::from(to.min(max) - from.max(min)).max(0.0)
@@ -90,7 +90,7 @@ impl Canvas {
     }
 }
 
-/// Adds up the work.
+/// The work of a drawing, added up.
 struct Load {
     limits: Limits,
     work: f64,
@@ -111,31 +111,31 @@ impl Load {
         Ok(Canvas { held, ..*canvas })
     }
 
-    fn group(&mut self, g: &Group, outer: Transform, canvas: &Canvas) -> Result<(), Error> {
-        let transform = outer.pre_concat(g.transform());
-        if !g.should_isolate() {
-            return g.children().iter().try_for_each(|n| self.node(n, transform, canvas));
+    fn group(&mut self, group: &Group, outer: Transform, canvas: &Canvas) -> Result<(), Error> {
+        let transform = outer.pre_concat(group.transform());
+        if !group.should_isolate() {
+            return group.children().iter().try_for_each(|node| self.node(node, transform, canvas));
         }
-        let Some(bounds) = g.layer_bounding_box().to_rect().transform(transform) else { return Ok(()) };
-        let [w, h] = canvas.layer(bounds);
+        let Some(bounds) = group.layer_bounding_box().to_rect().transform(transform) else { return Ok(()) };
+        let [w, h] = canvas.layer_size(bounds);
         let area = w * h;
         self.add(LAYER * area)?;
         let layer = self.hold(canvas, area)?;
-        g.children().iter().try_for_each(|n| self.node(n, transform, &layer))?;
-        for f in g.filters() {
+        group.children().iter().try_for_each(|node| self.node(node, transform, &layer))?;
+        for f in group.filters() {
             self.filter(f, transform, area, &layer)?;
         }
-        if let Some(clip) = g.clip_path() {
+        if let Some(clip) = group.clip_path() {
             self.clip(clip, transform, area, &layer)?;
         }
-        if let Some(mask) = g.mask() {
+        if let Some(mask) = group.mask() {
             self.mask(mask, transform, area, &layer)?;
         }
         Ok(())
     }
 
-    fn node(&mut self, n: &Node, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
-        match n {
+    fn node(&mut self, node: &Node, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        match node {
             Node::Group(g) => self.group(g, transform, canvas),
             Node::Text(t) => self.group(t.flattened(), transform, canvas),
             Node::Path(p) => self.path(p, transform, canvas),
@@ -144,27 +144,27 @@ impl Load {
         }
     }
 
-    fn path(&mut self, p: &usvg::Path, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
-        if !p.is_visible() {
+    fn path(&mut self, path: &usvg::Path, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
+        if !path.is_visible() {
             return Ok(());
         }
-        let bounds = p.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
-        let ([w, h], picture) = (canvas.seen(bounds), [canvas.width, canvas.height]);
-        let edges = Edges::of(p.data(), transform, picture);
-        if let Some(fill) = p.fill() {
+        let bounds = path.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
+        let ([w, h], picture) = (canvas.visible_size(bounds), [canvas.width, canvas.height]);
+        let edges = Edges::of_fill(path.data(), transform, picture);
+        if let Some(fill) = path.fill() {
             self.add(w * h * paint_work(fill.paint()) + edges.work([w, h]))?;
             self.pattern(fill.paint(), transform, canvas)?;
         }
-        if let Some(stroke) = p.stroke() {
+        if let Some(stroke) = path.stroke() {
             let scale = f64::from(transform.sx.hypot(transform.ky).max(transform.kx.hypot(transform.sy)));
             let width = f64::from(stroke.width().get()) * scale;
             if width > f64::from(MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
-            let edges = edges.stroked(p.data().len(), stroke, width, picture);
+            let edges = edges.stroked(path.data().len(), stroke, width, picture);
             self.add(w * h * paint_work(stroke.paint()) + edges.work([w, h]))?;
             if let Some(dashes) = stroke.dasharray() {
-                self.add(DASH * dashes_along(p.data(), dashes))?;
+                self.add(DASH * dashes_along(path.data(), dashes))?;
             }
             self.pattern(stroke.paint(), transform, canvas)?;
         }
@@ -203,63 +203,63 @@ impl Load {
         });
         // The decoder's buffer becomes the picture, or is copied to it.
         self.hold(canvas, 2.0 * pixels)?;
-        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.seen(b));
+        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.visible_size(b));
         self.add(DECODED * pixels + BICUBIC * w * h)
     }
 
-    fn clip(&mut self, c: &usvg::ClipPath, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+    fn clip(&mut self, clip: &usvg::ClipPath, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
         self.add(LAYER * area)?;
         let inner = self.hold(canvas, 1.25 * area)?;
-        self.clipped(c.root(), transform.pre_concat(c.transform()), area, &inner)?;
-        c.clip_path().map_or(Ok(()), |c| self.clip(c, transform, area, &inner))
+        self.clipped(clip.root(), transform.pre_concat(clip.transform()), area, &inner)?;
+        clip.clip_path().map_or(Ok(()), |clip| self.clip(clip, transform, area, &inner))
     }
 
     /// Adds the content of a clip path, whose groups are not isolated, but may be clipped in turn.
-    fn clipped(&mut self, g: &Group, outer: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
-        let transform = outer.pre_concat(g.transform());
+    fn clipped(&mut self, group: &Group, outer: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+        let transform = outer.pre_concat(group.transform());
         let mut surface = *canvas;
-        if let Some(c) = g.clip_path() {
+        if let Some(clip) = group.clip_path() {
             self.add(LAYER * area)?;
             surface = self.hold(canvas, area)?;
-            self.clip(c, transform, area, &surface)?;
+            self.clip(clip, transform, area, &surface)?;
         }
-        g.children().iter().try_for_each(|n| match n {
-            Node::Group(g) => self.clipped(g, transform, area, &surface),
+        group.children().iter().try_for_each(|n| match n {
+            Node::Group(group) => self.clipped(group, transform, area, &surface),
             Node::Text(t) => self.clipped(t.flattened(), transform, area, &surface),
             Node::Path(p) => self.path(p, transform, &surface),
             Node::Image(_) => Ok(()),
         })
     }
 
-    fn mask(&mut self, m: &usvg::Mask, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
+    fn mask(&mut self, mask: &usvg::Mask, transform: Transform, area: f64, canvas: &Canvas) -> Result<(), Error> {
         self.add(2.0 * LAYER * area)?;
         let inner = self.hold(canvas, 1.25 * area)?;
-        self.group(m.root(), transform, &inner)?;
-        m.mask().map_or(Ok(()), |m| self.mask(m, transform, area, &inner))
+        self.group(mask.root(), transform, &inner)?;
+        mask.mask().map_or(Ok(()), |mask| self.mask(mask, transform, area, &inner))
     }
 
     /// Adds a filter on a layer of `area` pixels. The results of all primitives are held until it is done.
     fn filter(
         &mut self,
-        f: &usvg::filter::Filter,
+        filter: &usvg::filter::Filter,
         transform: Transform,
         area: f64,
         canvas: &Canvas,
     ) -> Result<(), Error> {
         let (sx, sy) = transform.get_scale();
         let mut layer = *canvas;
-        for p in f.primitives() {
+        for primitive in filter.primitives() {
             layer = self.hold(&layer, 2.0 * area)?;
-            let moved = match p.kind() {
+            let offset = match primitive.kind() {
                 Kind::Offset(o) => [o.dx() * sx, o.dy() * sy],
                 Kind::DropShadow(s) => [s.dx() * sx, s.dy() * sy],
                 _ => [0.0; 2],
             };
             // The renderer computes the end of a shifted picture in 32 bits.
-            if !moved.iter().all(|v| v.abs() <= MAX_COORDINATE) {
+            if !offset.iter().all(|v| v.abs() <= MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
-            let more = match p.kind() {
+            let more = match primitive.kind() {
                 Kind::Turbulence(t) if t.num_octaves() > MAX_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
                 Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),
                 Kind::Morphology(m) => {
@@ -293,9 +293,9 @@ fn paint_work(paint: &Paint) -> f64 {
     }
 }
 
-/// Whether the renderer can handle these coordinates.
-fn is_near(r: &Rect) -> bool {
-    [r.left(), r.top(), r.right(), r.bottom()].iter().all(|v| v.abs() <= MAX_COORDINATE)
+/// Returns `true` if the renderer can handle these coordinates.
+fn is_near(area: &Rect) -> bool {
+    [area.left(), area.top(), area.right(), area.bottom()].iter().all(|v| v.abs() <= MAX_COORDINATE)
 }
 
 /// Estimates the number of dashes along a path.
@@ -303,12 +303,12 @@ fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
     let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
     let legs = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1])));
     let length: f64 = legs.sum();
-    if period > 0.0 { length / period * dashes.len() as f64 } else { 0.0 }
+    if period > 0.0 { (length / period) * dashes.len() as f64 } else { 0.0 }
 }
 
 /// Work for a row of pixels that an edge crosses, in four scan lines.
 const CROSSING: f64 = 4.0;
-/// Work for two edges in the same row, since they may change places.
+/// Work for two edges in the same row, since they may cross.
 const BESIDE: f64 = 0.4;
 /// Work for an edge.
 const SEGMENT: f64 = 10.0;
@@ -323,13 +323,13 @@ struct Edges {
 
 impl Edges {
     /// The edges of a filled path.
-    fn of(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
+    fn of_fill(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
         let mut edges = Self { count: 0.0, rows: 0.0, columns: 0.0 };
         // The renderer first cuts off the parts outside the picture.
-        let within = |v: f32, size: f32| if v > 0.0 { f64::from(v.min(size)) } else { 0.0 };
-        let place = |mut p: tiny_skia::Point| {
+        let clipped = |v: f32, size: f32| if v > 0.0 { f64::from(v.min(size)) } else { 0.0 };
+        let pixel = |mut p: tiny_skia::Point| {
             transform.map_point(&mut p);
-            [within(p.x, width), within(p.y, height)]
+            [clipped(p.x, width), clipped(p.y, height)]
         };
         let (mut start, mut last) = ([0.0; 2], [0.0; 2]);
         for segment in path.segments() {
@@ -338,13 +338,13 @@ impl Edges {
                 PathSegment::MoveTo(p) => {
                     // Filling closes open subpaths.
                     edges.add(&[last, start]);
-                    start = place(p);
+                    start = pixel(p);
                     last = start;
                     continue;
                 }
-                PathSegment::LineTo(p) => last = edges.add(&[last, place(p)]),
-                PathSegment::QuadTo(a, p) => last = edges.add(&[last, place(a), place(p)]),
-                PathSegment::CubicTo(a, b, p) => last = edges.add(&[last, place(a), place(b), place(p)]),
+                PathSegment::LineTo(p) => last = edges.add(&[last, pixel(p)]),
+                PathSegment::QuadTo(a, p) => last = edges.add(&[last, pixel(a), pixel(p)]),
+                PathSegment::CubicTo(a, b, p) => last = edges.add(&[last, pixel(a), pixel(b), pixel(p)]),
                 PathSegment::Close => last = edges.add(&[last, start]),
             }
             edges.count += 1.0;
@@ -376,10 +376,10 @@ impl Edges {
         }
     }
 
-    /// The work of filling the outline. `width` and `height` are those of its visible part.
+    /// The work of filling the outline, whose visible part has this width and height.
     fn work(&self, [width, height]: [f64; 2]) -> f64 {
         let beside = self.rows / height.max(1.0);
-        // Edges only change places in a row where their columns overlap.
+        // Edges only cross in a row where their columns overlap.
         let overlap = (2.0 * self.columns / (self.count.max(1.0) * width.max(1.0))).min(1.0);
         SEGMENT * self.count + CROSSING * self.rows + BESIDE * self.count.min(self.rows) * beside * overlap
     }

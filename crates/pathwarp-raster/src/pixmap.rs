@@ -15,7 +15,7 @@ pub(crate) fn check_size(width: f64, height: f64, limits: &Limits) -> Result<(),
     limits.check(Limit::Pixels, width * height).map_err(too_large)
 }
 
-/// Creates a transparent picture, or fails if it would be empty or exceed the limits.
+/// Creates a transparent picture. Fails if it would be empty or exceed the limits.
 pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pixmap, Error> {
     let too_large = |exceeded| Error::TooLarge { width, height, exceeded };
     limits.check(Limit::Memory, BYTES * width * height).map_err(too_large)?;
@@ -33,19 +33,19 @@ pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pix
     Pixmap::new(whole_width, whole_height).ok_or_else(|| too_large(refused()))
 }
 
-/// Enlarges a part of a picture `factor` times. Pixels become squares, or colours are interpolated linearly between the centres of
-/// pixels, as browsers do.
+/// Enlarges a part of a picture `factor` times. Pixels become squares if `squares`; else colours are interpolated linearly between the
+/// centres of pixels, as browsers do.
 ///
 /// # Errors
-/// The result exceeds the limits.
+/// [`Error::TooLarge`] when the result exceeds the limits.
 pub fn enlarged(source: &Pixmap, part: IntRect, factor: u32, squares: bool, limits: &Limits) -> Result<Pixmap, Error> {
     let size = |side: u32| f64::from(side) * f64::from(factor);
     let mut out = new_pixmap(size(part.width()), size(part.height()), limits)?;
     let quality = if squares { FilterQuality::Nearest } else { FilterQuality::Bilinear };
     let paint = PixmapPaint { quality, ..PixmapPaint::default() };
     let scale = Transform::from_scale(factor as f32, factor as f32);
-    let to = scale.pre_translate(-(part.x() as f32), -(part.y() as f32));
-    out.draw_pixmap(0, 0, source.as_ref(), &paint, to, None);
+    let transform = scale.pre_translate(-(part.x() as f32), -(part.y() as f32));
+    out.draw_pixmap(0, 0, source.as_ref(), &paint, transform, None);
     Ok(out)
 }
 

@@ -41,7 +41,7 @@ impl RenderOptions {
     /// Renders `tree` with these options and the default limits.
     ///
     /// # Errors
-    /// As for [`RenderOptions::render_within`].
+    /// Any [`Error`] of [`RenderOptions::render_within`].
     pub fn render(&self, tree: &usvg::Tree) -> Result<Pixmap, Error> {
         self.render_within(tree, &Limits::default())
     }
@@ -49,8 +49,8 @@ impl RenderOptions {
     /// Renders `tree` with these options.
     ///
     /// # Errors
-    /// The size is zero or not a positive number, the picture or the work to draw it exceeds the limits, or a shape extends farther
-    /// than the renderer can handle.
+    /// [`Error::Empty`], [`Error::BadScale`] and [`Error::TooLarge`] for impossible sizes; [`Error::TooMuch`] when drawing exceeds the
+    /// limits; [`Error::TooFar`], [`Error::Octaves`] and [`Error::Renderer`] for drawings that the renderer cannot handle.
     pub fn render_within(&self, tree: &usvg::Tree, limits: &Limits) -> Result<Pixmap, Error> {
         self.render_counted(tree, &Budget::new(*limits))
     }
@@ -58,7 +58,7 @@ impl RenderOptions {
     /// Renders `tree` with these options, and charges the work to `budget`, which several drawings may share.
     ///
     /// # Errors
-    /// As for [`RenderOptions::render_within`].
+    /// Any [`Error`] of [`RenderOptions::render_within`].
     pub fn render_counted(&self, tree: &usvg::Tree, budget: &Budget) -> Result<Pixmap, Error> {
         let native = (f64::from(tree.size().width()), f64::from(tree.size().height()));
         let (width, height, scale) = self.size.resolve(native)?;
@@ -74,7 +74,7 @@ impl RenderOptions {
 /// Renders `tree` on a transparent background.
 ///
 /// # Errors
-/// As for [`RenderOptions::render`].
+/// Any [`Error`] of [`RenderOptions::render_within`].
 pub fn render(tree: &usvg::Tree, size: Size) -> Result<Pixmap, Error> {
     RenderOptions { size, background: None }.render(tree)
 }
@@ -96,7 +96,7 @@ impl Size {
         let whole = |length: f64| (length * scale - ROUNDING_SLACK).ceil().max(1.0);
         let width = if let Self::Width(width) = self { f64::from(width) } else { whole(native_width) };
         let height = if let Self::Height(height) = self { f64::from(height) } else { whole(native_height) };
-        #[expect(clippy::cast_possible_truncation, reason = "the renderer's own precision")]
+        #[expect(clippy::cast_possible_truncation, reason = "the precision of the renderer")]
         let scale = scale as f32;
         Ok((width, height, scale))
     }
@@ -105,7 +105,7 @@ impl Size {
 /// Draws `tree` on a picture.
 ///
 /// # Errors
-/// The work exceeds the budget, or the renderer fails.
+/// [`Error::TooMuch`], [`Error::TooFar`], [`Error::Octaves`], or [`Error::Renderer`].
 pub(crate) fn draw(
     tree: &usvg::Tree,
     transform: Transform,
@@ -114,7 +114,7 @@ pub(crate) fn draw(
 ) -> Result<(), Error> {
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     let size = [picture.width() as f32, picture.height() as f32];
-    load::of_group(tree.root(), transform, size, budget)?;
+    load::charge_group(tree.root(), transform, size, budget)?;
     // After a failure, the caller drops the half-painted picture.
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render(tree, transform, &mut picture.as_mut())));
     drawn.map_err(|_| Error::Renderer)
@@ -125,7 +125,7 @@ pub(crate) fn draw(
 /// shows nothing.
 ///
 /// # Errors
-/// As for [`RenderOptions::render_within`](crate::RenderOptions::render_within).
+/// Any [`Error`] of [`RenderOptions::render_within`].
 pub fn render_group(
     group: &Group,
     transform: Transform,
@@ -136,7 +136,7 @@ pub fn render_group(
     let corner = group.abs_layer_bounding_box();
     let moved = transform.pre_translate(-corner.x(), -corner.y());
     #[expect(clippy::cast_possible_truncation, reason = "an estimate")]
-    load::of_group(group, moved, [width as f32, height as f32], budget)?;
+    load::charge_group(group, moved, [width as f32, height as f32], budget)?;
     let mut pixmap = new_pixmap(width, height, &budget.limits())?;
     let node = Node::Group(Box::new(group.clone()));
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render_node(&node, transform, &mut pixmap.as_mut())));

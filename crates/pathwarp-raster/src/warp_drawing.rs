@@ -12,29 +12,29 @@ use tiny_skia::{IntRect, Pixmap, Transform};
 use usvg::Node;
 use usvg::filter::Kind;
 
-/// Most pixels of the drawing before the warp.
+/// Largest number of pixels of the drawing before the warp.
 const MOST_BEFORE: f64 = 4e6;
-/// Pixels along the longer side where a drawing is compared with another.
+/// Pixels along the longer side of two compared pictures.
 const COMPARED: f64 = 128.0;
-/// Fewer, which tell large differences, and the share of what is painted that must differ.
+/// Pixels along the longer side in a first comparison, and the share of the painted pixels that may differ in it.
 const COMPARED_FIRST: f64 = 64.0;
 const LARGE_SHARE: f64 = 0.1;
-/// The largest difference that nobody notices, of 255, and the share of what is painted that may exceed it.
+/// Largest difference that nobody notices, of 255, and the share of the painted pixels that may exceed it.
 const NOTICED: u8 = 8;
 const NOTICED_SHARE: f64 = 0.01;
-/// The largest difference between a smooth picture and one of half its size at most places, the share of other places, and the largest
-/// difference anywhere.
+/// Largest usual difference between a smooth picture and its copy of half the size, the share of pixels that may exceed it, and the
+/// largest difference of any pixel.
 const SMOOTH: f64 = 3.0;
 const SMOOTH_SHARE: f64 = 0.05;
 const SHARP: f64 = 24.0;
-/// How many times as much half of the size loses, in squares, where a picture is blurred and not sharp: interpolation is of second order.
+/// Least ratio of the squared losses at a quarter and at half of the size of a blurred picture: interpolation is of second order.
 const BLURRED: f64 = 5.0;
 /// A length that exceeds whole pixels by less is rounded.
 const ROUNDING: f64 = 1e-6;
-/// The fewest pixels of a picture along a side.
+/// Least number of pixels along a side of a picture.
 const LEAST_SIDE: f64 = 64.0;
 
-/// Counts a picture of this width and height before it is made.
+/// A function that counts a picture of this width and height before it is made.
 pub type Counter<'a> = dyn Fn(f64, f64) -> Result<(), Exceeded> + 'a;
 
 /// Warps drawings of one area.
@@ -45,7 +45,7 @@ pub struct DrawingWarp<'a> {
     inverse: GridInverse<'a>,
     after: Affine,
     bounds: Rect,
-    /// The lengths of the image of a unit: in the direction that shrinks most, but for a few places, and on average.
+    /// Lengths of the image of a unit: in the direction that shrinks most, apart from a few outliers, and on average.
     lengths: [f64; 2],
     count: &'a Counter<'a>,
     budget: &'a Budget,
@@ -67,19 +67,19 @@ impl<'a> DrawingWarp<'a> {
         count: &'a Counter<'a>,
         budget: &'a Budget,
     ) -> Option<Self> {
-        /// Cells along a side of the area where the map is looked at.
+        /// Cells along a side of the area, at whose corners the map is sampled.
         const CELLS: usize = 64;
-        /// Reach of the inverse beyond the area, and pixels that it is made for.
+        /// Reach of the inverse beyond the area, as a fraction of its longer side, and the pixels along a side that it is made for.
         const REACH: f64 = 0.02;
         const PIXELS: f64 = 48.0;
-        /// One place of so many may shrink more than the others.
+        /// One of so many samples may shrink more than `lengths` tells.
         const FEW: usize = 20;
-        let places: Vec<Point> = lattice(area, CELLS).map(|p| placed * p).collect();
-        let mut images = vec![Jet::default(); places.len()];
-        map.jets(&places, &mut images);
+        let samples: Vec<Point> = lattice(area, CELLS).map(|p| placed * p).collect();
+        let mut images = vec![Jet::default(); samples.len()];
+        map.jets(&samples, &mut images);
         let mut creases = Creases::default();
         map.creases(&mut creases);
-        let is_defined = images.iter().all(|jet| jet.p.is_finite()) && places.iter().all(|p| creases.defined_at(*p));
+        let is_defined = images.iter().all(|jet| jet.p.is_finite()) && samples.iter().all(|p| creases.defined_at(*p));
         let images: Vec<Jet> = images.into_iter().map(|jet| in_pixels(&jet, after, placed)).collect();
         let mut shortest: Vec<f64> = images.iter().map(|jet| lengths(jet)[0]).collect();
         shortest.sort_unstable_by(f64::total_cmp);
@@ -87,9 +87,9 @@ impl<'a> DrawingWarp<'a> {
         let mean = (images.iter().map(|jet| jet.det().abs()).sum::<f64>() / images.len() as f64).sqrt();
         let bounds = images.iter().map(|jet| Rect::from_origin_size(jet.p, (0.0, 0.0))).reduce(|a, b| a.union(b))?;
         let has_area = bounds.width() > 0.0 && bounds.height() > 0.0 && bounds.is_finite();
-        let place = placed.transform_rect_bbox(area);
-        let reach = REACH * place.width().max(place.height());
-        let inverse = || GridInverse::new(map, place, reach, Affine::IDENTITY, Affine::IDENTITY, PIXELS).strict();
+        let source = placed.transform_rect_bbox(area);
+        let reach = REACH * source.width().max(source.height());
+        let inverse = || GridInverse::new(map, source, reach, Affine::IDENTITY, Affine::IDENTITY, PIXELS).strict();
         let lengths = [shortest, mean];
         (is_defined && has_area).then(|| Self {
             area,
@@ -110,13 +110,13 @@ impl<'a> DrawingWarp<'a> {
         self.bounds
     }
 
-    /// Returns `true` if a warped drawing looks like `other`, whose page is the bounding box of the image, with at most `finest` pixels
-    /// per unit: if they differ on little of what is painted, or on no more than the area `unseen`, in square units.
+    /// Returns `true` if a warped drawing looks like `other`, whose page is the bounding box of the image: if at most a small share of the
+    /// painted pixels, or the area `unseen` in square units, differs. Both are drawn with at most `finest` pixels per unit.
     ///
     /// # Errors
-    /// The work exceeds the limits, or the renderer fails.
+    /// [`Error::TooLarge`] and [`Error::TooMuch`] when the work exceeds the limits, or [`Error::Renderer`].
     pub fn resembles(&self, tree: &usvg::Tree, other: &usvg::Tree, finest: f64, unseen: f64) -> Result<bool, Error> {
-        /// Pixels of the drawing for one of the result.
+        /// Pixels of the drawing for one pixel of the result, along a side.
         const SHARE: f64 = 0.8;
         let bounds = self.bounds;
         let before = |density: f64| SHARE * density * (bounds.area() / self.area.area()).sqrt();
@@ -135,13 +135,13 @@ impl<'a> DrawingWarp<'a> {
     /// its position in that plane, or `None` if nothing is painted.
     ///
     /// # Errors
-    /// As for [`DrawingWarp::resembles`].
+    /// [`Error::TooLarge`] and [`Error::TooMuch`] when the work exceeds the limits, or [`Error::Renderer`].
     pub fn paint(&self, tree: &usvg::Tree, coarsest: f64, finest: f64) -> Result<Option<(Pixmap, Rect)>, Error> {
         /// The least growth from a resolution to the next.
         const GROWTH: f64 = 1.4;
-        /// Pixels of the drawing for one of the result; where the map stretches it more, it is shown a little smoother.
+        /// Pixels of the drawing for one pixel of the result, along a side. Where the map stretches more, the result is a little smoother.
         const SHARE: f64 = 0.9;
-        /// Most of them in the direction that the map shrinks most: sampling more is slow.
+        /// Largest such number in the direction that the map shrinks most, since sampling more is slow, and the smallest on average.
         const SHRUNK: f64 = 1.9;
         const LEAST_SHARE: f64 = 0.5;
         let [shortest, mean] = self.lengths;
@@ -156,7 +156,7 @@ impl<'a> DrawingWarp<'a> {
         target = Rect::from_origin_size(target.origin() + Vec2::new(x, y), (width, height));
         picture = picture.clone_rect(part).unwrap_or(picture);
         while density < finest && !is_smooth(&picture) {
-            // Halves of the finest.
+            // The density is the finest one, halved any number of times.
             let halvings = (finest / (GROWTH * density)).log2().floor().max(0.0);
             density = finest * (-halvings).exp2();
             target = grid(target, density);
@@ -196,9 +196,9 @@ impl<'a> DrawingWarp<'a> {
     }
 }
 
-/// The least density around this one at which a drawing's filters offset by nearly whole pixels: the renderer drops fractions.
+/// The least density near the given one at which a drawing's filters offset by nearly whole pixels: the renderer drops fractions.
 fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
-    /// The range, and the fraction that may be dropped.
+    /// Range of the result, in multiples of the given density, and the largest fraction of a pixel that may be dropped.
     const LEAST: f64 = 0.85;
     const MOST: f64 = 2.0;
     const DROPPED: f64 = 0.15;
@@ -220,7 +220,7 @@ fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
     tried.min_by(less).unwrap_or(density)
 }
 
-/// Lists how far filters offset, in units of the page.
+/// Lists the offsets of filters, in units of the page.
 fn push_offsets(g: &usvg::Group, out: &mut Vec<f64>) {
     let (x, y) = g.abs_transform().get_scale();
     let offset = |p: &usvg::filter::Primitive| match p.kind() {
@@ -243,7 +243,7 @@ fn grid(target: Rect, density: f64) -> Rect {
     Rect::from_origin_size(target.origin(), (side(target.width()), side(target.height())))
 }
 
-/// The part of a picture that is painted, with a margin for what is interpolated.
+/// The painted part of a picture, with a margin for interpolation.
 fn painted(picture: &Pixmap) -> Option<IntRect> {
     const MARGIN: usize = 2;
     let (width, height) = (picture.width() as usize, picture.height() as usize);
@@ -260,12 +260,12 @@ fn painted(picture: &Pixmap) -> Option<IntRect> {
     if to[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
 }
 
-/// Returns `true` if two pictures of the same size look alike but for a share of what is painted. Edges may lie a pixel apart, so each pixel
-/// may have any colour between those of the pixels around it in the other.
+/// Returns `true` if at most a share of the painted pixels, or `unseen` pixels, differs between two pictures of the same size. Edges may
+/// lie a pixel apart, so a pixel may have any colour between the colours around it in the other picture.
 fn alike(a: &Pixmap, b: &Pixmap, share: f64, unseen: f64) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
-    let read = |of: &Pixmap, at: usize| <[u8; 4]>::try_from(&of.data()[4 * at..4 * at + 4]).unwrap_or_default();
-    let between = |own: [u8; 4], around: &Pixmap, at: usize| {
+    let read = |from: &Pixmap, at: usize| <[u8; 4]>::try_from(&from.data()[4 * at..4 * at + 4]).unwrap_or_default();
+    let between = |color: [u8; 4], around: &Pixmap, at: usize| {
         let (x, y) = (at % width, at / width);
         let middle = read(around, at);
         let (mut least, mut most) = (middle, middle);
@@ -276,48 +276,48 @@ fn alike(a: &Pixmap, b: &Pixmap, share: f64, unseen: f64) -> bool {
                 most = std::array::from_fn(|k| most[k].max(c[k]));
             }
         }
-        (0..4).all(|k| own[k] >= least[k].saturating_sub(NOTICED) && own[k] <= most[k].saturating_add(NOTICED))
+        (0..4).all(|k| color[k] >= least[k].saturating_sub(NOTICED) && color[k] <= most[k].saturating_add(NOTICED))
     };
     let (mut painted, mut off) = (0_u32, 0_u32);
     for at in 0..width * height {
         let (c, d) = (read(a, at), read(b, at));
         painted += u32::from(c[3].max(d[3]) > NOTICED);
         let is_near = (0..4).all(|k| c[k].abs_diff(d[k]) <= NOTICED);
-        off += u32::from(!(is_near || between(c, b, at) && between(d, a, at)));
+        off += u32::from(!(is_near || (between(c, b, at) && between(d, a, at))));
     }
     f64::from(off) <= (share * f64::from(painted)).max(unseen)
 }
 
-/// Returns `true` if half as many pixels along each side, interpolated, show nearly the same, or a picture of twice the size would differ
-/// as little from this one.
+/// Returns `true` if half as many pixels along each side, interpolated, show nearly the same picture, or if twice as many would.
 fn is_smooth(picture: &Pixmap) -> bool {
     let half = Lost::new(picture, 2);
     half.most <= SHARP
-        && (half.over <= SMOOTH_SHARE && half.noticed <= NOTICED_SHARE
+        && ((half.over <= SMOOTH_SHARE && half.noticed <= NOTICED_SHARE)
             || Lost::new(picture, 4).squares >= BLURRED * half.squares)
 }
 
-/// What a picture loses where squares of its pixels become one, which is interpolated.
+/// Differences of a picture from a reduced copy of it, in which squares of pixels are averaged, interpolated to the full size.
 #[derive(Default)]
 struct Lost {
+    /// The largest difference of a channel, 0 to 255.
     most: f64,
-    /// The shares above [`SMOOTH`] and [`NOTICED`].
+    /// The shares of pixels above [`SMOOTH`] and [`NOTICED`].
     over: f64,
     noticed: f64,
-    /// The sum of the squares.
+    /// The sum of the squared differences.
     squares: f64,
 }
 
 impl Lost {
-    /// For squares of `n` pixels a side.
+    /// Measures the loss for squares of `n` pixels a side.
     fn new(picture: &Pixmap, n: usize) -> Self {
         let (width, height) = (picture.width() as usize / n, picture.height() as usize / n);
         let read = |x: usize, y: usize| picture.data()[4 * (y * picture.width() as usize + x)..][..4].iter();
         let mut sums = vec![[0.0; 4]; width * height];
         for (x, y) in (0..n * height).flat_map(|y| (0..n * width).map(move |x| (x, y))) {
-            sums[y / n * width + x / n].iter_mut().zip(read(x, y)).for_each(|(s, v)| *s += f64::from(*v));
+            sums[(y / n) * width + (x / n)].iter_mut().zip(read(x, y)).for_each(|(s, v)| *s += f64::from(*v));
         }
-        // The square of a pixel, the one beside it, and its share.
+        // The indices of a pixel's square and of the square next to it, and the weight of the latter.
         let mixed = |v: usize, squares: usize| {
             let off = ((v % n) as f64 + 0.5) / n as f64 - 0.5;
             let beside = if off < 0.0 { (v / n).saturating_sub(1) } else { (v / n + 1).min(squares - 1) };
@@ -331,9 +331,9 @@ impl Lost {
                 let corner = |row: usize, column: usize| sums[row * width + column];
                 let four = [(above, *left), (above, *right), (below, *left), (below, *right)];
                 let [a, b, c, d] = four.map(|(row, column)| corner(row, column));
-                let at = |k: usize| (a[k] * (1.0 - u) + b[k] * u) * (1.0 - v) + (c[k] * (1.0 - u) + d[k] * u) * v;
+                let sum = |k: usize| (a[k] * (1.0 - u) + b[k] * u) * (1.0 - v) + (c[k] * (1.0 - u) + d[k] * u) * v;
                 let area = (n * n) as f64;
-                let off = read(x, y).enumerate().map(|(k, own)| (at(k) / area - f64::from(*own)).abs());
+                let off = read(x, y).enumerate().map(|(k, value)| (sum(k) / area - f64::from(*value)).abs());
                 let off = off.fold(0.0, f64::max);
                 out.most = out.most.max(off);
                 out.over += f64::from(u8::from(off > SMOOTH));

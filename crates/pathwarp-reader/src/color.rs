@@ -21,8 +21,8 @@ pub(super) fn paint<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>>
     }
     if let Some(link) = reference(value) {
         let fallback = link.rest.trim();
-        let own = || paint(fallback, current).filter(|_| reference(fallback).is_none());
-        let new = if fallback.is_empty() { "".into() } else { own()? };
+        let solid = || paint(fallback, current).filter(|_| reference(fallback).is_none());
+        let new = if fallback.is_empty() { "".into() } else { solid()? };
         let old = &value[..value.len() - link.rest.len()];
         let id = link.id.as_deref().map_or(Cow::Borrowed(old), |id| format!("url(#{})", safe_id(id)).into());
         let text = format!("{} {new}", id.trim());
@@ -61,7 +61,7 @@ pub(super) fn computed(value: &str, current: &Color) -> Option<Color> {
     resolved(value, current, MAX_LEVELS)
 }
 
-/// Returns `true` if a value that is not understood may be a colour all the same: a function that later standards may define.
+/// Returns `true` if a value that is not understood may still be a colour: a function that later standards may define.
 pub(super) fn may_be_color(value: &str) -> bool {
     let name = value.split('(').next().unwrap_or_default();
     value.ends_with(')') && !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-')
@@ -110,22 +110,22 @@ fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
     let inside = rest.strip_suffix(')')?;
     let levels = levels.checked_sub(1)?;
     match name {
-        "color-mix" => mixed(inside, |c| resolved(c, current, levels)),
+        "color-mix" => mix(inside, |c| resolved(c, current, levels)),
         "light-dark" => resolved(arguments(inside).next()?, current, levels),
         _ => {
             // The parser knows neither `currentColor` nor mixtures in relative colours.
             let words = inside.strip_prefix("from ").map(|_| words(inside));
             let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
             let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
-            // Of these, a percentage is the same number, which alone the parser takes in relative colours.
+            // In these functions a percentage equals the bare number, and the parser takes only the latter in relative colours.
             let plain = plain.map(|p| if matches!(name, "hsl" | "hsla" | "hwb") { without_percent(&p) } else { p });
             let plain = plain.unwrap_or(lower);
-            csscolorparser::parse(&in_xyz(&plain).unwrap_or(plain)).ok()
+            csscolorparser::parse(&to_xyz(&plain).unwrap_or(plain)).ok()
         }
     }
 }
 
-/// The channels of a colour, without those behind a slash, as numbers.
+/// A colour without the per cent signs of its channels. Alpha, behind a slash, keeps its sign.
 fn without_percent(color: &str) -> String {
     let (channels, alpha) = color.split_at(color.find('/').unwrap_or(color.len()));
     channels.replace('%', "") + alpha
@@ -146,7 +146,7 @@ fn words(text: &str) -> Vec<&str> {
 }
 
 /// Mixes two colours (CSS Color 5, section 3): "in oklch longer hue, red 30%, blue".
-fn mixed(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> {
+fn mix(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> {
     let mut parts: Vec<&str> = arguments(list).collect();
     let method = parts.first()?.strip_prefix("in ").map(words);
     if method.is_some() {
@@ -169,7 +169,7 @@ fn mixed(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> 
     };
     let whole = p + q;
     let alpha_at = 3;
-    let mut out = between(method.first()?, method.get(1).copied(), [&a, &b], [p / whole, q / whole])?;
+    let mut out = interpolated(method.first()?, method.get(1).copied(), [&a, &b], [p / whole, q / whole])?;
     out[alpha_at] *= whole.min(1.0);
     let [x, y, z, alpha] = out;
     let color = match *method.first()? {
@@ -189,8 +189,8 @@ fn mixed(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> 
 
 /// Interpolates coordinates in a colour space with premultiplied alpha, and hues along an arc (CSS Color 4, section 12). Returns `None` for
 /// an unsupported space.
-fn between(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]) -> Option<[f32; 4]> {
-    let of = |c: &Color| match space {
+fn interpolated(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]) -> Option<[f32; 4]> {
+    let coordinates = |c: &Color| match space {
         "srgb" => Some((c.to_array(), None)),
         "srgb-linear" => Some((c.to_linear_rgba(), None)),
         "oklab" => Some((c.to_oklaba(), None)),
@@ -203,11 +203,11 @@ fn between(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]
         "hwb" => Some((c.to_hwba(), Some((0, 360.0)))),
         _ => None,
     };
-    let ((mut a, hue), (mut b, _)) = (of(colors[0])?, of(colors[1])?);
+    let ((mut a, hue), (mut b, _)) = (coordinates(colors[0])?, coordinates(colors[1])?);
     let alpha = p * a[3] + q * b[3];
     let mut out = [0, 1, 2].map(|i| if alpha > 0.0 { (p * a[i] * a[3] + q * b[i] * b[3]) / alpha } else { 0.0 });
     if let Some((at, turn)) = hue {
-        // Greys have no hue of their own.
+        // Greys have no hue.
         let is_grey = |c: &Color| {
             let [r, g, b, _] = c.to_array();
             r.max(g).max(b) - r.min(g).min(b) < 1e-4
@@ -231,7 +231,7 @@ fn between(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]
 }
 
 /// Rewrites the colours and lengths in a list of functions for usvg, whose style sheets know no functions in functions.
-pub(super) fn in_functions<'v>(
+pub(super) fn rewritten_functions<'v>(
     list: &'v str,
     current: &Color,
     length: impl Fn(&'v str) -> Option<Cow<'v, str>>,
@@ -273,14 +273,14 @@ fn function(list: &str) -> Option<(&str, &str, &str)> {
     Some((name, &rest[..end], &rest[end + 1..]))
 }
 
-/// The colour to ask for so that a drop shadow in sRGB gets the given one: resvg 0.49 takes it as one in linear light, and converts it.
+/// The colour that resvg 0.49 shows as `color` in a drop shadow in sRGB, since it takes it as linear light and converts it.
 pub(super) fn shadow(color: &Color) -> String {
     let [r, g, b, a] = color.to_linear_rgba().map(|v| (255.0 * v).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}{a:02x}")
 }
 
 /// Converts a colour of Display P3 to XYZ.
-fn in_xyz(color: &str) -> Option<String> {
+fn to_xyz(color: &str) -> Option<String> {
     let arguments = color.strip_prefix("color(display-p3")?.strip_suffix(')')?;
     let (channels, alpha) = arguments.split_once('/').unwrap_or((arguments, "1"));
     let channel = |text: &str| {
@@ -288,7 +288,7 @@ fn in_xyz(color: &str) -> Option<String> {
             Some(share) => share.parse::<f64>().ok()? / 100.0,
             None => text.parse().ok()?,
         };
-        // The transfer function is that of sRGB.
+        // Display P3 has the transfer function of sRGB.
         let v = value.abs();
         Some(value.signum() * if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) })
     };
@@ -299,19 +299,19 @@ fn in_xyz(color: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Color, in_functions, paint};
+    use super::{Color, paint, rewritten_functions};
 
     const CURRENT: Color = Color::new(170.0 / 255.0, 187.0 / 255.0, 204.0 / 255.0, 1.0);
 
     #[test]
-    fn what_usvg_reads_stays() {
+    fn colours_that_usvg_reads_stay() {
         for css in ["#123", "url(#a) red", "context-fill", "currentColor", "hsl(120 50% 40% / 60%)"] {
             assert_eq!(paint(css, &CURRENT).as_deref(), Some(css));
         }
     }
 
     #[test]
-    fn functions_in_functions() {
+    fn functions_rewritten_functions() {
         for (css, plain) in [
             ("drop-shadow(8px 1rem 6px rgba(0, 0, 0, .6))", "drop-shadow(8px 16px 6px #00000099)"),
             ("blur(2px) drop-shadow(rgb(255 0 0 / 50%) 1px 2px)", "blur(2px) drop-shadow(1px 2px #ff000080)"),
@@ -322,11 +322,11 @@ mod tests {
             ("blur((()))) é", "blur((()))) é"),
         ] {
             let length = |v| Some(if v == "1rem" { "16px" } else { v }.into());
-            assert_eq!(in_functions(css, &CURRENT, length), plain);
+            assert_eq!(rewritten_functions(css, &CURRENT, length), plain);
         }
     }
 
-    /// As Chromium 156 paints or computes them, within a level. `currentColor` is #abc.
+    /// The expected colours are those of Chromium 156, within a level. `currentColor` is #abc.
     #[test]
     fn other_spaces() {
         for (css, wanted) in [

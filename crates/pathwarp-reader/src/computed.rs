@@ -3,7 +3,7 @@
 use crate::geometry::{shape_box, shape_length};
 use crate::ids::{Ids, attribute};
 use crate::sheet::{Declaration, simple};
-use crate::table::{Kind, Property, Sign, length_attribute, of_attribute, property};
+use crate::table::{Kind, Property, Sign, attribute_property, length_attribute, property};
 use crate::text::{self, Letters, TextStyle};
 use crate::value::{self, Custom, Reference, Units, reference};
 use crate::words::Words;
@@ -32,9 +32,9 @@ pub(super) type Tracked = [Option<Rc<str>>; TRACKED.len()];
 /// State passed from an element to its children.
 #[derive(Debug, Clone)]
 pub(super) struct Inherited {
-    /// Inside a symbol with a viewport of its own. Percentages refer to that viewport, which usvg doesn't know.
+    /// `true` inside a symbol with a viewport. Percentages refer to that viewport, which usvg doesn't know.
     pub(super) in_symbol: bool,
-    /// Whether paths have markers.
+    /// `true` if paths have markers.
     pub(super) marked: bool,
     pub(super) custom: Rc<Custom>,
     pub(super) units: Units,
@@ -44,22 +44,22 @@ pub(super) struct Inherited {
     pub(super) words: Arc<Words>,
 }
 
-/// Paint in the author's words; `None` for the initial value.
-type Said<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
+/// Properties with their values as the author wrote them; `None` for the initial value.
+type Written<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
 
 impl Inherited {
-    /// Takes down what an element says about paint, among other properties. Returns what holds for it.
-    fn saying(&mut self, said: Said<'_>) -> Arc<Words> {
-        for (name, value) in said.into_iter().filter(|s| Words::hold(&s.0)) {
-            Arc::make_mut(&mut self.words).say(&name, value.as_deref());
+    /// Records which declarations of an element are about paint. Returns all such declarations that hold for it.
+    fn record_words(&mut self, written: Written<'_>) -> Arc<Words> {
+        for (name, value) in written.into_iter().filter(|s| Words::records(&s.0)) {
+            Arc::make_mut(&mut self.words).record(&name, value.as_deref());
         }
         Arc::clone(&self.words)
     }
 
-    /// Takes the values of [`TRACKED`] that an element has of its own.
-    fn track(&mut self, own: impl Fn(&str) -> Option<String>) {
+    /// Takes the values of [`TRACKED`] that an element declares.
+    fn track(&mut self, declared: impl Fn(&str) -> Option<String>) {
         for (name, value) in TRACKED.iter().zip(&mut self.tracked) {
-            if let Some(v) = own(name).filter(|v| v.trim() != "inherit") {
+            if let Some(v) = declared(name).filter(|v| v.trim() != "inherit") {
                 *value = Some(v.into());
             }
         }
@@ -89,7 +89,7 @@ pub(super) struct Computed<'a> {
     /// The first number out of range.
     pub(super) far: Option<String>,
     pub(super) words: Arc<Words>,
-    /// The element is a gradient whose colours are interpolated in linear light.
+    /// `true` if the element is a gradient whose colours are interpolated in linear light.
     pub(super) is_linear: bool,
     /// The colour of a stop in such a gradient.
     pub(super) stop: Option<Color>,
@@ -109,7 +109,7 @@ fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
 }
 
 /// The length that 100 % of a property stands for.
-fn whole(name: &str, units: &Units) -> f64 {
+fn full(name: &str, units: &Units) -> f64 {
     let (w, h) = units.viewport;
     match name {
         "x" | "width" | "cx" | "rx" | "x1" | "x2" | "dx" | "fx" | "refX" | "markerWidth" => w,
@@ -129,9 +129,9 @@ pub(super) fn computed<'a>(
 ) -> Computed<'a> {
     let tag = node.tag_name().name();
     let variables = declarations.iter().filter(|d| d.name.starts_with("--"));
-    let own: Vec<(String, String)> = variables.map(|d| (d.name.to_string(), d.value.to_string())).collect();
-    if !own.is_empty() {
-        inherited.custom = Rc::new(value::custom(&own, &inherited.custom));
+    let variables: Vec<(String, String)> = variables.map(|d| (d.name.to_string(), d.value.to_string())).collect();
+    if !variables.is_empty() {
+        inherited.custom = Rc::new(value::custom(&variables, &inherited.custom));
         Arc::make_mut(&mut inherited.words).declare_variables(node.range().start);
     }
     let is_server =
@@ -152,7 +152,7 @@ pub(super) fn computed<'a>(
         inherited.units.root_font = inherited.units.font;
     }
     values.units = inherited.units;
-    if let Some(color) = own_color(node, declarations, &values) {
+    if let Some(color) = declared_color(node, declarations, &values) {
         values.color = color;
         inherited.color = color;
     }
@@ -169,7 +169,7 @@ pub(super) fn computed<'a>(
 /// The size of an element's font in px, if it declares one.
 fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<f64> {
     let size = property("font-size")?;
-    let px = |text: &str, strict| value::length(&values.of(size, text, strict)?, &values.units, values.font);
+    let px = |text: &str, strict| value::length(&values.rewrite(size, text, strict)?, &values.units, values.font);
     let declared = declarations.iter().rev().find_map(|d| match d.name.as_ref() {
         "font-size" => match wide(&d.value) {
             Some(Wide::Initial) => Some(value::MEDIUM),
@@ -183,8 +183,8 @@ fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
 }
 
 /// The colour that an element declares as its `color`.
-fn own_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<Color> {
-    let of = |text: &str| match wide(text.trim()) {
+fn declared_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<Color> {
+    let resolve = |text: &str| match wide(text.trim()) {
         Some(Wide::Initial) => color::computed("black", &values.color),
         Some(_) => Some(values.color),
         None => {
@@ -192,7 +192,7 @@ fn own_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
         }
     };
     let mut declared = declarations.iter().rev().filter(|d| d.name == "color").map(|d| d.value.as_ref());
-    declared.find_map(of).or_else(|| of(node.attribute("color")?))
+    declared.find_map(resolve).or_else(|| resolve(node.attribute("color")?))
 }
 
 /// A CSS-wide keyword.
@@ -218,7 +218,7 @@ fn wide(value: &str) -> Option<Wide> {
     }
 }
 
-/// The value that a CSS-wide keyword stands for; `None` for that of the parent.
+/// The value that a CSS-wide keyword stands for; `None` if it is the parent's value.
 fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
     match wide {
         Wide::Inherit => None,
@@ -234,7 +234,7 @@ pub(super) fn is_valid(d: &Declaration<'_>, units: Units, ids: &Ids<'_, '_>) -> 
     };
     let color = Color::new(0.0, 0.0, 0.0, 1.0);
     let values = Values { custom: Rc::default(), units, font: units.font, color, absolute: false, ids };
-    values.of(p, &d.value, d.strict).is_some()
+    values.rewrite(p, &d.value, d.strict).is_some()
 }
 
 /// Computes single values.
@@ -245,7 +245,7 @@ struct Values<'d, 'a, 'i> {
     font: f64,
     /// The colour that `currentColor` stands for.
     color: Color,
-    /// Whether percentages are converted to px.
+    /// `true` if percentages are converted to px.
     absolute: bool,
     ids: &'d Ids<'a, 'i>,
 }
@@ -256,7 +256,7 @@ impl Values<'_, '_, '_> {
     }
 
     /// Rewrites a value for usvg. Returns `None` if it is invalid. If `strict`, lengths other than zero need a unit.
-    fn of<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
+    fn rewrite<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         let raw = raw.trim();
         if value::has_functions(raw) && !matches!(p.kind, Kind::Transform | Kind::Any) {
             let text = self.substituted(raw)?;
@@ -270,7 +270,7 @@ impl Values<'_, '_, '_> {
         self.plain(p, raw, strict)
     }
 
-    /// The units for a property; those of font sizes refer to the parent's font.
+    /// The units for a property. For font sizes, they refer to the parent's font.
     fn units_for(&self, p: &Property) -> Units {
         let font = if matches!(p.kind, Kind::FontSize) { self.font } else { self.units.font };
         Units { font, ..self.units }
@@ -282,7 +282,7 @@ impl Values<'_, '_, '_> {
             Kind::FontSize => self.font,
             Kind::Spacing => self.units.font,
             Kind::Share => 1.0,
-            _ => whole(p.name, &self.units),
+            _ => full(p.name, &self.units),
         }
     }
 
@@ -318,8 +318,8 @@ impl Values<'_, '_, '_> {
         value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
     }
 
-    /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have names of their own for it.
-    fn of_server(&self, id: Option<&str>, names: [&str; 2]) -> Option<&str> {
+    /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have different `names` for it.
+    fn server_attribute(&self, id: Option<&str>, names: [&str; 2]) -> Option<&str> {
         const MAX_LINKS: usize = 16;
         let mut chain = std::iter::successors(self.ids.get(id?), |n| self.ids.target(*n)).take(MAX_LINKS);
         chain.find_map(|n| names.into_iter().find_map(|name| n.attribute(name)))
@@ -328,31 +328,31 @@ impl Values<'_, '_, '_> {
     /// Replaces a gradient or pattern with a singular transform by its fallback colour, or by `none`.
     fn seen_paint<'v>(&self, raw: &'v str) -> &'v str {
         let Some(link) = reference(raw) else { return raw };
-        let given = self.of_server(link.id.as_deref(), ["gradientTransform", "patternTransform"]);
+        let given = self.server_attribute(link.id.as_deref(), ["gradientTransform", "patternTransform"]);
         let t = given.and_then(|t| t.parse::<svgtypes::Transform>().ok());
         if t.is_some_and(|t| t.a * t.d == t.b * t.c) { fallback(&link) } else { raw }
     }
 
-    /// The paint in place of a gradient or pattern in box units on a shape whose box has no width or no height.
+    /// The paint that replaces a gradient or pattern in box units on a shape whose box has no width or no height.
     fn flat_paint<'v>(&self, raw: &'v str) -> Option<&'v str> {
         let link = reference(raw)?;
-        let units = self.of_server(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
+        let units = self.server_attribute(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
         (units != Some("userSpaceOnUse")).then(|| fallback(&link))
     }
 
-    /// Further declarations: the paint in place of a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
-    /// in sRGB. `of` looks up what the element has.
+    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
+    /// in sRGB. `declared` looks up the properties of the element.
     fn paints<'s, 'n>(
         &self,
         node: Node<'n, '_>,
         inherited: &Inherited,
-        own: &Computed<'n>,
-        of: &dyn Fn(&str) -> Option<String>,
+        computed: &Computed<'n>,
+        declared: &dyn Fn(&str) -> Option<String>,
     ) -> Vec<(Cow<'s, str>, Cow<'s, str>)> {
         let tag = node.tag_name().name();
         let mut out = Vec::new();
         let is_flat = || {
-            let area = shape_box(tag, |name| own.value(node, name), &self.units);
+            let area = shape_box(tag, |name| computed.value(node, name), &self.units);
             area.is_some_and(|b| b.width() == 0.0 || b.height() == 0.0)
         };
         for name in ["fill", "stroke"] {
@@ -360,16 +360,16 @@ impl Values<'_, '_, '_> {
             out.extend(paint.filter(|_| is_flat()).map(|p| (name.into(), p.to_owned().into())));
         }
         if tag == "feDropShadow" && inherited.tracked("color-interpolation-filters") == Some("sRGB") {
-            let flood = of("flood-color").and_then(|c| color::computed(&c, &self.color));
+            let flood = declared("flood-color").and_then(|c| color::computed(&c, &self.color));
             out.extend(flood.map(|c| ("flood-color".into(), color::shadow(&c).into())));
         }
         out
     }
 
     /// The colour of a stop.
-    fn stop(&self, of: &dyn Fn(&str) -> Option<String>) -> Color {
-        let color = of("stop-color").and_then(|c| color::computed(&c, &self.color));
-        let opacity = of("stop-opacity").and_then(|o| value::length(&o, &self.units, 1.0));
+    fn stop(&self, declared: &dyn Fn(&str) -> Option<String>) -> Color {
+        let color = declared("stop-color").and_then(|c| color::computed(&c, &self.color));
+        let opacity = declared("stop-opacity").and_then(|o| value::length(&o, &self.units, 1.0));
         let [r, g, b, a] = color.map_or([0.0, 0.0, 0.0, 1.0], |c| c.to_array());
         Color::new(r, g, b, a * opacity.unwrap_or(1.0) as f32)
     }
@@ -385,7 +385,7 @@ impl Values<'_, '_, '_> {
         // Links in lists stay as they are.
         match reference(raw).filter(|l| l.rest.trim().is_empty()) {
             Some(only) => only.text(raw),
-            None => color::in_functions(raw, &self.color, |v| self.length(p, v, Sign::Any, false)),
+            None => color::rewritten_functions(raw, &self.color, |v| self.length(p, v, Sign::Any, false)),
         }
     }
 
@@ -397,20 +397,20 @@ impl Values<'_, '_, '_> {
     }
 }
 
-/// The paint in place of one that cannot apply.
+/// The paint that replaces one that cannot apply.
 fn fallback<'v>(link: &Reference<'v>) -> &'v str {
     if link.rest.trim().is_empty() { "none" } else { link.rest.trim() }
 }
 
-/// Rewrites a list separated by spaces, commas, or both. Returns `None` if any item is invalid.
-fn list<'v>(raw: &'v str, of: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Option<Cow<'v, str>> {
+/// Rewrites the items of a list separated by spaces, commas, or both. Returns `None` if any item is invalid.
+fn list<'v>(raw: &'v str, rewrite: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> Option<Cow<'v, str>> {
     let items = raw.split(',').flat_map(|part| {
         let mut words = part.split_ascii_whitespace().peekable();
         // Two commas in a row make an empty, invalid item.
         let empty = words.peek().is_none().then_some("");
         words.chain(empty)
     });
-    let all = items.map(|v| Some((v, of(v)?))).collect::<Option<Vec<_>>>()?;
+    let all = items.map(|v| Some((v, rewrite(v)?))).collect::<Option<Vec<_>>>()?;
     let changed = all.iter().any(|(old, new)| *old != new.as_ref());
     Some(if changed {
         all.iter().map(|v| v.1.as_ref()).collect::<Vec<_>>().join(" ").into()
@@ -450,7 +450,7 @@ struct Declared<'v, 'a, 'i> {
     seen: HashSet<Cow<'a, str>>,
     /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
-    said: Said<'a>,
+    written: Written<'a>,
     /// Colours that are not understood, by property.
     unknown: Vec<(&'static str, String)>,
     /// Strongest first, until all declarations have been added.
@@ -461,8 +461,8 @@ struct Declared<'v, 'a, 'i> {
 impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     fn new(tag: &'v str, values: &'v Values<'v, 'a, 'i>) -> Self {
         let (seen, dropped) = (HashSet::new(), HashSet::new());
-        let (said, unknown, style) = (Vec::new(), Vec::new(), Vec::new());
-        Self { tag, geometry: &[], values, seen, dropped, said, unknown, style, out: Computed::default() }
+        let (written, unknown, style) = (Vec::new(), Vec::new(), Vec::new());
+        Self { tag, geometry: &[], values, seen, dropped, written, unknown, style, out: Computed::default() }
     }
 
     /// Adds a declaration weaker than all before it. The strongest valid declaration of a property wins.
@@ -508,14 +508,14 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 }
                 None => "inherit".into(),
             },
-            None => match self.values.of(p, &d.value, d.strict) {
+            None => match self.values.rewrite(p, &d.value, d.strict) {
                 Some(v) if v == d.value => d.value.clone(),
                 Some(v) => v.into_owned().into(),
                 None => return self.note_color(p, &d.value),
             },
         };
         self.seen.insert(p.name.into());
-        self.say(p, d.value.clone());
+        self.record(p, d.value.clone());
         match p.kind {
             Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
             Kind::Geometry(_) if self.geometry.contains(&p.name) => {
@@ -539,13 +539,13 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    /// Takes down a valid value of a property of paint.
-    fn say(&mut self, p: &'static Property, raw: Cow<'a, str>) {
-        if Words::hold(p.name) {
+    /// Records a valid value of a property of paint.
+    fn record(&mut self, p: &'static Property, raw: Cow<'a, str>) {
+        if Words::records(p.name) {
             match wide(raw.trim()).map(|wide| resolved(wide, p)) {
                 Some(None) => {}
-                Some(Some(_)) => self.said.push((p.name.into(), None)),
-                None => self.said.push((p.name.into(), Some(raw))),
+                Some(Some(_)) => self.written.push((p.name.into(), None)),
+                None => self.written.push((p.name.into(), Some(raw))),
             }
         }
     }
@@ -563,7 +563,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    /// Names the colours that are not understood, with black in place of those that have no other value.
+    /// Reports the colours that are not understood. Black replaces those that have no other value.
     fn replace_unknown(&mut self, node: Node<'a, '_>) {
         for (name, value) in std::mem::take(&mut self.unknown) {
             let set = self.seen.contains(name) || self.out.value(node, name).is_some();
@@ -591,7 +591,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     fn take_attributes(&mut self, node: Node<'a, '_>) {
         for a in node.attributes().filter(|a| a.namespace().is_none()) {
             let (name, raw) = (a.name(), a.value());
-            if let Some(p) = of_attribute(name) {
+            if let Some(p) = attribute_property(name) {
                 if !self.seen.contains(p.name) {
                     self.attribute(p, raw);
                 } else if self.dropped.contains(p.name) {
@@ -599,7 +599,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 }
             } else if let Some(name) = length_attribute(name) {
                 let p = Property { name, inherited: false, initial: "0", kind: Kind::Length(Sign::Any) };
-                let all = list(raw.trim(), |v| self.values.of(&p, v, false));
+                let all = list(raw.trim(), |v| self.values.rewrite(&p, v, false));
                 let new =
                     all.map_or(Cow::Borrowed(raw), |new| if new == raw.trim() { Cow::Borrowed(raw) } else { new });
                 let new = self.near(&new).into_owned();
@@ -622,7 +622,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         self.note_share(p, raw);
         if p.name == "image-rendering" {
             // usvg reads the CSS keywords from the style attribute only.
-            let new = self.values.of(p, raw, false).map(|v| (p.name.into(), v.into_owned().into()));
+            let new = self.values.rewrite(p, raw, false).map(|v| (p.name.into(), v.into_owned().into()));
             self.style.extend(new);
             return;
         }
@@ -633,7 +633,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 None if knows_inherit(p) => Some("inherit".into()),
                 None => None,
             },
-            None => match self.values.of(p, raw, false) {
+            None => match self.values.rewrite(p, raw, false) {
                 // A radius of `auto` in an attribute means zero.
                 Some(v) if v == "auto" && matches!(p.name, "rx" | "ry") => Some("0".into()),
                 // usvg handles invalid geometry as browsers do.
@@ -646,7 +646,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             },
         };
         if new.is_some() {
-            self.say(p, raw.into());
+            self.record(p, raw.into());
         }
         let is_length =
             is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
@@ -658,17 +658,17 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
 
     /// Applies the rules specific to texts, dashes, markers and `use` elements.
     fn finish(mut self, node: Node<'a, '_>, inherited: &mut Inherited) -> Computed<'a> {
-        let (tag, mut out, mut said) = (self.tag, self.out, self.said);
+        let (tag, mut out, mut written) = (self.tag, self.out, self.written);
         let mut style = std::mem::take(&mut self.style);
         if tag == "use" {
             out.attributes.extend(size_of_use(node, &self.values.units));
         }
         let marker = |name: &str| {
-            let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
-            own.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
+            let declared = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+            declared.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
         };
         let markers: Vec<bool> = MARKERS.into_iter().filter_map(marker).collect();
-        inherited.marked = markers.contains(&true) || inherited.marked && markers.len() < 3;
+        inherited.marked = markers.contains(&true) || (inherited.marked && markers.len() < 3);
         if inherited.marked && matches!(tag, "rect" | "circle" | "ellipse") {
             // usvg would draw markers on these as on paths.
             out.attributes.retain(|a| !MARKERS.contains(&a.0));
@@ -680,11 +680,11 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             style.retain(|s| s.0 != "writing-mode");
             out.attributes.retain(|a| a.0 != "writing-mode");
             out.attributes.extend(node.has_attribute("writing-mode").then_some(("writing-mode", None)));
-            let own = |name: &str| {
+            let applies = |name: &str| {
                 let value = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
                 value.or_else(|| out.value(node, name)).is_some_and(|v| !matches!(v, "none" | "inherit"))
             };
-            let effect = ["clip-path", "mask", "filter"].into_iter().find(|name| own(name));
+            let effect = ["clip-path", "mask", "filter"].into_iter().find(|name| applies(name));
             out.unsupported
                 .extend(effect.map(|name| format!("only without its {name}, which parts of texts cannot have")));
             if tag == "textPath" && self.values.ids.target(node).is_some_and(|n| n.tag_name().name() != "path") {
@@ -703,8 +703,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
         };
         inherited.track(|name| {
-            let own = self.seen.contains(name) || node.attributes().any(|a| a.name() == name);
-            own.then(|| styled(name))?
+            let is_declared = self.seen.contains(name) || node.attributes().any(|a| a.name() == name);
+            is_declared.then(|| styled(name))?
         });
         let linear = inherited.tracked("color-interpolation") == Some("linearRGB");
         let stop = (linear && tag == "stop").then(|| self.values.stop(&styled));
@@ -716,18 +716,18 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             || node.attributes().any(|a| text::concerns(a.name()))
         {
             let (changes, letters) = inherited.text.declare(node, |name| {
-                let own = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
-                own.or_else(|| out.value(node, name).filter(|_| of_attribute(name).is_some()))
+                let declared = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
+                declared.or_else(|| out.value(node, name).filter(|_| attribute_property(name).is_some()))
             });
             out.letters = letters;
             out.notes.extend(changes.notes);
             let attributes = changes.attributes.into_iter().filter(|(name, v)| attribute(node, name) != Some(v));
             out.attributes.extend(attributes.map(|(name, v)| (name, Some(v))));
             out.unsupported.extend(changes.unsupported.iter().map(|d| ignored(d)));
-            said.extend(changes.style.iter().map(|(n, v)| (n.clone().into(), Some(v.clone().into()))));
+            written.extend(changes.style.iter().map(|(n, v)| (n.clone().into(), Some(v.clone().into()))));
             style.extend(changes.style.into_iter().map(|(n, v)| (n.into(), v.into())));
         }
-        out.words = inherited.saying(said);
+        out.words = inherited.record_words(written);
         if let Some(dashes) = scaled_dashes(node, &out, inherited) {
             style.retain(|s| !DASHES.contains(&s.0.as_ref()));
             style.extend(DASHES.iter().zip(dashes).map(|(name, value)| (Cow::Borrowed(*name), value.into())));
@@ -748,7 +748,7 @@ fn is_written(node: Node<'_, '_>, style: &[(Cow<'_, str>, Cow<'_, str>)]) -> boo
 fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'static str, Option<String>)> {
     ["width", "height"].into_iter().filter_map(move |name| {
         let share = node.attribute(name).filter(|v| v.trim().ends_with('%'))?;
-        Some((name, Some(value::length(share, units, whole(name, units))?.to_string())))
+        Some((name, Some(value::length(share, units, full(name, units))?.to_string())))
     })
 }
 
@@ -756,13 +756,13 @@ fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'sta
 fn shown_symbol(
     node: Node<'_, '_>,
     symbol: Node<'_, '_>,
-    own: &Computed<'_>,
+    style: &Computed<'_>,
     units: &Units,
 ) -> Vec<(&'static str, String)> {
-    let length_of = |n: Node<'_, '_>, name: &str| value::length(n.attribute(name)?, units, whole(name, units));
+    let length_of = |n: Node<'_, '_>, name: &str| value::length(n.attribute(name)?, units, full(name, units));
     let mut out = Vec::new();
     for name in ["width", "height"] {
-        let given = own.value(node, name).is_some_and(|v| v.trim() != "auto");
+        let given = style.value(node, name).is_some_and(|v| v.trim() != "auto");
         out.extend(length_of(symbol, name).filter(|_| !given).map(|px| (name, px.to_string())));
     }
     let matrix = |n: Node<'_, '_>| {
@@ -772,8 +772,8 @@ fn shown_symbol(
     let turned = matrix(symbol);
     let shift = ["x", "y"].map(|name| length_of(symbol, name).unwrap_or(0.0));
     if turned.is_some() || shift != [0.0; 2] {
-        let [x, y] = ["x", "y"]
-            .map(|name| own.value(node, name).and_then(|v| value::length(v, units, whole(name, units))).unwrap_or(0.0));
+        let declared = |name: &str| value::length(style.value(node, name)?, units, full(name, units));
+        let [x, y] = ["x", "y"].map(|name| declared(name).unwrap_or(0.0));
         let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * turned.unwrap_or_default();
         out.push(("transform", pathwarp::engine::decimal::matrix(all)));
         out.extend(["x", "y"].into_iter().zip(shift).map(|(name, v)| (name, v.to_string())));
@@ -781,7 +781,7 @@ fn shown_symbol(
     out
 }
 
-/// Whether usvg understands `inherit` as a value of a property.
+/// Returns `true` if usvg understands `inherit` as a value of a property.
 fn knows_inherit(p: &Property) -> bool {
     let unknown = matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
         || matches!(
@@ -795,7 +795,7 @@ fn knows_inherit(p: &Property) -> bool {
                 | "lighting-color"
         )
         || p.name.starts_with("font-variant-")
-        || text::concerns(p.name)
+        || (text::concerns(p.name)
             && !matches!(
                 p.name,
                 "font-size"
@@ -807,7 +807,7 @@ fn knows_inherit(p: &Property) -> bool {
                     | "text-anchor"
                     | "text-decoration"
                     | "font-variant"
-            );
+            ));
     !unknown
 }
 

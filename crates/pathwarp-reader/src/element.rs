@@ -25,24 +25,24 @@ const ATTRIBUTES: usize = 64;
 const SELECTOR: usize = 2;
 
 /// Counts the comparisons of matching, up to a limit.
-pub(super) struct Looks {
+pub(super) struct ComparisonCounter {
     done: Cell<u64>,
     max: f64,
 }
 
-impl Looks {
-    pub(super) fn within(budget: &Budget) -> Self {
+impl ComparisonCounter {
+    pub(super) fn new(budget: &Budget) -> Self {
         Self { done: Cell::new(0), max: budget.left() / cost::COMPARISON }
     }
 
-    /// Charges the budget for all looks so far.
+    /// Charges the budget for all comparisons so far.
     pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
         budget.spend(cost::COMPARISON * self.done.get() as f64)
     }
 
-    /// Adds to the count. Returns `false` if matching has to stop.
-    pub(super) fn add(&self, looks: usize) -> bool {
-        self.done.set(self.done.get().saturating_add(looks as u64));
+    /// Adds comparisons. Returns `false` if matching has to stop.
+    pub(super) fn add(&self, comparisons: usize) -> bool {
+        self.done.set(self.done.get().saturating_add(comparisons as u64));
         !self.exceeded()
     }
 
@@ -51,10 +51,10 @@ impl Looks {
     }
 }
 
-/// Returns a test of whether an element matches a selector.
+/// Returns a function that tests if an element matches a selector.
 pub(super) fn matcher<'b>(
     node: Node<'b, '_>,
-    looks: &Looks,
+    counter: &ComparisonCounter,
     caches: &'b mut SelectorCaches,
 ) -> impl FnMut(&Selector<Svg>) -> bool {
     let mut context = MatchingContext::new(
@@ -65,15 +65,15 @@ pub(super) fn matcher<'b>(
         NeedsSelectorFlags::No,
         MatchingForInvalidation::No,
     );
-    let element = Counted { node, looks };
-    move |selector| looks.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
+    let element = Counted { node, counter };
+    move |selector| counter.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
 }
 
 /// An element that counts accesses, and appears to have no neighbours once the limit is exceeded.
 #[derive(Clone, Copy)]
 struct Counted<'a, 'b, 'i> {
     node: Node<'b, 'i>,
-    looks: &'a Looks,
+    counter: &'a ComparisonCounter,
 }
 
 impl std::fmt::Debug for Counted<'_, '_, '_> {
@@ -84,13 +84,13 @@ impl std::fmt::Debug for Counted<'_, '_, '_> {
 
 impl<'b, 'i> Counted<'_, 'b, 'i> {
     fn go(self, to: impl FnOnce(&Node<'b, 'i>) -> Option<Node<'b, 'i>>) -> Option<Self> {
-        self.looks.add(1).then(|| to(&self.node)).flatten().map(|node| Self { node, ..self })
+        self.counter.add(1).then(|| to(&self.node)).flatten().map(|node| Self { node, ..self })
     }
 
     fn attribute(&self, name: &str) -> Option<&'b str> {
         let value = self.node.attribute(name);
-        let looked_at = 1 + value.map_or(0, str::len) / VALUE_BYTES + self.node.attributes().len() / ATTRIBUTES;
-        value.filter(|_| self.looks.add(looked_at))
+        let comparisons = 1 + value.map_or(0, str::len) / VALUE_BYTES + self.node.attributes().len() / ATTRIBUTES;
+        value.filter(|_| self.counter.add(comparisons))
     }
 }
 
@@ -136,7 +136,7 @@ impl selectors::Element for Counted<'_, '_, '_> {
     }
 
     fn has_local_name(&self, name: &str) -> bool {
-        self.looks.add(1) && self.node.tag_name().name() == name
+        self.counter.add(1) && self.node.tag_name().name() == name
     }
 
     fn has_namespace(&self, namespace: &str) -> bool {
@@ -157,14 +157,14 @@ impl selectors::Element for Counted<'_, '_, '_> {
             NamespaceConstraint::Specific(uri) => uri.as_ref(),
             NamespaceConstraint::Any => {
                 let mut values = self.node.attributes().filter(|a| a.name() == name.as_ref()).map(|a| a.value());
-                return values.any(|v| self.looks.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v));
+                return values.any(|v| self.counter.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v));
             }
         };
         if uri.is_empty() {
             return self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value));
         }
         let value = self.node.attribute((uri, name.as_ref()));
-        value.is_some_and(|v| self.looks.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v))
+        value.is_some_and(|v| self.counter.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v))
     }
 
     fn match_non_ts_pseudo_class(&self, state: &State, _: &mut MatchingContext<'_, Svg>) -> bool {
@@ -229,23 +229,22 @@ pub(super) fn work(value: &str) -> usize {
     1 + value.len() / BYTES
 }
 
-/// Lists the declarations that apply to an element, weakest first: those of matching rules, and those of its style attribute,
-/// `own`.
+/// Lists the declarations that apply to an element, weakest first: from matching rules, and `inline` from its style attribute.
 pub(super) fn applying<'r, 'a>(
     rules: &'r Rules<'a>,
-    own: &'r [Declaration<'a>],
+    inline: &'r [Declaration<'a>],
     node: Node<'_, '_>,
-    looks: &Looks,
+    counter: &ComparisonCounter,
     caches: &mut SelectorCaches,
 ) -> Vec<&'r Declaration<'a>> {
     let mut all = Vec::new();
     if !rules.is_empty() {
-        let mut matches = matcher(node, looks, caches);
+        let mut matches = matcher(node, counter, caches);
         for candidate in rules.candidates(node.tag_name().name(), node.attribute("id"), node.attribute("class")) {
             let Some((selector, order)) = rules.selectors.get(candidate).filter(|s| matches(&s.0)) else { continue };
             let block = &rules.blocks[*order];
             let variable = |d: &Declaration<'_>| if d.name.starts_with("--") { CUSTOM_PROPERTY } else { 0 };
-            looks.add(block.declarations.iter().map(|d| variable(d) + work(&d.value)).sum());
+            counter.add(block.declarations.iter().map(|d| variable(d) + work(&d.value)).sum());
             for d in &block.declarations {
                 // `!important` reverses the order of layers.
                 let layer = if d.important { usize::MAX - block.layer } else { block.layer };
@@ -253,7 +252,7 @@ pub(super) fn applying<'r, 'a>(
             }
         }
     }
-    all.extend(own.iter().map(|d| ((d.important, true, 0, 0, 0), d)));
+    all.extend(inline.iter().map(|d| ((d.important, true, 0, 0, 0), d)));
     // The sort is stable, so that the later of two equals is stronger.
     all.sort_by_key(|(strength, _)| *strength);
     all.into_iter().map(|(_, d)| d).collect()

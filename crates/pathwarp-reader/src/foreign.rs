@@ -1,5 +1,5 @@
-//! HTML in a `foreignObject` as SVG text. draw.io and others write their labels as HTML, with a shorter text for viewers that cannot show
-//! it, in one `switch`; here the text gets the words of the HTML, where plain CSS places them (CSS Flexbox 1, CSS Inline 3).
+//! Converts HTML in a `foreignObject` to SVG text. draw.io and others write a label as a `switch` between HTML and a shorter text for
+//! viewers that cannot show it. The text gets the words of the HTML, laid out by plain CSS (CSS Flexbox 1, CSS Inline 3).
 
 use crate::sheet::declarations;
 use crate::text;
@@ -10,13 +10,13 @@ use roxmltree::Node;
 use std::fmt::Write as _;
 use std::rc::Rc;
 
-/// The text in place of HTML.
+/// The text that replaces HTML.
 pub(super) struct Foreign {
     /// Its lines, as the content of a `text`.
     pub(super) content: String,
-    /// The colours that the elements in `content` have of their own.
+    /// The colour that each element in `content` declares.
     pub(super) fills: Vec<Option<Rc<str>>>,
-    /// The names of all that the HTML holds beside text.
+    /// The parts of the HTML that are not text, worded for people.
     pub(super) beyond: Vec<String>,
 }
 
@@ -24,16 +24,16 @@ pub(super) struct Foreign {
 #[derive(Clone, PartialEq)]
 struct Look {
     size: f64,
-    /// Height of a line as a multiple of the size; `None` for that of the font.
+    /// Height of a line as a multiple of the size; `None` for the height that the font sets.
     line: Option<f64>,
-    /// The share of the room beside the words that is on their left.
+    /// The share of the free room beside the words that is on their left.
     align: f64,
     wraps: bool,
     /// Values of [`SAME`].
     same: [Option<Rc<str>>; SAME.len()],
 }
 
-/// The room for the text: a rectangle, and the shares of what is left of it before what is smaller. `across` is `None` for what fills it.
+/// A rectangle for the text, and the shares of the free room to its left and above it. `across` is `None` for text that fills the width.
 #[derive(Clone, Copy)]
 struct Room {
     x: f64,
@@ -51,12 +51,12 @@ enum Piece {
     Break,
 }
 
-/// Ascent, descent and gap between lines as multiples of the font's size, of Arial and its twins.
+/// Ascent, descent and line gap of Arial and its twins, as multiples of the font's size.
 const METRICS: [f64; 3] = [0.905, 0.212, 0.033];
 
 impl Look {
-    /// The height of a line, and the distance from its middle down to that of its letters. Chromium rounds what is above and below them.
-    fn line(&self) -> (f64, f64) {
+    /// The height of a line, and the distance from its middle down to the middle of its letters. Chromium rounds ascent and descent.
+    fn line_box(&self) -> (f64, f64) {
         let [ascent, descent, gap] = METRICS.map(|share| share * self.size);
         let height = self.line.map_or(ascent.round() + descent.round() + gap.round(), |line| line * self.size);
         let above = ((height - ascent.round() - descent.round()) / 2.0).floor() + ascent.round();
@@ -73,13 +73,13 @@ const SAME: [(&str, &str); 5] = [
     ("text-decoration", "text-decoration"),
 ];
 
-/// Values of [`SAME`] to begin with. The `text` that the words are written to may have others.
+/// Initial values of [`SAME`]. The `text` that the words are written to may have other values.
 const INITIAL: [Option<&str>; SAME.len()] = [Some("currentColor"), None, Some("normal"), Some("normal"), None];
 
 /// The longest value of a property, in bytes.
 const LONGEST: usize = 256;
 
-/// Elements that look otherwise by themselves.
+/// Elements with a default style, as the property and its value.
 const STYLED: [(&[&str], &str, &str); 4] = [
     (&["b", "strong", "h1", "h2", "h3", "h4", "th"], "font-weight", "bold"),
     (&["i", "em"], "font-style", "italic"),
@@ -99,15 +99,15 @@ const WIDTHS: [u16; 95] = [
     556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
 ];
 
-/// How wide words are, roughly.
+/// Estimates the width of words.
 fn width(words: &str, look: &Look) -> f64 {
-    let of = |c: char| WIDTHS.get((c as usize).wrapping_sub(32)).map_or(0.6, |w| f64::from(*w) / 1000.0);
+    let advance = |c: char| WIDTHS.get((c as usize).wrapping_sub(32)).map_or(0.6, |w| f64::from(*w) / 1000.0);
     let is_bold = look.same.iter().flatten().any(|v| matches!(&**v, "bold" | "bolder" | "600" | "700" | "800" | "900"));
-    words.chars().map(of).sum::<f64>() * look.size * if is_bold { 1.06 } else { 1.0 }
+    words.chars().map(advance).sum::<f64>() * look.size * if is_bold { 1.06 } else { 1.0 }
 }
 
-/// The text that a `foreignObject` shows; `nodes` and `styles` are those of the elements from it on. `None` if it has no words.
-pub(super) fn text_of(nodes: &[Node<'_, '_>], styles: &[Styled<'_>], units: &Units) -> Option<Foreign> {
+/// The text of a `foreignObject`, which is the first of `nodes` and `styles`. `None` if it has no words.
+pub(super) fn foreign_text(nodes: &[Node<'_, '_>], styles: &[Styled<'_>], units: &Units) -> Option<Foreign> {
     let foreign = *nodes.first()?;
     let side = |name: &str, full: f64| foreign.attribute(name).and_then(|v| length(v, units, full)).unwrap_or(0.0);
     let [x, y, width, height] = [("x", 0), ("y", 1), ("width", 0), ("height", 1)]
@@ -122,7 +122,7 @@ pub(super) fn text_of(nodes: &[Node<'_, '_>], styles: &[Styled<'_>], units: &Uni
     (!lines.is_empty()).then(|| written(&lines, room, look.align, html.beyond))
 }
 
-/// HTML being read.
+/// Reads HTML.
 struct Html<'n, 'a, 'i> {
     nodes: &'n [Node<'a, 'i>],
     styles: &'n [Styled<'a>],
@@ -132,14 +132,14 @@ struct Html<'n, 'a, 'i> {
 }
 
 impl<'a, 'i> Html<'_, 'a, 'i> {
-    /// The value of a property on an element, or else of an old attribute for it.
-    fn of(&self, node: Node<'_, '_>, name: &str) -> Option<String> {
+    /// The value of a property of an element, or else of the obsolete attribute for it.
+    fn property(&self, node: Node<'_, '_>, name: &str) -> Option<String> {
         let at = self.nodes.binary_search_by_key(&node.range().start, |n| n.range().start).ok()?;
         let found = match &self.styles[at].computed.style {
             Some(style) => style.iter().rev().find(|d| d.0 == name).map(|d| d.1.to_string()),
             None => {
-                let own = declarations(node.attribute("style").unwrap_or_default());
-                own.iter().rev().find(|d| d.name == name).map(|d| d.value.to_string())
+                let inline = declarations(node.attribute("style").unwrap_or_default());
+                inline.iter().rev().find(|d| d.name == name).map(|d| d.value.to_string())
             }
         };
         let old = [("color", "color"), ("font-family", "face"), ("text-align", "align")].into_iter();
@@ -149,31 +149,31 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
     }
 
     fn px(&self, node: Node<'_, '_>, font: f64, name: &str, full: f64) -> Option<f64> {
-        length(&self.of(node, name)?, &Units { font, ..*self.units }, full)
+        length(&self.property(node, name)?, &Units { font, ..*self.units }, full)
     }
 
-    /// The look of an element's words, from that of its parent. Notes what the element paints besides.
+    /// The look of an element's words, given the look of its parent. Records what else the element paints.
     fn look(&mut self, node: Node<'_, '_>, parent: &Rc<Look>) -> Rc<Look> {
         let mut look = Look::clone(parent);
         let tag = node.tag_name().name();
-        if let Some(size) = self.of(node, "font-size") {
+        if let Some(size) = self.property(node, "font-size") {
             let px = text::size(&size, parent.size).or_else(|| self.px(node, parent.size, "font-size", parent.size));
             look.size = px.unwrap_or(parent.size);
         }
         for ((name, _), value) in SAME.iter().zip(&mut look.same) {
-            let by_itself = STYLED.iter().find(|s| s.1 == *name && s.0.contains(&tag)).map(|s| s.2.to_owned());
-            *value = self.of(node, name).or(by_itself).map(Rc::from).or(value.take());
+            let by_default = STYLED.iter().find(|s| s.1 == *name && s.0.contains(&tag)).map(|s| s.2.to_owned());
+            *value = self.property(node, name).or(by_default).map(Rc::from).or(value.take());
         }
-        if let Some(line) = self.of(node, "line-height").filter(|_| look.size > 0.0) {
+        if let Some(line) = self.property(node, "line-height").filter(|_| look.size > 0.0) {
             let px = self.px(node, look.size, "line-height", look.size).map(|px| px / look.size);
             look.line = line.parse().ok().or(px).filter(|l| *l > 0.0);
         }
-        let align = self.of(node, "text-align").or_else(|| (tag == "center").then(|| "center".to_owned()));
-        look.align = align.map_or(look.align, |a| place(&a));
-        look.wraps = self.of(node, "white-space").map_or(look.wraps, |w| !matches!(w.as_str(), "nowrap" | "pre"));
+        let align = self.property(node, "text-align").or_else(|| (tag == "center").then(|| "center".to_owned()));
+        look.align = align.map_or(look.align, |a| free_share(&a));
+        look.wraps = self.property(node, "white-space").map_or(look.wraps, |w| !matches!(w.as_str(), "nowrap" | "pre"));
         for name in ["background", "background-color", "border", "box-shadow", "transform"] {
             let paints = |v: &String| !matches!(v.as_str(), "" | "none" | "transparent" | "initial" | "0" | "0px");
-            let found = self.of(node, name).filter(paints);
+            let found = self.property(node, name).filter(paints);
             self.beyond.extend(found.map(|v| format!("“{name}: {}”", text::start(&v))));
         }
         self.beyond.extend((tag == "li").then(|| "the marks of a list".to_owned()));
@@ -195,11 +195,12 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
             look = self.look(only, &look);
             if BLOCKS.contains(&tag) {
                 let px = |name: &str| self.px(only, look.size, name, room.width);
+                // The margin and the padding of a side.
                 let side = |edge: &str| {
                     ["margin", "padding"].map(|kind| px(&format!("{kind}-{edge}")).or_else(|| px(kind)).unwrap_or(0.0))
                 };
                 let [left, right, top, bottom] = ["left", "right", "top", "bottom"].map(side);
-                let border_box = self.of(only, "box-sizing").is_some_and(|b| b == "border-box");
+                let border_box = self.property(only, "box-sizing").is_some_and(|b| b == "border-box");
                 let inner = |given: f64, padding: f64| if border_box { given - padding } else { given };
                 room.x += left[0] + left[1];
                 room.y += top[0] + top[1];
@@ -209,10 +210,10 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
                     (room.height, room.down, room.across) = (inner(h, top[1] + bottom[1]), 0.0, None);
                 }
             }
-            if self.of(only, "display").is_some_and(|d| d.ends_with("flex")) {
-                let of = |name: &str| self.of(only, name).map_or(0.0, |v| place(&v));
-                let is_column = self.of(only, "flex-direction").is_some_and(|d| d.starts_with("column"));
-                let (main, cross) = (of("justify-content"), of("align-items"));
+            if self.property(only, "display").is_some_and(|d| d.ends_with("flex")) {
+                let share = |name: &str| self.property(only, name).map_or(0.0, |v| free_share(&v));
+                let is_column = self.property(only, "flex-direction").is_some_and(|d| d.starts_with("column"));
+                let (main, cross) = (share("justify-content"), share("align-items"));
                 let (across, down) = if is_column { (cross, main) } else { (main, cross) };
                 (room.across, room.down) = (Some(across), down);
             }
@@ -235,11 +236,11 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
                 self.beyond.push(format!("<{tag}>"));
             } else if child.is_element() {
                 let look = self.look(child, look);
-                let is_block = BLOCKS.contains(&tag) || self.of(child, "display").is_some_and(|d| d == "block");
+                let is_block = BLOCKS.contains(&tag) || self.property(child, "display").is_some_and(|d| d == "block");
                 let is_open = |pieces: &[Piece]| {
                     matches!(pieces.iter().rfind(|p| !matches!(p, Piece::Space)), Some(Piece::Word(..)))
                 };
-                self.pieces.extend((tag == "br" || is_block && is_open(&self.pieces)).then_some(Piece::Break));
+                self.pieces.extend((tag == "br" || (is_block && is_open(&self.pieces))).then_some(Piece::Break));
                 self.add(child, &look);
                 self.pieces.extend((is_block && is_open(&self.pieces)).then_some(Piece::Break));
             }
@@ -247,8 +248,8 @@ impl<'a, 'i> Html<'_, 'a, 'i> {
     }
 }
 
-/// The share of the room before what CSS places by a keyword; `unsafe` may precede it.
-fn place(keyword: &str) -> f64 {
+/// The share of the free room before content that CSS aligns by a keyword; `unsafe` may precede it.
+fn free_share(keyword: &str) -> f64 {
     match keyword.rsplit(' ').next().unwrap_or_default() {
         "center" => 0.5,
         "right" | "end" | "flex-end" => 1.0,
@@ -259,7 +260,7 @@ fn place(keyword: &str) -> f64 {
 /// A part of a line with one look.
 type Run = (String, Rc<Look>);
 
-/// Breaks words into lines that are no wider than this.
+/// Breaks words into lines that are no wider than `room`.
 fn lines(pieces: Vec<Piece>, room: f64) -> Vec<Vec<Run>> {
     let mut out: Vec<Vec<Run>> = vec![Vec::new()];
     let (mut reached, mut space) = (0.0, false);
@@ -272,14 +273,14 @@ fn lines(pieces: Vec<Piece>, room: f64) -> Vec<Vec<Run>> {
             }
             continue;
         };
-        let (own, gap) = (width(&word, &look), width(" ", &look));
-        // A quarter of the size, as widths are rough.
-        if space && reached > 0.0 && reached + gap + own > room + 0.25 * look.size {
+        let (advance, gap) = (width(&word, &look), width(" ", &look));
+        // Widths are rough, so a line may be a quarter of an em too wide.
+        if space && reached > 0.0 && reached + gap + advance > room + 0.25 * look.size {
             out.push(Vec::new());
             reached = 0.0;
         }
         let joint = if space && reached > 0.0 { " " } else { "" };
-        reached += own + if joint.is_empty() { 0.0 } else { gap };
+        reached += advance + if joint.is_empty() { 0.0 } else { gap };
         space = false;
         let line = out.last_mut().filter(|line| line.last().is_none_or(|run| run.1 != look));
         match line {
@@ -287,19 +288,19 @@ fn lines(pieces: Vec<Piece>, room: f64) -> Vec<Vec<Run>> {
             None => out.last_mut().and_then(|l| l.last_mut()).into_iter().for_each(|run| run.0.extend([joint, &word])),
         }
     }
-    // The last line break ends the last line.
+    // A line break at the end starts no line.
     out.truncate(out.iter().rposition(|l| !l.is_empty()).map_or(0, |last| last + 1));
     out
 }
 
 /// Writes lines as text.
 fn written(lines: &[Vec<Run>], room: Room, align: f64, beyond: Vec<String>) -> Foreign {
-    let usual = lines.iter().flatten().next().map_or((0.0, 0.0), |r| r.1.line());
+    let usual = lines.iter().flatten().next().map_or((0.0, 0.0), |r| r.1.line_box());
     let tallest = |a: (f64, f64), b: (f64, f64)| if b.0 > a.0 { b } else { a };
-    let heights = lines.iter().map(|l| l.iter().map(|r| r.1.line()).reduce(tallest).unwrap_or(usual));
+    let heights = lines.iter().map(|l| l.iter().map(|r| r.1.line_box()).reduce(tallest).unwrap_or(usual));
     let heights: Vec<(f64, f64)> = heights.collect();
     let widest = lines.iter().map(|l| l.iter().map(|r| width(&r.0, &r.1)).sum::<f64>()).fold(0.0, f64::max);
-    // Lines are placed in what they fill together, and that in its room. A room of hardly any width is none.
+    // Lines are aligned in a block as wide as the widest, and the block in the room, unless the room has hardly any width.
     let block = if room.width < 2.0 { widest } else { widest.min(room.width) };
     let x = match room.across {
         Some(across) if across == align => room.x + align * room.width,

@@ -46,13 +46,13 @@ fn origin(value: &str, units: &Units, size: (f64, f64)) -> Option<Vec2> {
         [y, x, ..] if is_vertical(y) || matches!(*x, "left" | "right") => (*x, *y),
         [x, y, ..] => (*x, *y),
     };
-    let place = |word: &str, full: f64| match word {
+    let offset = |word: &str, full: f64| match word {
         "left" | "top" => Some(0.0),
         "center" => Some(full / 2.0),
         "right" | "bottom" => Some(full),
         other => length(other, units, full),
     };
-    Some(Vec2::new(place(first, size.0)?, place(second, size.1)?))
+    Some(Vec2::new(offset(first, size.0)?, offset(second, size.1)?))
 }
 
 fn is_vertical(word: &str) -> bool {
@@ -214,7 +214,8 @@ mod tests {
 
     const UNITS: Units = Units { font: 10.0, root_font: 20.0, window: (300.0, 200.0), viewport: (100.0, 50.0) };
 
-    fn of(declared: &[(&str, &'static str)]) -> Option<Point> {
+    /// The image of (1, 2) under the declared transform.
+    fn image(declared: &[(&str, &'static str)]) -> Option<Point> {
         let find = |name: &str| declared.iter().find(|d| d.0 == name).map(|d| d.1);
         let m = matrix(find, &UNITS, Rect::new(10.0, 20.0, 50.0, 100.0), false)?;
         let p = m * Point::new(1.0, 2.0);
@@ -225,21 +226,21 @@ mod tests {
     fn transforms() {
         let at = |x, y| Some(Point::new(x, y));
         // About the corner (10, 20).
-        assert_eq!(of(&[("transform", "rotate(90deg)")]), at(28.0, 11.0));
-        assert_eq!(of(&[("transform", "rotate(0.25turn)"), ("transform-origin", "-10px -20px")]), at(-2.0, 1.0));
+        assert_eq!(image(&[("transform", "rotate(90deg)")]), at(28.0, 11.0));
+        assert_eq!(image(&[("transform", "rotate(0.25turn)"), ("transform-origin", "-10px -20px")]), at(-2.0, 1.0));
         assert_eq!(
-            of(&[("transform", "translate(50%, 1em) scale(2)"), ("transform-origin", "-10px -20px")]),
+            image(&[("transform", "translate(50%, 1em) scale(2)"), ("transform-origin", "-10px -20px")]),
             at(22.0, 14.0)
         );
-        assert_eq!(of(&[("scale", "50%"), ("transform-origin", "center")]), at(15.5, 31.0));
+        assert_eq!(image(&[("scale", "50%"), ("transform-origin", "center")]), at(15.5, 31.0));
         assert_eq!(
-            of(&[("translate", "1px 2px"), ("rotate", "180deg"), ("transform-origin", "left top")]),
+            image(&[("translate", "1px 2px"), ("rotate", "180deg"), ("transform-origin", "left top")]),
             at(20.0, 40.0)
         );
-        assert_eq!(of(&[("transform", "matrix(1 0 0 1 3 4), translateX(1px)")]), at(5.0, 6.0));
-        assert_eq!(of(&[("transform", "none"), ("transform-origin", "top")]), at(1.0, 2.0));
+        assert_eq!(image(&[("transform", "matrix(1 0 0 1 3 4), translateX(1px)")]), at(5.0, 6.0));
+        assert_eq!(image(&[("transform", "none"), ("transform-origin", "top")]), at(1.0, 2.0));
         for bad in ["rotateX(3deg)", "scale(a)", "translate()", "perspective(3px)", "rotate(3xyz)", "x"] {
-            assert_eq!(of(&[("transform", bad)]), None, "{bad}");
+            assert_eq!(image(&[("transform", bad)]), None, "{bad}");
         }
     }
 

@@ -1,11 +1,11 @@
 //! Preserves the style of an edited drawing by overriding rules of its sheets that now match other elements.
 
 use crate::computed::{MARKERS, is_valid};
-use crate::element::{Looks, applying};
+use crate::element::{ComparisonCounter, applying};
 use crate::ids::Ids;
 use crate::rewrite::ReadError;
 use crate::sheet::{Declaration, declarations};
-use crate::table::of_attribute;
+use crate::table::attribute_property;
 use crate::tree::{root_units, rules};
 use crate::xml::{self, escape};
 use pathwarp::budget::Budget;
@@ -15,11 +15,11 @@ use std::collections::{BTreeSet, HashMap};
 
 /// Adds declarations to an edited drawing so that its style sheets give no element a value that it did not have before.
 ///
-/// `kept` pairs the places where an element begins in the original and in the edited text.
+/// `kept` pairs the offsets at which an element begins in the original and in the edited text.
 /// All other elements are new, and their attributes alone decide their style. Returns `None` if there is nothing to add.
 ///
 /// # Errors
-/// One of the texts is not XML, or its style takes more work than the budget allows.
+/// [`ReadError::Xml`] when one of the texts is not XML; [`ReadError::Limit`] when its style takes more work than the budget allows.
 pub fn guarded(
     before: &str,
     after: &str,
@@ -37,7 +37,7 @@ pub fn guarded(
     if is_rules.is_empty() {
         return Ok(None);
     }
-    let looks = Looks::within(budget);
+    let counter = ComparisonCounter::new(budget);
     let (units, ids) = (root_units(&was), Ids::new(&was));
     let valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
     let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
@@ -50,9 +50,9 @@ pub fn guarded(
         let style = |n: Node<'_, '_>| n.attribute("style").map(str::to_owned).unwrap_or_default();
         let (old, new) = (origin.map(style).unwrap_or_default(), style(node));
         let (old, new) = (declarations(&old), declarations(&new));
-        let then = origin.map_or_else(Vec::new, |n| applying(&was_rules, &[], n, &looks, &mut was_caches));
-        let now = applying(&is_rules, &[], node, &looks, &mut is_caches);
-        if looks.exceeded() {
+        let then = origin.map_or_else(Vec::new, |n| applying(&was_rules, &[], n, &counter, &mut was_caches));
+        let now = applying(&is_rules, &[], node, &counter, &mut is_caches);
+        if counter.exceeded() {
             break;
         }
         if then == now {
@@ -81,13 +81,13 @@ pub fn guarded(
         out.push_str(&value);
         done = range.end;
     }
-    looks.spend(budget)?;
+    counter.spend(budget)?;
     out.push_str(&after[done..]);
     Ok((done > 0).then_some(out))
 }
 
 /// Computes the declarations that restore an element's style, as the text of an attribute. Either side lists the rules that
-/// apply, weakest first, and the element's own declarations. Those that are not `valid` do not count.
+/// apply, weakest first, and the declarations of the style attribute. Those that are not `valid` do not count.
 fn corrections(
     node: Node<'_, '_>,
     then: [&Vec<&Declaration<'_>>; 2],
@@ -102,16 +102,16 @@ fn corrections(
     let mut out = Vec::new();
     for name in concerned {
         let last = |all: &[&Declaration<'_>]| {
-            let of = |d: &&&Declaration<'_>| d.name == name || d.name == "marker" && MARKERS.contains(&name);
-            all.iter().rev().filter(of).find(|d| valid(d)).map(|d| (d.value.to_string(), d.important))
+            let sets = |d: &&&Declaration<'_>| d.name == name || (d.name == "marker" && MARKERS.contains(&name));
+            all.iter().rev().filter(sets).find(|d| valid(d)).map(|d| (d.value.to_string(), d.important))
         };
-        let winner = |[rules, own]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(own)) {
-            (Some(rule), Some(own)) => Some(if rule.1 && !own.1 { rule } else { own }),
-            (rule, own) => own.or(rule),
+        let winner = |[rules, inline]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(inline)) {
+            (Some(rule), Some(inline)) => Some(if rule.1 && !inline.1 { rule } else { inline }),
+            (rule, inline) => inline.or(rule),
         };
-        let (own_then, own_now) = (last(then[1]), last(now[1]));
-        let wanted = match own_now {
-            Some(own) if own_then.is_none_or(|then| then.0 != own.0) => Some(own.0),
+        let (inline_then, inline_now) = (last(then[1]), last(now[1]));
+        let wanted = match inline_now {
+            Some(inline) if inline_then.is_none_or(|then| then.0 != inline.0) => Some(inline.0),
             _ => winner(then).map(|w| w.0),
         };
         if winner(now).map(|w| w.0) == wanted {
@@ -138,7 +138,7 @@ fn from_attribute(node: Node<'_, '_>, name: &str) -> Option<String> {
         {
             Some(format!("{value}px"))
         }
-        _ => of_attribute(name).map(|_| value.to_owned()),
+        _ => attribute_property(name).map(|_| value.to_owned()),
     }
 }
 
@@ -149,14 +149,13 @@ mod tests {
     fn mended(css: &str, before: &str, after: &str, kept: &[(&str, &str)]) -> String {
         let drawing = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg'><style>{css}</style>{body}</svg>");
         let (before, after) = (drawing(before), drawing(after));
-        let places: Vec<_> =
-            kept.iter().map(|(was, is)| (before.find(was).unwrap(), after.find(is).unwrap())).collect();
-        let out = guarded(&before, &after, &places, &Budget::default()).unwrap().unwrap_or_else(|| after.clone());
+        let kept: Vec<_> = kept.iter().map(|(was, is)| (before.find(was).unwrap(), after.find(is).unwrap())).collect();
+        let out = guarded(&before, &after, &kept, &Budget::default()).unwrap().unwrap_or_else(|| after.clone());
         out.split_once("</style>").unwrap().1.strip_suffix("</svg>").unwrap().to_owned()
     }
 
     #[test]
-    fn rules_do_not_hit_what_is_new() {
+    fn rules_do_not_hit_new_elements() {
         let new = "<g><path fill='red' style='opacity:.5'/></g>";
         assert_eq!(mended("rect{fill:blue}", "", new, &[]), new);
         let css = "path{fill:blue;opacity:1;stroke:red!important}*{transform:scale(2)}";
@@ -174,7 +173,7 @@ mod tests {
             mended(css, "<circle/>", "<path/>", &[("<circle", "<path")]),
             "<path style=\"fill:teal;marker-end:none;marker-mid:none;marker-start:none;stroke:unset\"/>"
         );
-        // What the edit declares counts; what it leaves alone stays.
+        // Declarations of the edit count; others stay.
         assert_eq!(
             mended(css, "<circle style='fill:red'/>", "<path style='fill:gold'/>", &[("<circle", "<path")])
                 .matches("fill:gold")
@@ -198,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn places_among_siblings() {
+    fn positions_among_siblings() {
         let css = ".a:nth-child(3){fill:red}";
         let (before, after) = ("<g/><path class='a'/>", "<title/><g/><path class='a'/>");
         let kept = [("<g/>", "<g/>"), ("<path", "<path")];

@@ -2,7 +2,7 @@
 //!
 //! A tree goes in, text comes out: [`resolve`] computes the style of every element as browsers do (CSS Cascade 5, Selectors 4, Media
 //! Queries 4, CSS Values 4, CSS Transforms 1 and 2, SVG 2's geometry properties). Where usvg would read something else, it writes
-//! the computed value into an attribute. Everything else stays byte for byte. Each [`Change`] records its place and the original
+//! the computed value into an attribute. Everything else stays byte for byte. Each [`Change`] records its range and the original
 //! text, so that a program that edits the drawing can put the original back.
 //!
 //! ```

@@ -21,7 +21,7 @@ const CHECKED: [&str; 25] = [
     "bias", "k1", "k2", "k3", "k4", "pathLength", "d", "rotate", "scale",
 ];
 
-/// Returns the static name of one of these attributes.
+/// Returns the static name of an attribute in [`CHECKED`].
 pub(super) fn checked(name: &str) -> Option<&'static str> {
     CHECKED.iter().copied().find(|n| *n == name)
 }
@@ -43,8 +43,8 @@ fn may_be_far(text: &str) -> bool {
     let bytes = text.as_bytes();
     let digits = || {
         // A run of ten digits covers a multiple of ten.
-        let places = (0..bytes.len()).step_by(MIN_DIGITS).filter(|&i| bytes[i].is_ascii_digit());
-        let mut runs = places.map(|i| {
+        let samples = (0..bytes.len()).step_by(MIN_DIGITS).filter(|&i| bytes[i].is_ascii_digit());
+        let mut runs = samples.map(|i| {
             let before = bytes[..i].iter().rev().take_while(|b| b.is_ascii_digit()).count();
             before + bytes[i..].iter().take_while(|b| b.is_ascii_digit()).count()
         });

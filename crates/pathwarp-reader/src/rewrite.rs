@@ -2,7 +2,7 @@
 
 use crate::foreign::{self, Foreign};
 use crate::sheet::declarations;
-use crate::text::{Letters, Rewritten, joined, rewritten, start};
+use crate::text::{Letters, Rewritten, elements_touch, rewritten, start};
 use crate::tree::{Styled, Tree, styled};
 use crate::value::{length, percent_decoded, safe_id};
 use crate::words::Words;
@@ -27,7 +27,7 @@ const WRITTEN: usize = 16;
 
 const KERNED: &str = "letters of different elements of a text are kerned, which browsers do not do";
 
-/// Words to search the text for, whether each is a unit, and how its result differs from browsers.
+/// Words to search the text for, each with `true` if it is a unit, and the difference from browsers that it implies.
 const HINTS: [(&str, bool, &str); 8] = [
     ("vw", true, WINDOW),
     ("vh", true, WINDOW),
@@ -57,7 +57,7 @@ const SINGLE_LETTERS: &str = "only from left to right, as its letters have posit
 /// A drawing resolved into plain SVG.
 #[derive(Debug, Default)]
 pub struct Plain {
-    /// The new text of the drawing; `None` if it differs in nothing.
+    /// The new text of the drawing; `None` if it is the original text.
     pub text: Option<String>,
     /// Differences from the original, in the order of the text.
     pub changes: Vec<Change>,
@@ -69,9 +69,9 @@ pub struct Plain {
     pub declared: BTreeSet<String>,
     /// The declarations about paint that win, for each element in document order.
     pub words: Vec<Arc<Words>>,
-    /// Small differences from what browsers show: a sentence, and the element or name it is about.
+    /// Small differences from what browsers show: a sentence, and the id or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,
-    /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
+    /// Texts that stand for HTML in the same `switch`: the numbers of the `foreignObject` and the `text`.
     pub foreign: Vec<(usize, usize)>,
 }
 
@@ -86,14 +86,14 @@ pub struct Change {
     pub range: Range<usize>,
     /// The original text.
     pub text: String,
-    /// The value that the attribute gets in an edited drawing, if any. It is the original value, unless a transform was frozen,
-    /// since the boxes that it refers to change, or an id had to be renamed.
+    /// The value that the attribute gets in an edited drawing, if any. It differs from the original value if a transform was frozen,
+    /// since the boxes that it refers to change, or if an id had to be renamed.
     pub value: Option<String>,
     /// The attribute with this value and the space before it.
     pub kept: String,
 }
 
-/// Why a drawing cannot be resolved.
+/// The reason why a drawing cannot be resolved.
 #[derive(Debug)]
 pub enum ReadError {
     /// It is not XML.
@@ -117,13 +117,13 @@ struct Edit {
     kept: Option<String>,
 }
 
-/// Gives the text of the drawing that an image links to, if it does.
+/// Returns the text of the drawing that an image links to; `None` if the link leads to none.
 pub type Linked<'a> = &'a dyn Fn(&str) -> Option<String>;
 
 /// Resolves a drawing whose markup is known to be within the budget (see [`xml::check`]).
 ///
 /// # Errors
-/// Its style takes more work than the budget allows.
+/// [`Exceeded`] when the style takes more work than the budget allows.
 pub fn resolve(doc: &Document<'_>, budget: &Budget, linked: Linked<'_>) -> Result<Plain, Exceeded> {
     let text = doc.input_text();
     let (mut all, mut out) = changes(doc, budget, linked)?;
@@ -164,57 +164,58 @@ fn changes(
     // If any id is renamed, edited drawings keep all references as they are written here.
     let references = References::new(text);
     let renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| references.break_at(id));
-    // The end of content that is replaced by other.
+    // The end of content that has been replaced.
     let mut replaced = 0;
     for (i, (node, style)) in nodes.iter().zip(&styles).enumerate() {
         if node.range().start < replaced {
             continue;
         }
-        let e = out.words.len();
+        let element = out.words.len();
         out.words.push(Arc::clone(&style.computed.words));
         let changed = edits(*node, style, Some(&references).filter(|_| renamed), linked);
-        all.extend(changed.into_iter().map(|edit| edit.of(text, e, *node)));
+        all.extend(changed.into_iter().map(|edit| edit.locate(text, element, *node)));
         if sheets.contains(&i) {
             // usvg ignores sheets of other types.
-            all.push(Edit { name: "type", value: Some("text/plain".to_owned()), kept: None }.of(text, e, *node));
+            let edit = Edit { name: "type", value: Some("text/plain".to_owned()), kept: None };
+            all.push(edit.locate(text, element, *node));
         }
         if node.tag_name().name() == "text" {
-            if joined(*node) {
+            if elements_touch(*node) {
                 out.notes.insert((KERNED, node.attribute("id").unwrap_or_default().to_owned()));
             }
-            if let Some((html, foreign)) = in_place_of(i, &nodes, &styles)
-                && let Some(change) = content(text, e, *node, foreign.content)
+            if let Some((html, foreign)) = html_instead_of(i, &nodes, &styles)
+                && let Some(change) = content_change(text, element, *node, foreign.content)
             {
                 all.push(change);
                 replaced = node.range().end;
-                out.foreign.push((e - (i - html), e));
+                out.foreign.push((element - (i - html), element));
                 out.words.extend(foreign.fills.iter().map(|fill| style.computed.words.with_fill(fill.as_deref())));
                 let beyond = foreign.beyond.iter().map(|what| format!("only without {what}, which text does not have"));
-                out.unsupported.extend(beyond.map(|why| (Some(e), why)));
+                out.unsupported.extend(beyond.map(|why| (Some(element), why)));
             } else {
-                match words(text, e, *node, &styles[i..]) {
+                match letter_changes(text, element, *node, &styles[i..]) {
                     Some(new) => all.extend(new),
-                    None => out.unsupported.push((Some(e), SINGLE_LETTERS.to_owned())),
+                    None => out.unsupported.push((Some(element), SINGLE_LETTERS.to_owned())),
                 }
             }
         }
         let id = node.attribute("id").unwrap_or_default();
         out.notes.extend(style.computed.notes.iter().map(|note| (*note, id.to_owned())));
-        out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(e), why.clone())));
+        out.unsupported.extend(style.computed.unsupported.iter().map(|why| (Some(element), why.clone())));
         if style.matrix.is_none() {
-            out.unsupported.push((Some(e), "its transform is not supported".to_owned()));
+            out.unsupported.push((Some(element), "its transform is not supported".to_owned()));
         }
         if style.computed.is_linear
             && let Some((edit, gradient)) = linear_gradient(i, *node, (&nodes, &styles))
         {
-            all.push(edit.of(text, e, *node));
+            all.push(edit.locate(text, element, *node));
             defs.push_str(&gradient);
         }
-        if let Some((edit, path)) = path_of_text(e, *node, doc) {
-            all.push(edit.of(text, e, *node));
+        if let Some((edit, path)) = path_of_text(element, *node, doc) {
+            all.push(edit.locate(text, element, *node));
             defs.push_str(&path);
         }
-        out.far.extend(style.computed.far.iter().map(|far| (e, far.clone())));
+        out.far.extend(style.computed.far.iter().map(|far| (element, far.clone())));
     }
     if let Some(end) = text[..doc.root_element().range().end].rfind('<').filter(|_| !defs.is_empty()) {
         let new = format!("<defs xmlns=\"http://www.w3.org/2000/svg\">{defs}</defs>");
@@ -225,18 +226,18 @@ fn changes(
 }
 
 /// An id that the drawing does not hold.
-fn new_id(name: &str, e: usize, text: &str) -> String {
-    let mut id = format!("{name}-{e}");
+fn new_id(name: &str, number: usize, text: &str) -> String {
+    let mut id = format!("{name}-{number}");
     while text.contains(&id) {
         id.push('x');
     }
     id
 }
 
-/// Makes a gradient in sRGB of one whose colours are interpolated in linear light, which usvg does not know. Returns the new id of the
-/// old one, from which the new one takes the geometry, and the new one.
+/// Makes an sRGB gradient of one that is interpolated in linear light, which usvg does not know. Returns the edit that renames the old
+/// gradient, and the new one, which takes its geometry from the old one.
 fn linear_gradient(
-    e: usize,
+    index: usize,
     node: Node<'_, '_>,
     (nodes, styles): (&[Node<'_, '_>], &[Styled<'_>]),
 ) -> Option<(Edit, String)> {
@@ -244,7 +245,7 @@ fn linear_gradient(
     const STEPS: usize = 32;
     let text = node.document().input_text();
     let id = node.attribute("id")?;
-    let inside = nodes.iter().zip(styles).skip(e + 1).take_while(|(n, _)| n.range().start < node.range().end);
+    let inside = nodes.iter().zip(styles).skip(index + 1).take_while(|(n, _)| n.range().start < node.range().end);
     let mut last = 0.0_f32;
     let stops = inside.filter_map(|(n, s)| {
         let given = n.attribute("offset").unwrap_or("0").trim();
@@ -254,7 +255,7 @@ fn linear_gradient(
         Some((last, s.computed.stop?))
     });
     let stops: Vec<(f32, Color)> = stops.collect();
-    let old = new_id("gradient", e, text);
+    let old = new_id("gradient", index, text);
     let mut out = String::new();
     for (i, (offset, color)) in stops.iter().enumerate() {
         let next = stops.get(i + 1).filter(|n| n.0 > *offset);
@@ -273,19 +274,19 @@ fn linear_gradient(
 }
 
 /// Makes a path from the path data of a `textPath`. Returns the link to the new path, and the path.
-fn path_of_text(e: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
+fn path_of_text(element: usize, node: Node<'_, '_>, doc: &Document<'_>) -> Option<(Edit, String)> {
     let data = node.attribute("path").filter(|_| node.tag_name().name() == "textPath")?;
-    let id = new_id("text-path", e, doc.input_text());
+    let id = new_id("text-path", element, doc.input_text());
     let path = format!("<path id=\"{id}\" d=\"{}\"/>", escape(data));
     Some((Edit { name: "href", value: Some(format!("#{id}")), kept: None }, path))
 }
 
 impl Edit {
     /// Locates the edit in the text. Returns the change and the attribute to write.
-    fn of(self, text: &str, element: usize, node: Node<'_, '_>) -> (Change, String) {
+    fn locate(self, text: &str, element: usize, node: Node<'_, '_>) -> (Change, String) {
         let Self { name, value, kept } = self;
         let found = attribute_node(node, name);
-        let range = place(text, node, found);
+        let range = attribute_range(text, node, found);
         let old = text[range.clone()].to_owned();
         // Keep the line numbers of everything that follows.
         let lines = "\n".repeat(old.matches('\n').count());
@@ -301,7 +302,7 @@ impl Edit {
 }
 
 /// The HTML that a text stands for: the `foreignObject` before it in a `switch`, with its words.
-fn in_place_of(i: usize, nodes: &[Node<'_, '_>], styles: &[Styled<'_>]) -> Option<(usize, Foreign)> {
+fn html_instead_of(i: usize, nodes: &[Node<'_, '_>], styles: &[Styled<'_>]) -> Option<(usize, Foreign)> {
     nodes[i].parent_element().filter(|p| p.tag_name().name() == "switch")?;
     // Only the first text counts.
     let before = nodes[i].prev_siblings().skip(1).filter(Node::is_element);
@@ -309,11 +310,11 @@ fn in_place_of(i: usize, nodes: &[Node<'_, '_>], styles: &[Styled<'_>]) -> Optio
     let found = found.filter(|n| !n.has_attribute("requiredExtensions"))?;
     let html = nodes.binary_search_by_key(&found.range().start, |n| n.range().start).ok()?;
     let end = html + nodes[html..i].partition_point(|n| n.range().start < found.range().end);
-    Some((html, foreign::text_of(&nodes[html..end], &styles[html..end], &styles[html].units)?))
+    Some((html, foreign::foreign_text(&nodes[html..end], &styles[html..end], &styles[html].units)?))
 }
 
 /// The change that gives an element other content.
-fn content(text: &str, element: usize, node: Node<'_, '_>, mut new: String) -> Option<(Change, String)> {
+fn content_change(text: &str, element: usize, node: Node<'_, '_>, mut new: String) -> Option<(Change, String)> {
     let (first, last) = (node.first_child()?, node.last_child()?);
     let range = first.range().start..last.range().end;
     let old = text.get(range.clone())?.to_owned();
@@ -323,9 +324,9 @@ fn content(text: &str, element: usize, node: Node<'_, '_>, mut new: String) -> O
 }
 
 /// Lists the changes to the content of a text. Returns `None` if they cannot be made.
-fn words(
+fn letter_changes(
     text: &str,
-    e: usize,
+    element: usize,
     node: Node<'_, '_>,
     styles: &[Styled<'_>],
 ) -> Option<impl Iterator<Item = (Change, String)>> {
@@ -334,10 +335,10 @@ fn words(
     let new = if letters.iter().all(|l| *l == Letters::default()) { Vec::new() } else { rewritten(node, &letters)? };
     let start = node.range().start;
     // The content of an entity lies in its declaration, before the text.
-    let own = new.into_iter().filter(move |r| r.range.start > start);
-    Some(own.map(move |Rewritten { elements, range, text: new }| {
+    let inside = new.into_iter().filter(move |r| r.range.start > start);
+    Some(inside.map(move |Rewritten { elements, range, text: new }| {
         let old = text[range.clone()].to_owned();
-        let change = Change { element: e + elements, name: "", range, text: old.clone(), value: None, kept: old };
+        let change = Change { element: element + elements, name: "", range, text: old.clone(), value: None, kept: old };
         (change, escape(&new))
     }))
 }
@@ -349,13 +350,13 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
     let attributes = computed.attributes.iter();
     let mut out: Vec<Edit> =
         attributes.map(|(name, v)| Edit { name, value: v.clone(), kept: v.as_ref().filter(refers).cloned() }).collect();
-    out.extend(names(node, renamed));
+    out.extend(renames(node, renamed));
     let changed = structural(node).chain(picture(node, style, linked).into_iter().flatten());
     out.extend(changed.map(|(name, value)| Edit { name, value, kept: None }));
     // Without a transform, the origin may serve an animation: it stays.
     let is_still = |m: &Affine| *m == Affine::IDENTITY && node.attribute("transform").is_none();
-    let frozen =
-        style.matrix.filter(|m| !(is_still(m) || computed.transform.is_empty() && *m == Affine::IDENTITY)).map(frozen);
+    let is_needed = |m: &Affine| !is_still(m) && (*m != Affine::IDENTITY || !computed.transform.is_empty());
+    let frozen = style.matrix.filter(is_needed).map(frozen);
     let written = |all: &mut dyn Iterator<Item = (&str, &str)>| {
         all.map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";")
     };
@@ -368,12 +369,12 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
         out.extend(known.map(|v| Edit { name: "style", value: Some(v).filter(|v| !v.is_empty()), kept: None }));
     } else if let Some(all) = frozen {
         let was = node.attribute("style").unwrap_or_default().to_owned();
-        let own = known.unwrap_or_else(|| {
+        let others = known.unwrap_or_else(|| {
             let all = declarations(&was);
             written(&mut all.iter().map(|d| (d.name.as_ref(), d.value.as_ref())))
         });
         let [transform, origin, ..] = &all;
-        let value = [own, format!("{}:{}", transform.0, transform.1), format!("{}:{}", origin.0, origin.1)];
+        let value = [others, format!("{}:{}", transform.0, transform.1), format!("{}:{}", origin.0, origin.1)];
         let value = value.into_iter().filter(|v| !v.is_empty()).collect::<Vec<_>>().join(";");
         let important = if computed.transform.iter().any(|d| d.important) { " !important" } else { "" };
         let kept = all.iter().fold(was, |s, (name, value)| with_declaration(&s, name, &format!("{value}{important}")));
@@ -386,7 +387,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
 }
 
 /// Renames ids that would cut off the references to them, and corrects links. Results keep both, since they belong together.
-fn names(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<Item = Edit> {
+fn renames(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<Item = Edit> {
     node.attributes().filter_map(move |a| {
         let (name, new) = match a.name() {
             "id" if a.namespace().is_none() && renamed.is_some_and(|r| r.break_at(a.value())) => {
@@ -406,12 +407,12 @@ fn names(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<
     })
 }
 
-/// The texts that may be references in a drawing.
+/// Texts in a drawing that may be references.
 struct References<'t> {
     text: &'t str,
-    /// The texts after the number signs of a drawing, without escapes, sorted. They are collected on first use.
+    /// The rest of the drawing after each number sign, without escapes, sorted. Computed on first use.
     targets: OnceCell<Vec<Cow<'t, str>>>,
-    /// Returns `true` if some links may have escapes.
+    /// `true` if some links may have escapes.
     has_escapes: bool,
 }
 
@@ -477,7 +478,7 @@ fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<roxmltree::A
 }
 
 /// The range of an attribute with the space before it. Without an attribute, an empty range after the element's name.
-fn place(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<'_, '_>>) -> Range<usize> {
+fn attribute_range(text: &str, node: Node<'_, '_>, attribute: Option<roxmltree::Attribute<'_, '_>>) -> Range<usize> {
     if let Some(a) = attribute {
         let range = a.range();
         return text[..range.start].trim_end().len()..range.end;
@@ -509,10 +510,10 @@ fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attributes().find(|a| a.name() == "href").map(|a| a.value())
 }
 
-/// New attributes of an image that shows a drawing, which is then embedded. One with a viewBox fills the image's box by its own
-/// `preserveAspectRatio`, and is cut there (CSS Images 3, section 4.2). As in Chromium, one without a viewBox is stretched to the box from its
-/// own size, where sides in percent, or not given, refer to the box; so is any with a fixed size if the image says `none`, and without one its
-/// viewBox is stretched.
+/// New attributes of an image that shows a drawing, which becomes embedded. A drawing with a viewBox fills the image's box by its
+/// `preserveAspectRatio`, and is cut off there (CSS Images 3, section 4.2). Chromium stretches a drawing without a viewBox from its size to
+/// the box; sides in percent, or not given, refer to the box. If the image's `preserveAspectRatio` is `none`, Chromium so stretches every
+/// drawing with a fixed size, and the viewBox of every other.
 fn picture(image: Node<'_, '_>, style: &Styled<'_>, linked: Linked<'_>) -> Option<[(&'static str, Option<String>); 2]> {
     let link = link(image).filter(|_| image.tag_name().name() == "image")?.trim();
     let text = link.strip_prefix("data:").map_or_else(|| linked(link), embedded)?;
@@ -520,11 +521,11 @@ fn picture(image: Node<'_, '_>, style: &Styled<'_>, linked: Linked<'_>) -> Optio
     let root = drawing.root_element();
     let side = |name: &str, full: f64| length(style.computed.value(image, name)?, &style.units, full);
     let (width, height) = (side("width", style.units.viewport.0)?, side("height", style.units.viewport.1)?);
-    let own = |name: &str, full: f64| root.attribute(name).map_or(Some(full), |v| length(v, &style.units, full));
+    let inner = |name: &str, full: f64| root.attribute(name).map_or(Some(full), |v| length(v, &style.units, full));
     let is_fixed = |name: &str| root.attribute(name).is_some_and(|v| !v.contains('%'));
     let stretched = image.attribute("preserveAspectRatio").is_some_and(|a| a.trim_start().starts_with("none"));
     let fills = root.has_attribute("viewBox") && !(stretched && is_fixed("width") && is_fixed("height"));
-    let (w, h) = if fills { (width, height) } else { (own("width", width)?, own("height", height)?) };
+    let (w, h) = if fills { (width, height) } else { (inner("width", width)?, inner("height", height)?) };
     let aspect = if fills && stretched { " preserveAspectRatio=\"none\"" } else { "" };
     let (range, mut done) = (root.range(), name_end(&text, root));
     let mut new = format!(
@@ -533,7 +534,7 @@ fn picture(image: Node<'_, '_>, style: &Styled<'_>, linked: Linked<'_>) -> Optio
         &text[..range.start],
         &text[range.start..done]
     );
-    let gone = |name: &str| matches!(name, "width" | "height") || !aspect.is_empty() && name == "preserveAspectRatio";
+    let gone = |name: &str| matches!(name, "width" | "height") || (!aspect.is_empty() && name == "preserveAspectRatio");
     for a in root.attributes().filter(|a| a.namespace().is_none() && gone(a.name())) {
         new.push_str(text.get(done..a.range().start)?);
         done = a.range().end;

@@ -20,7 +20,7 @@ pub(super) struct Declaration<'a> {
     pub(super) name: Cow<'a, str>,
     pub(super) value: Cow<'a, str>,
     pub(super) important: bool,
-    /// Whether lengths of fonts need units. True in style sheets only; browsers read style attributes of SVG in quirks mode.
+    /// `true` if lengths of fonts need units. So it is in style sheets; browsers read style attributes of SVG in quirks mode.
     pub(super) strict: bool,
 }
 
@@ -92,7 +92,7 @@ impl<'a> Rules<'a> {
                     _ => {}
                 }
             }
-            let (places, name) = match (id, class, tag) {
+            let (index, name) = match (id, class, tag) {
                 (Some(name), ..) => (&mut self.by_id, name),
                 (_, Some(name), _) => (&mut self.by_class, name),
                 (.., Some(name)) => (&mut self.by_tag, name),
@@ -102,7 +102,7 @@ impl<'a> Rules<'a> {
                     continue;
                 }
             };
-            places.entry(name.as_ref().to_owned()).or_default().push(number);
+            index.entry(name.as_ref().to_owned()).or_default().push(number);
             self.selectors.push((selector.clone(), self.blocks.len()));
         }
         self.blocks.push(block);
@@ -256,7 +256,7 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
 /// Parses declarations.
 #[derive(Default)]
 struct Body {
-    /// Whether rules or at-rules were nested in the block.
+    /// `true` if rules or at-rules were nested in the block.
     nested: bool,
 }
 
@@ -344,7 +344,7 @@ fn without_comments(value: &str) -> String {
     out
 }
 
-/// Whether any media query of a list applies. `None` if that depends on something unknown.
+/// Returns `true` if any media query of a list applies. `None` if that depends on something unknown.
 pub(super) fn applies(queries: &str) -> Option<bool> {
     if queries.trim().is_empty() {
         return Some(true);
@@ -416,12 +416,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_ignored_is_said() {
+    fn ignored_rules_are_reported() {
         let mut rules = Rules::default();
         rules.add("a:foo(1){x:1} {x:0} }{x:0} a..b{x:0} @media (min-width:3px){a{x:2}} a{x:3; b{x:4}} @import 'x';");
-        let said: Vec<&str> = rules.unsupported.iter().map(String::as_str).collect();
+        let reported: Vec<&str> = rules.unsupported.iter().map(String::as_str).collect();
         assert_eq!(
-            said,
+            reported,
             [
                 "rules for “a:foo(1)” are ignored",
                 "rules inside of rules are ignored",

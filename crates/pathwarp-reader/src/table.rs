@@ -12,7 +12,7 @@ use Kind::{
 #[derive(Debug)]
 pub(super) struct Property {
     pub(super) name: &'static str,
-    /// Whether children inherit the value by default.
+    /// `true` if children inherit the value by default.
     pub(super) inherited: bool,
     pub(super) initial: &'static str,
     pub(super) kind: Kind,
@@ -34,7 +34,7 @@ pub(super) enum Kind {
     Spacing,
     /// `none`, or lengths.
     Dashes,
-    /// `none`, or a reference to an element.
+    /// `none`, or a reference to an element in the drawing.
     Link,
     /// References and functions; `none` if an element that is referred to is missing.
     Filter,
@@ -53,7 +53,7 @@ pub(super) enum Kind {
     Any,
 }
 
-/// Whether a length may be negative.
+/// The signs that a length may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sign {
     Any,
@@ -83,31 +83,31 @@ const fn up(name: &'static str, initial: &'static str, kind: Kind) -> Property {
 }
 
 /// A property that is not inherited.
-const fn own(name: &'static str, initial: &'static str, kind: Kind) -> Property {
+const fn local(name: &'static str, initial: &'static str, kind: Kind) -> Property {
     Property { name, inherited: false, initial, kind }
 }
 
 /// The properties, sorted by name.
 static PROPERTIES: [Property; 85] = [
-    own("alignment-baseline", "baseline", Word(BASELINES)),
-    own("baseline-shift", "baseline", BaselineShift),
-    own("clip-path", "none", Link),
+    local("alignment-baseline", "baseline", Word(BASELINES)),
+    local("baseline-shift", "baseline", BaselineShift),
+    local("clip-path", "none", Link),
     up("clip-rule", "nonzero", Word(&["nonzero", "evenodd"])),
     up("color", "black", Color),
     up("color-interpolation", "sRGB", Word(&["auto", "sRGB", "linearRGB"])),
     up("color-interpolation-filters", "linearRGB", Word(&["auto", "sRGB", "linearRGB"])),
-    own("cx", "0", Geometry(Sign::Any)),
-    own("cy", "0", Geometry(Sign::Any)),
-    own("d", "none", Path),
+    local("cx", "0", Geometry(Sign::Any)),
+    local("cy", "0", Geometry(Sign::Any)),
+    local("d", "none", Path),
     up("direction", "ltr", Word(&["ltr", "rtl"])),
-    own("display", "inline", Word(DISPLAY)),
+    local("display", "inline", Word(DISPLAY)),
     up("dominant-baseline", "auto", Word(BASELINES)),
     up("fill", "black", Paint),
     up("fill-opacity", "1", Share),
     up("fill-rule", "nonzero", Word(&["nonzero", "evenodd"])),
-    own("filter", "none", Filter),
-    own("flood-color", "black", Color),
-    own("flood-opacity", "1", Share),
+    local("filter", "none", Filter),
+    local("flood-color", "black", Color),
+    local("flood-opacity", "1", Share),
     up("font-family", "serif", Any),
     up("font-feature-settings", "normal", Any),
     up("font-kerning", "auto", Word(&["auto", "normal", "none"])),
@@ -123,28 +123,28 @@ static PROPERTIES: [Property; 85] = [
     up("font-variant-position", "normal", Words),
     up("font-variation-settings", "normal", Any),
     up("font-weight", "400", FontWeight),
-    own("height", "auto", Geometry(Sign::Positive)),
+    local("height", "auto", Geometry(Sign::Positive)),
     up("image-rendering", "auto", Word(&["auto", "optimizeQuality", "optimizeSpeed", "crisp-edges", "pixelated"])),
-    own("isolation", "auto", Word(&["auto", "isolate"])),
+    local("isolation", "auto", Word(&["auto", "isolate"])),
     up("letter-spacing", "0", Spacing),
-    own("lighting-color", "white", Color),
+    local("lighting-color", "white", Color),
     up("marker-end", "none", Link),
     up("marker-mid", "none", Link),
     up("marker-start", "none", Link),
-    own("mask", "none", Link),
-    own("mask-type", "luminance", Word(&["luminance", "alpha"])),
-    own("mix-blend-mode", "normal", Word(BLENDS)),
-    own("opacity", "1", Share),
-    own("overflow", "visible", Word(&["visible", "hidden", "scroll", "auto", "clip"])),
+    local("mask", "none", Link),
+    local("mask-type", "luminance", Word(&["luminance", "alpha"])),
+    local("mix-blend-mode", "normal", Word(BLENDS)),
+    local("opacity", "1", Share),
+    local("overflow", "visible", Word(&["visible", "hidden", "scroll", "auto", "clip"])),
     up("paint-order", "normal", Words),
-    own("r", "0", Geometry(Sign::Positive)),
-    own("rotate", "none", Transform),
-    own("rx", "auto", Geometry(Sign::Positive)),
-    own("ry", "auto", Geometry(Sign::Positive)),
-    own("scale", "none", Transform),
+    local("r", "0", Geometry(Sign::Positive)),
+    local("rotate", "none", Transform),
+    local("rx", "auto", Geometry(Sign::Positive)),
+    local("ry", "auto", Geometry(Sign::Positive)),
+    local("scale", "none", Transform),
     up("shape-rendering", "auto", Word(&["auto", "optimizeSpeed", "crispEdges", "geometricPrecision"])),
-    own("stop-color", "black", Color),
-    own("stop-opacity", "1", Share),
+    local("stop-color", "black", Color),
+    local("stop-opacity", "1", Share),
     up("stroke", "none", Paint),
     up("stroke-dasharray", "none", Dashes),
     up("stroke-dashoffset", "0", Length(Sign::Any)),
@@ -154,26 +154,26 @@ static PROPERTIES: [Property; 85] = [
     up("stroke-opacity", "1", Share),
     up("stroke-width", "1", Length(Sign::Positive)),
     up("text-anchor", "start", Word(&["start", "middle", "end"])),
-    own("text-decoration", "none", Words),
-    own("text-decoration-style", "solid", Words),
-    own("text-decoration-thickness", "auto", Any),
+    local("text-decoration", "none", Words),
+    local("text-decoration-style", "solid", Words),
+    local("text-decoration-thickness", "auto", Any),
     up("text-orientation", "mixed", Words),
     up("text-rendering", "auto", Word(&["auto", "optimizeSpeed", "optimizeLegibility", "geometricPrecision"])),
     up("text-shadow", "none", Any),
     up("text-transform", "none", Words),
-    own("transform", "none", Transform),
-    own("transform-box", "view-box", Transform),
-    own("transform-origin", "0 0", Transform),
-    own("translate", "none", Transform),
-    own("unicode-bidi", "normal", Words),
-    own("vector-effect", "none", Word(&["none", "non-scaling-stroke"])),
+    local("transform", "none", Transform),
+    local("transform-box", "view-box", Transform),
+    local("transform-origin", "0 0", Transform),
+    local("translate", "none", Transform),
+    local("unicode-bidi", "normal", Words),
+    local("vector-effect", "none", Word(&["none", "non-scaling-stroke"])),
     up("visibility", "visible", Word(&["visible", "hidden", "collapse"])),
     up("white-space", "normal", Words),
-    own("width", "auto", Geometry(Sign::Positive)),
+    local("width", "auto", Geometry(Sign::Positive)),
     up("word-spacing", "0", Spacing),
     up("writing-mode", "horizontal-tb", Words),
-    own("x", "0", Geometry(Sign::Any)),
-    own("y", "0", Geometry(Sign::Any)),
+    local("x", "0", Geometry(Sign::Any)),
+    local("y", "0", Geometry(Sign::Any)),
 ];
 
 /// Attributes that hold lengths and are not properties.
@@ -197,7 +197,7 @@ pub(super) fn property(name: &str) -> Option<&'static Property> {
 }
 
 /// The property that an attribute sets.
-pub(super) fn of_attribute(name: &str) -> Option<&'static Property> {
+pub(super) fn attribute_property(name: &str) -> Option<&'static Property> {
     property(name).filter(|p| !STYLE_ONLY.contains(&p.name))
 }
 
@@ -214,7 +214,7 @@ mod tests {
     fn properties_are_found() {
         assert!(PROPERTIES.windows(2).all(|w| w[0].name < w[1].name));
         assert!(PROPERTIES.iter().all(|p| std::ptr::eq(property(p.name).unwrap(), p)));
-        assert!(STYLE_ONLY.iter().all(|n| property(n).is_some() && of_attribute(n).is_none()));
+        assert!(STYLE_ONLY.iter().all(|n| property(n).is_some() && attribute_property(n).is_none()));
         assert!(property("class").is_none());
     }
 }

@@ -92,7 +92,7 @@ enum Anchor {
 #[derive(Debug, Clone)]
 pub(super) struct TextStyle {
     weight: u16,
-    /// Whether white space is kept rather than collapsed; `None` leaves it to `xml:space`.
+    /// `true` if white space is kept, `false` if it is collapsed; `None` leaves it to `xml:space`.
     keeps_space: Option<bool>,
     rtl: bool,
     anchor: Anchor,
@@ -101,7 +101,7 @@ pub(super) struct TextStyle {
     /// Combined opacity of the elements between the text, excluded, and this one. `None` outside of texts.
     fade: Option<f64>,
     case: Case,
-    /// Whether `letter-spacing` is not zero.
+    /// `true` if `letter-spacing` is not zero.
     spaced: bool,
     /// Declarations without effect, by property.
     without_effect: Rc<BTreeMap<&'static str, String>>,
@@ -137,17 +137,17 @@ pub(super) struct TextChanges {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Letters {
     pub(super) case: Case,
-    /// Whether to break up ligatures, which usvg forms even between letters with spacing (CSS Text 3, section 8.2).
+    /// `true` to break up ligatures, which usvg forms even between letters with spacing (CSS Text 3, section 8.2).
     pub(super) separate: bool,
     /// A control character to set the direction of the text (Unicode Standard Annex 9, section 2), since usvg always starts from
     /// left to right.
     pub(super) direction: Option<char>,
-    /// White space is collapsed before usvg reads the text, since usvg would lose spaces.
+    /// `true` to collapse white space before usvg reads the text, since usvg would lose spaces.
     pub(super) collapses: bool,
 }
 
 impl TextStyle {
-    /// Whether an element is a text or a part of one.
+    /// Returns `true` if an element is a text or a part of one.
     pub(super) fn concerns(&self, tag: &str) -> bool {
         tag == "text" || self.fade.is_some()
     }
@@ -185,7 +185,7 @@ impl TextStyle {
         let kept = self.keeps_space;
         self.keeps_space = value("white-space")
             .map_or(self.keeps_space, |v| Some(matches!(v, "pre" | "pre-wrap" | "break-spaces" | "-moz-pre-space")));
-        let is_content = tag == "text" || self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref");
+        let is_content = tag == "text" || (self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref"));
         if is_content && self.rtl {
             // CSS starts at the right, usvg at the left.
             let anchor = match self.anchor {
@@ -232,7 +232,7 @@ impl TextStyle {
         (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
     }
 
-    /// Says small capitals as usvg reads them.
+    /// Declares small capitals as usvg reads them.
     fn capitals<'a>(&mut self, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
         let Some(caps) = value("font-variant-caps").or_else(|| value("font-variant")) else { return };
         let small = caps.split_whitespace().any(|w| w.ends_with("small-caps"));
@@ -243,12 +243,12 @@ impl TextStyle {
         self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
     }
 
-    /// Multiplies the opacity of a part of a text into those of its fill and stroke.
+    /// Multiplies the opacities of the fill and stroke of a part of a text by its opacity.
     fn fade<'a>(&mut self, tag: &str, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
         const NAMES: [&str; 2] = ["fill-opacity", "stroke-opacity"];
-        let own = NAMES.map(|name| value(name).and_then(opacity));
-        for (known, own) in self.opacities.iter_mut().zip(own) {
-            *known = own.unwrap_or(*known);
+        let declared = NAMES.map(|name| value(name).and_then(opacity));
+        for (known, declared) in self.opacities.iter_mut().zip(declared) {
+            *known = declared.unwrap_or(*known);
         }
         let Some(around) = self.fade else {
             self.fade = (tag == "text").then_some(1.0);
@@ -256,8 +256,8 @@ impl TextStyle {
         };
         let here = around * value("opacity").and_then(opacity).unwrap_or(1.0);
         self.fade = Some(here);
-        for ((name, all), own) in NAMES.iter().zip(self.opacities).zip(own) {
-            if here != around || own.is_some() && here != 1.0 {
+        for ((name, all), declared) in NAMES.iter().zip(self.opacities).zip(declared) {
+            if here != around || (declared.is_some() && here != 1.0) {
                 set(name, (all * here).to_string());
             }
         }
@@ -282,7 +282,7 @@ impl TextStyle {
                 all.insert(name, v.to_owned()).is_none_or(|was| was != v)
             };
         }
-        if tag == "text" || is_content && changed {
+        if tag == "text" || (is_content && changed) {
             self.without_effect.iter().map(|(name, v)| format!("{name}: {v}")).collect()
         } else {
             Vec::new()
@@ -290,13 +290,13 @@ impl TextStyle {
     }
 }
 
-/// Whether an element keeps its white space, according to its style or else `xml:space`.
+/// Returns `true` if an element keeps its white space, by its style or else by `xml:space`.
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
-    let said = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
-    style.or_else(|| said(node?)).unwrap_or(false)
+    let declared = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
+    style.or_else(|| declared(node?)).unwrap_or(false)
 }
 
-/// The control character that sets a direction, if it is not that of left-to-right text.
+/// The control character that sets a direction; `None` for ordinary left-to-right text.
 fn control(rtl: bool, overrides: bool) -> Option<char> {
     match (rtl, overrides) {
         (true, true) => Some('\u{202e}'),
@@ -306,7 +306,7 @@ fn control(rtl: bool, overrides: bool) -> Option<char> {
     }
 }
 
-/// Returns `true` if usvg leaves out a space of this text, one that a part begins with.
+/// Returns `true` if usvg loses a space of this text: one at the beginning of a part.
 fn loses_spaces(text: Node<'_, '_>) -> bool {
     let keeps = |n: Node<'_, '_>| {
         attribute(n, "xml:space").is_some() || n.attribute("style").is_some_and(|s| s.contains("white-space"))
@@ -326,15 +326,15 @@ fn loses_spaces(text: Node<'_, '_>) -> bool {
     })
 }
 
-/// Whether a part of a text sets only its y, so that it begins below the end of the words before it.
+/// Returns `true` if a part of a text sets only its y, so that it begins below the end of the words before it.
 fn is_lower(part: Node<'_, '_>) -> bool {
     /// Siblings to search for words; some may be white space or comments.
     const NEAR: usize = 4;
-    let says = |n: Node<'_, '_>| n.descendants().filter_map(|d| d.text()).any(|t| !t.trim().is_empty());
-    part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(NEAR).any(says)
+    let has_words = |n: Node<'_, '_>| n.descendants().filter_map(|d| d.text()).any(|t| !t.trim().is_empty());
+    part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(NEAR).any(has_words)
 }
 
-/// Whether a property is one that [`TextStyle`] follows.
+/// Returns `true` if [`TextStyle`] follows a property.
 pub(super) fn concerns(name: &str) -> bool {
     matches!(name.as_bytes().first(), Some(b'f' | b'd' | b't' | b'l' | b'w' | b'u' | b'o' | b's'))
         && (matches!(
@@ -353,7 +353,7 @@ pub(super) fn concerns(name: &str) -> bool {
         ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
 }
 
-/// Whether a value is a valid font weight.
+/// Returns `true` if a value is a valid font weight.
 pub(super) fn is_weight(value: &str) -> bool {
     weight(value, 400).is_some()
 }
@@ -487,7 +487,7 @@ fn separated(text: &str) -> String {
 
 impl Case {
     /// Changes the case of letters. `before` is the letter before them.
-    fn of(self, text: &str, before: Option<char>) -> String {
+    fn apply(self, text: &str, before: Option<char>) -> String {
         match self {
             Self::AsTyped => text.to_owned(),
             Self::Upper => text.to_uppercase(),
@@ -526,47 +526,47 @@ struct Run<'a> {
     style: Letters,
 }
 
-/// Rewrites a text. `letters` has the style of its elements, its own first. Returns `None` if its direction cannot be set because
-/// letters have positions of their own: the control characters would count as letters.
+/// Rewrites a text. `letters` has the changes for the text and its elements. Returns `None` if its direction cannot be set because
+/// single letters have positions: the control characters would count as letters.
 pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<Rewritten>> {
     let mut styles: HashMap<NodeId, Letters> = HashMap::new();
     let mut lines: Vec<Vec<Run<'_>>> = vec![Vec::new()];
     let mut elements = 0;
     let mut before = None;
-    let (mut is_marked, mut is_placed) = (false, false);
+    let (mut is_marked, mut is_positioned) = (false, false);
     for node in text.descendants() {
         if node.is_element() {
-            let own = letters.get(elements).copied().unwrap_or_default();
+            let style = letters.get(elements).copied().unwrap_or_default();
             elements += 1;
-            if node == text || is_part(node) && node.parent().is_some_and(|p| styles.contains_key(&p.id())) {
-                styles.insert(node.id(), own);
+            if node == text || (is_part(node) && node.parent().is_some_and(|p| styles.contains_key(&p.id()))) {
+                styles.insert(node.id(), style);
                 if begins_line(node) {
                     lines.push(Vec::new());
                 }
-                is_marked |= own.direction.is_some();
-                is_placed |= has_places(node);
+                is_marked |= style.direction.is_some();
+                is_positioned |= has_letter_positions(node);
             }
             continue;
         }
         let style = node.parent().and_then(|p| styles.get(&p.id())).filter(|_| node.is_text());
         let (Some(&style), Some(old), Some(line)) = (style, node.text(), lines.last_mut()) else { continue };
-        let new = Rewritten { elements: elements - 1, range: node.range(), text: style.case.of(old, before) };
+        let new = Rewritten { elements: elements - 1, range: node.range(), text: style.case.apply(old, before) };
         before = old.chars().next_back().or(before);
         line.push(Run { new, old, style });
     }
     if letters.first().is_some_and(|l| l.collapses) {
         collapse(lines.iter_mut().flatten());
     }
-    if is_marked && is_placed {
+    if is_marked && is_positioned {
         return None;
     }
-    if !is_placed {
+    if !is_positioned {
         lines.iter_mut().for_each(|line| mark(line));
     }
     Some(lines.into_iter().flatten().filter(|r| r.new.text != r.old).map(|r| r.new).collect())
 }
 
-/// Collapses white space as browsers do: that between words to one space, and none before the first and after the last word.
+/// Collapses white space as browsers do: to one space between words, and to none before the first and after the last word.
 fn collapse<'a, 'b: 'a>(runs: impl Iterator<Item = &'a mut Run<'b>>) {
     let is_space = |c: char| matches!(c, ' ' | '\t' | '\n' | '\r');
     let mut after_space = true;
@@ -613,8 +613,8 @@ fn is_part(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().name(), "tspan" | "textPath" | "a" | "tref")
 }
 
-/// Whether letters of different elements touch. usvg kerns them; browsers don't.
-pub(super) fn joined(text: Node<'_, '_>) -> bool {
+/// Returns `true` if letters of different elements touch. usvg kerns them; browsers don't.
+pub(super) fn elements_touch(text: Node<'_, '_>) -> bool {
     let mut ends = false;
     text.descendants().skip(1).any(|node| {
         if node.is_element() {
@@ -628,13 +628,13 @@ pub(super) fn joined(text: Node<'_, '_>) -> bool {
     })
 }
 
-/// Whether usvg starts a new line of text at an element: one with a position of its own, or a path.
+/// Returns `true` if usvg starts a new line of text at an element: one with a position, or on a path.
 fn begins_line(node: Node<'_, '_>) -> bool {
     ["x", "y"].iter().any(|a| node.has_attribute(*a)) || node.tag_name().name() == "textPath"
 }
 
-/// Whether single letters have positions or rotations, or `textLength` spreads them.
-fn has_places(node: Node<'_, '_>) -> bool {
+/// Returns `true` if single letters have positions or rotations, or `textLength` spreads them.
+fn has_letter_positions(node: Node<'_, '_>) -> bool {
     let several = |v: &str| v.split([',', ' ', '\n', '\t', '\r']).filter(|n| !n.is_empty()).nth(1).is_some();
     node.has_attribute("textLength")
         || ["x", "y", "dx", "dy", "rotate"].iter().any(|a| node.attribute(*a).is_some_and(several))
@@ -679,9 +679,9 @@ mod tests {
 
     #[test]
     fn cases() {
-        assert_eq!(Case::Upper.of("straße é", None), "STRASSE É");
-        assert_eq!(Case::Capitalized.of("it's a d-day ünder", Some('x')), "it's A D-Day Ünder");
-        assert_eq!(Case::Capitalized.of("ab", None), "Ab");
+        assert_eq!(Case::Upper.apply("straße é", None), "STRASSE É");
+        assert_eq!(Case::Capitalized.apply("it's a d-day ünder", Some('x')), "it's A D-Day Ünder");
+        assert_eq!(Case::Capitalized.apply("ab", None), "Ab");
         assert_eq!(separated("office fit Th"), "of\u{180b}f\u{180b}ice f\u{180b}it T\u{180b}h");
     }
 }

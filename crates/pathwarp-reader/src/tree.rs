@@ -2,7 +2,7 @@
 //! its children.
 
 use crate::computed::{Computed, Inherited, Tracked, computed};
-use crate::element::{Looks, applying, work};
+use crate::element::{ComparisonCounter, applying, work};
 use crate::geometry::{self, shape_box};
 use crate::ids::Ids;
 use crate::sheet::{self, Declaration, Rules, declarations};
@@ -38,7 +38,7 @@ pub(super) struct Styled<'a> {
 
 /// The style of a drawing.
 pub(super) struct Tree<'a> {
-    /// One for each element, in document order.
+    /// The style of each element, in document order.
     pub(super) styles: Vec<Styled<'a>>,
     /// Indices of the elements that are style sheets.
     pub(super) sheets: BTreeSet<usize>,
@@ -53,10 +53,10 @@ pub(super) struct Tree<'a> {
 /// Computes the style of all elements.
 ///
 /// # Errors
-/// It takes more work than the budget allows.
+/// [`Exceeded`] when this takes more work than the budget allows.
 pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Tree<'a>, Exceeded> {
     let (rules, sheets, unsupported) = rules(nodes, budget)?;
-    let looks = Looks::within(budget);
+    let counter = ComparisonCounter::new(budget);
     let mut caches = SelectorCaches::default();
     let ids = Ids::new(doc);
     // Inherited state of the enclosing elements, outermost first.
@@ -64,25 +64,25 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     let mut known: HashMap<&str, Rc<[Declaration<'_>]>> = HashMap::new();
     let mut out: Vec<(Computed<'_>, Units)> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let own = node.attribute("style").map(|style| {
-            // Many elements share the same style, so keep what is slow to parse.
+        let inline = node.attribute("style").map(|style| {
+            // Many elements share the same style, so long ones are kept parsed.
             let parsed = || declarations(style).into();
             if style.len() < REPEATED { parsed() } else { Rc::clone(known.entry(style).or_insert_with(parsed)) }
         });
-        let own = own.as_deref().unwrap_or_default();
-        let declarations = if own.is_empty() && rules.is_empty() {
+        let inline = inline.as_deref().unwrap_or_default();
+        let declarations = if inline.is_empty() && rules.is_empty() {
             Vec::new()
         } else {
-            applying(&rules, own, *node, &looks, &mut caches)
+            applying(&rules, inline, *node, &counter, &mut caches)
         };
-        if looks.exceeded() {
+        if counter.exceeded() {
             break;
         }
         let parent = node.parent_element().map(|p| p.id());
         while around.last().is_some_and(|(id, _)| Some(*id) != parent) {
             around.pop();
         }
-        let mut here = around.last().map_or_else(|| at_root(doc), |(_, inherited)| inherited.clone());
+        let mut here = around.last().map_or_else(|| root_inherited(doc), |(_, inherited)| inherited.clone());
         let custom = Rc::clone(&here.custom);
         let style = computed(*node, parent.is_none(), &declarations, &ids, &mut here);
         // Variables can expand a short value to a long one, so charge for the result.
@@ -103,7 +103,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
         }
         out.push((style, units));
     }
-    looks.spend(budget)?;
+    counter.spend(budget)?;
     let matrices = matrices(nodes, &out);
     let all = out.into_iter().zip(matrices).map(|((computed, units), matrix)| Styled { computed, units, matrix });
     let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
@@ -112,7 +112,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
 }
 
 /// The state that the root element inherits.
-fn at_root(doc: &Document<'_>) -> Inherited {
+fn root_inherited(doc: &Document<'_>) -> Inherited {
     let (custom, text) = (Rc::new(Custom::new()), TextStyle::default());
     let color = csscolorparser::Color::new(0.0, 0.0, 0.0, 1.0);
     Inherited {
@@ -193,21 +193,21 @@ fn view_box(node: Node<'_, '_>) -> Option<(f64, f64)> {
     Some((b.w, b.h))
 }
 
-/// Computes the transforms that style sheets contribute to, and that of the root. All others are the identity, so usvg's own
-/// reading stands; `None` means that one cannot be computed.
+/// Computes the transforms of elements whose style sheets contribute to them, and of the root. All others are the identity, so that usvg
+/// reads them itself; `None` if one cannot be computed.
 fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec<Option<Affine>> {
     let is_turned = nodes.first().is_some_and(|root| root.has_attribute("transform"));
     if !is_turned && styles.iter().all(|(s, _)| s.transform.is_empty()) {
         return vec![Some(Affine::IDENTITY); nodes.len()];
     }
     let numbers: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(e, n)| (n.id(), e)).collect();
-    // Boxes of the children, in the element's own coordinates.
+    // Boxes of the children, in the element's coordinates.
     let mut boxes: Vec<Option<Rect>> = vec![None; nodes.len()];
     let mut out = vec![Some(Affine::IDENTITY); nodes.len()];
     for (e, (node, (style, units))) in nodes.iter().zip(styles).enumerate().rev() {
         let tag = node.tag_name().name();
         let attr = |name: &str| style.value(*node, name);
-        let own = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
+        let bounds = if matches!(tag, "g" | "a" | "switch") { boxes[e] } else { shape_box(tag, attr, units) };
         let declared = |name: &str| {
             let last = style.transform.iter().find(|d| d.name == name).map(|d| d.value.as_ref());
             last.or_else(|| node.attribute(name).filter(|_| matches!(name, "transform" | "transform-origin")))
@@ -217,14 +217,14 @@ fn matrices<'a>(nodes: &[Node<'a, '_>], styles: &[(Computed<'a>, Units)]) -> Vec
             _ if e == 0 => Some(Rect::from_origin_size((0.0, 0.0), units.window)),
             "view-box" => Some(Rect::from_origin_size((0.0, 0.0), units.viewport)),
             // Boxes ignore strokes.
-            _ => own,
+            _ => bounds,
         };
         let matrix = reference.and_then(|r| geometry::matrix(declared, units, r, e == 0));
         out[e] = if style.transform.is_empty() && e > 0 { Some(Affine::IDENTITY) } else { matrix };
-        if let (Some(own), Some(m), Some(&parent)) =
-            (own, matrix, node.parent_element().and_then(|p| numbers.get(&p.id())))
+        if let (Some(bounds), Some(m), Some(&parent)) =
+            (bounds, matrix, node.parent_element().and_then(|p| numbers.get(&p.id())))
         {
-            let seen = m.transform_rect_bbox(own);
+            let seen = m.transform_rect_bbox(bounds);
             boxes[parent] = Some(boxes[parent].map_or(seen, |b| b.union(seen)));
         }
     }

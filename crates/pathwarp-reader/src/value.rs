@@ -35,7 +35,7 @@ pub(super) struct Units {
     pub(super) viewport: (f64, f64),
 }
 
-/// Whether a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
+/// Returns `true` if a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
 pub(super) fn is_plain(value: &str) -> bool {
     let bytes = value.as_bytes();
     let unit = |(i, b): (usize, &u8)| {
@@ -48,17 +48,17 @@ pub(super) fn is_plain(value: &str) -> bool {
     !has_functions(value) && !bytes.iter().enumerate().any(unit)
 }
 
-/// Whether a value has variables or expressions.
+/// Returns `true` if a value has variables or expressions.
 pub(super) fn has_functions(value: &str) -> bool {
     calls(value).any(|before| FUNCTIONS.iter().any(|f| ends_in(before, f)))
 }
 
-/// What stands before each end of a function's name, with the parenthesis.
+/// The beginnings of a value up to each opening parenthesis, which is included.
 fn calls(value: &str) -> impl Iterator<Item = &[u8]> {
     memchr::memchr_iter(b'(', value.as_bytes()).map(|i| &value.as_bytes()[..=i])
 }
 
-/// Whether a text ends in a function's name, in upper or lower case.
+/// Returns `true` if a text ends in a function's name, in upper or lower case.
 fn ends_in(text: &[u8], function: &str) -> bool {
     let start = text.len().checked_sub(function.len());
     start.is_some_and(|start| text[start..].eq_ignore_ascii_case(function.as_bytes()))
@@ -73,7 +73,7 @@ fn find(value: &str, function: &str) -> Option<usize> {
     calls(value).find(|before| ends_in(before, function)).map(|before| before.len() - function.len())
 }
 
-/// Whether usvg doesn't know a unit.
+/// Returns `true` if usvg doesn't know a unit.
 fn is_relative(unit: &str) -> bool {
     let unit = unit.to_ascii_lowercase();
     matches!(unit.as_str(), "em" | "ex" | "rem" | "ch" | "ic" | "cap" | "lh" | "rlh" | "q")
@@ -124,15 +124,15 @@ fn closing(input: &mut Parser<'_>) -> usize {
     }
 }
 
-/// The custom properties of an element: its own and the inherited ones.
-pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
+/// The custom properties of an element, declared and inherited.
+pub(super) fn custom(declared: &[(String, String)], inherited: &Custom) -> Custom {
     let found = Variables {
-        own: own.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect(),
+        declared: declared.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect(),
         inherited,
         known: RefCell::default(),
     };
     let mut out = inherited.clone();
-    for name in found.own.keys() {
+    for name in found.declared.keys() {
         match found.value(name, MAX_CHAIN) {
             Some(v) => out.insert((*name).to_owned(), v),
             None => out.remove(*name),
@@ -144,7 +144,7 @@ pub(super) fn custom(own: &[(String, String)], inherited: &Custom) -> Custom {
 /// Resolves variables that may refer to each other.
 struct Variables<'a> {
     /// The last declaration of each.
-    own: BTreeMap<&'a str, &'a str>,
+    declared: BTreeMap<&'a str, &'a str>,
     inherited: &'a Custom,
     /// Values found so far; `None` for variables without a value, and for those being resolved.
     known: RefCell<BTreeMap<String, Option<Rc<str>>>>,
@@ -152,7 +152,7 @@ struct Variables<'a> {
 
 impl Variables<'_> {
     fn value(&self, name: &str, depth: usize) -> Option<Rc<str>> {
-        let Some(raw) = self.own.get(name) else { return self.inherited.get(name).cloned() };
+        let Some(raw) = self.declared.get(name) else { return self.inherited.get(name).cloned() };
         if let Some(known) = self.known.borrow().get(name) {
             return known.clone();
         }
@@ -259,7 +259,7 @@ pub(super) fn known_length<'v>(
     match unit {
         "" if strict && value != 0.0 => None,
         "" | "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(Cow::Borrowed(text)),
-        "%" => Some(percent.map_or(Cow::Borrowed(text), |full| format!("{}px", value / 100.0 * full).into())),
+        "%" => Some(percent.map_or(Cow::Borrowed(text), |full| format!("{}px", (value / 100.0) * full).into())),
         _ => {
             let lower = unit.to_ascii_lowercase();
             if matches!(lower.as_str(), "px" | "in" | "cm" | "mm" | "pt" | "pc") {
@@ -378,11 +378,11 @@ impl Math<'_> {
             Ok(all)
         });
         let all = arguments.ok()?;
-        let of =
+        let folded =
             |f: fn(f64, f64) -> f64| all.iter().copied().reduce(|a, b| Quantity { value: f(a.value, b.value), ..a });
         let out = match (name, all.as_slice()) {
-            ("min", _) => of(f64::min),
-            ("max", _) => of(f64::max),
+            ("min", _) => folded(f64::min),
+            ("max", _) => folded(f64::max),
             ("clamp", [low, value, high]) => {
                 Some(Quantity { value: value.value.min(high.value).max(low.value), ..*value })
             }
@@ -439,7 +439,7 @@ impl Math<'_> {
             Token::Number { .. } => Some(Quantity { value: text.parse().ok()?, is_length: false }),
             Token::Percentage { .. } => {
                 let share: f64 = text.strip_suffix('%')?.parse().ok()?;
-                Some(Quantity { value: share / 100.0 * self.percent?, is_length: true })
+                Some(Quantity { value: (share / 100.0) * self.percent?, is_length: true })
             }
             Token::Dimension { unit, .. } => self.dimension(text, unit),
             Token::ParenthesisBlock => {

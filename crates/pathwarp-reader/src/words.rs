@@ -1,8 +1,8 @@
-//! The author's own words about paint, for programs that write new elements in the place of others.
+//! The author's declarations about paint as written, for programs that replace elements by new ones.
 
 use std::sync::Arc;
 
-/// A property that says how a shape is painted. All of them are inherited.
+/// An inherited property that determines the paint of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PaintProperty {
     /// `fill`
@@ -23,7 +23,7 @@ const NAMES: [&str; 5] = ["fill", "fill-opacity", "stroke", "stroke-opacity", "c
 #[derive(Debug, PartialEq)]
 struct Word {
     text: String,
-    /// Where the variables begin that hold for it.
+    /// The `scope` of the [`Words`] that it was declared in.
     scope: usize,
 }
 
@@ -31,48 +31,48 @@ struct Word {
 /// have their initial values.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Words {
-    /// One for each name; shared by all elements that inherit it.
-    said: [Option<Arc<Word>>; 5],
-    /// Where the last element around begins that declares variables; 0 if there is none.
+    /// The value of each property in [`NAMES`]; shared by all elements that inherit it.
+    declared: [Option<Arc<Word>>; 5],
+    /// Offset of the innermost element around that declares variables; 0 if there is none.
     scope: usize,
 }
 
 impl Words {
-    /// Takes down that the element that begins at `scope` declares variables.
+    /// Records that the element at offset `scope` declares variables.
     pub(super) fn declare_variables(&mut self, scope: usize) {
         self.scope = scope;
     }
 
     /// Returns `true` for the name of a property in [`PaintProperty`].
-    pub(super) fn hold(name: &str) -> bool {
+    pub(super) fn records(name: &str) -> bool {
         NAMES.contains(&name)
     }
 
-    /// Takes down a valid value of a property; `None` for the initial one.
-    pub(super) fn say(&mut self, name: &str, value: Option<&str>) {
+    /// Records a valid value of a property; `None` for the initial one.
+    pub(super) fn record(&mut self, name: &str, value: Option<&str>) {
         let Some(k) = NAMES.iter().position(|n| *n == name) else { return };
         let text = value.map(str::trim);
         // The keyword means the inherited colour here.
         if name == "color" && text.is_some_and(|t| t.eq_ignore_ascii_case("currentcolor")) {
             return;
         }
-        self.said[k] = text.map(|t| Arc::new(Word { text: t.to_owned(), scope: self.scope }));
+        self.declared[k] = text.map(|t| Arc::new(Word { text: t.to_owned(), scope: self.scope }));
     }
 
-    /// These words, for an element inside with a fill of its own.
+    /// These words for a child with another fill, if one is given.
     pub(super) fn with_fill(self: &Arc<Self>, fill: Option<&str>) -> Arc<Self> {
         let mut out = Arc::clone(self);
         if fill.is_some() {
-            Arc::make_mut(&mut out).say(NAMES[0], fill);
+            Arc::make_mut(&mut out).record(NAMES[0], fill);
         }
         out
     }
 
     fn word(&self, p: PaintProperty) -> Option<&Arc<Word>> {
-        self.said[p as usize].as_ref()
+        self.declared[p as usize].as_ref()
     }
 
-    /// Returns `true` if a declaration of this property, own or inherited, gives it a value.
+    /// Returns `true` if a declaration, on the element or inherited, gives this property a value.
     #[must_use]
     pub fn says(&self, p: PaintProperty) -> bool {
         self.word(p).is_some()
@@ -86,29 +86,29 @@ impl Words {
         depends(text(PaintProperty::Fill)) || depends(text(PaintProperty::Stroke))
     }
 
-    /// Returns `true` if a child of an element with the words `place` would inherit the value that this property has here.
+    /// Returns `true` if a child of an element with the words `parent` would inherit the value that this property has here.
     #[must_use]
-    pub fn inherits(&self, p: PaintProperty, place: &Self) -> bool {
-        let same = |p| is_same(self.word(p), place.word(p));
+    pub fn inherits(&self, p: PaintProperty, parent: &Self) -> bool {
+        let same = |p| is_same(self.word(p), parent.word(p));
         let text = self.word(p).map_or("", |w| &w.text);
         same(p) && !refers(text) && (same(PaintProperty::Color) || !mentions(text, "currentcolor"))
     }
 
-    /// A value that gives an element inside of `place` the colour or opacity that is said here. `None` if nothing is said, or if it
-    /// would mean another there.
+    /// A value that gives a child of an element with the words `parent` the colour or opacity declared here. `None` if none is declared,
+    /// or if the value would mean something else there.
     #[must_use]
-    pub fn taken_over(&self, p: PaintProperty, place: &Self) -> Option<&str> {
+    pub fn taken_over(&self, p: PaintProperty, parent: &Self) -> Option<&str> {
         let word = self.word(p)?;
         let text = word.text.as_str();
-        if p != PaintProperty::Color && !self.inherits(PaintProperty::Color, place) {
+        if p != PaintProperty::Color && !self.inherits(PaintProperty::Color, parent) {
             if text.eq_ignore_ascii_case("currentcolor") {
-                return self.taken_over(PaintProperty::Color, place);
+                return self.taken_over(PaintProperty::Color, parent);
             }
             if mentions(text, "currentcolor") {
                 return None;
             }
         }
-        let holds = word.scope == place.scope || !mentions(text, "var(");
+        let holds = word.scope == parent.scope || !mentions(text, "var(");
         (holds && !refers(text)).then_some(text)
     }
 
@@ -116,9 +116,9 @@ impl Words {
     #[must_use]
     pub fn copied(&self, around: &Self, copy: &Self) -> Self {
         let mut out = self.clone();
-        for ((own, around), copy) in out.said.iter_mut().zip(&around.said).zip(&copy.said) {
-            if is_same(own.as_ref(), around.as_ref()) {
-                own.clone_from(copy);
+        for ((word, around), copy) in out.declared.iter_mut().zip(&around.declared).zip(&copy.declared) {
+            if is_same(word.as_ref(), around.as_ref()) {
+                word.clone_from(copy);
             }
         }
         if self.scope == around.scope {
@@ -128,7 +128,7 @@ impl Words {
     }
 }
 
-/// Returns `true` if two elements take a value from one and the same declaration.
+/// Returns `true` if two elements take a value from the same declaration.
 fn is_same(a: Option<&Arc<Word>>, b: Option<&Arc<Word>>) -> bool {
     a.map(Arc::as_ptr) == b.map(Arc::as_ptr)
 }

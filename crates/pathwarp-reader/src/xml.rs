@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 /// Parses XML that is known to be within the budget.
 ///
 /// # Errors
-/// It is not well-formed.
+/// [`roxmltree::Error`] when the text is not well-formed.
 pub fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
     roxmltree::Document::parse_with_options(text, options)
@@ -18,7 +18,7 @@ pub fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error>
 /// Parses XML. `name` identifies the text in errors.
 ///
 /// # Errors
-/// It is not well-formed, or takes more than the budget allows.
+/// [`Error::Input`] when the text is not well-formed, or takes more than the budget allows.
 pub fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree::Document<'a>, Error> {
     check(text, name, budget)?;
     parse_checked(text, name)
@@ -27,7 +27,7 @@ pub fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree
 /// Charges the budget for parsing.
 ///
 /// # Errors
-/// It exceeds the budget.
+/// [`Error::Input`] when parsing takes more than the budget allows.
 pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
     count(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
 }
@@ -35,7 +35,7 @@ pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
 /// Parses XML that is known to be within the budget. `name` identifies the text in errors.
 ///
 /// # Errors
-/// It is not well-formed.
+/// [`Error::Input`] when the text is not well-formed.
 pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
     document(text).map_err(|e| {
         let at = e.pos();
@@ -43,7 +43,7 @@ pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Documen
     })
 }
 
-/// Expands the references to entities, so that each element has its own place in the text. Returns `None` if no entity holds elements.
+/// Expands the references to entities, so that each element has a range in the text. Returns `None` if no entity holds elements.
 #[must_use]
 pub fn with_elements_of_entities(text: &str) -> Option<String> {
     let entities = declared(text);
@@ -80,7 +80,7 @@ fn reference(text: &str) -> Option<(&str, &str, &str)> {
     Some((before, name, after))
 }
 
-/// The place after the name of an element, where attributes can be inserted.
+/// The offset behind the name of an element, where attributes can be inserted.
 #[must_use]
 pub fn name_end(text: &str, node: Node<'_, '_>) -> usize {
     let start = node.range().start + 1;
@@ -134,7 +134,7 @@ fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
 fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     /// Namespaces that are compared in the time of one comparison.
     const COPIED: f64 = 3.0;
-    /// More than in any ordinary drawing.
+    /// More namespaces than in any ordinary drawing.
     const FEW: usize = 64;
     let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|at| at + "xmlns".len());
     let end = |at: usize| memchr3(b' ', b'>', b'/', &text.as_bytes()[at..]).map_or(text.len(), |i| at + i);
@@ -145,8 +145,7 @@ fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / COPIED)
 }
 
-/// Bounds the number of elements by that of tags, which includes comments. Short texts pass: they are counted exactly once
-/// parsed.
+/// Bounds the number of elements by the number of tags and comments. Short texts pass: their elements are counted once they are parsed.
 fn tags(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     /// Tags per element; more than in any ordinary drawing.
     const PER_ELEMENT: f64 = 8.0;

@@ -45,8 +45,8 @@ impl<'a> Charstrings<'a> {
         let blend = font.var_store().and_then(|s| BlendState::new(s.clone(), &[], part.vs_index()).ok());
         let all = font.charstrings();
         let context = Counting { inner: (font.data(), all, font.global_subrs(), &local), used, max };
-        let own = context.counted(all.get(glyph.to_u32() as usize)?)?;
-        evaluate(&context, blend, own, &mut Nothing)?;
+        let charstring = context.counted(all.get(glyph.to_u32() as usize)?)?;
+        evaluate(&context, blend, charstring, &mut Nothing)?;
         Ok(())
     }
 }

@@ -24,7 +24,7 @@ pub struct Font<'a> {
     units_per_em: f64,
     metrics: FontMetrics,
     pub(crate) synthesis: Synthesis,
-    /// The writing that alone may use it.
+    /// The only writing that may use the font, if there is such a restriction.
     pub(crate) only: Option<Writing>,
 }
 
@@ -51,15 +51,15 @@ impl<'a> Font<'a> {
     /// Reads a TrueType or OpenType font with `glyf`, CFF or CFF2 outlines. `index` counts the fonts of a collection from 0.
     ///
     /// # Errors
-    /// The bytes are not such a font, or the file has fewer fonts.
+    /// [`Error::NotAFont`] when the bytes are not such a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`].
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         guarded(|| Self::read(bytes, index, Outlines::new))
     }
 
-    /// Reads a font, of any or no outlines, to shape text. Glyphs are empty.
+    /// Reads a font with any outlines or none, to shape text. Glyphs are empty.
     ///
     /// # Errors
-    /// As for [`new`](Self::new), but for fonts without outlines.
+    /// [`Error::NotAFont`] when the bytes are not a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`].
     pub fn for_shaping(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         guarded(|| Self::read(bytes, index, |_| Ok(Outlines::default())))
     }
@@ -103,12 +103,12 @@ impl<'a> Font<'a> {
     /// Returns the font at another position on its axes. Axes that are not given take their defaults.
     ///
     /// # Errors
-    /// The font has no such axis, or the value is out of range.
+    /// [`Error::NoSuchAxis`] when the font lacks an axis, [`Error::OutsideAxis`] when a value is out of range, [`Error::Failed`].
     pub fn with_variations(self, variations: &[Variation]) -> Result<Self, Error> {
-        guarded(|| self.at(variations))
+        guarded(|| self.set_variations(variations))
     }
 
-    fn at(mut self, variations: &[Variation]) -> Result<Self, Error> {
+    fn set_variations(mut self, variations: &[Variation]) -> Result<Self, Error> {
         let axes = self.axes();
         for v in variations {
             let tag = v.tag.to_string();
@@ -125,8 +125,7 @@ impl<'a> Font<'a> {
         Ok(self)
     }
 
-    /// Restricts the font to one writing, for which it stands in for others: text of other writings does not use it, and emoji use it
-    /// before fonts without this restriction.
+    /// Restricts the font to one writing: text of other writings does not use it, and emoji prefer it to fonts without a restriction.
     #[must_use]
     pub fn only_for(mut self, writing: Writing) -> Self {
         self.only = Some(writing);
@@ -153,7 +152,7 @@ impl<'a> Font<'a> {
         f64::from(self.font.attributes().weight.value())
     }
 
-    /// Whether the font is italic or oblique.
+    /// Returns `true` if the font is italic or oblique.
     #[must_use]
     pub fn is_italic(&self) -> bool {
         self.font.attributes().style != skrifa::attribute::Style::Normal
@@ -194,7 +193,7 @@ impl<'a> Font<'a> {
         self.metrics.scaled(size / self.units_per_em)
     }
 
-    /// Whether the font has a glyph for a character.
+    /// Returns `true` if the font has a glyph for a character.
     #[must_use]
     pub fn has(&self, c: char) -> bool {
         self.charmap.map(c).is_some_and(|g| g.to_u32() != 0)
@@ -229,7 +228,7 @@ impl<'a> Font<'a> {
     }
 }
 
-/// Describes why bytes are not a font.
+/// The error for bytes that are not a readable font.
 fn not_a_font(bytes: &[u8], e: &ReadError) -> Error {
     Error::NotAFont(match bytes.get(..4) {
         Some(b"wOFF" | b"wOF2") => "it is a web font (WOFF); convert it to .ttf or .otf first".into(),

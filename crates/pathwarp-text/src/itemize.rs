@@ -6,7 +6,7 @@ use std::ops::Range;
 use unicode_bidi::{BidiInfo, Level};
 use unicode_script::{Script, UnicodeScript as _};
 
-/// What the letters of a run are: those of a script, or emoji.
+/// The kind of the letters of a run: a script, or emoji.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Writing {
     /// Letters of a script, with the punctuation and digits among them.
@@ -25,7 +25,7 @@ impl Writing {
         }
     }
 
-    /// Whether letters stand side by side unchanged, so that a shaper may take two such writings for one.
+    /// Returns `true` if letters stand side by side unchanged, so that a shaper may take two such writings for one.
     #[must_use]
     pub fn is_plain(self) -> bool {
         use Script as S;
@@ -40,11 +40,11 @@ impl Writing {
 pub struct Run {
     /// Byte range in the line.
     pub range: Range<usize>,
-    /// Whether its letters go from right to left.
+    /// `true` if its letters go from right to left.
     pub rtl: bool,
-    /// What it is written in.
+    /// The writing of its letters.
     pub writing: Writing,
-    /// Number, from the left, of the stretch of one bidirectional level that it belongs to.
+    /// Number, from the left, of the level run that it belongs to (Unicode annex 9, BD7).
     pub level_run: usize,
 }
 
@@ -70,10 +70,10 @@ pub(crate) fn runs_from(line: &str, rtl: bool, script: Option<Script>) -> Vec<Ru
         let (levels, visual) = bidi.visual_runs(paragraph, paragraph.range.clone());
         for (level_run, range) in visual.into_iter().enumerate() {
             let rtl = levels.get(range.start).is_some_and(Level::is_rtl);
-            let within = |r: &Range<usize>| r.start.max(range.start)..r.end.min(range.end);
+            let clipped = |r: &Range<usize>| r.start.max(range.start)..r.end.min(range.end);
             let mut parts: Vec<Run> = writings
                 .iter()
-                .map(|(r, writing)| Run { range: within(r), rtl, writing: *writing, level_run })
+                .map(|(r, writing)| Run { range: clipped(r), rtl, writing: *writing, level_run })
                 .filter(|r| !r.range.is_empty())
                 .collect();
             if rtl {
@@ -92,17 +92,17 @@ fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
         return vec![(0..line.len(), Writing::Script(script))];
     }
     const COMMON: Writing = Writing::Script(Script::Common);
-    let of_none = |s: &Script| matches!(s, Script::Common | Script::Inherited | Script::Unknown);
+    let is_shared = |s: &Script| matches!(s, Script::Common | Script::Inherited | Script::Unknown);
     // Variation selectors of Mongolian stand between letters of any script to keep them apart.
-    let own = |c: char| Some(c.script()).filter(|s| !of_none(s) && !matches!(c, '\u{180b}'..='\u{180d}'));
+    let script = |c: char| Some(c.script()).filter(|s| !is_shared(s) && !matches!(c, '\u{180b}'..='\u{180d}'));
     let mut out: Vec<(Range<usize>, Writing)> = Vec::new();
     let mut emoji_end = 0;
     for (i, c) in line.char_indices() {
         let end = i + c.len_utf8();
         emoji_end = emoji_end.max(i + emoji_length(&line[i..]));
-        let found = if i < emoji_end { Some(Writing::Emoji) } else { own(c).map(Writing::Script) };
+        let found = if i < emoji_end { Some(Writing::Emoji) } else { script(c).map(Writing::Script) };
         match out.last_mut() {
-            Some((range, w)) if found == Some(*w) || found.is_none() && *w != Writing::Emoji => range.end = end,
+            Some((range, w)) if found == Some(*w) || (found.is_none() && *w != Writing::Emoji) => range.end = end,
             // Leading common characters take the first script found.
             Some((range, w)) if *w == COMMON && found != Some(Writing::Emoji) => {
                 range.end = end;
@@ -114,8 +114,7 @@ fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
     out
 }
 
-/// The number of bytes at the start of a text that make one emoji (Unicode technical standard 51, section 1.4.9); 0 if it starts
-/// otherwise.
+/// The length in bytes of the emoji that a text begins with (Unicode technical standard 51, section 1.4.9); 0 if there is none.
 fn emoji_length(text: &str) -> usize {
     const JOINER: char = '\u{200d}';
     let follows =
@@ -138,13 +137,13 @@ fn emoji_length(text: &str) -> usize {
     first.len_utf8() + rest
 }
 
-/// Whether a character is a picture without being told so (`Emoji_Presentation` of Unicode; beyond U+1F300, all pictures).
+/// Returns `true` if a character is a picture by default (`Emoji_Presentation` of Unicode; beyond U+1F300, all pictures).
 fn is_picture(c: char) -> bool {
     const SINGLE: &str = "⏰⏳☔☕♿⚓⚡⚽⚾⛄⛅⛎⛔⛪⛲⛳⛵⛺⛽✅✊✋✨❌❎❓❔❕❗➕➖➗➰➿⬛⬜⭐⭕🀄🃏🆎";
     let range = matches!(c, '⌚' | '⌛' | '⏩'..='⏬' | '◽' | '◾' | '♈'..='♓' | '⚪' | '⚫' | '\u{1f191}'..='\u{1f19a}')
         || matches!(c, '\u{1f1e6}'..='\u{1f202}' | '\u{1f21a}'..='\u{1f265}' | '\u{1f300}'..='\u{1f6ff}' | '\u{1f7e0}'..='\u{1f7ff}')
         || matches!(c, '\u{1f900}'..='\u{1faff}');
-    range || c > '⌀' && SINGLE.contains(c)
+    range || (c > '⌀' && SINGLE.contains(c))
 }
 
 /// Converts a script for the shaper.
@@ -152,14 +151,14 @@ pub(crate) fn for_shaper(script: Script) -> Option<ShapeScript> {
     ShapeScript::from_iso15924_tag(Tag::from_u32(script.as_iso15924_tag()))
 }
 
-/// Whether a script joins letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
+/// Returns `true` if a script joins letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
 pub(crate) fn joins(writing: Writing) -> bool {
     use Script as S;
     let joined = [S::Arabic, S::Hanifi_Rohingya, S::Mandaic, S::Mongolian, S::Nko, S::Phags_Pa, S::Syriac];
     matches!(writing, Writing::Script(script) if joined.contains(&script))
 }
 
-/// Whether the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
+/// Returns `true` if the first character with a direction is right-to-left (Unicode annex 9, rules P2 and P3).
 pub(crate) fn starts_rtl(text: &str) -> bool {
     matches!(unicode_bidi::get_base_direction_full(text), unicode_bidi::Direction::Rtl)
 }

@@ -29,15 +29,16 @@ use std::collections::{BTreeSet, HashMap};
 /// ```
 ///
 /// # Errors
-/// The style is out of range, the text is empty or too long, or the font is damaged.
+/// [`Error::Style`] and [`Error::Setting`] for an invalid style; [`Error::NoFont`]; [`Error::Empty`] and [`Error::TooLarge`] for the text;
+/// [`Error::Glyph`] and [`Error::Failed`] for a damaged font.
 pub fn layout(text: &str, fonts: &[Font<'_>], style: &TextStyle) -> Result<OutlinedText, Error> {
     layout_within(text, fonts, style, &TextLimits::default())
 }
 
-/// Sets text like [`layout`], within `limits`.
+/// Sets text within `limits`; see [`layout`].
 ///
 /// # Errors
-/// As for [`layout`].
+/// Any [`Error`] of [`layout`].
 pub fn layout_within(
     text: &str,
     fonts: &[Font<'_>],
@@ -182,11 +183,11 @@ fn fill(lines: &mut [LetteringLine]) {
         let Some(ink) = line.ink().filter(|b| (width / b.width()).is_finite()) else { continue };
         let scale = width / ink.width();
         let y = line.start.y;
-        let to = Affine::translate((0.0, y)) * Affine::scale(scale) * Affine::translate((-ink.x0, -y));
+        let transform = Affine::translate((0.0, y)) * Affine::scale(scale) * Affine::translate((-ink.x0, -y));
         for c in &mut line.clusters {
-            c.origin = to * c.origin;
+            c.origin = transform * c.origin;
             c.advance *= scale;
-            c.outline.apply_affine(to);
+            c.outline.apply_affine(transform);
             for g in &mut c.glyphs {
                 (g.dx, g.dy, g.advance) = (g.dx * scale, g.dy * scale, g.advance * scale);
             }
@@ -197,7 +198,7 @@ fn fill(lines: &mut [LetteringLine]) {
     }
 }
 
-/// Moves lines vertically if they differ in size or have a gap between their ink. `metrics` are those of a line of scale 1.
+/// Moves lines vertically if they differ in size or have a gap between their ink. `metrics` hold for a line of scale 1.
 pub(crate) fn stack(lines: &mut [LetteringLine], style: &TextStyle, metrics: &FontMetrics) {
     // The baseline and scale of the previous line, and the lower end of its ink.
     let mut above: Option<(f64, f64, f64)> = None;
@@ -248,7 +249,7 @@ fn shift(c: &mut Cluster, dx: f64) {
     }
 }
 
-/// Whether a cluster is a space that separates words.
+/// Returns `true` if a cluster is a space that separates words.
 pub(crate) fn is_space(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| matches!(c, ' ' | '\u{a0}'))
 }

@@ -3,7 +3,7 @@
 use crate::metrics::FontMetrics;
 use kurbo::{BezPath, Point, Rect};
 
-/// A glyph and its place in its cluster, in user units, with y pointing down.
+/// A glyph and its offset in its cluster, in user units, with y pointing down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PlacedGlyph {
@@ -29,7 +29,7 @@ pub struct Cluster {
     pub origin: Point,
     /// Advance width as shaped: includes kerning, but not letter and word spacing.
     pub advance: f64,
-    /// Outline in place; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
+    /// Outline at its position; empty for a space. Fill it by the nonzero rule, since glyphs may overlap.
     pub outline: BezPath,
     /// The glyphs of the outline.
     pub glyphs: Vec<PlacedGlyph>,
@@ -88,11 +88,11 @@ impl OutlinedText {
     /// last descent.
     #[must_use]
     pub fn line_box(&self) -> Rect {
-        let of = |l: &LetteringLine| {
+        let line_box = |l: &LetteringLine| {
             let FontMetrics { ascent, descent, .. } = self.metrics.scaled(l.scale);
             Rect::new(l.start.x, l.start.y - ascent, l.end.x, l.end.y + descent).abs()
         };
-        self.lines.iter().map(of).reduce(|a, b| a.union(b)).unwrap_or_default()
+        self.lines.iter().map(line_box).reduce(|a, b| a.union(b)).unwrap_or_default()
     }
 
     /// Returns the bounding box of outlines and lines.

@@ -2,7 +2,7 @@
 //!
 //! [`Font`] reads a font from bytes. [`layout`] sets text: it separates directions and scripts (Unicode annexes 9 and 24), shapes
 //! every run (kerning, ligatures, marks, joined and reordered scripts), takes missing characters from the next font, and spaces
-//! and aligns lines. The result is an [`OutlinedText`]: lines of clusters, each with its place on the baseline, its advance width and
+//! and aligns lines. The result is an [`OutlinedText`]: lines of clusters, each with its origin on the baseline, its advance width and
 //! its outline, the exact curves of the font with y pointing down.
 //!
 //! The crate accesses no files and has no global state: the same bytes and text always give the same outlines.

@@ -34,18 +34,18 @@ impl Default for TextLimits {
 
 impl TextLimits {
     pub(crate) fn letters(&self, needed: usize) -> Result<(), Error> {
-        within(Quantity::Letters, needed, self.letters)
+        check_limit(Quantity::Letters, needed, self.letters)
     }
 
     pub(crate) fn glyphs(&self, needed: usize) -> Result<(), Error> {
-        within(Quantity::Glyphs, needed, self.letters.saturating_mul(GLYPHS_PER_LETTER))
+        check_limit(Quantity::Glyphs, needed, self.letters.saturating_mul(GLYPHS_PER_LETTER))
     }
 
     pub(crate) fn segments(&self, needed: usize) -> Result<(), Error> {
-        within(Quantity::Segments, needed, self.segments)
+        check_limit(Quantity::Segments, needed, self.segments)
     }
 }
 
-fn within(quantity: Quantity, needed: usize, most: usize) -> Result<(), Error> {
+fn check_limit(quantity: Quantity, needed: usize, most: usize) -> Result<(), Error> {
     if needed <= most { Ok(()) } else { Err(Error::TooLarge { quantity, needed, most }) }
 }

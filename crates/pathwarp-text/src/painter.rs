@@ -69,9 +69,9 @@ impl GlyphPainter<'_, '_> {
         };
         self.painted += glyph.elements().len();
         self.limits.segments(self.painted)?;
-        let place =
+        let transform =
             Affine::translate((origin.x + g.dx, origin.y + g.dy)) * Affine::scale(self.size / font.units_per_em());
-        out.extend(glyph.elements().iter().map(|el| place * *el));
+        out.extend(glyph.elements().iter().map(|el| transform * *el));
         Ok(())
     }
 }

@@ -39,7 +39,7 @@ impl RunShaper<'_, '_> {
         self.shape(line, run, run.range.clone(), &order)
     }
 
-    /// Shapes a part of a run with the first font of `order`, and what that lacks with the others.
+    /// Shapes a part of a run with the first font of `order`, and clusters that it lacks with the others.
     fn shape(
         &mut self,
         line: &str,
@@ -48,14 +48,14 @@ impl RunShaper<'_, '_> {
         order: &[usize],
     ) -> Result<Vec<ShapedCluster>, Error> {
         let [first, others @ ..] = order else { return Err(Error::NoFont) };
-        let own = self.with_font(line, run, &range, *first)?;
-        if others.is_empty() || !own.iter().any(|c| c.missing) {
-            return Ok(own);
+        let shaped = self.with_font(line, run, &range, *first)?;
+        if others.is_empty() || !shaped.iter().any(|c| c.missing) {
+            return Ok(shaped);
         }
-        let mut out = Vec::with_capacity(own.len());
+        let mut out = Vec::with_capacity(shaped.len());
         // A damaged font may repeat a cluster; shape each missing part only once.
         let mut sought = BTreeSet::new();
-        for group in own.chunk_by(|a, b| a.missing == b.missing) {
+        for group in shaped.chunk_by(|a, b| a.missing == b.missing) {
             if group.iter().all(|c| !c.missing) {
                 out.extend_from_slice(group);
                 continue;
@@ -64,7 +64,7 @@ impl RunShaper<'_, '_> {
             let end = group.iter().map(|c| c.range.end).max().unwrap_or(0);
             if sought.insert(start) && start < end {
                 let found = self.shape(line, run, start..end, others)?;
-                // What no font has is a box of the first one.
+                // Clusters that no font has become boxes of the first one.
                 let none = found.iter().all(|c| c.missing);
                 out.extend(if none { group.to_vec() } else { found });
             }
@@ -114,7 +114,7 @@ impl RunShaper<'_, '_> {
             starts.iter().copied().zip(starts.iter().skip(1).copied().chain([range.end])).collect();
         let mut out: Vec<ShapedCluster> = Vec::new();
         let mut last = None;
-        for (info, place) in infos.iter().zip(shaped.glyph_positions()) {
+        for (info, position) in infos.iter().zip(shaped.glyph_positions()) {
             if last != Some(info.cluster) {
                 last = Some(info.cluster);
                 let start = info.cluster as usize;
@@ -123,13 +123,13 @@ impl RunShaper<'_, '_> {
             }
             let Some(cluster) = out.last_mut() else { continue };
             // Marks without an advance don't get one.
-            let thicker = if place.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
+            let thicker = if position.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
             let glyph = PlacedGlyph {
                 font: index,
                 id: info.glyph_id,
-                dx: cluster.advance + f64::from(place.x_offset) * scale,
-                dy: -f64::from(place.y_offset) * scale,
-                advance: f64::from(place.x_advance) * scale + thicker,
+                dx: cluster.advance + f64::from(position.x_offset) * scale,
+                dy: -f64::from(position.y_offset) * scale,
+                advance: f64::from(position.x_advance) * scale + thicker,
             };
             cluster.advance += glyph.advance;
             cluster.missing |= glyph.id == 0;
@@ -139,11 +139,11 @@ impl RunShaper<'_, '_> {
     }
 }
 
-/// The fonts for a writing, in the order in which they are asked: emoji ask fonts for emoji first.
+/// The fonts for a writing in order of preference: emoji prefer fonts that are only for emoji.
 fn order(fonts: &[Font<'_>], writing: Writing) -> Vec<usize> {
-    let whose = |only: Option<Writing>| (0..fonts.len()).filter(move |i| fonts[*i].only == only);
-    let (all, own) = (whose(None), whose(Some(writing)));
-    if writing == Writing::Emoji { own.chain(all).collect() } else { all.chain(own).collect() }
+    let restricted_to = |only: Option<Writing>| (0..fonts.len()).filter(move |i| fonts[*i].only == only);
+    let (all, special) = (restricted_to(None), restricted_to(Some(writing)));
+    if writing == Writing::Emoji { special.chain(all).collect() } else { all.chain(special).collect() }
 }
 
 /// A part of a line in one font.
@@ -154,14 +154,14 @@ pub struct FontRun {
     pub font: usize,
     /// The clusters from left to right: byte range in the line, and advance width in user units.
     pub clusters: Vec<(Range<usize>, f64)>,
-    /// Whether no font has these letters.
+    /// `true` if no font has these letters.
     pub missing: bool,
 }
 
 /// Shapes a run of a line and divides it by font, from left to right. Letters outside the run have no influence.
 ///
 /// # Errors
-/// A font is damaged, or a glyph exceeds the limits.
+/// [`Error::Failed`] when a font is damaged, [`Error::TooLarge`] when the glyphs exceed the limits, [`Error::NoFont`].
 pub fn shape_run(
     line: &str,
     run: &Run,

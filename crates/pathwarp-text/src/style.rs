@@ -33,7 +33,7 @@ pub enum Align {
     Right,
     /// Justified: widens the spaces of every line that has any.
     Justify,
-    /// Scaled: the ink of every line is as wide as that of the widest line.
+    /// Scaled, so that the ink of every line is as wide as the ink of the widest line.
     Fill,
 }
 
@@ -63,7 +63,7 @@ pub struct TextStyle {
     /// Distance between baselines, which scales with lines that [`Align::Fill`] scales; `None` for the font's (ascent + descent + line
     /// gap). At least 0, at most a thousand times the size.
     pub line_height: Option<f64>,
-    /// Distance from the lower end of a line's ink to the upper end of the next one's, in place of a distance between baselines.
+    /// Distance from the lower end of a line's ink to the upper end of the next line's ink, instead of a distance between baselines.
     /// Positive or negative, at most a thousand times the size.
     pub gap: Option<f64>,
     /// Alignment of lines.
@@ -74,7 +74,7 @@ pub struct TextStyle {
     pub script: Option<String>,
     /// Language as a BCP 47 tag such as `sr` or `tr`; fonts have special letter forms for some.
     pub language: Option<String>,
-    /// Whether to kern pairs of letters.
+    /// `true` to kern pairs of letters.
     pub kerning: bool,
     /// Use of optional ligatures.
     pub ligatures: Ligatures,
@@ -105,7 +105,7 @@ impl Default for TextStyle {
 /// Checks the numbers of a style and parses its script and language.
 pub(crate) fn check(style: &TextStyle) -> Result<(Option<Script>, Option<harfrust::Language>), Error> {
     const MAX_SIZE: f64 = 1e6;
-    /// In units of the size.
+    /// Largest length in units of the size.
     const MAX_LENGTH: f64 = 1e3;
     let out_of_range = |property, value, range| Err(Error::Style { property, value, range });
     if !(style.size > 0.0 && style.size <= MAX_SIZE) {
@@ -163,7 +163,7 @@ impl Feature {
     /// Creates a feature: 0 turns it off, 1 on, and larger values choose among alternatives.
     ///
     /// # Errors
-    /// The tag is not four printable ASCII characters.
+    /// [`Error::Setting`] when the tag is not four printable ASCII characters.
     pub fn new(tag: &str, value: u32) -> Result<Self, Error> {
         Ok(Self { tag: self::tag(tag, tag)?, value })
     }
@@ -173,7 +173,7 @@ impl Variation {
     /// Creates a position on an axis, in units of the axis.
     ///
     /// # Errors
-    /// The tag is not four printable ASCII characters, or the value is not finite.
+    /// [`Error::Setting`] when the tag is not four printable ASCII characters, or the value is not finite.
     pub fn new(tag: &str, value: f64) -> Result<Self, Error> {
         if !value.is_finite() {
             return Err(Error::setting(tag, "has a value that is not finite"));
@@ -205,7 +205,7 @@ impl fmt::Display for Variation {
 /// ```
 ///
 /// # Errors
-/// A tag is not four characters long, or a value is neither a whole number nor `on` or `off`.
+/// [`Error::Setting`] when a tag is not four characters long, or a value is neither a whole number nor `on` or `off`.
 pub fn features(text: &str) -> Result<Vec<Feature>, Error> {
     let parse = |word: &str| {
         let (name, value) = match word.split_once('=') {
@@ -238,7 +238,7 @@ pub fn features(text: &str) -> Result<Vec<Feature>, Error> {
 /// ```
 ///
 /// # Errors
-/// A word is not of the form `axis=number`.
+/// [`Error::Setting`] when a word is not of the form `axis=number`.
 pub fn variations(text: &str) -> Result<Vec<Variation>, Error> {
     let parse = |word: &str| {
         let parts = word.split_once('=').map(|(name, value)| (name.trim(), value.trim().parse::<f64>()));

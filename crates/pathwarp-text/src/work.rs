@@ -12,7 +12,7 @@ use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 use std::fmt;
 
-/// Limit on the work of one glyph. Ornaments and coloured glyphs of sound fonts take about ten thousand.
+/// Limit on the work of one glyph. Ornaments and coloured glyphs in sound fonts take far less.
 pub const MAX_WORK: u64 = 200_000;
 
 /// Limit on the nesting of parts and paints, more than readers follow.
@@ -27,7 +27,7 @@ pub struct GlyphWork<'a> {
     charstrings: Option<Charstrings<'a>>,
     colr: Option<Colr<'a>>,
     outlines: HashMap<u32, u64>,
-    /// By address.
+    /// The work of paints by address.
     paints: HashMap<usize, u64>,
     coloured: HashMap<u32, u64>,
 }
@@ -42,10 +42,10 @@ impl<'a> GlyphWork<'a> {
     /// Opens a font; `index` counts the fonts of a collection from 0. Returns `None` if it cannot be read.
     #[must_use]
     pub fn new(bytes: &'a [u8], index: u32) -> Option<Self> {
-        Self::of(&FontRef::from_index(bytes, index).ok()?)
+        Self::from_font(&FontRef::from_index(bytes, index).ok()?)
     }
 
-    pub(crate) fn of(font: &FontRef<'a>) -> Option<Self> {
+    pub(crate) fn from_font(font: &FontRef<'a>) -> Option<Self> {
         Some(Self {
             charmap: Charmap::new(font),
             glyphs: font.maxp().ok()?.num_glyphs().into(),
@@ -124,16 +124,16 @@ impl<'a> GlyphWork<'a> {
     }
 
     fn paint(&mut self, colr: &Colr<'a>, paint: &Paint<'a>, depth: usize) -> u64 {
-        let place = paint.offset_data().as_bytes().as_ptr() as usize;
-        if let Some(known) = self.paints.get(&place) {
+        let address = paint.offset_data().as_bytes().as_ptr() as usize;
+        if let Some(known) = self.paints.get(&address) {
             return *known;
         }
         if depth > MAX_DEPTH {
             return MAX_WORK;
         }
-        self.paints.insert(place, MAX_WORK);
+        self.paints.insert(address, MAX_WORK);
         let mut below = |p: Result<Paint<'a>, _>| p.map_or(0, |p: Paint<'a>| self.paint(colr, &p, depth + 1));
-        let own = match paint {
+        let inner = match paint {
             Paint::Composite(p) => below(p.source_paint()) + below(p.backdrop_paint()),
             Paint::ColrLayers(p) => {
                 let first = p.first_layer_index() as usize;
@@ -144,8 +144,8 @@ impl<'a> GlyphWork<'a> {
             Paint::ColrGlyph(p) => self.colours(p.glyph_id().into(), depth + 1),
             other => child(other).map_or(0, |p| below(Ok(p))),
         };
-        let work = (LAYER + own).min(MAX_WORK);
-        self.paints.insert(place, work);
+        let work = (LAYER + inner).min(MAX_WORK);
+        self.paints.insert(address, work);
         work
     }
 }

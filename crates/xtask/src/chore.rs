@@ -1,4 +1,4 @@
-//! Chores, and what their command lines have in common.
+//! Chores, and the common parts of their command lines.
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub(crate) fn count_option(name: &'static str, default: &'static str) -> Arg {
     Arg::new(name).long(name).value_name("N").value_parser(value_parser!(usize)).default_value(default)
 }
 
-/// The option `--program FILE`: the pathwarp to run.
+/// The option `--program FILE`, which names the pathwarp to run.
 pub(crate) fn program_option() -> Arg {
     path_option("program", "FILE").help("The pathwarp to run [default: build one]")
 }

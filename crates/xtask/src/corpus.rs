@@ -24,7 +24,7 @@ struct IconSet {
     folder: &'static str,
     /// The side of their square view boxes.
     side: f64,
-    /// Every how many-th file is taken.
+    /// One file of this many is taken.
     every: usize,
 }
 

@@ -18,8 +18,8 @@ pub(crate) const CHORE: Chore = Chore { command, run };
 const EACH: usize = 20;
 const MEBIBYTE: f64 = 1_048_576.0;
 
-/// A kind of drawing: its name, the command, and a function that makes the content of a page of 1000 × 1000, given how heavy it is to be,
-/// from 1 to [`EACH`].
+/// A kind of drawing: its name, the command, and a function that makes the content of a page of 1000 × 1000 of the given weight, from 1 to
+/// [`EACH`].
 type Kind = (&'static str, &'static str, fn(usize, &mut Random) -> String);
 
 const BEND: &str = "wave IN -o OUT.svg";
@@ -53,12 +53,12 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let mut refused = Vec::new();
     let photographs = ("photographs", "swirl IN -o OUT.jpg");
     for (kind, line) in std::iter::once(photographs).chain(DRAWINGS.map(|(kind, line, _)| (kind, line))) {
-        let own = folder.join(kind);
-        std::fs::create_dir_all(&own).map_err(at(&own))?;
-        make(kind, &own)?;
+        let files = folder.join(kind);
+        std::fs::create_dir_all(&files).map_err(at(&files))?;
+        make(kind, &files)?;
         let (mut count, mut largest, mut before) = (0, 0.0_f64, refused.len());
         let mut most = [(0.0, String::new()), (0.0, String::new())];
-        for file in shell::files_below(&own, |_| true)? {
+        for file in shell::files_below(&files, |_| true)? {
             let used = measure(&program, line, &file, scratch.path())?;
             let size = std::fs::metadata(&file).map_err(at(&file))?.len() as f64;
             let (size, promised) = promise(&file, size)?;
@@ -80,7 +80,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     if refused.is_empty() { Ok(table) } else { Err(format!("{table}\nrefused: {}", refused.join("; "))) }
 }
 
-/// Time and memory, each as used, as promised, and with its unit.
+/// Time and memory: used, promised, and the unit.
 fn compared(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
     [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
@@ -133,8 +133,8 @@ fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
     Picture::from(pixmap).write(PictureFormat::Jpeg { quality: 85 })
 }
 
-/// A place on the page.
-fn place(random: &mut Random) -> [f64; 2] {
+/// A random point of the page.
+fn point(random: &mut Random) -> [f64; 2] {
     [0.0; 2].map(|_| (1000.0 * random.next()).round() + 1.0)
 }
 
@@ -159,7 +159,7 @@ fn poster(n: usize, random: &mut Random) -> String {
 /// Up to 100,000 words, as plotting libraries write them.
 fn plot(n: usize, random: &mut Random) -> String {
     let mut word = || {
-        let ([x, y], text) = (place(random), words(1, random));
+        let ([x, y], text) = (point(random), words(1, random));
         let style = "font-family:'DejaVu Sans';font-size:4px;text-anchor:middle;fill:#333333";
         format!(
             "<g id='text_{x}'><text style=\"{style}\" x='{x}' y='{y}' transform='rotate(-30 {x} {y})'>{}</text></g>\n",
@@ -172,7 +172,7 @@ fn plot(n: usize, random: &mut Random) -> String {
 /// Coasts of up to 60,000 points in total.
 fn map(n: usize, random: &mut Random) -> String {
     let mut coast = |_| {
-        let ([x, y], fill, mut r) = (place(random), color(random), 5.0 + 20.0 * random.next());
+        let ([x, y], fill, mut r) = (point(random), color(random), 5.0 + 20.0 * random.next());
         let mut d = String::from("M");
         for k in 0..300 {
             r *= 0.97 + 0.06 * random.next();
@@ -187,7 +187,7 @@ fn map(n: usize, random: &mut Random) -> String {
 /// Lines, arcs, circles and dashes, with dimensions.
 fn cad(n: usize, random: &mut Random) -> String {
     let mut part = |_| {
-        let ([x, y], [u, v]) = (place(random), place(random));
+        let ([x, y], [u, v]) = (point(random), point(random));
         format!(
             "<path d='M{x} {y}L{u} {v}A60 50 0 0 1 {y} {x}' /><circle cx='{x}' cy='{v}' r='{:.1}'/>\
              <path stroke-dasharray='9 2 1 2' d='M{u} {y}H{x}'/><text x='{x}' y='{y}' font-size='6'>{x}</text>",
@@ -202,7 +202,7 @@ fn cad(n: usize, random: &mut Random) -> String {
 fn score(n: usize, random: &mut Random) -> String {
     let head = "<defs><path id='h' d='M-4 2C-4-2 4-4 4-1C4 3-4 4-4 2Z'/></defs>";
     let mut note = |i: usize| {
-        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * (i / 80 % 16));
+        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * ((i / 80) % 16));
         let up = (8.0 * random.next()) as usize * 3;
         let y = y + up;
         format!("<use href='#h' x='{x}' y='{y}'/><path d='M{} {y}v-25' stroke='#000'/>", x + 4)
@@ -217,7 +217,7 @@ fn score(n: usize, random: &mut Random) -> String {
 /// Faces with gradients, clips and opacity.
 fn emoji(n: usize, random: &mut Random) -> String {
     let mut face = |i: usize| {
-        let ([x, y], a, b) = (place(random), color(random), color(random));
+        let ([x, y], a, b) = (point(random), color(random), color(random));
         format!(
             "<radialGradient id='g{i}'><stop stop-color='{a}'/><stop offset='1' stop-color='{b}'/></radialGradient>\
              <clipPath id='c{i}'><circle cx='{x}' cy='{y}' r='18'/></clipPath><g transform='translate({x} {y})'>\
@@ -234,7 +234,7 @@ fn blurred(n: usize, random: &mut Random) -> String {
     let blur =
         "<filter id='b' x='-50%' y='-50%' width='200%' height='200%'><feGaussianBlur stdDeviation='30'/></filter>";
     let mut blob = |_| {
-        let ([x, y], fill) = (place(random), color(random));
+        let ([x, y], fill) = (point(random), color(random));
         format!("<circle cx='{x}' cy='{y}' r='{:.0}' fill='{fill}' filter='url(#b)'/>", 50.0 + 250.0 * random.next())
     };
     format!("{blur}{}", (0..4 + n).map(&mut blob).collect::<String>())
@@ -258,7 +258,7 @@ fn icons(n: usize, random: &mut Random) -> String {
 fn diagram(n: usize, random: &mut Random) -> String {
     let arrow = "<marker id='a' markerWidth='6' markerHeight='6' refX='5' refY='3' orient='auto'><path d='M0 0L6 3L0 6Z'/></marker>";
     let mut shape = |_| {
-        let ([x, y], [u, v], label) = (place(random), place(random), words(2, random));
+        let ([x, y], [u, v], label) = (point(random), point(random), words(2, random));
         format!(
             "<rect x='{x}' y='{y}' width='60' height='24' rx='4' fill='#eef' stroke='#336'/>\
              <text x='{}' y='{}' font-size='8' text-anchor='middle'>{label}</text>\

@@ -1,5 +1,5 @@
 //! `cargo xtask hostile FOLDER`: runs commands on every file in a folder of hostile files, and prints the table in `docs/reliability.md`: exit
-//! code, CPU time and memory. It fails if any run breaks the promise made there.
+//! code, CPU time and memory. It fails if any run breaks the limits promised there.
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
 use crate::process::{Job, Usage};

@@ -20,7 +20,7 @@ use chore::Chore;
 use clap::Command;
 use std::process::ExitCode;
 
-/// All chores. Each declares its options in a file of its own.
+/// All chores. Each module declares the options of its chore.
 const CHORES: [Chore; 13] = [
     new_deformation::CHORE,
     corpus::CHORE,

@@ -102,7 +102,7 @@ const MORE: [&str; 7] = [
     "schema",
 ];
 
-/// The pages written by hand. (Those of the deformations show the examples in the registry.)
+/// The pages written by hand. (The pages of the deformations show the examples in the registry.)
 const GUIDES: [&str; 6] = [
     "README.md",
     "docs/tour.md",
@@ -150,14 +150,14 @@ fn all_commands(root: &Path, program: &Path, drawings: &[PathBuf], count: usize)
     Ok(all)
 }
 
-/// The commands in the code blocks of a page that need no files of the reader's own.
+/// The commands in the code blocks of a page that need only samples.
 fn guide_commands(page: &str) -> impl Iterator<Item = &str> {
     // Code and prose alternate. A block starts with the name of its language.
     let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
     blocks.flat_map(str::lines).filter_map(|l| l.strip_prefix("pathwarp ")).filter(|l| is_self_contained(l))
 }
 
-/// Whether a command works on samples or sets its own text.
+/// Returns `true` if a command works on samples or sets the text in it.
 fn is_self_contained(command: &str) -> bool {
     command.contains("samples/") || command.starts_with("text ")
 }

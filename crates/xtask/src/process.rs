@@ -38,13 +38,13 @@ impl Job {
         Self { program: program.to_owned(), args: args.into_iter().map(Into::into).collect() }
     }
 
-    /// The same program with more arguments.
+    /// This job with more arguments.
     pub(crate) fn with(&self, more: &[&str]) -> Self {
         let args = self.args.iter().cloned().chain(more.iter().map(Into::into)).collect();
         Self { args, ..self.clone() }
     }
 
-    /// Runs it once.
+    /// Runs the program once.
     pub(crate) fn usage(&self) -> Result<Usage, ChoreError> {
         let mut command = Command::new(&self.program);
         command.args(&self.args).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
@@ -58,12 +58,12 @@ impl Job {
         })
     }
 
-    /// Runs it once. `None` if it refuses its input, with an exit code above 1; 1 is partial success of pathwarp.
+    /// Runs the program once. `None` if it refuses its input, with an exit code above 1; 1 is partial success of pathwarp.
     pub(crate) fn run(&self) -> Result<Option<Usage>, ChoreError> {
         Ok(Some(self.usage()?).filter(|used| used.code.is_some_and(|c| c <= 1)))
     }
 
-    /// Runs it several times and returns the run with the median of `figure`.
+    /// Runs the program several times and returns the run with the median of `figure`.
     pub(crate) fn median(&self, rounds: usize, figure: fn(&Usage) -> f64) -> Result<Usage, ChoreError> {
         let mut runs = Vec::with_capacity(rounds);
         for _ in 0..rounds {

@@ -74,12 +74,12 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
     );
     let controls = pieces.iter().map(PathSeg::to_cubic).flat_map(|c| [c.p0, c.p1, c.p2, c.p3]);
     let first = pieces[0].start();
-    let box_ = controls.fold(Rect::from_points(first, first), |r, p| r.union_pt(p));
-    let scale = (SIDE - 80.0) / box_.width().max(box_.height());
-    let place = |p: Point| Point::new(40.0 + (p.x - box_.x0) * scale, 40.0 + (p.y - box_.y0) * scale);
-    draw_truth(&mut svg, &source, &*map, &place);
+    let bounds = controls.fold(Rect::from_points(first, first), |r, p| r.union_pt(p));
+    let scale = (SIDE - 80.0) / bounds.width().max(bounds.height());
+    let to_page = |p: Point| Point::new(40.0 + (p.x - bounds.x0) * scale, 40.0 + (p.y - bounds.y0) * scale);
+    draw_truth(&mut svg, &source, &*map, &to_page);
     for (i, p) in pieces.iter().enumerate() {
-        draw_piece(&mut svg, p, COLOURS[i % 2], &place);
+        draw_piece(&mut svg, p, COLOURS[i % 2], &to_page);
     }
     let worst = draw_error(&mut svg, &pieces, &source, &*map, tolerance);
     svg.push_str("</svg>\n");
@@ -94,10 +94,10 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
 }
 
 /// Draws the exact image as a wide pale line.
-fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn(Point) -> Point) {
+fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, to_page: &impl Fn(Point) -> Point) {
     for seg in source.segs() {
         let points: Vec<String> = (0..=400)
-            .map(|i| place(map.point(seg.eval(f64::from(i) / 400.0))))
+            .map(|i| to_page(map.point(seg.eval(f64::from(i) / 400.0))))
             .map(|p| format!("{:.2},{:.2}", p.x, p.y))
             .collect();
         let _ = writeln!(
@@ -109,9 +109,9 @@ fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, place: &impl Fn
 }
 
 /// Draws one piece with its end nodes and handles.
-fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, place: &impl Fn(Point) -> Point) {
+fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, to_page: &impl Fn(Point) -> Point) {
     let c = piece.to_cubic();
-    let [a, b, d, e] = [c.p0, c.p1, c.p2, c.p3].map(place);
+    let [a, b, d, e] = [c.p0, c.p1, c.p2, c.p3].map(to_page);
     if matches!(piece, PathSeg::Cubic(_)) {
         for (n, h) in [(a, b), (e, d)] {
             let _ = writeln!(
@@ -157,8 +157,8 @@ fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn 
             let t = k as f64 / SAMPLES as f64;
             let e = signed_error(p, t, source, map);
             worst = worst.max(e.abs());
-            let x = left + (from + l * t) / total * width;
-            points.push(format!("{x:.2},{:.2}", middle - e / tolerance * height));
+            let x = left + ((from + l * t) / total) * width;
+            points.push(format!("{x:.2},{:.2}", middle - (e / tolerance) * height));
         }
         let _ = writeln!(
             svg,
@@ -167,7 +167,7 @@ fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn 
             COLOURS[i % 2]
         );
         from += l;
-        let x = left + from / total * width;
+        let x = left + (from / total) * width;
         let _ = writeln!(svg, "<path d=\"M{x:.2},{} V{}\" stroke=\"#e3e6eb\"/>", middle - height, middle + height);
     }
     worst

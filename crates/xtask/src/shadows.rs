@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-/// See the module.
 pub(crate) const CHORE: Chore = Chore { command, run };
 
 fn command() -> Command {
@@ -27,7 +26,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     Ok(format!("wrote {count} drawings to {}", folder.display()))
 }
 
-/// Numbers that look random, the same for a seed (SplitMix64).
+/// Pseudorandom numbers, determined by a seed (SplitMix64).
 struct Numbers(u64);
 
 impl Numbers {
@@ -38,8 +37,8 @@ impl Numbers {
         z ^ (z >> 31)
     }
 
-    /// A whole number of a range.
-    fn within(&mut self, from: i64, to: i64) -> i64 {
+    /// A whole number from `from` to `to`.
+    fn pick(&mut self, from: i64, to: i64) -> i64 {
         from + (self.next() % (to - from + 1) as u64) as i64
     }
 }
@@ -47,18 +46,18 @@ impl Numbers {
 /// The `k`th drawing: one to four shapes, each in a group with a filter.
 fn drawing(k: u64) -> String {
     let mut n = Numbers(k);
-    let (width, height) = (n.within(120, 600), n.within(80, 400));
+    let (width, height) = (n.pick(120, 600), n.pick(80, 400));
     let (mut body, mut defs) = (String::new(), String::new());
-    for id in 0..n.within(1, 4) {
-        let [w, h] = [width, height].map(|side| n.within(side / 6, side / 2));
-        let (x, y) = (n.within(0, width - w), n.within(0, height - h));
-        let shape = match n.within(0, 2) {
-            0 => format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"{}\"", n.within(0, 16)),
+    for id in 0..n.pick(1, 4) {
+        let [w, h] = [width, height].map(|side| n.pick(side / 6, side / 2));
+        let (x, y) = (n.pick(0, width - w), n.pick(0, height - h));
+        let shape = match n.pick(0, 2) {
+            0 => format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"{}\"", n.pick(0, 16)),
             1 => format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"{w}\" ry=\"{h}\""),
             _ => format!("<path d=\"M{x} {}L{} {y}L{} {}Z\"", y + h, x + w / 2, x + w, y + h),
         };
         let name = format!("filter{id}_{k}");
-        let _ = write!(body, "<g filter=\"url(#{name})\">\n{shape} fill=\"#{:06X}\"/>\n</g>\n", n.within(0, 0xff_ffff));
+        let _ = write!(body, "<g filter=\"url(#{name})\">\n{shape} fill=\"#{:06X}\"/>\n</g>\n", n.pick(0, 0xff_ffff));
         defs += &filter(&mut n, &name, [x, y, w, h]);
     }
     format!(
@@ -67,32 +66,32 @@ fn drawing(k: u64) -> String {
     )
 }
 
-/// A filter of one to four effects on a shape of this box: a blur, or shadows beneath it and within.
+/// A filter of one to four effects on a shape with this box: a blur, or shadows beneath and inside it.
 fn filter(n: &mut Numbers, name: &str, [x, y, w, h]: [i64; 4]) -> String {
     let shape =
         |last: &str| format!("<feBlend mode=\"normal\" in=\"SourceGraphic\" in2=\"{last}\" result=\"shape\"/>\n");
     let (mut effects, mut last, mut margin) = (String::new(), "BackgroundImageFix".to_owned(), 0);
-    let drops = n.within(-1, 2);
+    let drops = n.pick(-1, 2);
     if drops < 0 {
-        let sigma = n.within(2, 30);
+        let sigma = n.pick(2, 30);
         margin = 2 * sigma;
         effects =
             shape(&last) + &format!("<feGaussianBlur stdDeviation=\"{sigma}\" result=\"effect1_foregroundBlur\"/>\n");
     }
-    let inner = n.within(i64::from(drops == 0), 1);
+    let inner = n.pick(i64::from(drops == 0), 1);
     for k in 0..drops + inner.min(drops + 1) {
         if k == drops {
             effects += &shape(&last);
             last = "shape".to_owned();
         }
-        let (dx, dy, radius) = (n.within(-4, 4), n.within(0, 12), n.within(0, 20));
+        let (dx, dy, radius) = (n.pick(-4, 4), n.pick(0, 12), n.pick(0, 20));
         margin = margin.max(2 * radius + dx.abs().max(dy));
         let (kind, cut) = match k < drops {
             true => ("dropShadow", "operator=\"out\""),
             false => ("innerShadow", "operator=\"arithmetic\" k2=\"-1\" k3=\"1\""),
         };
         let result = format!("effect{}_{kind}", k + 1);
-        let [r, g, b, a] = [(); 4].map(|()| format!("0.{:02}", n.within(10, 90)));
+        let [r, g, b, a] = [(); 4].map(|()| format!("0.{:02}", n.pick(10, 90)));
         let _ = write!(
             effects,
             "<feColorMatrix in=\"SourceAlpha\" type=\"matrix\" values=\"0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 127 0\" result=\"hardAlpha\"/>\n\

@@ -8,12 +8,12 @@ use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, thread};
 
-/// The program named by `--program`, or else one built in release mode.
+/// The program that `--program` names, or else a release build.
 pub(crate) fn program(root: &Path, arguments: &ArgMatches) -> Result<PathBuf, ChoreError> {
     built(root, arguments, "release")
 }
 
-/// The program named by `--program`, or else one built in this profile.
+/// The program that `--program` names, or else a build in this profile.
 pub(crate) fn built(root: &Path, arguments: &ArgMatches, profile: &str) -> Result<PathBuf, ChoreError> {
     if let Some(program) = arguments.get_one::<PathBuf>("program") {
         return program.canonicalize().map_err(at(program));
@@ -66,14 +66,14 @@ pub(crate) fn feed(command: &mut Command, input: &[u8]) -> io::Result<Output> {
     child.wait_with_output()
 }
 
-/// Runs the program on `input` and returns its standard output. Any message other than a note, such as that a page grew, counts as a failure.
+/// Runs the program on `input` and returns its standard output. Any message other than a note counts as a failure.
 pub(crate) fn pipe(root: &Path, program: &Path, args: &[String], input: &[u8]) -> Result<Vec<u8>, ChoreError> {
     let out = feed(Command::new(program).args(args).current_dir(root), input).map_err(at(program))?;
-    let said = String::from_utf8_lossy(&out.stderr);
-    if out.status.success() && said.lines().all(|line| line.starts_with("note: ")) {
+    let messages = String::from_utf8_lossy(&out.stderr);
+    if out.status.success() && messages.lines().all(|line| line.starts_with("note: ")) {
         return Ok(out.stdout);
     }
-    Err(format!("pathwarp {}: {said}", args.join(" ")))
+    Err(format!("pathwarp {}: {messages}", args.join(" ")))
 }
 
 /// Renders a drawing on white to a PNG file.
@@ -100,7 +100,7 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     if let Some(i) = last.iter().position(|w| w == "--preview") {
         last.drain(i..(i + 2).min(last.len()));
     }
-    // Some options are for one format alone.
+    // Some options hold for one format only, so the output keeps its extension.
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let file = words(&line).into_iter().skip_while(|w| w != "-o").nth(1);
     if let (Some(file), Some(output)) = (file, last.iter_mut().skip_while(|w| *w != "-o").nth(1)) {
@@ -140,7 +140,7 @@ pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// Whether a file has one of these extensions.
+/// Returns `true` if a file has one of these extensions.
 pub(crate) fn ends_in(path: &Path, extensions: &[&str]) -> bool {
     path.extension().is_some_and(|e| extensions.iter().any(|known| e == *known))
 }

@@ -50,9 +50,9 @@ fn bent(svg: &str, map: &dyn Map, options: &WarpOptions) -> Bent {
     let to_units = document.user_to_px().inverse();
     let area = |svg: &str| {
         let tree = parse_tree(svg.as_bytes(), "a drawing", &self::options()).unwrap();
-        painted(&tree).bent(|p| to_units * p)
+        painted(&tree).mapped(|p| to_units * p)
     };
-    let apart = area(svg).bent(|p| map.point(p)).apart(&area(&w.svg));
+    let apart = area(svg).mapped(|p| map.point(p)).apart(&area(&w.svg));
     Bent { svg: w.svg, report: w.shapes[0].clone(), apart }
 }
 

@@ -1,4 +1,4 @@
-//! Reads paths that are items (version 18 and later, GIMP 3), each behind a pointer and with its own property list.
+//! Reads paths that are items (version 18 and later, GIMP 3), each behind a pointer and with a property list.
 
 use super::model::{MAX_PROPERTIES, PROP_END, PathLayout, PathRecord, Xcf};
 use super::primitives::{count, string};
@@ -15,7 +15,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
     table(input, xcf, "layer")?;
     table(input, xcf, "channel")?;
     let pointers = table(input, xcf, "path")?;
-    let tables_end = input.at();
+    let tables_end = input.offset();
     // Read in the order of the file, so that compressed data is unpacked once; list in the order of the table.
     let mut order: Vec<usize> = (0..pointers.len()).collect();
     order.sort_by_key(|&i| pointers[i].1);
@@ -49,17 +49,17 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
 }
 
 /// Reads a table of pointers up to its zero. Returns the offset and the target of each.
-fn table(input: &mut ByteSource<'_>, xcf: &Xcf, of: &str) -> Result<Vec<(u64, u64)>, Error> {
+fn table(input: &mut ByteSource<'_>, xcf: &Xcf, kind: &str) -> Result<Vec<(u64, u64)>, Error> {
     let mut out = Vec::new();
     loop {
-        let at = input.at();
-        let what = format!("the table of {of} pointers");
+        let at = input.offset();
+        let what = format!("the table of {kind} pointers");
         let to = if xcf.wide() { input.u64(&what)? } else { u64::from(input.u32(&what)?) };
         if to == 0 {
             return Ok(out);
         }
         if to >= input.end {
-            let problem = format!("a {of} pointer points to byte {to}, outside the file of {} bytes", input.end);
+            let problem = format!("a {kind} pointer points to byte {to}, outside the file of {} bytes", input.end);
             return Err(input.beyond(to, Error::damaged(at, problem)));
         }
         out.push((at, to));
@@ -68,19 +68,19 @@ fn table(input: &mut ByteSource<'_>, xcf: &Xcf, of: &str) -> Result<Vec<(u64, u6
 
 /// Reads one item.
 fn item(input: &mut ByteSource<'_>, pointer_at: u64) -> Result<PathRecord, Error> {
-    let start = input.at();
+    let start = input.offset();
     let name = string(input, "a path's name")?;
-    let size_at = input.at();
+    let size_at = input.offset();
     let size = u64::from(input.u32("a path")?);
     input.need(size, size_at, || format!("a path needs {size} bytes"))?;
-    let end = input.at() + size;
+    let end = input.offset() + size;
     let file_end = std::mem::replace(&mut input.end, end);
     let read = content(input);
     input.end = file_end;
     let (visible, count_at, strokes) =
-        read.map_err(|e| if end < file_end { e.within(size, &format!("the path `{name}`")) } else { e })?;
-    if input.at() != end {
-        let (found, name) = (input.at() - size_at - 4, &name);
+        read.map_err(|e| if end < file_end { e.limited_by(size, &format!("the path `{name}`")) } else { e })?;
+    if input.offset() != end {
+        let (found, name) = (input.offset() - size_at - 4, &name);
         let problem = format!("the path `{name}` takes {found} bytes, but its size word says {size}");
         return Err(Error::damaged(size_at, problem));
     }
@@ -97,7 +97,7 @@ fn content(input: &mut ByteSource<'_>) -> Result<(bool, u64, Vec<crate::Stroke>)
         match (kind, length) {
             (PROP_END, _) => {
                 vectors::version(input)?;
-                let count_at = input.at();
+                let count_at = input.offset();
                 let n = count(input, vectors::MIN_STROKE, "strokes of a path")?;
                 return Ok((visible, count_at, vectors::strokes(input, n)?));
             }
@@ -105,5 +105,5 @@ fn content(input: &mut ByteSource<'_>) -> Result<(bool, u64, Vec<crate::Stroke>)
             _ => input.skip(length, &format!("property {kind} of a path"))?,
         }
     }
-    Err(Error::damaged(input.at(), "a path's property list has no end"))
+    Err(Error::damaged(input.offset(), "a path's property list has no end"))
 }

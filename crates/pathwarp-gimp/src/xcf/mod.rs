@@ -1,6 +1,6 @@
-//! XCF, GIMP's own format: big-endian, a property list, then tables of pointers.
+//! XCF, GIMP's native format: big-endian, a property list, then tables of pointers.
 //!
-//! Paths are in one of three places: `PROP_PATHS` (GIMP 1.x, and still written when every path is invisible), `PROP_VECTORS`
+//! Paths have one of three forms: `PROP_PATHS` (GIMP 1.x, and still written when every path is invisible), `PROP_VECTORS`
 //! (GIMP 2), or separate items behind pointers (version 18, GIMP 3). Only these are read. Source: GIMP's `devel-docs/xcf.txt`
 //! and files written by GIMP 2.10 and 3.0, whose point types (1, 2, 3) differ from that text.
 

@@ -29,7 +29,7 @@ pub(crate) struct Xcf {
 }
 
 impl Xcf {
-    /// Whether pointers have 64 bits.
+    /// Returns `true` if pointers have 64 bits.
     pub(super) fn wide(&self) -> bool {
         self.version >= WIDE_POINTERS
     }
@@ -42,7 +42,7 @@ pub(crate) struct PathBlock {
     pub(crate) span: Range<u64>,
 }
 
-/// A path and its place in the file.
+/// A path and its position in the file.
 pub(crate) struct PathRecord {
     pub(crate) path: GimpPath,
     /// From the name to the last point.

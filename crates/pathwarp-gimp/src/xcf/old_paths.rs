@@ -20,15 +20,15 @@ const OPEN: u8 = 2;
 pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     input.u32("PROP_PATHS")?;
     for _ in 0..count(input, MIN_PATH, "paths")? {
-        let start = input.at();
+        let start = input.offset();
         let name = string(input, "a path's name")?;
         input.u32("a path")?;
-        let state_at = input.at();
+        let state_at = input.offset();
         input.u8("a path")?;
         let closed = input.u32("a path")? != 0;
-        let count_at = input.at();
+        let count_at = input.offset();
         let n = count(input, POINT, "points of a path")?;
-        let at = input.at();
+        let at = input.offset();
         let format = input.u32("a path")?;
         let mut tattoo = None;
         match format {
@@ -45,16 +45,16 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
                 ));
             }
         }
-        let points_at = input.at();
+        let points_at = input.offset();
         let size = u64::from(n) * POINT;
         input.need(size, count_at, || format!("{n} points of a path need {size} bytes"))?;
         let points = points(input, n, format == 1)?;
-        // GIMP stops at a path without points, but those after it are sound.
+        // GIMP stops at a path without points, but later paths are sound.
         if !points.is_empty() {
             let strokes = strokes(&points, closed, &|i| points_at + i as u64 * POINT)?;
             xcf.records.push(PathRecord {
                 path: GimpPath { name, visible: false, strokes },
-                span: start..input.at(),
+                span: start..input.offset(),
                 layout: PathLayout::Old { state_at, tattoo },
             });
         }
@@ -66,7 +66,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
 fn points(input: &mut ByteSource<'_>, n: u32, whole: bool) -> Result<Vec<TypedPoint>, Error> {
     let mut out = Vec::new();
     for _ in 0..n {
-        let at = input.at();
+        let at = input.offset();
         let kind = input.u32("a path's points")?;
         if !(ANCHOR..=NEW_STROKE).contains(&kind) {
             return Err(Error::damaged(

@@ -8,7 +8,7 @@ const MAX_NAME: u64 = 1 << 20;
 
 /// Reads a string: its length including a final NUL, then its bytes. GIMP writes an empty string as length 0.
 pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, Error> {
-    let at = input.at();
+    let at = input.offset();
     let length = u64::from(input.u32(what)?);
     input.need(length, at, || format!("{what} needs {length} bytes"))?;
     if length > MAX_NAME {
@@ -26,7 +26,7 @@ pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, E
 
 /// Reads the number of things that take at least `min_size` bytes each.
 pub(super) fn count(input: &mut ByteSource<'_>, min_size: u64, what: &str) -> Result<u32, Error> {
-    let at = input.at();
+    let at = input.offset();
     let n = input.u32(what)?;
     let size = u64::from(n) * min_size;
     input.need(size, at, || format!("{n} {what} need {size} bytes or more"))?;

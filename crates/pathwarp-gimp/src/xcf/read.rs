@@ -11,11 +11,11 @@ const LAST_VERSION: u32 = 99;
 const WITH_PRECISION: u32 = 4;
 const PROP_COLORMAP: u32 = 1;
 
-/// Reads the paths. Those before an error remain in `xcf`.
+/// Reads the paths. After an error, `xcf` holds the paths before it.
 pub(crate) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     header(input, xcf)?;
     properties(input, xcf)?;
-    xcf.properties_end = input.at();
+    xcf.properties_end = input.offset();
     if xcf.version >= PATH_ITEMS { items::read(input, xcf) } else { Ok(()) }
 }
 
@@ -38,7 +38,7 @@ fn header(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     }
     xcf.width = input.u32("the header")?;
     xcf.height = input.u32("the header")?;
-    let at = input.at();
+    let at = input.offset();
     let base = input.u32("the header")?;
     if base > 2 {
         return Err(Error::damaged(
@@ -54,7 +54,7 @@ fn header(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
 
 fn properties(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     for _ in 0..MAX_PROPERTIES {
-        let at = input.at();
+        let at = input.offset();
         let kind = input.u32("the image's properties")?;
         let length = u64::from(input.u32("the image's properties")?);
         match kind {
@@ -69,8 +69,8 @@ fn properties(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
             _ => input.skip(length, &format!("property {kind}"))?,
         }
         if matches!(kind, PROP_PATHS | PROP_VECTORS) {
-            xcf.blocks.push(PathBlock { property: kind, span: at..input.at() });
+            xcf.blocks.push(PathBlock { property: kind, span: at..input.offset() });
         }
     }
-    Err(Error::damaged(input.at(), format!("more than {MAX_PROPERTIES} properties: the list has no end")))
+    Err(Error::damaged(input.offset(), format!("more than {MAX_PROPERTIES} properties: the list has no end")))
 }

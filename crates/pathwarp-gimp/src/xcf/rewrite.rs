@@ -23,8 +23,8 @@ struct ByteEdit {
 /// flags, tattoos and parasites of the paths are kept. Coordinates are rounded to the single precision of XCF.
 ///
 /// # Errors
-/// The file is damaged, compressed or not an XCF; the form of its paths cannot hold the new strokes
-/// ([`ErrorKind::Strokes`](crate::ErrorKind::Strokes)); or reading or writing fails.
+/// [`ErrorKind::Unsupported`] when the file is compressed or not an XCF, [`ErrorKind::Damaged`] and [`ErrorKind::Truncated`] when it is
+/// damaged, [`ErrorKind::Strokes`] when the form of its paths cannot hold the new strokes, [`ErrorKind::Io`].
 pub fn rewrite<R: Read + Seek>(mut from: R, to: &mut dyn Write, strokes: &[(usize, Vec<Stroke>)]) -> Result<(), Error> {
     let (edits, end) = {
         let from: &mut dyn ReadSeek = &mut from;
@@ -74,7 +74,7 @@ fn edits(input: &mut ByteSource<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]
                     let end = count_at + 4 + strokes.len() as u64;
                     edits.push(ByteEdit { span: count_at + 4..end, bytes: strokes });
                 } else {
-                    // The path has outgrown its place; move it to the end of the file.
+                    // The path no longer fits; move it to the end of the file.
                     let at = input.end + appended.bytes.len() as u64;
                     edits.push(ByteEdit { span: pointer_at..pointer_at + 8, bytes: at.to_be_bytes().to_vec() });
                     input.seek(record.span.start, "a path")?;
@@ -98,14 +98,14 @@ fn edits(input: &mut ByteSource<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]
     with_pointers(input, xcf, edits)
 }
 
-/// A length or count as a big-endian word: of a part of a file of paths, which is far smaller than four gigabytes.
+/// A length or count as a big-endian word. It describes paths, which take far less than four gigabytes.
 fn word(n: usize) -> Vec<u8> {
     (n as u32).to_be_bytes().to_vec()
 }
 
-/// The growth of the file by the edits before `place`, in bytes.
-fn shift(edits: &[ByteEdit], place: u64) -> i64 {
-    let before = edits.iter().filter(|e| e.span.end <= place);
+/// The growth of the file by the edits before `offset`, in bytes.
+fn shift(edits: &[ByteEdit], offset: u64) -> i64 {
+    let before = edits.iter().filter(|e| e.span.end <= offset);
     before.map(|e| e.bytes.len() as i64 - (e.span.end - e.span.start) as i64).sum()
 }
 
@@ -141,7 +141,7 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
     // All targets of pointers are after the property list and move by the same amount.
     let by = shift(&edits, xcf.properties_end);
     let mut adjusted = Vec::new();
-    for (at, target) in all(input, xcf)? {
+    for (at, target) in pointers(input, xcf)? {
         let new = target.saturating_add_signed(by);
         let bytes = if xcf.wide() {
             new.to_be_bytes().to_vec()
@@ -210,7 +210,7 @@ struct PointerWalk<'i, 'a> {
 }
 
 /// Collects all pointers of the file that `xcf` was read from.
-fn all(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
+fn pointers(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
     input.seek(xcf.properties_end, "the property list")?;
     let input_end = input.end;
     let mut walk = PointerWalk {
@@ -267,7 +267,7 @@ impl PointerWalk<'_, '_> {
 
     /// Records a pointer. Returns `false` for the zero that ends a table.
     fn pointer(&mut self, to: Option<PointerTarget>) -> Result<bool, Error> {
-        let at = self.input.at();
+        let at = self.input.offset();
         let what = "a table of pointers";
         let target = if self.wide { self.input.u64(what)? } else { u64::from(self.input.u32(what)?) };
         if target == 0 {
@@ -296,7 +296,7 @@ impl PointerWalk<'_, '_> {
         let name = u64::from(self.input.u32("a name")?);
         self.input.skip(name, "a name")?;
         loop {
-            let at = self.input.at();
+            let at = self.input.offset();
             self.properties_left = self
                 .properties_left
                 .checked_sub(1)
@@ -306,11 +306,11 @@ impl PointerWalk<'_, '_> {
             if kind == PROP_END {
                 return Ok(());
             }
-            let end = self.input.at() + length;
+            let end = self.input.offset() + length;
             if kind == PROP_FLOATING_SELECTION && length == if self.wide { 8 } else { 4 } {
                 self.pointer(None)?;
             }
-            self.input.skip(end - self.input.at(), "a layer's property")?;
+            self.input.skip(end - self.input.offset(), "a layer's property")?;
         }
     }
 }

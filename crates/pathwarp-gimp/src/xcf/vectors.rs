@@ -23,15 +23,15 @@ const CHUNK: u32 = 4096;
 
 /// Reads the property. GIMP checks its length word.
 pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Result<(), Error> {
-    let (start, file_end) = (input.at(), input.end);
+    let (start, file_end) = (input.offset(), input.end);
     // A property that exceeds the file fails only at the end of the file, after the paths before it.
     let end = start.saturating_add(length);
     input.end = end.min(file_end);
     let read = paths(input, xcf);
     input.end = file_end;
-    read.map_err(|e| if end < file_end { e.within(length, "PROP_VECTORS") } else { e })?;
-    if input.at() != end {
-        let found = input.at() - start;
+    read.map_err(|e| if end < file_end { e.limited_by(length, "PROP_VECTORS") } else { e })?;
+    if input.offset() != end {
+        let found = input.offset() - start;
         let problem = format!("PROP_VECTORS holds {found} bytes of paths, but its length word says {length}");
         return Err(Error::damaged(start.saturating_sub(4), problem));
     }
@@ -42,22 +42,22 @@ fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     version(input)?;
     input.u32("PROP_VECTORS")?;
     for _ in 0..count(input, MIN_PATH, "paths")? {
-        let start = input.at();
+        let start = input.offset();
         let name = string(input, "a path's name")?;
         input.skip(4, "a path's tattoo")?;
         let visible = input.u32("a path")? != 0;
         input.skip(4, "a path's link")?;
         let parasites = count(input, MIN_PARASITE, "parasites of a path")?;
-        let count_at = input.at();
+        let count_at = input.offset();
         let n = count(input, MIN_STROKE, "strokes of a path")?;
         for _ in 0..parasites {
             parasite(input)?;
         }
-        let strokes_at = input.at();
+        let strokes_at = input.offset();
         let strokes = strokes(input, n)?;
         xcf.records.push(PathRecord {
             path: GimpPath { name, visible, strokes },
-            span: start..input.at(),
+            span: start..input.offset(),
             layout: PathLayout::Vectors { count_at, strokes_at },
         });
     }
@@ -66,7 +66,7 @@ fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
 
 /// Checks the version of a path.
 pub(super) fn version(input: &mut ByteSource<'_>) -> Result<(), Error> {
-    let at = input.at();
+    let at = input.offset();
     match input.u32("a path's version")? {
         VERSION => Ok(()),
         other => Err(Error::unsupported(at, format!("path version {other} is unknown; only {VERSION} is known"))),
@@ -86,7 +86,7 @@ fn parasite(input: &mut ByteSource<'_>) -> Result<(), Error> {
 pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>, Error> {
     let mut out = Vec::new();
     for _ in 0..n {
-        let at = input.at();
+        let at = input.offset();
         let kind = input.u32("a stroke")?;
         if kind != BEZIER {
             return Err(Error::damaged(
@@ -95,13 +95,13 @@ pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>,
             ));
         }
         let closed = input.u32("a stroke")? != 0;
-        let at = input.at();
+        let at = input.offset();
         let axes = input.u32("a stroke")?;
         if !(2..=6).contains(&axes) {
             return Err(Error::damaged(at, format!("points with {axes} axes; 2 to 6 are possible")));
         }
         let size = 4 + 4 * u64::from(axes);
-        let at = input.at();
+        let at = input.offset();
         let points = count(input, size, "points of a stroke")?;
         if !points.is_multiple_of(3) {
             let problem =
@@ -121,7 +121,7 @@ fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>
     let mut left = n;
     while left > 0 {
         let now = left.min(CHUNK);
-        let start = input.at();
+        let start = input.offset();
         let bytes = input.vec(u64::from(now) * size, "a stroke's points")?;
         for (i, p) in bytes.chunks_exact(size as usize).enumerate() {
             let at = start + i as u64 * size;

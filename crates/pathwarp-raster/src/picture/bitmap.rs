@@ -4,7 +4,7 @@ use crate::error::Error;
 use std::fmt::{Display, Formatter, Result as Written};
 use tiny_skia::{ColorU8, Pixmap};
 
-/// How much of a picture is in a file that ends early.
+/// The extent of a picture in a file that ends early.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EarlyEnd {
     /// The lines of pixels in the file; `None` if all of them lack details.
@@ -87,7 +87,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// Recognizes the format of a file by its first bytes.
-    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
+    pub(super) fn sniff(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(PNG_SIGNATURE) {
             Some(Self::Png)
         } else if bytes.starts_with(b"\xff\xd8\xff") {
@@ -108,13 +108,13 @@ mod tests {
 
     #[test]
     fn first_bytes_tell() {
-        assert_eq!(Kind::of(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"), Some(Kind::Png));
-        assert_eq!(Kind::of(b"\xff\xd8\xff\xe0\0\x10JFIF"), Some(Kind::Jpeg));
-        assert_eq!(Kind::of(b"RIFF\x1a\0\0\0WEBPVP8L"), Some(Kind::WebP));
-        assert_eq!(Kind::of(b"GIF87a\x01\0\x01\0"), Some(Kind::Gif));
-        assert_eq!(Kind::of(b"GIF89a\x01\0\x01\0"), Some(Kind::Gif));
+        assert_eq!(Kind::sniff(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"), Some(Kind::Png));
+        assert_eq!(Kind::sniff(b"\xff\xd8\xff\xe0\0\x10JFIF"), Some(Kind::Jpeg));
+        assert_eq!(Kind::sniff(b"RIFF\x1a\0\0\0WEBPVP8L"), Some(Kind::WebP));
+        assert_eq!(Kind::sniff(b"GIF87a\x01\0\x01\0"), Some(Kind::Gif));
+        assert_eq!(Kind::sniff(b"GIF89a\x01\0\x01\0"), Some(Kind::Gif));
         for other in [&b""[..], b"\x89PNG\r\n\x1a", b"\xff\xd8", b"RIFF\x1a\0\0\0WAVE", b"GIF88a", b"BM\0\0\0\0"] {
-            assert_eq!(Kind::of(other), None);
+            assert_eq!(Kind::sniff(other), None);
         }
     }
 }

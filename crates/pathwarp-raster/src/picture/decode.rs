@@ -31,12 +31,12 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Dec
     let limits = &limits.for_pixels(f64::from(width) * f64::from(height));
     let mut pixmap = new_pixmap(f64::from(width), f64::from(height), limits)?;
     bitmap.decode(&mut pixmap)?;
-    let early_end = if upright && Kind::of(bytes) == Some(Kind::Jpeg) { early_end(bytes, &mut pixmap) } else { None };
+    let end = if upright && Kind::sniff(bytes) == Some(Kind::Jpeg) { early_end(bytes, &mut pixmap) } else { None };
     let orientation = exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif);
-    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end })
+    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end: end })
 }
 
-/// How the metadata of a picture ask to turn its pixels.
+/// Reads the orientation from the metadata of a picture; upright if there is none.
 pub(super) fn orientation(bytes: &[u8], limits: &Limits) -> Orientation {
     let exif = open(bytes, limits).ok().and_then(|mut bitmap| bitmap.exif());
     exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif)
@@ -57,7 +57,7 @@ pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Box<dyn Bitmap + 'a>, Error> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
     let max = limits.of(Limit::Bytes) as usize;
-    match Kind::of(bytes) {
+    match Kind::sniff(bytes) {
         Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max)?)),
         Some(Kind::Jpeg) => Ok(Box::new(Jpeg::open(bytes)?)),
         Some(Kind::WebP) => Ok(Box::new(WebP::open(bytes)?)),

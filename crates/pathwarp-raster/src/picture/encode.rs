@@ -72,7 +72,7 @@ fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> 
     Ok(out)
 }
 
-/// Encodes a picture as coarsely as another JPEG, grey if that is, and with colours for every pixel.
+/// Encodes a picture as JPEG with the quantization tables of another, grey if that one is grey. Colours are not subsampled.
 pub(super) fn encode_like(like: &jpeg::Compression, pixmap: &Pixmap, profile: Option<&[u8]>) -> Result<Vec<u8>, Error> {
     let is_grey = like.components == 1;
     let color = if is_grey { JpegColorType::Luma } else { JpegColorType::Ycbcr };

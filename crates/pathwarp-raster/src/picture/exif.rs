@@ -22,9 +22,9 @@ const SIZES: [usize; 13] = [1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4];
 
 /// Bytes of an entry: tag, type, count, and the value or its offset.
 const ENTRY: usize = 12;
-/// What stands before the TIFF file in a JPEG, and sometimes in other formats.
+/// Precedes the TIFF file in a JPEG, and sometimes in other formats.
 const PREFIX: &[u8] = b"Exif\0\0";
-/// Most bytes, which a segment of a JPEG holds with the prefix.
+/// Largest number of bytes that a segment of a JPEG holds beside the prefix.
 const MOST: usize = 65_527;
 
 /// A TIFF file.
@@ -44,7 +44,7 @@ struct Entry {
 }
 
 impl Tiff {
-    fn of(exif: &[u8]) -> Option<Self> {
+    fn parse(exif: &[u8]) -> Option<Self> {
         let bytes = exif.strip_prefix(PREFIX).unwrap_or(exif);
         let is_little = match bytes.get(..4)? {
             b"II\x2a\0" => true,
@@ -101,7 +101,7 @@ impl Tiff {
         self.offset(entry.at + 8)
     }
 
-    /// Where the values of a directory's entries are that do not fit into the entries.
+    /// The bytes of the values that do not fit into the entries of a directory.
     fn values(&self, directory: usize) -> impl Iterator<Item = Range<usize>> {
         self.entries(directory).filter_map(|e| {
             let size = SIZES.get(usize::from(e.kind).checked_sub(1)?)?;
@@ -112,10 +112,10 @@ impl Tiff {
         })
     }
 
-    /// Writes a number into the entries of a directory with this tag.
+    /// Writes a number into the entries of a directory that have this tag.
     fn set(&mut self, directory: usize, tag: u16, kind: u16, n: u32) {
-        let places: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
-        for at in places {
+        let offsets: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
+        for at in offsets {
             self.write_short(at + 2, kind);
             self.write_long(at + 4, 1);
             self.write_long(at + 8, n);
@@ -127,22 +127,22 @@ impl Tiff {
         }
     }
 
-    /// Removes the entries of a whole directory with this tag; those after them move up.
+    /// Removes the entries of a directory that have this tag, unless the directory is cut short; later entries move up.
     fn remove(&mut self, directory: usize, tag: u16) {
         let Some(extent) = self.extent(directory) else { return };
-        let places: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
-        for at in places.iter().rev() {
+        let offsets: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
+        for at in offsets.iter().rev() {
             self.bytes.copy_within(at + ENTRY..extent.end, *at);
             self.bytes[extent.end - ENTRY..extent.end].fill(0);
         }
-        let left = self.entries(directory).count().saturating_sub(places.len());
+        let left = self.entries(directory).count().saturating_sub(offsets.len());
         self.write_short(directory, u16::try_from(left).unwrap_or(0));
     }
 
     /// Keeps only the header, these directories and their values; anything else becomes zeros, or is cut off at the end.
     fn keep_only(&mut self, directories: &[usize]) {
-        let of = |d: &usize| self.extent(*d).into_iter().chain(self.values(*d)).collect::<Vec<_>>();
-        let mut kept: Vec<Range<usize>> = std::iter::once(0..8).chain(directories.iter().flat_map(of)).collect();
+        let ranges = |d: &usize| self.extent(*d).into_iter().chain(self.values(*d)).collect::<Vec<_>>();
+        let mut kept: Vec<Range<usize>> = std::iter::once(0..8).chain(directories.iter().flat_map(ranges)).collect();
         kept.sort_by_key(|r| r.start);
         let mut end = 0;
         for range in kept {
@@ -155,18 +155,18 @@ impl Tiff {
     }
 }
 
-/// Finds the number of the orientation; 1 is upright.
+/// Finds the number of the orientation, from 1 (upright) to 8.
 pub(super) fn orientation(exif: &[u8]) -> Option<u16> {
-    let tiff = Tiff::of(exif)?;
+    let tiff = Tiff::parse(exif)?;
     let entries = tiff.entries(tiff.offset(4)?);
     let found = { entries }.find(|e| (e.tag, e.kind, e.count) == (ORIENTATION, SHORT, 1))?;
     tiff.short(found.at + 8)
 }
 
-/// The metadata for an upright picture of another size, without the thumbnail and, unless `keep_location`, without the place. `None` if
-/// they are damaged, or too long for a JPEG.
+/// The metadata for an upright picture of another size, without the thumbnail and, unless `keep_location`, the geographic position.
+/// `None` if they are damaged, or too long for a JPEG.
 pub(super) fn edited(exif: &[u8], (width, height): (u32, u32), keep_location: bool) -> Option<Vec<u8>> {
-    let mut tiff = Tiff::of(exif).filter(|t| t.bytes.len() <= MOST)?;
+    let mut tiff = Tiff::parse(exif).filter(|t| t.bytes.len() <= MOST)?;
     let first = tiff.offset(4)?;
     let end = tiff.extent(first)?.end;
     tiff.set(first, ORIENTATION, SHORT, 1);
@@ -225,7 +225,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
-        /// Nothing that a file says makes the result longer, or leaves a place in its first directory.
+        /// Nothing that a file says makes the result longer, or leaves a geographic position in its first directory.
         #[test]
         fn any_metadata_are_edited_or_refused(exif in hostile(), keeps in any::<bool>()) {
             let _ = orientation(&exif);

@@ -64,7 +64,7 @@ fn wrong(why: DecodeErrors) -> Error {
     }
 }
 
-/// How a JPEG is compressed: its quantization tables for brightness and colour, row by row.
+/// The compression of a JPEG: its quantization tables for brightness and colour, row by row.
 pub(super) struct Compression {
     pub(super) tables: [[u16; 64]; 2],
     /// 1 for grey, 3 for colours, 4 for inks.
@@ -72,8 +72,8 @@ pub(super) struct Compression {
 }
 
 impl Compression {
-    /// Reads it from the segments before the first scan (ISO 10918-1, B.2); `None` for other files.
-    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
+    /// Reads the segments before the first scan (ISO 10918-1, B.2); `None` for other files.
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
         let (mut tables, mut frame) = ([None; 4], None);
         for (marker, content) in segments(bytes) {
             match marker {
@@ -105,7 +105,7 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
     })
 }
 
-/// A JPEG with other sides in its header: the height in the place of the width.
+/// A JPEG with width and height exchanged in its header.
 pub(super) fn with_sides_exchanged(bytes: &[u8]) -> Option<Vec<u8>> {
     let (_, frame) = segments(bytes).find(|(marker, _)| (0xc0..=0xc2).contains(marker))?;
     let at = frame.as_ptr().addr() - bytes.as_ptr().addr();
@@ -130,7 +130,7 @@ fn read_tables(mut content: &[u8], tables: &mut [Option<[u16; 64]>; 4]) -> Optio
     Some(())
 }
 
-/// The places of a block of 8 × 8, row by row, in the order in which they are stored: along diagonals, up and down in turn.
+/// The order in which the values of a block of 8 × 8 are stored, as indices row by row: along diagonals, up and down in turn.
 fn zigzag() -> impl Iterator<Item = usize> {
     (0..15).flat_map(|sum: usize| {
         let rows = sum.saturating_sub(7)..=sum.min(7);
@@ -138,19 +138,19 @@ fn zigzag() -> impl Iterator<Item = usize> {
         let (first, last) = (*rows.start(), *rows.end());
         rows.map(move |row| {
             let row = if upwards { last - (row - first) } else { row };
-            row * 8 + sum - row
+            row * 8 + (sum - row)
         })
     })
 }
 
-/// How the lines of a JPEG are stored.
+/// The storage of the lines of a JPEG.
 #[derive(Default)]
 struct Layout {
-    /// The end is marked.
+    /// `true` if the end is marked.
     has_end: bool,
-    /// All of a line is in one place.
+    /// `true` if all data of a line are stored together, not in several scans.
     in_one_pass: bool,
-    /// Lines that are stored together.
+    /// Number of lines that are stored together.
     together: u32,
 }
 
@@ -189,7 +189,7 @@ fn layout(bytes: &[u8]) -> Layout {
     out
 }
 
-/// Says where a JPEG ends that lacks a part, and clears the lines that it lacks.
+/// Returns the extent of a JPEG that ends early, and clears the missing lines.
 pub(super) fn early_end(bytes: &[u8], decoded: &mut Pixmap) -> Option<EarlyEnd> {
     /// The decoder's mark of missing lines (zune-jpeg 0.5).
     const MISSING: [u8; 4] = [128, 128, 128, 255];
@@ -204,9 +204,9 @@ pub(super) fn early_end(bytes: &[u8], decoded: &mut Pixmap) -> Option<EarlyEnd> 
     let row = 4 * decoded.width() as usize;
     let is_missing = |line: &&[u8]| line.as_chunks().0.iter().all(|p| *p == MISSING);
     let missing = decoded.data().rchunks_exact(row).take_while(is_missing).count();
-    // The mark of the end alone is no loss.
+    // If only the mark of the end is missing, nothing is lost.
     let there = of.checked_sub(u32::try_from(missing).ok()?).filter(|n| *n < of)?;
-    // The last lines that are stored together are not all there.
+    // Of the last lines that are stored together, some are missing.
     let lines = there.saturating_sub(layout.together);
     let all = decoded.data_mut();
     all[row * lines as usize..].fill(0);
@@ -234,7 +234,7 @@ mod tests {
         out
     }
 
-    /// Wherever a file is cut, the lines that are said to be there are those of the whole file.
+    /// Wherever a file is cut, the reported lines equal the lines of the whole file.
     #[test]
     fn lines_before_the_cut_are_right() {
         let kinds = [
@@ -250,13 +250,13 @@ mod tests {
             for cut in (1000..whole.len() - 2).step_by(whole.len() / 40) {
                 let found = Picture::read(&whole[..cut]).unwrap();
                 let Some(end) = found.early_end else {
-                    // Cut in what holds the last lines.
+                    // Cut in the data of the last lines.
                     assert!(cut as f64 > whole.len() as f64 * 0.8, "{cut} of {}", whole.len());
                     continue;
                 };
                 let lines = end.lines.unwrap();
                 assert!(end.of == 96 && lines >= most, "{end}");
-                // Two units that are stored together hold what is not counted.
+                // At most two groups of lines that are stored together are not counted.
                 assert!(lines + 2 * together > 96 * cut as u32 / whole.len() as u32, "{cut}: {end}");
                 let (there, missing) = found.pixmap.data().split_at(lines as usize * 64 * 4);
                 assert!(expected.pixmap.data().starts_with(there), "{cut}: {end}");

@@ -23,7 +23,7 @@ pub(crate) use bitmap::PNG_SIGNATURE;
 pub use decode::header_size;
 pub use encode::PictureFormat;
 
-/// A bitmap with its colour profile and what else is known of it.
+/// A bitmap with its colour profile and metadata.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// The pixels.
@@ -32,7 +32,7 @@ pub struct Picture {
     pub profile: Option<Vec<u8>>,
     /// The EXIF metadata as the file has them, starting with the header of TIFF.
     pub exif: Option<Vec<u8>>,
-    /// Where the file ends, if that is before all of the picture.
+    /// The extent of the picture in the file, if that ends early.
     pub early_end: Option<EarlyEnd>,
 }
 
@@ -43,10 +43,10 @@ impl From<Pixmap> for Picture {
 }
 
 impl Picture {
-    /// Whether the bytes start like a PNG, JPEG or WebP file.
+    /// Returns `true` if the bytes start like a PNG, JPEG or WebP file.
     #[must_use]
     pub fn sniff(bytes: &[u8]) -> bool {
-        matches!(Kind::of(bytes), Some(Kind::Png | Kind::Jpeg | Kind::WebP))
+        matches!(Kind::sniff(bytes), Some(Kind::Png | Kind::Jpeg | Kind::WebP))
     }
 
     /// Reads a PNG, JPEG or WebP and applies its EXIF orientation.
@@ -58,10 +58,10 @@ impl Picture {
         Self::read_within(bytes, &Limits::default().for_input(bytes.len()))
     }
 
-    /// Reads a picture like [`Picture::read`], within limits.
+    /// Reads a PNG, JPEG or WebP within limits and applies its EXIF orientation.
     ///
     /// # Errors
-    /// As for [`Picture::read`].
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
         if Self::sniff(bytes) {
             Self::decode(bytes, true, limits)
@@ -74,20 +74,20 @@ impl Picture {
     /// animation.
     ///
     /// # Errors
-    /// As for [`Picture::read`].
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits.
     pub fn read_stored(bytes: &[u8]) -> Result<Self, Error> {
         Self::read_stored_within(bytes, &Limits::default().for_input(bytes.len()))
     }
 
-    /// Reads an image of a drawing like [`Picture::read_stored`], within limits.
+    /// Reads an image of a drawing as it is stored, within limits.
     ///
     /// # Errors
-    /// As for [`Picture::read`].
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_stored_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
         Self::decode(bytes, false, limits)
     }
 
-    /// Whether the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes none of them.
+    /// Returns `true` if the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes no pixels.
     #[must_use]
     pub fn is_turned(bytes: &[u8], limits: &Limits) -> bool {
         Self::sniff(bytes) && decode::orientation(bytes, limits) != Orientation::default()
@@ -96,37 +96,37 @@ impl Picture {
     /// Returns `true` if the bytes are a JPEG in CMYK, which is read as RGB.
     #[must_use]
     pub fn is_of_inks(bytes: &[u8]) -> bool {
-        Compression::of(bytes).is_some_and(|c| c.components == 4)
+        Compression::read(bytes).is_some_and(|c| c.components == 4)
     }
 
-    /// An image of a drawing with its pixels turned as browsers show it: a JPEG or PNG whose EXIF metadata ask for it. `None` for others,
-    /// and for what cannot be read within the limits.
+    /// Turns the pixels of an image of a drawing as browsers do if its EXIF metadata ask for it. `None` if they do not, if it is neither a
+    /// JPEG nor a PNG, or if it cannot be read within the limits.
     #[must_use]
     pub fn turned(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
-        let may_be = matches!(Kind::of(bytes)?, Kind::Jpeg | Kind::Png);
+        let may_be = matches!(Kind::sniff(bytes)?, Kind::Jpeg | Kind::Png);
         if !may_be || !Self::is_turned(bytes, limits) {
             return None;
         }
         Self::read_within(bytes, limits).ok()?.write_like(bytes).ok()
     }
 
-    /// An image of a drawing that has the size at which browsers show it: of a JPEG, only the header changes, and the same again gives the
-    /// file back; others as by [`turned`](Self::turned). For drawings whose images are read by [`Picture::read_sized_within`].
+    /// Gives an image of a drawing the size at which browsers show it. In a JPEG only the header changes, and a second call restores it;
+    /// others are [`turned`](Self::turned). [`Picture::read_sized_within`] reads the result.
     #[must_use]
     pub fn sized(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
-        if Kind::of(bytes) != Some(Kind::Jpeg) {
+        if Kind::sniff(bytes) != Some(Kind::Jpeg) {
             return Self::turned(bytes, limits);
         }
         let exchanges = decode::orientation(bytes, limits).exchanges_sides();
         exchanges.then(|| jpeg::with_sides_exchanged(bytes)).flatten()
     }
 
-    /// Reads an image of a drawing as browsers show it, from a file that [`Picture::sized`] has changed where it does.
+    /// Reads an image of a drawing as browsers show it, from the result of [`Picture::sized`], or from the image where that is `None`.
     ///
     /// # Errors
-    /// As for [`Picture::read`].
+    /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_sized_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        if Kind::of(bytes) != Some(Kind::Jpeg) || !Self::is_turned(bytes, limits) {
+        if Kind::sniff(bytes) != Some(Kind::Jpeg) || !Self::is_turned(bytes, limits) {
             return Self::read_stored_within(bytes, limits);
         }
         Self::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
@@ -137,8 +137,8 @@ impl Picture {
         Ok(Self { pixmap, profile, exif, early_end })
     }
 
-    /// A picture made of the pixels of this one: it has the same colour profile, if it fits, and the EXIF metadata, if they are sound, for
-    /// upright pixels and its own size. They lack the thumbnail, and the place unless `keep_location`.
+    /// A picture of new pixels made from this one, with its colour profile, if that fits, and its EXIF metadata, if they are sound,
+    /// adapted to the new size and upright pixels. They lack the thumbnail and, unless `keep_location`, the geographic position.
     #[must_use]
     pub fn remade(&self, pixmap: Pixmap, keep_location: bool) -> Self {
         let size = (pixmap.width(), pixmap.height());
@@ -146,7 +146,7 @@ impl Picture {
         Self { profile: self.profile_of_pixels().map(<[u8]>::to_vec), exif, ..Self::from(pixmap) }
     }
 
-    /// The profile if it is one for RGB, which the pixels are.
+    /// The profile, if it is for RGB like the pixels.
     fn profile_of_pixels(&self) -> Option<&[u8]> {
         // ICC.1:2022, 7.2: the colour space, and a signature.
         let is_other = |p: &[u8]| p.get(36..40) == Some(b"acsp") && p.get(16..20) != Some(b"RGB ");
@@ -159,7 +159,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
     pub fn write_like(&self, source: &[u8]) -> Result<Vec<u8>, Error> {
-        match Compression::of(source) {
+        match Compression::read(source) {
             Some(like) => encode::encode_like(&like, &self.pixmap, self.profile_of_pixels()),
             None => encode::encode(&self.pixmap, self.profile_of_pixels(), None, PictureFormat::Png),
         }
@@ -232,15 +232,15 @@ mod tests {
             let [red, white] = [2, 13].map(|x| back.pixel(x, 4).unwrap());
             assert!(red.red() > 200 && red.green() < 60 && red.blue() < 60, "{across} x {down}: {red:?}");
             assert!(white.green() > 200 && white.blue() > 200, "{across} x {down}: {white:?}");
-            let like = Compression::of(&written).unwrap();
+            let like = Compression::read(&written).unwrap();
             assert_eq!((like.tables, like.components), ([*table(1), *table(3)], 3));
         }
         let mut grey = Vec::new();
         let luma: Vec<u8> = samples.iter().step_by(3).copied().collect();
         jpeg_encoder::Encoder::new(&mut grey, 50).encode(&luma, 16, 8, jpeg_encoder::ColorType::Luma).unwrap();
         let like = photo.write_like(&grey).unwrap();
-        assert_eq!(Compression::of(&like).unwrap().components, 1);
-        assert_eq!(Compression::of(&like).unwrap().tables, Compression::of(&grey).unwrap().tables);
+        assert_eq!(Compression::read(&like).unwrap().components, 1);
+        assert_eq!(Compression::read(&like).unwrap().tables, Compression::read(&grey).unwrap().tables);
         // Files that end early or have no tables are written as PNG.
         for end in [0, 3, 30] {
             assert!(photo.write_like(&grey[..end]).unwrap().starts_with(PNG_SIGNATURE), "{end}");

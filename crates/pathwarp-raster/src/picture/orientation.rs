@@ -24,7 +24,7 @@ impl Orientation {
         })
     }
 
-    /// Returns `true` if width and height change places.
+    /// Returns `true` if width and height are exchanged.
     pub(super) fn exchanges_sides(self) -> bool {
         self.transpose
     }

@@ -1,5 +1,4 @@
-//! Reads PNG. Every colour type and depth becomes eight bits per channel; an animation, the image that programs without support for
-//! animations show.
+//! Reads PNG. Every colour type and depth becomes eight bits per channel. Of an animation, the default image is read.
 
 use super::bitmap::{Bitmap, PNG_SIGNATURE, premultiply, set_opaque, set_straight, undecodable};
 use crate::error::Error;

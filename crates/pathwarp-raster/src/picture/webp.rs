@@ -1,4 +1,4 @@
-//! Reads WebP, of an animation the first frame.
+//! Reads WebP. Of an animation, the first frame is read.
 
 use super::bitmap::{Bitmap, premultiply, set_opaque, undecodable};
 use crate::error::Error;
@@ -33,7 +33,7 @@ impl Bitmap for WebP<'_> {
 
     fn exif(&mut self) -> Option<Vec<u8>> {
         let found = self.decoder.exif_metadata().ok().flatten();
-        // Of those of a file that ends before them, nothing is left.
+        // A file that announces metadata but ends before them has empty ones.
         found.or_else(|| announces_exif(self.bytes).then(Vec::new))
     }
 
@@ -54,8 +54,8 @@ impl Bitmap for WebP<'_> {
     }
 }
 
-/// Whether the first frame of an animation has the size of the picture with transparency in it; if not, the decoder (image-webp 0.2)
-/// panics. `None` if there is no such picture.
+/// Returns `true` if the first frame of an animation has the size of the picture with transparency in it; otherwise the decoder
+/// (image-webp 0.2) panics. `None` if there is no such picture.
 fn first_frame_fits(bytes: &[u8]) -> Option<bool> {
     let (_, frame) = chunks(bytes.get(12..)?).find(|(name, _)| name == b"ANMF")?;
     let (head, parts) = frame.split_at_checked(16)?;

@@ -1,8 +1,8 @@
 //! Draws a drawing and its warped result side by side.
 //!
-//! Both panels show the same part of the plane at the same scale, so that a shape that did not move is in the same place in
+//! Both panels show the same part of the plane at the same scale, so that a shape that did not move has the same position in
 //! both. That part is the bounding box of both pages and all overlays. Where the two lie so far apart that they would be small in it,
-//! each panel shows its own. Artwork outside its page is shown on the grey around it.
+//! each panel shows a different part. Artwork outside its page is shown on the grey around it.
 
 mod overlay;
 
@@ -29,7 +29,7 @@ const MARGIN: f64 = 20.0;
 /// Space between the panels, in nominal pixels.
 const GAP: f64 = 4.0;
 
-/// Panels show parts of the plane of their own where one of both would be so many times as long as the longer of the two.
+/// Each panel shows a different part of the plane where a common one would be so many times as long as the longer of the two.
 const APART: f64 = 1.5;
 
 /// A drawing with its overlays.
@@ -59,14 +59,14 @@ impl<'a> Panel<'a> {
         self
     }
 
-    /// Shows this area, in root user units, whether it lies on the page or not.
+    /// Shows this area, in root user units, on the page or beyond it.
     #[must_use]
     pub fn showing(mut self, artwork: Rect) -> Self {
         self.artwork = Some(self.artwork.map_or(artwork, |a| a.union(artwork)));
         self
     }
 
-    /// Bounding box of the page, all overlays and whatever else is shown, in root user units.
+    /// Bounding box of the page, all overlays and further areas shown, in root user units.
     fn bounds(&self) -> Rect {
         let overlays = self.overlays.iter().filter_map(PreviewOverlay::bounds);
         overlays.chain(self.artwork).fold(self.page.abs(), |a, b| a.union(b))
@@ -121,7 +121,7 @@ impl<'a> Preview<'a> {
     /// Draws the preview, within limits.
     ///
     /// # Errors
-    /// As for [`Preview::render`]; also if drawing takes more than the limits allow.
+    /// [`Error::TooMuch`] if drawing takes more than the limits allow, and any [`Error`] of [`Preview::render`].
     pub fn render_within(&self, limits: &Limits) -> Result<Pixmap, Error> {
         let views = self.views();
         let layout = PanelLayout::new(views[0], self.panel_size)?;
@@ -140,7 +140,7 @@ impl<'a> Preview<'a> {
 }
 
 impl Preview<'_> {
-    /// The parts of the plane that the panels show. Both are of the same size.
+    /// The parts of the plane that the panels show, of the same size.
     fn views(&self) -> [Rect; 2] {
         let all = [self.before.bounds(), self.after.bounds()];
         let both = all[0].union(all[1]);
@@ -148,11 +148,11 @@ impl Preview<'_> {
         if both.width() <= APART * size.width && both.height() <= APART * size.height {
             return [both; 2];
         }
-        all.map(|own| Rect::from_center_size(own.center(), size))
+        all.map(|bounds| Rect::from_center_size(bounds.center(), size))
     }
 }
 
-/// Placement of the view on a panel. Sizes are whole numbers of pixels.
+/// The layout of a panel. Sizes are whole numbers of pixels.
 struct PanelLayout {
     width: f64,
     height: f64,
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn panels_share_scale_and_place() {
+    fn panels_share_scale_and_position() {
         let tree = tree();
         let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
         let picture = Preview::new(panel(), panel()).render().unwrap();
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overlay_widens_both_panels_and_is_drawn_in_its_own() {
+    fn an_overlay_widens_both_panels_and_is_drawn_in_one() {
         let tree = tree();
         let panel = || Panel::new(&tree, Affine::scale(2.0), PAGE);
         let cage = BezPath::from_svg("M0 0H200V50H0Z").unwrap();
@@ -265,7 +265,6 @@ mod tests {
         assert_eq!(rgb(&picture, 604 + 580, 60), [0xec, 0xee, 0xf1]);
     }
 
-    /// The result looks as it would where the drawing was.
     #[test]
     fn a_result_far_away_is_shown_at_the_same_scale() {
         let tree = tree();
@@ -278,7 +277,7 @@ mod tests {
             let moved = Preview::new(panel(0.0, 0.0), panel(x, y)).render().unwrap();
             assert!(moved.data() == stayed.data(), "{x} {y}");
         }
-        // One that is near stays in one view with the drawing.
+        // A result that is near stays in one view with the drawing.
         let near = Preview::new(panel(0.0, 0.0), panel(40.0, 0.0)).render().unwrap();
         assert_eq!(rgb(&near, 604 + 20 + 80, near.height() / 2), [0xec, 0xee, 0xf1]);
         // Both have room for the larger one.

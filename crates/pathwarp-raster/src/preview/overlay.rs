@@ -98,7 +98,7 @@ fn control_points(path: &BezPath) -> impl Iterator<Item = Point> {
 const HALO: f32 = 1.5;
 /// Half the side or the radius of an anchor, in nominal pixels.
 const ANCHOR: f64 = 3.6;
-/// The same for the first anchor of a path.
+/// Half the side or the radius of the first anchor of a path, in nominal pixels.
 const FIRST_ANCHOR: f64 = 5.6;
 /// Half the length of the arrow, in nominal pixels.
 const ARROW: f64 = 6.5;

@@ -1,4 +1,4 @@
-//! A map that its tangents continue where it folds.
+//! A map that its tangents continue beyond a box where it folds or is not defined.
 
 use kurbo::{Point, Rect};
 use pathwarp::engine::{Batches, Cost};
@@ -8,8 +8,8 @@ use std::fmt;
 /// The corners of a box divided into cells, of which `cells` lie along each side.
 pub(crate) fn lattice(r: Rect, cells: usize) -> impl Iterator<Item = Point> {
     let at = move |k: usize| k as f64 / cells as f64;
-    let places = (0..=cells).flat_map(move |j| (0..=cells).map(move |i| (at(i), at(j))));
-    places.map(move |(u, v)| Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()))
+    let fractions = (0..=cells).flat_map(move |j| (0..=cells).map(move |i| (at(i), at(j))));
+    fractions.map(move |(u, v)| Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()))
 }
 
 /// A map, continued beyond a box by its tangents if it folds there or is not defined.
@@ -31,34 +31,34 @@ impl<'a> Continued<'a> {
     /// Continues `map` from `inner` to `outer` if necessary.
     #[must_use]
     pub fn new(map: &'a dyn Map, inner: Rect, outer: Rect) -> Self {
-        /// Cells along a side where the map is looked at.
+        /// Cells along a side of `outer`, at whose corners the map is sampled.
         const CELLS: usize = 24;
-        let places: Vec<Point> = lattice(outer, CELLS).chain([inner.center()]).collect();
-        let mut jets = vec![Jet::default(); places.len()];
-        map.jets(&places, &mut jets);
+        let samples: Vec<Point> = lattice(outer, CELLS).chain([inner.center()]).collect();
+        let mut jets = vec![Jet::default(); samples.len()];
+        map.jets(&samples, &mut jets);
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let sign = jets.last().map_or(0.0, |jet| jet.det().signum());
         let sound = |(p, jet): (&Point, &Jet)| jet.det() * sign > 0.0 && creases.defined_at(*p);
-        let is_sound = places.iter().zip(&jets).all(sound);
+        let is_sound = samples.iter().zip(&jets).all(sound);
         Self { map, inner: (!is_sound).then_some(inner) }
     }
 
     /// The nearest point of the inner box.
-    fn within(&self, p: Point) -> Point {
+    fn nearest_inner(&self, p: Point) -> Point {
         self.inner.map_or(p, |r| Point::new(p.x.clamp(r.x0, r.x1), p.y.clamp(r.y0, r.y1)))
     }
 }
 
 impl Map for Continued<'_> {
     fn jet(&self, p: Point) -> Jet {
-        let from = self.within(p);
+        let from = self.nearest_inner(p);
         let jet = self.map.jet(from);
         Jet { p: jet.p + jet.push(p - from), ..jet }
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        let from: Vec<Point> = ps.iter().map(|p| self.within(*p)).collect();
+        let from: Vec<Point> = ps.iter().map(|p| self.nearest_inner(*p)).collect();
         self.map.jets(&from, out);
         for ((p, from), jet) in ps.iter().zip(&from).zip(out) {
             jet.p += jet.push(*p - *from);

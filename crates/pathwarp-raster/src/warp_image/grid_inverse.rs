@@ -19,7 +19,7 @@ const PIXELS: f64 = 2.0;
 const SQUARE_CELLS: (f64, f64) = (8.0, 24.0);
 /// Range of the number of cells along any side.
 const CELL_RANGE: (f64, f64) = (6.0, 96.0);
-/// Smallest ratio of the box's shorter to its longer side. Flatter boxes are inflated, so that even a line has cells.
+/// Smallest ratio of the shorter to the longer side of a box. Flatter boxes are inflated, so that even a line has cells.
 const MIN_ASPECT: f64 = 1e-3;
 /// Buckets along a side of the image's bounding box.
 const BUCKETS: usize = 32;
@@ -27,9 +27,9 @@ const BUCKETS: usize = 32;
 const MAX_STEPS: usize = 5;
 /// A residual below this fraction of the image's size needs just one more step, which about squares it.
 const CLOSE: f64 = 1.0 / 1024.0;
-/// A strict answer's residual is below this multiple of it.
+/// The residual of a strict answer is below this multiple of [`CLOSE`].
 const FAR: f64 = 4.0;
-/// The map is used around the box if it differs from its tangent by no more than this fraction of the distance.
+/// Around the box, the map is inverted if it differs from its tangent by at most this fraction of the distance; else the tangent is.
 const CONTINUES: f64 = 0.25;
 /// Largest distance from the first answer, in cells.
 const MAX_DRIFT: f64 = 1.5;
@@ -37,8 +37,8 @@ const MAX_DRIFT: f64 = 1.5;
 /// The inverse of a map over a box and a little beyond it. NaN marks points outside.
 pub struct GridInverse<'a> {
     map: &'a dyn Map,
-    read: Affine,
-    write: Affine,
+    placed: Affine,
+    after: Affine,
     nodes: Vec<Node>,
     triangles: Vec<Triangle>,
     buckets: Buckets,
@@ -57,31 +57,31 @@ impl fmt::Debug for GridInverse<'_> {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    at: Point,
+    point: Point,
     image: Point,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
     corners: [usize; 3],
-    /// Whether the triangle lies in the box.
+    /// `true` if the triangle lies in the box.
     inner: bool,
-    /// Whether the map, not a tangent, applies in the triangle, so that Newton steps can improve its answers.
+    /// `true` if the map, not a tangent, applies in the triangle, so that Newton steps can improve its answers.
     mapped: bool,
-    /// Whether the map keeps its orientation.
+    /// `true` if the map keeps the triangle's orientation.
     upright: bool,
 }
 
 impl<'a> GridInverse<'a> {
-    /// Inverts `read`, then `map`, then `write`. `area` is a box in the coordinates before `read`; the inverse extends up to `reach`
-    /// around it. It serves a picture of about `pixels` pixels along each side.
+    /// Inverts the composition of `placed`, `map` and `after`, in this order, over the box `area` and up to `reach` around it. The inverse
+    /// serves a picture of about `pixels` pixels along each side.
     #[must_use]
-    pub fn new(map: &'a dyn Map, area: Rect, reach: f64, read: Affine, write: Affine, pixels: f64) -> Self {
+    pub fn new(map: &'a dyn Map, area: Rect, reach: f64, placed: Affine, after: Affine, pixels: f64) -> Self {
         let longest = area.width().max(area.height());
         let grow = |side: f64| 0.5 * (MIN_ASPECT * longest - side).max(0.0);
         let area = area.inflate(grow(area.width()), grow(area.height()));
-        let grid = Grid::over(area, reach, (pixels / PIXELS).clamp(SQUARE_CELLS.0, SQUARE_CELLS.1));
-        let (nodes, continues) = grid.nodes(map, read, write);
+        let grid = Grid::new(area, reach, (pixels / PIXELS).clamp(SQUARE_CELLS.0, SQUARE_CELLS.1));
+        let (nodes, continues) = grid.nodes(map, placed, after);
         let triangles = grid.triangles(&nodes, continues);
         let images = nodes.iter().map(|n| n.image).filter(|p| p.is_finite());
         let bounds = images
@@ -89,10 +89,10 @@ impl<'a> GridInverse<'a> {
         let bounds = bounds.unwrap_or_default();
         let buckets = Buckets::new(bounds, &nodes, &triangles);
         let close = CLOSE * bounds.width().hypot(bounds.height());
-        Self { map, read, write, nodes, triangles, buckets, cell: grid.cell(), close, most: f64::INFINITY }
+        Self { map, placed, after, nodes, triangles, buckets, cell: grid.cell(), close, most: f64::INFINITY }
     }
 
-    /// Leaves out answers that are not near, and those where the map is reversed: nothing hides them from view.
+    /// Leaves out answers with a large residual, and those where the map reverses orientation.
     #[must_use]
     pub(crate) fn strict(self) -> Self {
         Self { most: FAR * self.close, ..self }
@@ -108,17 +108,17 @@ impl<'a> GridInverse<'a> {
         r.overlaps(self.buckets.bounds) && all.any(|k| self.buckets.starts[k] < self.buckets.starts[k + 1])
     }
 
-    /// The first answer for a point, and whether it can be improved. `last` caches the triangle of the previous answer, which a
+    /// The first answer for a point, and `true` if Newton steps can improve it. `last` caches the triangle of the previous answer, which a
     /// neighbour is likely to share.
     fn locate(&self, q: Point, last: &mut Option<u32>) -> Option<(Point, bool)> {
-        let found = last.and_then(|k| self.within(q, k));
+        let found = last.and_then(|k| self.answer_in(k, q));
         if found.is_some() {
             return found;
         }
         let mut reversed = None;
-        for k in self.buckets.at(q)? {
+        for k in self.buckets.triangles_near(q)? {
             let t = &self.triangles[*k as usize];
-            let Some(found) = self.within(q, *k) else { continue };
+            let Some(found) = self.answer_in(*k, q) else { continue };
             if t.upright {
                 *last = t.mapped.then_some(*k);
                 return Some(found);
@@ -128,19 +128,19 @@ impl<'a> GridInverse<'a> {
         reversed
     }
 
-    /// The answer of one triangle if the point is in its image.
+    /// The answer of triangle `k` if the point is in its image.
     #[inline]
-    fn within(&self, q: Point, k: u32) -> Option<(Point, bool)> {
+    fn answer_in(&self, k: u32, q: Point) -> Option<(Point, bool)> {
         let t = &self.triangles[k as usize];
         let [a, b, c] = t.corners;
         let (a, b, c) = (&self.nodes[a], &self.nodes[b], &self.nodes[c]);
         let (v, w) = barycentric(q, a.image, b.image, c.image)?;
-        Some((a.at + (b.at - a.at) * v + (c.at - a.at) * w, t.mapped))
+        Some((a.point + (b.point - a.point) * v + (c.point - a.point) * w, t.mapped))
     }
 
     /// The next Newton step, given the jet at the current point, with its residual. `None` if the jet is singular.
     fn step(&self, q: Point, jet: &Jet) -> Option<(Vec2, f64)> {
-        let jet = in_pixels(jet, self.write, self.read);
+        let jet = in_pixels(jet, self.after, self.placed);
         let (r, det) = (q - jet.p, jet.det());
         let step = Vec2::new(r.cross(jet.dy) / det, jet.dx.cross(r) / det);
         step.is_finite().then(|| (step, r.hypot()))
@@ -153,7 +153,7 @@ impl Map for GridInverse<'_> {
         if !p.is_finite() {
             return Jet::UNDEFINED;
         }
-        in_pixels(&self.map.jet(self.read * p), self.write, self.read).inverted(p)
+        in_pixels(&self.map.jet(self.placed * p), self.after, self.placed).inverted(p)
     }
 
     fn cost(&self) -> Cost<'_> {
@@ -176,27 +176,27 @@ impl Map for GridInverse<'_> {
                 active.push(Search { index: i, start: *o, at: *o, best: f64::INFINITY });
             }
         }
-        let mut places = Vec::with_capacity(active.len());
+        let mut points = Vec::with_capacity(active.len());
         let mut jets = vec![Jet::default(); active.len()];
         for _ in 0..MAX_STEPS {
             if active.is_empty() {
                 break;
             }
-            places.clear();
-            places.extend(active.iter().map(|s| self.read * s.at));
-            self.map.jets(&places, &mut jets[..active.len()]);
+            points.clear();
+            points.extend(active.iter().map(|s| self.placed * s.at));
+            self.map.jets(&points, &mut jets[..active.len()]);
             let mut k = 0;
             active.retain_mut(|s| {
                 let found = self.step(qs[s.index], &jets[k]);
                 k += 1;
-                let nowhere = Point::new(f64::NAN, f64::NAN);
+                let undefined = Point::new(f64::NAN, f64::NAN);
                 let Some((step, residual)) = found.filter(|f| f.1 < s.best) else {
                     if s.best > self.most {
-                        out[s.index] = nowhere;
+                        out[s.index] = undefined;
                     }
                     return false;
                 };
-                out[s.index] = if residual > self.most { nowhere } else { s.at };
+                out[s.index] = if residual > self.most { undefined } else { s.at };
                 s.best = residual;
                 let (to, far) = (s.at + step, s.at + step - s.start);
                 if far.x.abs() > MAX_DRIFT * self.cell.x || far.y.abs() > MAX_DRIFT * self.cell.y {
@@ -234,7 +234,8 @@ struct Grid {
 }
 
 impl Grid {
-    fn over(area: Rect, reach: f64, square: f64) -> Self {
+    /// Divides `area` into cells. A square box has `square` along each side.
+    fn new(area: Rect, reach: f64, square: f64) -> Self {
         let oblong = (area.width() / area.height()).sqrt();
         let cells = |n: f64| if n.is_finite() { n.clamp(CELL_RANGE.0, CELL_RANGE.1) as usize } else { square as usize };
         Self { area, reach, columns: cells(square * oblong), rows: cells(square / oblong) }
@@ -250,43 +251,43 @@ impl Grid {
         self.columns + 3
     }
 
-    /// The nodes of the box and around it, row by row, and whether those around it are images under the map. If not, they lie on its
-    /// tangents.
-    fn nodes(&self, map: &dyn Map, read: Affine, write: Affine) -> (Vec<Node>, bool) {
+    /// The nodes of the box and around it, row by row, and `true` if the images of the latter come from the map, `false` if they come from
+    /// its tangents.
+    fn nodes(&self, map: &dyn Map, placed: Affine, after: Affine) -> (Vec<Node>, bool) {
         let (area, side) = (self.area, self.side());
         let along = |k: usize, from: f64, size: f64, n: usize| match k {
             0 => from - self.reach,
             k if k == n + 2 => from + size + self.reach,
             k => from + size * (k - 1) as f64 / n as f64,
         };
-        let at = |k: usize| {
+        let point = |k: usize| {
             let x = along(k % side, area.x0, area.width(), self.columns);
             Point::new(x, along(k / side, area.y0, area.height(), self.rows))
         };
         let inside: Vec<Point> = (0..side * (self.rows + 3))
-            .map(|k| at(k).to_vec2())
+            .map(|k| point(k).to_vec2())
             .map(|p| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)))
             .collect();
-        let places: Vec<Point> = inside.iter().map(|p| read * *p).collect();
-        let mut jets = vec![Jet::default(); places.len()];
-        map.jets(&places, &mut jets);
+        let points: Vec<Point> = inside.iter().map(|p| placed * *p).collect();
+        let mut jets = vec![Jet::default(); points.len()];
+        map.jets(&points, &mut jets);
         let mut creases = Creases::default();
         map.creases(&mut creases);
-        let node = |(k, (jet, place)): (usize, (&Jet, &Point))| {
-            let jet = in_pixels(jet, write, read);
-            let image = jet.p + jet.push(at(k) - inside[k]);
-            let image = if creases.defined_at(*place) { image } else { Point::new(f64::NAN, f64::NAN) };
-            Node { at: at(k), image }
+        let node = |(k, (jet, source)): (usize, (&Jet, &Point))| {
+            let jet = in_pixels(jet, after, placed);
+            let image = jet.p + jet.push(point(k) - inside[k]);
+            let image = if creases.defined_at(*source) { image } else { Point::new(f64::NAN, f64::NAN) };
+            Node { point: point(k), image }
         };
-        let mut nodes: Vec<Node> = jets.iter().zip(&places).enumerate().map(node).collect();
-        let around: Vec<usize> = (0..nodes.len()).filter(|k| at(*k) != inside[*k]).collect();
-        let beyond: Vec<Point> = around.iter().map(|k| read * at(*k)).collect();
+        let mut nodes: Vec<Node> = jets.iter().zip(&points).enumerate().map(node).collect();
+        let around: Vec<usize> = (0..nodes.len()).filter(|k| point(*k) != inside[*k]).collect();
+        let beyond: Vec<Point> = around.iter().map(|k| placed * point(*k)).collect();
         let mut images = vec![Point::ORIGIN; beyond.len()];
         map.points(&beyond, &mut images);
-        let continues = around.iter().zip(&beyond).zip(&mut images).all(|((k, place), image)| {
-            *image = write * *image;
-            let (by_tangent, from) = (nodes[*k].image, write * jets[*k].p);
-            creases.defined_at(*place) && image.distance(by_tangent) <= CONTINUES * by_tangent.distance(from)
+        let continues = around.iter().zip(&beyond).zip(&mut images).all(|((k, source), image)| {
+            *image = after * *image;
+            let (by_tangent, from) = (nodes[*k].image, after * jets[*k].p);
+            creases.defined_at(*source) && image.distance(by_tangent) <= CONTINUES * by_tangent.distance(from)
         });
         if continues {
             around.iter().zip(images).for_each(|(k, image)| nodes[*k].image = image);
@@ -331,7 +332,7 @@ fn barycentric(q: Point, a: Point, b: Point, c: Point) -> Option<(f64, f64)> {
     (v >= -ROUNDING && w >= -ROUNDING && v + w <= 1.0 + ROUNDING).then_some((v, w))
 }
 
-/// Lists the triangles near each place of the image, in order of precedence.
+/// A grid of buckets over the image, each with the triangles that may touch it, in order of precedence.
 struct Buckets {
     bounds: Rect,
     /// Start of each bucket's list, and the end of the last.
@@ -350,11 +351,11 @@ impl Buckets {
                 (out.index(r.origin()), out.index(Point::new(r.x1, r.y1)))
             })
             .collect();
-        let each = |((i0, j0), (i1, j1)): ((usize, usize), (usize, usize))| {
+        let buckets = |((i0, j0), (i1, j1)): ((usize, usize), (usize, usize))| {
             (j0..=j1).flat_map(move |j| (i0..=i1).map(move |i| j * BUCKETS + i))
         };
         for span in &spans {
-            each(*span).for_each(|b| out.starts[b + 1] += 1);
+            buckets(*span).for_each(|b| out.starts[b + 1] += 1);
         }
         for b in 0..BUCKETS * BUCKETS {
             out.starts[b + 1] += out.starts[b];
@@ -362,7 +363,7 @@ impl Buckets {
         out.lists = vec![0; out.starts[BUCKETS * BUCKETS] as usize];
         let mut next = out.starts.clone();
         for (k, span) in (0..).zip(&spans) {
-            for b in each(*span) {
+            for b in buckets(*span) {
                 out.lists[next[b] as usize] = k;
                 next[b] += 1;
             }
@@ -370,12 +371,13 @@ impl Buckets {
         out
     }
 
+    /// Column and row of the bucket that is nearest to a point.
     fn index(&self, q: Point) -> (usize, usize) {
         let along = |v: f64, a: f64, b: f64| (((v - a) / (b - a) * BUCKETS as f64).max(0.0) as usize).min(BUCKETS - 1);
         (along(q.x, self.bounds.x0, self.bounds.x1), along(q.y, self.bounds.y0, self.bounds.y1))
     }
 
-    fn at(&self, q: Point) -> Option<&[u32]> {
+    fn triangles_near(&self, q: Point) -> Option<&[u32]> {
         let b = &self.bounds;
         if !((b.x0..=b.x1).contains(&q.x) && (b.y0..=b.y1).contains(&q.y)) {
             return None;

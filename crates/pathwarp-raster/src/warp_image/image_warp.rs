@@ -37,7 +37,7 @@ pub(crate) fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
     Jet { p: to_source * jet.p, dx: along(jet.push(Vec2::new(p, q))), dy: along(jet.push(Vec2::new(r, s))) }
 }
 
-/// The lengths of the image of a unit in the directions that the map shrinks most and stretches most.
+/// The singular values of a jet, smaller one first: the lengths of the images of unit vectors in the directions of extreme stretch.
 pub(crate) fn lengths(jet: &Jet) -> [f64; 2] {
     let frobenius = jet.dx.hypot2() + jet.dy.hypot2();
     let discriminant = (frobenius * frobenius - 4.0 * jet.det() * jet.det()).max(0.0).sqrt();

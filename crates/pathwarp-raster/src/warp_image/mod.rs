@@ -1,4 +1,4 @@
-//! Warps bitmaps and paints: the inverse map gives every pixel of the result its place in the source.
+//! Warps bitmaps and paints: the inverse map gives every pixel of the result its position in the source.
 //!
 //! The derivatives of the inverse give the footprint of a pixel in the source, a parallelogram to first order. If that is no
 //! larger than a source pixel, the source is interpolated by the Catmull-Rom cubic, which reproduces the pixels. If it is larger,

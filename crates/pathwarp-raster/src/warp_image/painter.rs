@@ -19,7 +19,7 @@ use tiny_skia::Pixmap;
 /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result.
 pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let (width, height) = warp.size;
-    // Limit the size of the result in proportion to the source, as that of any result to its input.
+    // The limit on a result grows with its input, here the source.
     let limits = Limits::default().for_input(warp.source.data().len());
     let (width_px, height_px) = (f64::from(width), f64::from(height));
     let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;
@@ -42,8 +42,8 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
         let touched = (0..columns).step_by(TILE).filter(|left| reach.touches(left / TILE, band));
         let tile = |left: usize| PixelArea { left, top, width: TILE.min(columns - left), height };
         let tiles: Vec<PixelArea> = touched.map(tile).collect();
-        let memory = warp.inverse.prefers_batches().then(|| painter.memory(tiles.clone()));
-        let inverse = memory.as_ref().map_or(warp.inverse, |m| m as &dyn Map);
+        let cache = warp.inverse.prefers_batches().then(|| painter.cache(tiles.clone()));
+        let inverse = cache.as_ref().map_or(warp.inverse, |cache| cache as &dyn Map);
         let mut band = ImageBand { top, stride: columns * BYTES, rows, block: SourceBlock::default(), inverse };
         tiles.into_iter().for_each(|tile| painter.tile(&mut band, tile));
     });
@@ -81,10 +81,10 @@ struct ImagePainter<'a> {
 
 impl<'a> ImagePainter<'a> {
     /// Caches the values of the inverse for these tiles, computed in batches.
-    fn memory(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
-        let memory = Gathered::new(self.warp.inverse);
-        announce(tiles, &self.basis, (self.warp.shown, self.to_source), &memory, |pixels| memory.prepare(&[], pixels));
-        memory
+    fn cache(&self, tiles: Vec<PixelArea>) -> Gathered<'a> {
+        let cache = Gathered::new(self.warp.inverse);
+        announce(tiles, &self.basis, (self.warp.shown, self.to_source), &cache, |pixels| cache.prepare(&[], pixels));
+        cache
     }
 
     /// Paints a tile, dividing it until the inverse is close to a cubic.
@@ -100,19 +100,19 @@ impl<'a> ImagePainter<'a> {
 
     /// Paints a small tile, evaluating the inverse for every pixel.
     fn each_pixel(&self, band: &mut ImageBand<'_>, area: PixelArea) {
-        let place = |i: isize, j: isize| {
+        let centre = |i: isize, j: isize| {
             self.warp.shown * Point::new(area.left as f64 + i as f64 + 0.5, area.top as f64 + j as f64 + 0.5)
         };
-        let here = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
-        let mut places = [Point::ORIGIN; MIN_TILE];
+        let in_source = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
+        let mut centres = [Point::ORIGIN; MIN_TILE];
         let mut jets = [[Jet::default(); MIN_TILE]; MIN_TILE];
         for (j, row) in jets[..area.height].iter_mut().enumerate() {
-            for (i, p) in places[..area.width].iter_mut().enumerate() {
-                *p = place(i as isize, j as isize);
+            for (i, p) in centres[..area.width].iter_mut().enumerate() {
+                *p = centre(i as isize, j as isize);
             }
-            band.inverse.jets(&places[..area.width], &mut row[..area.width]);
+            band.inverse.jets(&centres[..area.width], &mut row[..area.width]);
             for jet in &mut row[..area.width] {
-                *jet = here(jet);
+                *jet = in_source(jet);
             }
         }
         let inverse = band.inverse;
@@ -120,7 +120,7 @@ impl<'a> ImagePainter<'a> {
             let known = usize::try_from(i).ok().zip(usize::try_from(j).ok());
             match known.filter(|(i, j)| *i < area.width && *j < area.height) {
                 Some((i, j)) => jets[j][i],
-                None => here(&inverse.jet(place(i, j))),
+                None => in_source(&inverse.jet(centre(i, j))),
             }
         };
         for (j, row) in jets.iter().enumerate().take(area.height) {
@@ -136,7 +136,7 @@ impl<'a> ImagePainter<'a> {
     }
 }
 
-/// A tile with a polynomial for the places of its pixels. It is a type rather than a closure because compiling all of it for the
+/// A tile with a polynomial for the source points of its pixels. It is a type rather than a closure because compiling all of it for the
 /// available vector unit depends on inlining.
 struct TracedTile<'a, 'b> {
     painter: &'a ImagePainter<'a>,
@@ -151,7 +151,7 @@ impl pulp::WithSimd for TracedTile<'_, '_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let Self { painter, band, area, trace } = self;
-        let mut method = TileMethod::of(&trace);
+        let mut method = TileMethod::choose(&trace);
         let mut block = std::mem::take(&mut band.block);
         if !matches!(method, TileMethod::Each) && !block.read(painter.bitmap, &trace, method.margin(), method.layout())
         {
@@ -160,17 +160,17 @@ impl pulp::WithSimd for TracedTile<'_, '_> {
         for j in 0..area.height {
             let row = trace.pixels(j);
             let out = band.row(area, j);
-            let other = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
+            let single = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
             match method {
-                TileMethod::Interpolated => rows::interpolated(&block, &row, out, other),
-                TileMethod::Stretched => rows::stretched(&block, &row, out, other),
+                TileMethod::Interpolated => rows::interpolated(&block, &row, out, single),
+                TileMethod::Stretched => rows::stretched(&block, &row, out, single),
                 TileMethod::Skewed(shapes) => {
                     let size = [(area.width - 1).max(1) as f32, (area.height - 1).max(1) as f32];
-                    rows::skewed(&block, &row, shapes.row(j as f32, size), out, other);
+                    rows::skewed(&block, &row, shapes.row(j as f32, size), out, single);
                 }
                 TileMethod::Each => {
                     for (i, pixel) in out.as_chunks_mut().0.iter_mut().enumerate() {
-                        *pixel = other(i);
+                        *pixel = single(i);
                     }
                 }
             }
@@ -179,7 +179,7 @@ impl pulp::WithSimd for TracedTile<'_, '_> {
     }
 }
 
-/// Extrapolates the jet of a neighbour to a pixel whose centre has no inverse, as is common outside the source. Returns it if the place
+/// Extrapolates the jet of a neighbour to a pixel whose centre has no inverse, as is common outside the source. Returns it if its point
 /// is outside the source, so that pixels along the edge are antialiased.
 fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Option<Jet> {
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
@@ -191,12 +191,12 @@ fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Opt
     })
 }
 
-/// Most cells along a side of the picture, and pixels of a cell of a small one.
+/// Largest number of cells along a side of the source, and the least pixels of the result along a side of a cell.
 const CELLS: usize = 192;
 const CELL: usize = 2;
 
-/// The tiles of the result that the picture touches. The inverse must not be evaluated in other tiles, where it may have values, too:
-/// a projective inverse also maps points beyond the horizon.
+/// The tiles of the result that the warped source touches. The inverse must not be evaluated in other tiles, where it may have values,
+/// too: a projective inverse also maps points beyond the horizon.
 pub(super) struct Reach {
     touched: Vec<bool>,
     columns: usize,
@@ -204,7 +204,7 @@ pub(super) struct Reach {
 
 impl Reach {
     pub(super) fn new(warp: &ImageWarp<'_>, to_target: Affine, tile: usize) -> Self {
-        let (columns, rows) = (tiles(warp.size.0, tile), tiles(warp.size.1, tile));
+        let (columns, rows) = (tiles_along(warp.size.0, tile), tiles_along(warp.size.1, tile));
         let mut out = Self { touched: vec![false; columns * rows], columns };
         let cells = (warp.size.0.max(warp.size.1) as usize / CELL).clamp(1, CELLS);
         let corners = images(warp.source, warp.placed, warp.map, to_target, cells);
@@ -239,21 +239,21 @@ impl Reach {
     }
 }
 
-fn tiles(pixels: u32, tile: usize) -> usize {
+fn tiles_along(pixels: u32, tile: usize) -> usize {
     (pixels as usize).div_ceil(tile)
 }
 
-/// Maps a grid over the picture to pixels of the result.
+/// Maps the corners of a grid over the source to pixels of the result, row by row.
 fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine, cells: usize) -> Vec<Vec<Point>> {
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let row = |j: usize| {
         let v = height * j as f64 / cells as f64;
-        let places: Vec<Point> = (0..=cells).map(|i| placed * Point::new(width * i as f64 / cells as f64, v)).collect();
-        let mut out = vec![Point::ORIGIN; places.len()];
-        map.points(&places, &mut out);
-        let defined = places.iter().zip(out);
+        let points: Vec<Point> = (0..=cells).map(|i| placed * Point::new(width * i as f64 / cells as f64, v)).collect();
+        let mut out = vec![Point::ORIGIN; points.len()];
+        map.points(&points, &mut out);
+        let defined = points.iter().zip(out);
         defined
             .map(|(p, q)| if creases.defined_at(*p) { to_target * q } else { Point::new(f64::NAN, f64::NAN) })
             .collect()

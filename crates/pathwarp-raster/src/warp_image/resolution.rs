@@ -12,7 +12,7 @@ use pathwarp::map::Map;
 use std::fmt;
 use tiny_skia::Pixmap;
 
-/// Margin around the target in pixels: renderers read up to two pixels on either side of a place.
+/// Margin around the target in pixels: renderers read up to two pixels on either side of a point.
 const MARGIN: f64 = 2.0;
 /// Reach of the paint around its source, in pixels: enough for the margin even where the map compresses it several times.
 const READ: f64 = 12.0;
@@ -28,7 +28,7 @@ const GUILTY: f64 = 0.4;
 /// A colour that the result must show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenColor {
-    /// Place in the plane of the result.
+    /// Point in the plane of the result.
     pub at: Point,
     /// Red, green, blue and alpha, 0 to 1, premultiplied.
     pub color: [f64; 4],
@@ -38,11 +38,11 @@ pub struct SeenColor {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ShadeTolerance {
-    /// Largest difference at most places.
+    /// Largest usual difference.
     pub usual: f64,
-    /// Fraction of the places that may exceed it.
+    /// Fraction of the colours that may exceed it.
     pub share: f64,
-    /// Largest difference at any place.
+    /// Largest difference of any colour.
     pub largest: f64,
 }
 
@@ -60,11 +60,11 @@ pub struct SmoothShade<'a> {
     pub colors: &'a Colors<'a>,
     /// The part of the paint to warp, in its coordinates.
     pub source: Rect,
-    /// From the paint's coordinates to the plane of the map.
+    /// Maps the paint's coordinates to the plane of the map.
     pub placed: Affine,
     /// The map.
     pub map: &'a dyn Map,
-    /// From the plane of the map to that of the result.
+    /// Maps the plane of the map to the plane of the result.
     pub after: Affine,
     /// The part of the result's plane to paint.
     pub target: Rect,
@@ -90,7 +90,7 @@ impl SmoothShade<'_> {
     /// Paints the target and two pixels around it. Returns the picture and its position in the plane.
     ///
     /// # Errors
-    /// Those of [`shade`].
+    /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the picture; [`Error::NoInverse`] if no pixel has an inverse.
     pub fn paint(&self) -> Result<(Pixmap, Rect), Error> {
         let finest = Vec2::new(self.target.width(), self.target.height()) * self.finest;
         let finest = Vec2::new(finest.x.max(self.coarsest.x), finest.y.max(self.coarsest.y));
@@ -138,7 +138,7 @@ impl Interpolation<'_> {
         let mut bends = [0.0_f64; 2];
         let mut off: Vec<f64> = Vec::with_capacity(seen.len());
         for s in seen {
-            let (found, bend) = self.at(s.at);
+            let (found, bend) = self.color_at(s.at);
             off.push(s.color.iter().zip(found).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max));
             if off.last().is_some_and(|o| *o > tolerance.usual) {
                 bends = [bends[0] + bend[0], bends[1] + bend[1]];
@@ -146,8 +146,8 @@ impl Interpolation<'_> {
         }
         off.sort_by(f64::total_cmp);
         let largest = off.last().copied().unwrap_or_default();
-        let within = off.len().saturating_sub(1 + (tolerance.share * off.len() as f64) as usize);
-        let usual = off.get(within).copied().unwrap_or_default();
+        let rank = off.len().saturating_sub(1 + (tolerance.share * off.len() as f64) as usize);
+        let usual = off.get(rank).copied().unwrap_or_default();
         if largest <= tolerance.largest && usual <= tolerance.usual {
             return None;
         }
@@ -159,16 +159,16 @@ impl Interpolation<'_> {
         Some(Vec2::new(factor(bends[0]), factor(bends[1])))
     }
 
-    /// The colour at a place, premultiplied, and its second differences along both sides.
-    fn at(&self, p: Point) -> ([f64; 4], [f64; 2]) {
+    /// The premultiplied colour at a point, and the second differences along both sides.
+    fn color_at(&self, p: Point) -> ([f64; 4], [f64; 2]) {
         let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
-        let place = |v: f64, from: f64, size: f64, n: usize| {
-            let v = ((v - from) / size * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
+        let cell = |v: f64, from: f64, size: f64, n: usize| {
+            let v = (((v - from) / size) * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
             let i = (v as usize).min(n.saturating_sub(2));
             (i, v - i as f64)
         };
-        let (i, u) = place(p.x, self.area.x0, self.area.width(), width);
-        let (j, v) = place(p.y, self.area.y0, self.area.height(), height);
+        let (i, u) = cell(p.x, self.area.x0, self.area.width(), width);
+        let (j, v) = cell(p.y, self.area.y0, self.area.height(), height);
         let read = |i: usize, j: usize| {
             let at = (j.min(height - 1) * width + i.min(width - 1)) * 4;
             let c = &self.pixmap.data()[at..at + 4];
@@ -203,8 +203,8 @@ mod tests {
     const SOURCE: Rect = Rect::new(0.0, 0.0, 100.0, 60.0);
 
     fn seen(map: &dyn Map, color: &dyn Fn(Point) -> [f64; 4]) -> Vec<SeenColor> {
-        let place = |k: u32| Point::new(f64::from(k) / 10.0, 60.0 * (f64::from(k) * 0.618).fract());
-        (0..1000).map(|k| SeenColor { at: map.point(place(k)), color: color(place(k)) }).collect()
+        let point = |k: u32| Point::new(f64::from(k) / 10.0, 60.0 * (f64::from(k) * 0.618).fract());
+        (0..1000).map(|k| SeenColor { at: map.point(point(k)), color: color(point(k)) }).collect()
     }
 
     fn painted(map: &dyn Map, color: &(dyn Fn(Point) -> [f64; 4] + Sync), tolerance: ShadeTolerance) -> (Pixmap, Rect) {
@@ -240,8 +240,9 @@ mod tests {
             let (pixmap, area) = painted(&Bend, color, ShadeTolerance::INVISIBLE);
             assert!(area.x0 < 0.0 && area.x1 > 100.0 && area.y0 < -8.0 && area.y1 > 68.0, "{area}");
             let found = Interpolation { pixmap: &pixmap, area };
-            let off =
-                |s: &SeenColor| s.color.iter().zip(found.at(s.at).0).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max);
+            let off = |s: &SeenColor| {
+                s.color.iter().zip(found.color_at(s.at).0).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max)
+            };
             let seen = seen(&Bend, color);
             (pixmap.width(), pixmap.height(), seen.iter().map(off).fold(0.0, f64::max))
         };

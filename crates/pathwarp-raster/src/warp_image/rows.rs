@@ -30,8 +30,8 @@ pub(super) enum TileMethod {
 pub(super) struct CornerShapes([[[f32; 3]; 2]; 2]);
 
 impl CornerShapes {
-    fn of(trace: &Trace) -> Self {
-        Self([0.0, 1.0].map(|v| [0.0, 1.0].map(|u| Footprint::inverse_matrix(&trace.at(u, v)).map(|m| m as f32))))
+    fn new(trace: &Trace) -> Self {
+        Self([0.0, 1.0].map(|v| [0.0, 1.0].map(|u| Footprint::inverse_matrix(&trace.jet_at(u, v)).map(|m| m as f32))))
     }
 
     /// Interpolates for row `j`: the entries in the first column, and their change from column to column.
@@ -46,7 +46,7 @@ impl CornerShapes {
 }
 
 impl TileMethod {
-    /// Reach of the kernels around the places of a tile, in pixels.
+    /// Reach of the kernels around the source points of a tile, in pixels.
     #[inline(always)]
     pub(super) fn margin(&self) -> f64 {
         match self {
@@ -62,11 +62,11 @@ impl TileMethod {
     }
 
     /// Chooses the method for a tile.
-    pub(super) fn of(trace: &Trace) -> Self {
+    pub(super) fn choose(trace: &Trace) -> Self {
         let share = |k: usize| k as f64 / (SAMPLES - 1) as f64;
         let (mut shrinks, mut skew) = (false, 0.0_f64);
         for k in 0..SAMPLES * SAMPLES {
-            let jet = trace.at(share(k % SAMPLES), share(k / SAMPLES));
+            let jet = trace.jet_at(share(k % SAMPLES), share(k / SAMPLES));
             let Some(footprint) = Footprint::new(&jet) else { continue };
             let [sx, s, sy] = footprint.stretch();
             if sx.max(sy) + s.abs() > MAX_STRETCH {
@@ -77,22 +77,22 @@ impl TileMethod {
         match shrinks {
             false => Self::Interpolated,
             true if skew <= MAX_SKEW => Self::Stretched,
-            true => Self::Skewed(CornerShapes::of(trace)),
+            true => Self::Skewed(CornerShapes::new(trace)),
         }
     }
 }
 
-/// The places of the pixels of a row, measured from the centre of the first pixel of a block.
-struct RowPlaces {
+/// The source points of the pixels of a row, measured from the centre of the first pixel of a block.
+struct RowPoints {
     x: [f32; TILE],
     y: [f32; TILE],
 }
 
-impl RowPlaces {
+impl RowPoints {
     #[inline(always)]
     fn new(row: &TraceRow, block: &SourceBlock) -> Self {
         let [x, y] = block.corner.map(|c| c as f64 + 0.5);
-        Self { x: cubic(row.place(0, x)), y: cubic(row.place(1, y)) }
+        Self { x: cubic(row.coordinate(0, x)), y: cubic(row.coordinate(1, y)) }
     }
 }
 
@@ -114,7 +114,7 @@ struct Taps<const SIDE: usize> {
     y: [[f32; TILE]; SIDE],
 }
 
-/// Interpolates the pixels of a row whose source is in the block, and calls `other` for the rest.
+/// Interpolates the pixels of a row whose source is in the block, and calls `other` for the others.
 #[inline(always)]
 pub(super) fn interpolated(
     block: &SourceBlock,
@@ -123,7 +123,7 @@ pub(super) fn interpolated(
     other: impl FnMut(usize) -> [u8; BYTES],
 ) {
     const SIDE: usize = 4;
-    let RowPlaces { x, y } = RowPlaces::new(row, block);
+    let RowPoints { x, y } = RowPoints::new(row, block);
     let (mut left, mut top) = ([0.0; TILE], [0.0; TILE]);
     let mut taps = Taps { first: [0; TILE], x: [[0.0; TILE]; SIDE], y: [[0.0; TILE]; SIDE] };
     for i in 0..TILE {
@@ -139,11 +139,11 @@ pub(super) fn interpolated(
     paint::<SIDE, { SIDE * BYTES }>(block, &taps, out, other);
 }
 
-/// Filters a row like [`interpolated`] with a kernel stretched along the axes of the picture.
+/// Filters a row with a kernel stretched along the axes of the picture. Calls `other` for pixels whose source is not in the block.
 #[inline(always)]
 pub(super) fn stretched(block: &SourceBlock, row: &TraceRow, out: &mut [u8], other: impl FnMut(usize) -> [u8; BYTES]) {
     const SIDE: usize = 8;
-    let RowPlaces { x, y } = RowPlaces::new(row, block);
+    let RowPoints { x, y } = RowPoints::new(row, block);
     let (left, wx) = kernels(&x, &stretches(row, 0));
     let (top, wy) = kernels(&y, &stretches(row, 1));
     let taps = Taps { first: block.firsts(&left, &top, SIDE, ChannelOrder::Interleaved), x: wx, y: wy };
@@ -160,7 +160,7 @@ fn paint<const SIDE: usize, const N: usize>(
     let mut colors = [[0.0; BYTES]; TILE];
     let n = out.len() / BYTES;
     for (i, color) in colors.iter_mut().enumerate().take(n) {
-        let Some((mut values, stride)) = block.from(taps.first[i]) else { continue };
+        let Some((mut values, stride)) = block.values_from(taps.first[i]) else { continue };
         let mut sums = [0.0; N];
         for j in 0..SIDE {
             let Some(pixels) = values.first_chunk::<N>() else { break };
@@ -178,7 +178,7 @@ fn paint<const SIDE: usize, const N: usize>(
     finish(&colors, &taps.first, out, other);
 }
 
-/// Writes the colours of a row, rounded as by [`super::sample::color`], and calls `other` for pixels outside the block.
+/// Writes the colours of a row, rounded as [`super::sample::color`] does, and calls `other` for pixels outside the block.
 #[inline(always)]
 fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut other: impl FnMut(usize) -> [u8; BYTES]) {
     // At this magnitude the last bit has the value 1: adding it rounds and leaves an integer in the low bits.
@@ -195,7 +195,7 @@ fn finish(colors: &[[f32; BYTES]; TILE], first: &Firsts, out: &mut [u8], mut oth
     }
 }
 
-/// Filters a row like [`interpolated`] with a kernel stretched along any axes. `shape` comes from [`CornerShapes::row`].
+/// Filters a row with a kernel stretched along any axes, which [`CornerShapes::row`] gives. Calls `other` for pixels outside the block.
 #[inline(always)]
 pub(super) fn skewed(
     block: &SourceBlock,
@@ -206,7 +206,7 @@ pub(super) fn skewed(
 ) {
     const SIDE: usize = 8;
     const MAX: f32 = MAX_STRETCH as f32;
-    let RowPlaces { x, y } = RowPlaces::new(row, block);
+    let RowPoints { x, y } = RowPoints::new(row, block);
     let mut shapes = [[0.0; TILE]; 3];
     for (k, values) in shapes.iter_mut().enumerate() {
         for (i, v) in values.iter_mut().enumerate() {
@@ -224,7 +224,7 @@ pub(super) fn skewed(
     let mut colors = [[0.0; BYTES]; TILE];
     let n = out.len() / BYTES;
     for (i, color) in colors.iter_mut().enumerate().take(n) {
-        let Some((mut values, stride)) = block.from(first[i]) else { continue };
+        let Some((mut values, stride)) = block.values_from(first[i]) else { continue };
         let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
         let (mut sums, mut totals) = ([[0.0; SIDE]; BYTES], [0.0; SIDE]);
         let mut at = top[i];
@@ -266,7 +266,7 @@ fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers that are not NaN.
+/// The larger of two numbers that are not NaN, in a single instruction.
 #[inline(always)]
 fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -281,7 +281,7 @@ fn sum(v: &[f32; 8]) -> f32 {
 /// Source pixels per pixel of the row along one coordinate, at least one.
 #[inline(always)]
 fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
-    let c = row.place(coordinate, 0.0);
+    let c = row.coordinate(coordinate, 0.0);
     let (along, down) = (cubic([c[1], 2.0 * c[2], 3.0 * c[3], 0.0]), cubic(row.down(coordinate)));
     let mut out = [0.0; TILE];
     for (o, (a, b)) in out.iter_mut().zip(along.iter().zip(&down)) {
@@ -291,7 +291,7 @@ fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
     out
 }
 
-/// Catmull-Rom weights of the four pixels around a place at distance `t` after the second.
+/// Catmull-Rom weights of the four pixels around a point at distance `t` after the second.
 #[inline(always)]
 fn weights(t: f32) -> [f32; 4] {
     const CUBED: [f32; 4] = [-0.5, 1.5, -1.5, 0.5];
@@ -305,16 +305,16 @@ fn weights(t: f32) -> [f32; 4] {
     out
 }
 
-/// Returns the first of the eight pixels under the stretched kernel of every place, and their weights, which sum to one.
+/// Returns the first of the eight pixels under the stretched kernel at every point, and their weights, which sum to one.
 #[inline(always)]
-fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; TILE]; 8]) {
+fn kernels(centres: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; TILE]; 8]) {
     let (mut first, mut weights, mut total) = ([0.0; TILE], [[0.0; TILE]; 8], [0.0; TILE]);
     for i in 0..TILE {
-        first[i] = (places[i] - 2.0 * stretch[i]).ceil();
+        first[i] = (centres[i] - 2.0 * stretch[i]).ceil();
     }
     for (k, weights) in weights.iter_mut().enumerate() {
         for i in 0..TILE {
-            weights[i] = catmull_rom((first[i] + k as f32 - places[i]) / stretch[i]);
+            weights[i] = catmull_rom((first[i] + k as f32 - centres[i]) / stretch[i]);
             total[i] += weights[i];
         }
     }
@@ -329,8 +329,8 @@ fn kernels(places: &[f32; TILE], stretch: &[f32; TILE]) -> ([f32; TILE], [[f32; 
 /// The Catmull-Rom cubic without branches: its outer piece, which is zero at 2, plus the excess of the inner piece,
 /// (1 − t)²(2t − 1).
 #[inline(always)]
-fn catmull_rom(place: f32) -> f32 {
-    let t = min(place.abs(), 2.0);
+fn catmull_rom(x: f32) -> f32 {
+    let t = min(x.abs(), 2.0);
     let m = max(1.0 - t, 0.0);
     ((2.5 - 0.5 * t) * t - 4.0) * t + 2.0 + m * m * (1.0 - 2.0 * m)
 }
@@ -341,13 +341,13 @@ mod tests {
 
     #[test]
     fn the_unstretched_kernel_equals_the_weights() {
-        let mut places = [0.0; TILE];
-        for (i, p) in places.iter_mut().enumerate() {
+        let mut centres = [0.0; TILE];
+        for (i, p) in centres.iter_mut().enumerate() {
             *p = 7.0 + i as f32 / TILE as f32;
         }
-        let (first, kernels) = kernels(&places, &[1.0; TILE]);
-        for (i, p) in places.into_iter().enumerate() {
-            // At an integer place the first of five pixels has weight zero.
+        let (first, kernels) = kernels(&centres, &[1.0; TILE]);
+        for (i, p) in centres.into_iter().enumerate() {
+            // At an integer point the first of five pixels has weight zero.
             let skipped = if p == 7.0 { 1 } else { 0 };
             assert_eq!(first[i] + skipped as f32, 6.0);
             for (k, w) in weights(p - 7.0).into_iter().enumerate() {

@@ -54,7 +54,7 @@ pub(super) fn cubic(t: f32) -> f32 {
     }
 }
 
-/// Weights of the four pixels around a place at distance `t` after the second.
+/// Weights of the four pixels around a point at distance `t` after the second.
 #[inline]
 fn weights(t: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
@@ -84,7 +84,7 @@ fn interpolated(source: &PyramidLevel<'_>, x: f64, y: f64) -> Channels {
     let clamped = |v: isize, size: usize| (v.max(0) as usize).min(size - 1);
     for (row, weight) in (top..).zip(wy) {
         for (column, w) in (left..).zip(wx) {
-            add(&mut sum, source.at(clamped(column, source.width), clamped(row, source.height)), weight * w);
+            add(&mut sum, source.pixel(clamped(column, source.width), clamped(row, source.height)), weight * w);
         }
     }
     sum
@@ -133,18 +133,18 @@ impl Footprint {
         self.matrix(self.longest, self.shortest)
     }
 
-    /// The same entries of S⁻¹ for a jet.
+    /// The upper left, off-diagonal and lower right entries of S⁻¹ for a jet.
     pub(super) fn inverse_matrix(jet: &Jet) -> [f64; 3] {
         Self::new(jet).map_or([1.0, 0.0, 1.0], |f| f.matrix(1.0 / f.longest, 1.0 / f.shortest))
     }
 
-    /// The matrix ax·axᵀ·p + (1 − ax·axᵀ)·q.
+    /// The matrix p·a·aᵀ + q·(1 − a·aᵀ), where a is the longest axis.
     fn matrix(&self, p: f64, q: f64) -> [f64; 3] {
         let [x, y] = self.axis;
         [q + (p - q) * x * x, (p - q) * x * y, q + (p - q) * y * y]
     }
 
-    /// Returns the weighted average around a place.
+    /// Returns the weighted average around a point.
     fn average(&self, pyramid: &Pyramid<'_>, x: f64, y: f64) -> Channels {
         let steps = (self.shortest / MIN_SHRINK).log2().floor().max(0.0) as usize;
         let steps = steps.min(pyramid.deepest());
@@ -152,13 +152,13 @@ impl Footprint {
         let scale = 0.5_f64.powi(steps as i32);
         let (p, q) = (self.longest * scale, self.shortest * scale);
         let ([sx, s, sy], [ix, i, iy]) = (self.matrix(p, q), self.matrix(1.0 / p, 1.0 / q));
-        // Measure places from pixel centres.
+        // Measure from pixel centres.
         let (x, y) = (x * scale - 0.5, y * scale - 0.5);
         let (wide, high) = (2.0 * (sx.abs() + s.abs()), 2.0 * (s.abs() + sy.abs()));
         let (mut sum, mut total) = ([0.0; 4], 0.0);
         let (top, bottom) = range(y - high, y + high, level.height);
         if i.abs() * (wide + high) < 1e-3 {
-            // The axes are those of the picture, so the weights of columns are the same in every row.
+            // The footprint lies along rows and columns, so the weights of columns are equal in every row.
             let (left, right) = range(x - wide, x + wide, level.width);
             let mut columns = [0.0; COLUMNS];
             let n = right.saturating_sub(left).min(COLUMNS);
@@ -166,17 +166,17 @@ impl Footprint {
                 *w = cubic(((left + k) as f64 - x) as f32 * ix as f32);
                 total += *w;
             }
-            let mut all = 0.0;
+            let mut rows = 0.0;
             for row in top..bottom {
                 let weight = cubic((row as f64 - y) as f32 * iy as f32);
-                all += weight;
+                rows += weight;
                 let mut part = [0.0; 4];
                 for (pixel, w) in level.pixels[row * level.width + left..][..n].iter().zip(&columns) {
                     add(&mut part, channels(*pixel), *w);
                 }
                 add(&mut sum, part, weight);
             }
-            total *= all;
+            total *= rows;
         } else {
             for row in top..bottom {
                 let dy = row as f64 - y;
@@ -195,7 +195,7 @@ impl Footprint {
                 }
             }
         }
-        // The place is on the picture, so about a quarter of the weights or more should be, too.
+        // The point is on the picture, so about a quarter of the weights or more should be, too.
         if total <= 0.1 * (p * q) as f32 {
             return interpolated(level, x + 0.5, y + 0.5);
         }
@@ -227,7 +227,7 @@ pub(super) struct PyramidLevel<'a> {
     pub(super) pixels: std::borrow::Cow<'a, [PremultipliedColorU8]>,
 }
 
-/// The pictures. Those after the first are computed on first use.
+/// The source and its halved copies, which are computed on first use.
 pub(super) struct Pyramid<'a> {
     source: PyramidLevel<'a>,
     halves: Vec<OnceLock<PyramidLevel<'static>>>,
@@ -260,7 +260,7 @@ impl<'a> Pyramid<'a> {
 
 impl PyramidLevel<'_> {
     #[inline]
-    pub(super) fn at(&self, x: usize, y: usize) -> Channels {
+    pub(super) fn pixel(&self, x: usize, y: usize) -> Channels {
         channels(self.pixels[y * self.width + x])
     }
 
@@ -331,10 +331,10 @@ mod tests {
         let rounded = |from: f64, to: f64, size: usize| {
             (from.ceil().max(0.0) as usize, ((to.floor() + 1.0).max(0.0) as usize).min(size))
         };
-        let places =
+        let bounds =
             [f64::NEG_INFINITY, -3.5, -1.0, -0.2, -0.0, 0.0, 0.3, 1.0, 6.5, 7.0, 9.9, 1e300, f64::INFINITY, f64::NAN];
-        for from in places {
-            for to in places {
+        for from in bounds {
+            for to in bounds {
                 assert_eq!(range(from, to, 8), rounded(from, to, 8), "{from} {to}");
             }
         }

@@ -1,4 +1,4 @@
-//! Warps a paint: the inverse map gives every pixel of the result its place in the paint.
+//! Warps a paint: the inverse map gives every pixel of the result its position in the paint.
 
 use super::grid_inverse::GridInverse;
 use super::tile::{MIN_TILE, PixelArea, TILE, announce};
@@ -13,7 +13,7 @@ use pathwarp::outline::boundary;
 use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-/// Largest error of a place in a traced tile, in pixels.
+/// Largest error of a source point in a traced tile, in pixels.
 const MAX_OFF: f64 = 1.0 / 64.0;
 /// Largest side of a block in pixels. Smooth colours tolerate a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic covers a
 /// larger area.
@@ -59,7 +59,7 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let unit = if det > 0.0 && det.is_finite() { det.sqrt() } else { shade.shown.determinant().abs().sqrt() };
     let painter = ShadePainter {
         shade,
-        cover: shade.shape.map(|shape| Cover::of(shape, shade.shown, shade.size)),
+        cover: shade.shape.map(|shape| Cover::new(shape, shade.shown, shade.size)),
         basis: ChebyshevBasis::new(),
         to_pixels: Affine::scale(MAX_ERROR / (MAX_OFF * unit)),
     };
@@ -79,13 +79,13 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let batches = shade.inverse.cost().batches.is_some();
     if known.len() >= WORTH_THREADS {
         for_each_chunk_pair(out.pixels_mut(), &mut known, columns * BLOCK, |i, pixels, known| {
-            let memory = batches.then(|| painter.memory(blocks(i * BLOCK, pixels.len() / columns)));
-            paint(i, pixels, known, memory.as_ref().map_or(shade.inverse, |m| m as &dyn Map));
+            let cache = batches.then(|| painter.cache(blocks(i * BLOCK, pixels.len() / columns)));
+            paint(i, pixels, known, cache.as_ref().map_or(shade.inverse, |cache| cache as &dyn Map));
         });
     } else {
         let all = || (0..height as usize).step_by(BLOCK).flat_map(|top| blocks(top, BLOCK.min(height as usize - top)));
-        let memory = batches.then(|| painter.memory(all().collect()));
-        let inverse = memory.as_ref().map_or(shade.inverse as &dyn Map, |m| m);
+        let cache = batches.then(|| painter.cache(all().collect()));
+        let inverse = cache.as_ref().map_or(shade.inverse as &dyn Map, |cache| cache);
         let bands = out.pixels_mut().chunks_mut(columns * BLOCK).zip(known.chunks_mut(columns * BLOCK));
         bands.enumerate().for_each(|(i, (pixels, known))| paint(i, pixels, known, inverse));
     }
@@ -125,12 +125,12 @@ impl<'a> ShadePainter<'a> {
     }
 
     /// Caches the values of the inverse for these blocks, computed in batches.
-    fn memory(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
-        let memory = Gathered::new(self.shade.inverse);
-        announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &memory, |pixels| {
-            memory.prepare(pixels, &[]);
+    fn cache(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
+        let cache = Gathered::new(self.shade.inverse);
+        announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &cache, |pixels| {
+            cache.prepare(pixels, &[]);
         });
-        memory
+        cache
     }
 
     /// Paints a block, dividing it until the inverse is close to a cubic.
@@ -158,22 +158,22 @@ impl<'a> ShadePainter<'a> {
         }
     }
 
-    /// Paints at most a tile. `row` gives the places of a row's pixels in the paint, measured in pixels.
+    /// Paints at most a tile. `row` gives the source points of a row's pixels, measured in pixels.
     fn paint<Row: Fn(usize) -> Point>(&self, band: &mut ShadeBand<'_>, area: PixelArea, row: impl Fn(usize) -> Row) {
         let to_paint = self.to_pixels.inverse();
-        let (mut places, mut colors) = ([Point::ORIGIN; TILE], [[0.0; 4]; TILE]);
+        let (mut points, mut colors) = ([Point::ORIGIN; TILE], [[0.0; 4]; TILE]);
         for j in 0..area.height {
             let start = (area.top - band.top + j) * band.columns + area.left;
             let pixels = &mut band.pixels[start..start + area.width];
             let known = &mut band.known[start..start + area.width];
             let from = row(j);
-            let (places, colors) = (&mut places[..area.width], &mut colors[..area.width]);
-            for (i, place) in places.iter_mut().enumerate() {
-                *place = to_paint * from(i);
+            let (points, colors) = (&mut points[..area.width], &mut colors[..area.width]);
+            for (i, point) in points.iter_mut().enumerate() {
+                *point = to_paint * from(i);
             }
-            (self.shade.colors)(places, colors);
-            for (((pixel, known), place), color) in pixels.iter_mut().zip(known).zip(places).zip(colors) {
-                if place.is_finite() {
+            (self.shade.colors)(points, colors);
+            for (((pixel, known), point), color) in pixels.iter_mut().zip(known).zip(points).zip(colors) {
+                if point.is_finite() {
                     // The cast saturates.
                     let [r, g, b, a] = color.map(|v| (v * 255.0 + 0.5) as u8);
                     *pixel = ColorU8::from_rgba(r, g, b, a).premultiply();
@@ -217,7 +217,7 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 const CELL: usize = 8;
 /// Flattening tolerance in pixels.
 const FLAT: f64 = 0.25;
-/// Reach of a pixel in pixels, since renderers read up to two on either side of a place.
+/// Reach of a pixel in pixels, since renderers read up to two on either side of a point.
 const MARGIN: f64 = 2.0 + FLAT;
 
 /// The cells that a shape touches or comes near.
@@ -228,7 +228,7 @@ pub(super) struct Cover {
 
 impl Cover {
     /// `shown` maps the pixels of a picture of the given size to the shape's plane.
-    pub(super) fn of(shape: &BezPath, shown: Affine, (width, height): (u32, u32)) -> Self {
+    pub(super) fn new(shape: &BezPath, shown: Affine, (width, height): (u32, u32)) -> Self {
         let [columns, rows] = [width, height].map(|n| (n as usize).div_ceil(CELL));
         let mut cover = Self { columns, cells: vec![false; columns * rows] };
         let mut windings = vec![0_i32; columns * rows];
@@ -297,9 +297,9 @@ pub(super) mod tests {
     use kurbo::{Rect, Shape as _, Vec2};
     use pathwarp::map::{Formula, Jet, Real};
 
-    /// The colours of many places by that of each.
+    /// A paint whose colours are computed point by point.
     pub(crate) fn each(color: impl Fn(Point) -> [f64; 4]) -> impl Fn(&[Point], &mut [[f64; 4]]) {
-        move |places, out| out.iter_mut().zip(places).for_each(|(o, p)| *o = color(*p))
+        move |points, out| out.iter_mut().zip(points).for_each(|(o, p)| *o = color(*p))
     }
 
     /// Two shears, whose inverse has a closed form.
@@ -338,7 +338,7 @@ pub(super) mod tests {
             let [r, g, b, a] = color(from);
             let found = [found.red(), found.green(), found.blue(), found.alpha()].map(f64::from);
             for (k, (w, f)) in [r * a, g * a, b * a, a].into_iter().zip(found).enumerate() {
-                // The second channel jumps, and a place that is off by a hundredth of a pixel may cross the jump.
+                // The second channel jumps, and a point that is off by a hundredth of a pixel may cross the jump.
                 let crosses = k == 1 && ((from.y / 10.0).fract().abs() - 0.5).abs() > 0.499;
                 assert!((w * 255.0 - f).abs() <= 1.6 || crosses, "{k} at {from:?}: {w} {f}");
             }
@@ -373,17 +373,17 @@ pub(super) mod tests {
             assert_eq!((picture.pixel(0, y), picture.pixel(2, y)), (Some(first), Some(first)));
             assert!(first.green().abs_diff((255.0 * (f64::from(y) + 0.5) / 20.0) as u8) <= 1, "{y}");
         }
-        let nowhere = Shade {
+        let beyond = Shade {
             colors: &each(color),
             inverse: &inverse,
             shown: Affine::translate((500.0, 0.0)),
             size: (20, 20),
             shape: None,
         };
-        assert_eq!(shade(&nowhere), Err(Error::NoInverse));
+        assert_eq!(shade(&beyond), Err(Error::NoInverse));
     }
 
-    /// Agrees with kurbo's winding numbers at every pixel: no pixel within reach of one inside is left out.
+    /// By kurbo's winding numbers, no pixel within reach of one inside is left out.
     #[test]
     fn no_seen_pixel_is_left_out() {
         for (data, most) in [
@@ -394,7 +394,7 @@ pub(super) mod tests {
             let path = BezPath::from_svg(data).unwrap();
             let (shown, size) = (Affine::new([0.5, 0.0, 0.0, 0.5, 3.0, -2.0]), (640, 416));
             let path = Affine::translate((3.0, -2.0)) * path;
-            let cover = Cover::of(&path, shown, size);
+            let cover = Cover::new(&path, shown, size);
             let (mut covered, mut all) = (0, 0);
             for (j, i) in (0..size.1).flat_map(|j| (0..size.0).map(move |i| (j, i))) {
                 let held = cover.seen(PixelArea { left: i as usize, top: j as usize, width: 1, height: 1 }).is_some();

@@ -52,8 +52,8 @@ impl PixelArea {
         shown.transform_rect_bbox(Rect::new(left, top, left + self.width as f64, top + self.height as f64))
     }
 
-    /// Approximates the source places of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the
-    /// plane, `inverse` maps the plane back, and `last` maps to the coordinates of the result.
+    /// Approximates the source points of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the plane,
+    /// `inverse` maps the plane back, and `last` maps to the coordinates in which source points are measured.
     pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, last: Affine) -> Option<Trace> {
         let mut values = [Point::ORIGIN; SAMPLES];
         inverse.points(&self.samples(basis, shown), &mut values);
@@ -69,20 +69,20 @@ impl PixelArea {
         ((self.width - 1).max(1) as f64, (self.height - 1).max(1) as f64)
     }
 
-    /// The places where a trace samples the inverse.
+    /// The points at which a trace samples the inverse.
     fn samples(self, basis: &ChebyshevBasis, shown: Affine) -> [Point; SAMPLES] {
         let (size, left, top) = (self.span(), self.left as f64 + 0.5, self.top as f64 + 0.5);
-        let mut places = [Point::ORIGIN; SAMPLES];
-        for (place, (u, v)) in places.iter_mut().zip(basis.places()) {
-            *place = shown * Point::new(left + u * size.0, top + v * size.1);
+        let mut samples = [Point::ORIGIN; SAMPLES];
+        for (sample, (u, v)) in samples.iter_mut().zip(basis.sample_points()) {
+            *sample = shown * Point::new(left + u * size.0, top + v * size.1);
         }
-        places
+        samples
     }
 
-    /// The centres of its pixels in the plane, row by row.
+    /// The centres of the pixels in the plane, row by row.
     pub(super) fn pixels(self, shown: Affine) -> impl Iterator<Item = Point> {
         let centre = move |k: usize| {
-            let (i, j) = (self.left + k % self.width, self.top + k / self.width);
+            let (i, j) = (self.left + (k % self.width), self.top + (k / self.width));
             shown * Point::new(i as f64 + 0.5, j as f64 + 0.5)
         };
         (0..self.width * self.height).map(centre)
@@ -142,13 +142,13 @@ pub(super) struct SourceBlock {
 }
 
 impl SourceBlock {
-    /// Reads the pixels that a tile needs: its places and `margin` pixels around them. Returns `false` if there are none or too many.
+    /// Reads the pixels that a tile needs: its source points and `margin` pixels around them. Returns `false` if there are none or too many.
     #[inline(always)]
     pub(super) fn read(&mut self, source: BitmapBytes<'_>, trace: &Trace, margin: f64, layout: ChannelOrder) -> bool {
         let share = |k: usize| k as f64 / (PER_SIDE - 1) as f64;
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for k in 0..PER_SIDE * PER_SIDE {
-            let p = trace.at(share(k % PER_SIDE), share(k / PER_SIDE)).p;
+            let p = trace.jet_at(share(k % PER_SIDE), share(k / PER_SIDE)).p;
             low = [low[0].min(p.x), low[1].min(p.y)];
             high = [high[0].max(p.x), high[1].max(p.y)];
         }
@@ -183,8 +183,8 @@ impl SourceBlock {
         true
     }
 
-    /// Returns the indices of the first of `side` × `side` pixels at `left`, `top` from the corner, or [`OUTSIDE`] if they are not all
-    /// in the block.
+    /// Returns the index of the upper left of `side` × `side` pixels at each `left`, `top` from the corner, or [`OUTSIDE`] if they are not
+    /// all in the block.
     #[inline(always)]
     pub(super) fn firsts(&self, left: &[f32; TILE], top: &[f32; TILE], side: usize, layout: ChannelOrder) -> Firsts {
         // At this magnitude the last bit has the value 1, so the low bits hold the integer that was added.
@@ -204,7 +204,7 @@ impl SourceBlock {
 
     /// Returns the values from an index on, and the number of values per row.
     #[inline(always)]
-    pub(super) fn from(&self, first: u32) -> Option<(&[f32], usize)> {
+    pub(super) fn values_from(&self, first: u32) -> Option<(&[f32], usize)> {
         self.values.get(first as usize..).map(|v| (v, self.size[0] * BYTES))
     }
 }

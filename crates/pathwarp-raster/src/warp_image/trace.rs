@@ -1,4 +1,4 @@
-//! Approximates the source places of the pixels of a tile by a cubic polynomial in column and row.
+//! Approximates the source points of the pixels of a tile by a cubic polynomial in column and row.
 //!
 //! Evaluating the inverse map for every pixel costs more than everything else. Over a few pixels its bicubic interpolant at the
 //! 4 × 4 Chebyshev points is as accurate. Nine further values, at the extrema of the leading term of the interpolation error,
@@ -7,7 +7,7 @@
 use kurbo::{Point, Vec2};
 use pathwarp::map::Jet;
 
-/// Largest error of a place in source pixels: a quarter of a level at the sharpest possible edge.
+/// Largest error of a source point in source pixels: a quarter of a level at the sharpest possible edge.
 pub(super) const MAX_ERROR: f64 = 1.0 / 1024.0;
 /// Interpolation points along a side.
 const NODES: usize = 4;
@@ -44,7 +44,7 @@ impl ChebyshevBasis {
     }
 
     /// The sample points as fractions of the width and height of the tile.
-    pub(super) fn places(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub(super) fn sample_points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let nodes = self.nodes.iter().flat_map(|v| self.nodes.iter().map(move |u| (*u, *v)));
         let checks = (0..CHECKED * CHECKED).map(|k| (0.5 * (k % CHECKED) as f64, 0.5 * (k / CHECKED) as f64));
         nodes.chain(checks)
@@ -64,9 +64,9 @@ impl ChebyshevBasis {
             }
         }
         let out = Trace { coefficients, per_pixel: (1.0 / size.0, 1.0 / size.1) };
-        let checks = self.places().zip(values).skip(NODES * NODES);
+        let checks = self.sample_points().zip(values).skip(NODES * NODES);
         // Without an inverse, the distance is NaN.
-        let is_close = |((u, v), p): ((f64, f64), &Point)| (out.at(u, v).p - *p).hypot() <= MAX_ERROR;
+        let is_close = |((u, v), p): ((f64, f64), &Point)| (out.jet_at(u, v).p - *p).hypot() <= MAX_ERROR;
         checks.into_iter().all(is_close).then_some(out)
     }
 }
@@ -80,21 +80,21 @@ pub(super) struct Trace {
 
 impl Trace {
     /// The jet at a fraction of width and height; its derivatives are per pixel.
-    pub(super) fn at(&self, u: f64, v: f64) -> Jet {
+    pub(super) fn jet_at(&self, u: f64, v: f64) -> Jet {
         self.row(v).jet(u)
     }
 
     /// The jet at a column and row.
     pub(super) fn pixel(&self, column: usize, row: usize) -> Jet {
-        self.at(column as f64 * self.per_pixel.0, row as f64 * self.per_pixel.1)
+        self.jet_at(column as f64 * self.per_pixel.0, row as f64 * self.per_pixel.1)
     }
 
     fn row(&self, v: f64) -> TraceRow {
         let [a, b, c, d] = &self.coefficients;
-        let mut out = TraceRow { place: [[0.0; 2]; NODES], down: [[0.0; 2]; NODES], per_column: self.per_pixel.0 };
+        let mut out = TraceRow { point: [[0.0; 2]; NODES], down: [[0.0; 2]; NODES], per_column: self.per_pixel.0 };
         for i in 0..NODES {
             for k in 0..2 {
-                out.place[i][k] = ((d[i][k] * v + c[i][k]) * v + b[i][k]) * v + a[i][k];
+                out.point[i][k] = ((d[i][k] * v + c[i][k]) * v + b[i][k]) * v + a[i][k];
                 out.down[i][k] = ((3.0 * d[i][k] * v + 2.0 * c[i][k]) * v + b[i][k]) * self.per_pixel.1;
             }
         }
@@ -107,18 +107,17 @@ impl Trace {
     }
 }
 
-/// One row of a tile: polynomials in the fraction of its width.
+/// One row of a tile: polynomials in the fraction of its width, for the source point and its derivative from row to row.
 pub(super) struct TraceRow {
-    place: [[f64; 2]; NODES],
-    /// Derivative from row to row.
+    point: [[f64; 2]; NODES],
     down: [[f64; 2]; NODES],
     pub(super) per_column: f64,
 }
 
 impl TraceRow {
-    /// The place of a column.
+    /// The source point of a column.
     pub(super) fn point(&self, column: usize) -> Point {
-        let (u, [a, b, c, d]) = (column as f64 * self.per_column, &self.place);
+        let (u, [a, b, c, d]) = (column as f64 * self.per_column, &self.point);
         let value = |k: usize| ((d[k] * u + c[k]) * u + b[k]) * u + a[k];
         Point::new(value(0), value(1))
     }
@@ -126,19 +125,19 @@ impl TraceRow {
     fn jet(&self, u: f64) -> Jet {
         let value = |c: &[[f64; 2]; NODES], k: usize| ((c[3][k] * u + c[2][k]) * u + c[1][k]) * u + c[0][k];
         let slope = |k: usize| {
-            let c = &self.place;
+            let c = &self.point;
             ((3.0 * c[3][k] * u + 2.0 * c[2][k]) * u + c[1][k]) * self.per_column
         };
         Jet {
-            p: Point::new(value(&self.place, 0), value(&self.place, 1)),
+            p: Point::new(value(&self.point, 0), value(&self.point, 1)),
             dx: Vec2::new(slope(0), slope(1)),
             dy: Vec2::new(value(&self.down, 0), value(&self.down, 1)),
         }
     }
 
-    /// Coefficients of one coordinate of the place minus `base`, by powers of the column.
-    pub(super) fn place(&self, coordinate: usize, base: f64) -> [f32; NODES] {
-        self.by_column(&self.place, coordinate, base)
+    /// Coefficients of one coordinate of the source point minus `base`, by powers of the column.
+    pub(super) fn coordinate(&self, coordinate: usize, base: f64) -> [f32; NODES] {
+        self.by_column(&self.point, coordinate, base)
     }
 
     /// Coefficients of the derivative from row to row.
@@ -163,7 +162,7 @@ mod tests {
     fn trace(f: impl Fn(f64, f64) -> Point) -> Option<Trace> {
         let basis = ChebyshevBasis::new();
         let mut values = [Point::ORIGIN; SAMPLES];
-        for (a, (u, v)) in values.iter_mut().zip(basis.places()) {
+        for (a, (u, v)) in values.iter_mut().zip(basis.sample_points()) {
             *a = f(31.0 * u, 31.0 * v);
         }
         basis.interpolate(&values, (31.0, 31.0))
@@ -181,7 +180,7 @@ mod tests {
             assert!((jet.dy - Vec2::new(3e-4 * y * y - 0.01 * x, 2.0 + 1e-4 * x * x)).hypot() < 1e-11);
             let row = found.pixels(j);
             for (k, want) in [jet.p.x, jet.p.y].into_iter().enumerate() {
-                let c = row.place(k, 3.0);
+                let c = row.coordinate(k, 3.0);
                 let x = i as f32;
                 let got = ((c[3] * x + c[2]) * x + c[1]) * x + c[0];
                 assert!((f64::from(got) + 3.0 - want).abs() < 1e-4);

@@ -29,9 +29,9 @@ fn expressions() {
 #[test]
 fn variables() {
     let of = |value: &str| {
-        let own = [("--a", "1px"), ("--b", "var(--a)"), ("--c", "var(--d)"), ("--d", "var(--c)")];
-        let own: Vec<_> = own.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
-        let all = custom(&own, &Custom::from([("--e".to_owned(), "x".into())]));
+        let declared = [("--a", "1px"), ("--b", "var(--a)"), ("--c", "var(--d)"), ("--d", "var(--c)")];
+        let declared: Vec<_> = declared.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
+        let all = custom(&declared, &Custom::from([("--e".to_owned(), "x".into())]));
         substituted(value, &|n| all.get(n).map(ToString::to_string))
     };
     assert_eq!(of("a var( --b ) var(--e) b").as_deref(), Some("a 1px x b"));
@@ -43,9 +43,9 @@ fn variables() {
 
 #[test]
 fn variables_that_multiply_end() {
-    let mut own = vec![("--0".to_owned(), "x".repeat(100))];
-    own.extend((1..40).map(|i| (format!("--{i}"), format!("var(--{0})var(--{0})", i - 1))));
-    let all = custom(&own, &Custom::new());
+    let mut declared = vec![("--0".to_owned(), "x".repeat(100))];
+    declared.extend((1..40).map(|i| (format!("--{i}"), format!("var(--{0})var(--{0})", i - 1))));
+    let all = custom(&declared, &Custom::new());
     assert!(all.values().all(|v| v.len() <= MAX_LEN));
 }
 

@@ -1,13 +1,13 @@
-//! How much two pictures differ.
+//! Measures the difference between the picture of a result and the warped picture of the original.
 
 use pathwarp_raster::Pixmap;
 use std::f64::consts::TAU;
 
-/// A pixel differs if a channel is outside the range that the other picture has within [`REACH`] pixels by more than this. Edges may move,
-/// and letters are drawn at fractions of pixels.
+/// A pixel differs if a channel is outside its range within [`REACH`] pixels in the other picture by more than this. Edges may move, and
+/// letters are drawn at fractions of pixels.
 const VISIBLE: u8 = 40;
 const REACH: usize = 3;
-/// Pixels this close to the edge of the page are not compared: they depend on what is off the page, and on antialiasing.
+/// Pixels this close to the edge of the page are not compared: they depend on content off the page, and on antialiasing.
 const EDGE: usize = 8;
 /// The largest fraction of the painted pixels that may differ, however small the drawing is on its page.
 const MAX_OF_INK: f64 = 0.25;
@@ -24,17 +24,17 @@ pub(super) struct Picture {
     pub(super) data: Vec<u8>,
 }
 
-/// How many pixels differ.
+/// The pixels that differ, as fractions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
-    /// As a fraction of the page.
+    /// Fraction of the page.
     pub(super) of_page: f64,
-    /// As a fraction of the painted pixels.
+    /// Fraction of the painted pixels.
     pub(super) of_ink: f64,
 }
 
 impl Gap {
-    /// Whether people would see a difference.
+    /// Returns `true` if people would see a difference.
     pub(super) fn differs(self, max_of_page: f64) -> bool {
         self.of_page > max_of_page || self.of_ink > MAX_OF_INK
     }
@@ -99,7 +99,7 @@ impl Picture {
         Self { width: pixmap.width() as usize, height: pixmap.height() as usize, data: pixmap.data().to_vec() }
     }
 
-    /// The picture cut to this size, or with transparent pixels to the right and below.
+    /// The picture at this size, cut off or with transparent pixels to the right and below.
     pub(super) fn on_page(&self, [width, height]: [usize; 2]) -> Self {
         let mut data = vec![0; 4 * width * height];
         let across = 4 * width.min(self.width);
@@ -118,26 +118,26 @@ impl Picture {
             ((u16::from(before) + u16::from(data[at]) + u16::from(after)) / 3) as u8
         };
         let across: Vec<u8> =
-            (0..self.data.len()).map(|i| mean(&self.data, 4, i, i / 4 % w == 0, i / 4 % w == w - 1)).collect();
+            (0..self.data.len()).map(|i| mean(&self.data, 4, i, (i / 4) % w == 0, (i / 4) % w == w - 1)).collect();
         let data = (0..across.len()).map(|i| mean(&across, 4 * w, i, i < 4 * w, i >= 4 * w * (h - 1))).collect();
         Self { width: w, height: h, data }
     }
 
-    /// The image of the picture under a map, and which of its pixels are to be compared. Where the source is off the page, the image is that of
+    /// The image of the picture under a map, and `true` for each pixel to be compared. Pixels whose source is off the page come from
     /// `found`.
-    fn bent(&self, bend: Bend, page: [usize; 2], found: &Self) -> (Self, Vec<bool>) {
+    fn warped(&self, bend: Bend, page: [usize; 2], found: &Self) -> (Self, Vec<bool>) {
         let mut data = found.data.clone();
         let mut known = vec![false; self.width * self.height];
         let inside = |x: usize, y: usize, edge: usize| {
-            let within = |c: usize, side: usize| c >= edge && c + edge < side;
-            within(x, page[0]) && within(y, page[1])
+            let is_inside = |c: usize, side: usize| c >= edge && c + edge < side;
+            is_inside(x, page[0]) && is_inside(y, page[1])
         };
         for (i, is_known) in known.iter_mut().enumerate() {
             let (x, y) = (i % self.width, i / self.width);
             if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| inside(*x, *y, 0)) {
                 let from = 4 * (from_y * self.width + from_x);
                 data[4 * i..4 * i + 4].copy_from_slice(&self.data[from..from + 4]);
-                // A shift moves nothing across the upper and lower edges, but may bring in what was hidden beyond the left one.
+                // A shift moves nothing across the upper and lower edges, but may bring in hidden content from beyond the left edge.
                 *is_known = match bend {
                     Bend::Shift(by) => x >= 2 * by + EDGE && x + EDGE < page[0],
                     Bend::Curve { .. } => inside(x, y, EDGE) && inside(from_x, from_y, EDGE),
@@ -147,7 +147,7 @@ impl Picture {
         (Self { width: self.width, height: self.height, data }, known)
     }
 
-    /// Whether a pixel is outside the range of colours that `other` has near it.
+    /// Returns `true` if a pixel is outside the range of colours that `other` has near it.
     fn stands_out(&self, other: &Self, at: usize) -> bool {
         let (x, y) = (at % self.width, at / self.width);
         let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(self.height);
@@ -160,19 +160,19 @@ impl Picture {
             }
         }
         (0..4).any(|k| {
-            let own = self.data[4 * at + k];
-            own > max[k].saturating_add(VISIBLE) || own.saturating_add(VISIBLE) < min[k]
+            let value = self.data[4 * at + k];
+            value > max[k].saturating_add(VISIBLE) || value.saturating_add(VISIBLE) < min[k]
         })
     }
 }
 
-/// Compares the picture of a result with the image of the original picture under the map. `page` is the extent of the drawing's page. Also
-/// returns, for every pixel, whether it differs.
+/// Compares the picture of a result with the image of the original picture under the map. `page` is the extent of the drawing's page.
+/// Also returns `true` for every pixel that differs.
 pub(super) fn compare(original: &Picture, found: &Picture, bend: Bend, page: [usize; 2]) -> (Gap, Vec<bool>) {
     let page = [page[0].min(found.width), page[1].min(found.height)];
     let soft = matches!(bend, Bend::Curve { .. }).then(|| [original.softened(), found.softened()]);
     let [original, found] = soft.as_ref().map_or([original, found], |[o, f]| [o, f]);
-    let (expected, known) = original.bent(bend, page, found);
+    let (expected, known) = original.warped(bend, page, found);
     let apart = |i: usize| (4 * i..4 * i + 4).any(|k| expected.data[k].abs_diff(found.data[k]) > VISIBLE);
     let marks: Vec<bool> = (0..known.len())
         .map(|i| known[i] && apart(i) && (expected.stands_out(found, i) || found.stands_out(&expected, i)))

@@ -40,10 +40,10 @@ const SIDE: f64 = 1200.0;
 const MAX_SCALE: f64 = 64.0;
 /// The largest page, in px, that is shown whole.
 const MAX_PAGE: f64 = 8000.0;
-/// How far the shift goes, as a fraction of the page's width.
+/// Length of the shift, as a fraction of the page's width.
 const SHIFT: f64 = 0.04;
 
-/// A way in which a drawing is tried: a name, and the value of `--strokes` if it is bent. Otherwise the name is that of a format.
+/// A way to try a drawing: a name, and the value of `--strokes` if it is warped. Otherwise the name is a format.
 type Way = (&'static str, Option<&'static str>);
 
 const WAYS: [Way; 5] =
@@ -84,7 +84,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let ways: Vec<Way> = WAYS.into_iter().filter(wanted).collect();
     let sheet: Option<&PathBuf> = arguments.get_one("sheet");
     let judge = Judge::new(program, ways, sheet.cloned())?;
-    let found = judge.all(&inputs)?;
+    let found = judge.try_all(&inputs)?;
     if let Some(file) = arguments.get_one::<PathBuf>("json") {
         let all: Vec<_> = found.iter().map(Finding::json).collect();
         fs::write(file, serde_json::Value::from(all).to_string()).map_err(at(file))?;
@@ -103,8 +103,8 @@ struct Finding {
     /// The exit code of the program; `None` if it was killed.
     code: Option<i32>,
     /// The program's first message.
-    said: String,
-    /// How much the pictures differ, or why they could not be compared. `None` if Chromium cannot parse the drawing.
+    note: String,
+    /// The difference of the pictures, or the reason why they could not be compared. `None` if Chromium cannot parse the drawing.
     gap: Option<Result<Gap, String>>,
     /// The file name of a picture of the difference.
     picture: Option<String>,
@@ -122,13 +122,13 @@ impl Finding {
             None => "not XML".into(),
         };
         let code = self.code.map_or_else(|| "killed".to_owned(), |c| format!("exit {c}"));
-        format!("{share}\t{}\t{}\t{code}\t{}", self.way.0, self.file.display(), self.said)
+        format!("{share}\t{}\t{}\t{code}\t{}", self.way.0, self.file.display(), self.note)
     }
 
     fn json(&self) -> serde_json::Value {
         let gap = self.gap.as_ref().and_then(|g| g.as_ref().ok());
         serde_json::json!({
-            "file": self.file.display().to_string(), "way": self.way.0, "exit": self.code, "said": self.said,
+            "file": self.file.display().to_string(), "way": self.way.0, "exit": self.code, "said": self.note,
             "counts": self.gap.is_some(), "differs": self.differs(), "share": gap.map(|g| g.of_page), "ofInk": gap.map(|g| g.of_ink),
             "problem": self.gap.as_ref().and_then(|g| g.as_ref().err()), "picture": self.picture,
         })
@@ -173,7 +173,7 @@ impl Judge {
     }
 
     /// Tries all drawings among files and folders.
-    fn all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
+    fn try_all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
         let mut drawings = Vec::new();
         for input in inputs {
             if input.is_dir() {
@@ -185,7 +185,7 @@ impl Judge {
         if drawings.is_empty() {
             return Err("there is no drawing".into());
         }
-        let found = shell::in_parallel(&drawings, |file| self.one(file));
+        let found = shell::in_parallel(&drawings, |file| self.try_drawing(file));
         Ok(found.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
@@ -210,10 +210,10 @@ impl Judge {
     }
 
     /// Tries a drawing in all ways.
-    fn one(&self, original: &Path) -> Result<Vec<Finding>, ChoreError> {
+    fn try_drawing(&self, original: &Path) -> Result<Vec<Finding>, ChoreError> {
         let file = self.copied(original)?;
         let finding =
-            |way, gap| Finding { file: original.to_owned(), way, code: None, said: String::new(), gap, picture: None };
+            |way, gap| Finding { file: original.to_owned(), way, code: None, note: String::new(), gap, picture: None };
         let shown = self.browsers.show(&file, None).and_then(|size| {
             let pages = |length: f64| if length > 0.0 { length.ceil().min(MAX_PAGE) } else { 600.0 };
             let size_px = [pages(size.right), pages(size.bottom)];
@@ -231,9 +231,9 @@ impl Judge {
         for way in &self.ways {
             let mut finding = finding(*way, None);
             let gap = if way.1.is_some() {
-                self.bent(&file, (size, scale), &before, &mut finding)
+                self.compare_warped(&file, (size, scale), &before, &mut finding)
             } else {
-                self.drawn(&file, scale, &mut finding)
+                self.compare_drawn(&file, scale, &mut finding)
             };
             finding.gap = Some(gap);
             found.push(finding);
@@ -242,7 +242,7 @@ impl Judge {
     }
 
     /// Warps a drawing and compares the pictures.
-    fn bent(
+    fn compare_warped(
         &self,
         file: &Path,
         (size, scale): ([f64; 2], f64),
@@ -277,8 +277,8 @@ impl Judge {
         self.compared([original, &picture], bend, page, finding)
     }
 
-    /// Draws a drawing as it is, at this many pixels per px, and compares the picture with that of Chromium in a window of its size.
-    fn drawn(&self, file: &Path, scale: f64, finding: &mut Finding) -> Result<Gap, String> {
+    /// Draws a drawing as it is, with `scale` pixels per px, and compares the picture with Chromium's in a window of its size.
+    fn compare_drawn(&self, file: &Path, scale: f64, finding: &mut Finding) -> Result<Gap, String> {
         let png = self.beside(file, "png");
         if finding.way.0 == "png" {
             self.result(&["render", "--scale", &scale.to_string()], file, &png, finding)?;
@@ -313,12 +313,12 @@ impl Judge {
         command.arg(words[0]).arg(file).args(&words[1..]).arg("-o").arg(result);
         let out = command.output().map_err(at(&self.program))?;
         finding.code = out.status.code();
-        let said = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
-        finding.said = said.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
+        let messages = String::from_utf8_lossy(&out.stderr).replace(&file.display().to_string(), "");
+        finding.note = messages.lines().find(|l| !l.is_empty()).unwrap_or_default().chars().take(150).collect();
         if result.exists() { Ok(()) } else { Err("no result".into()) }
     }
 
-    /// Compares the picture of a result with that of the original, and pictures the difference.
+    /// Compares the pictures of a result and of the original, and writes a picture of the difference.
     fn compared(
         &self,
         [original, found]: [&Picture; 2],
@@ -364,10 +364,10 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
     let (w, h) = (before.width.div_ceil(2), before.height.div_ceil(2));
     let mut out = Pixmap::new(3 * w as u32, h as u32).ok_or("there is no picture")?;
     for (i, pixel) in out.pixels_mut().iter_mut().enumerate() {
-        let (column, x, y) = (i / w % 3, i % w * 2, i / (3 * w) * 2);
+        let (column, x, y) = ((i / w) % 3, (i % w) * 2, (i / (3 * w)) * 2);
         let at = y * before.width + x;
         let ground = |data: &[u8]| {
-            [0, 1, 2].map(|k| data[4 * at + k].saturating_add((u16::from(255 - data[4 * at + 3]) * 3 / 4) as u8))
+            [0, 1, 2].map(|k| data[4 * at + k].saturating_add((3 * u16::from(255 - data[4 * at + 3]) / 4) as u8))
         };
         let near = [at, (at + 1).min(marks.len() - 1), (at + before.width).min(marks.len() - 1)];
         let [r, g, b] = match column {
@@ -381,15 +381,15 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
     encode_png(&out).map_err(|e| e.to_string())
 }
 
-/// What Chromium shows of a drawing.
+/// Chromium's answer about a drawing.
 #[derive(Deserialize)]
 struct Shown {
-    /// Whether the drawing is not well-formed XML.
+    /// `true` if the drawing is not well-formed XML.
     broken: bool,
     /// The page's extent in px.
     right: f64,
     bottom: f64,
-    /// From user units to px.
+    /// Maps user units to px.
     matrix: Option<[f64; 6]>,
     #[serde(default, rename = "png", deserialize_with = "decoded")]
     picture: Option<Picture>,
@@ -408,7 +408,7 @@ impl Picture {
     }
 }
 
-/// The browsers that are free. A new one is started if there is none.
+/// Idle browsers. A new one is started if there is none.
 #[derive(Default)]
 struct Browsers(Mutex<Vec<Browser>>);
 
@@ -419,7 +419,7 @@ struct Browser {
 }
 
 impl Browsers {
-    /// Shows a file on a page of this size in px, at this many pixels per px. Without a size, only asks for that of the file.
+    /// Shows a file on a page of this size in px, at this many pixels per px. Without a size, only asks for the size of the file.
     fn show(&self, file: &Path, size: Option<([f64; 2], f64)>) -> Result<Shown, String> {
         let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut browser = free.map_or_else(Browser::start, Ok)?;

@@ -26,9 +26,9 @@ pub(super) fn write(root: &Path) -> Result<usize, ChoreError> {
 /// Draws the picture of every page.
 pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
     let folder = root.join(PAGES);
-    for e in Registry::builtin().entries() {
-        let Some(example) = e.info().examples.first() else { continue };
-        shell::preview(root, program, example.command, &folder.join(format!("{}.png", e.info().name)))?;
+    for entry in Registry::builtin().entries() {
+        let Some(example) = entry.info().examples.first() else { continue };
+        shell::preview(root, program, example.command, &folder.join(format!("{}.png", entry.info().name)))?;
     }
     Ok(())
 }
@@ -37,7 +37,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
 fn pages() -> Vec<(String, String)> {
     let registry = Registry::builtin();
     let infos: Vec<&Info> = registry.entries().iter().map(|e| e.info()).collect();
-    let mut all: Vec<(String, String)> = infos.iter().map(|i| (format!("{}.md", i.name), page(i))).collect();
+    let mut all: Vec<(String, String)> = infos.iter().map(|info| (format!("{}.md", info.name), page(info))).collect();
     all.push(("README.md".into(), index(&infos)));
     all
 }
@@ -45,47 +45,47 @@ fn pages() -> Vec<(String, String)> {
 fn index(infos: &[&Info]) -> String {
     let mut out = String::from("# Deformations\n\nMade by `cargo xtask docs` from the deformations' own tables.\n");
     let mut groups: Vec<&str> = Vec::new();
-    for i in infos {
-        if !groups.contains(&i.group) {
-            groups.push(i.group);
+    for info in infos {
+        if !groups.contains(&info.group) {
+            groups.push(info.group);
         }
     }
-    for g in groups {
-        let _ = write!(out, "\n## {g}\n\n| | |\n|---|---|\n");
-        for i in infos.iter().filter(|i| i.group == g) {
-            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", i.name, i.title);
+    for group in groups {
+        let _ = write!(out, "\n## {group}\n\n| | |\n|---|---|\n");
+        for info in infos.iter().filter(|info| info.group == group) {
+            let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", info.name, info.title);
         }
     }
     out
 }
 
-fn page(i: &Info) -> String {
-    let mut out = format!("# {}: {}\n\n", i.name, i.title);
-    if let Some(first) = i.examples.first() {
-        let _ = write!(out, "![{}]({}.png)\n\n", first.what, i.name);
+fn page(info: &Info) -> String {
+    let mut out = format!("# {}: {}\n\n", info.name, info.title);
+    if let Some(first) = info.examples.first() {
+        let _ = write!(out, "![{}]({}.png)\n\n", first.what, info.name);
     }
-    let _ = write!(out, "{}\n\n## Examples\n", i.about);
-    for e in i.examples {
-        let _ = write!(out, "\n{}:\n\n```sh\npathwarp {}\n```\n", e.what, e.command);
+    let _ = write!(out, "{}\n\n## Examples\n", info.about);
+    for example in info.examples {
+        let _ = write!(out, "\n{}:\n\n```sh\npathwarp {}\n```\n", example.what, example.command);
     }
     out.push_str("\n## Options\n\n| option | value | default | |\n|---|---|---|---|\n");
-    for p in i.params {
-        let value = match p.kind {
+    for param in info.params {
+        let value = match param.kind {
             Kind::Flag => String::new(),
             Kind::Choice(words) => words.join(", "),
             Kind::NameOrFile(words) => format!("{}, or a file", words.join(", ")),
-            _ => p.value_name(),
+            _ => param.value_name(),
         };
-        let default =
-            if p.needed { "needed".to_owned() } else { p.default.map(|d| format!("`{d}`")).unwrap_or_default() };
-        let times = if p.repeat { " May be given several times." } else { "" };
-        let _ = writeln!(out, "| `--{}` | {value} | {default} | {}{times} |", p.name, cell(p.help));
+        let default = param.default.map(|d| format!("`{d}`")).unwrap_or_default();
+        let default = if param.needed { "needed".to_owned() } else { default };
+        let times = if param.repeat { " May be given several times." } else { "" };
+        let _ = writeln!(out, "| `--{}` | {value} | {default} | {}{times} |", param.name, cell(param.help));
     }
     out.push_str("| `--inverse` | | | The inverse map, where there is one. |\n");
     let _ = write!(
         out,
         "\nThe options that all deformations share are in `pathwarp help options`.\n\n## Source\n\n{}\n",
-        i.source
+        info.source
     );
     out
 }

@@ -25,7 +25,7 @@ const COMPARISON: &str = "docs/which.md";
 const COOKBOOKS: [&str; 3] = ["docs/cookbook.md", "docs/lettering-on-paths.md", "docs/nodes.md"];
 /// Marks the command of a picture of a model.
 const PREVIEW: &str = "--preview out.png";
-/// Mark commands that make many drawings: of a folder, and of a table.
+/// Options of commands that make many drawings: from a folder, and from a table.
 const MANY: [&str; 2] = ["--out-dir", "--data"];
 /// Widths of pictures in pixels.
 const WIDTH: &str = "800";
@@ -61,7 +61,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
                 nodes(root, program, &png, (source, command))?;
                 continue;
             }
-            let drawing = made(root, program, command)?;
+            let drawing = written(root, program, command)?;
             if let Some(photograph) = photograph {
                 beside(root, program, &png, (photograph, &drawing))?;
                 continue;
@@ -72,8 +72,8 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
     Ok(())
 }
 
-/// What a command writes into its file, where pages of text have a margin that they have not on standard output.
-fn made(root: &Path, program: &Path, command: &str) -> Result<Vec<u8>, ChoreError> {
+/// The file that a command writes. Unlike on standard output, pages of text have a margin there.
+fn written(root: &Path, program: &Path, command: &str) -> Result<Vec<u8>, ChoreError> {
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let file = folder.path().join(words(command).last().ok_or("no output")?);
     let mut all = stages(command);
@@ -89,7 +89,7 @@ fn folder_of(root: &Path, guide: &str) -> PathBuf {
     root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
 }
 
-/// Draws the picture for a command that makes many drawings: those of a folder in a row, and below them their results; or the results of a
+/// Draws the picture for a command that makes many drawings: the drawings of a folder in a row above their results, or the results of a
 /// table.
 fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
     /// The sides of a drawing on the sheet, and the space between drawings.
@@ -102,11 +102,11 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     let mut words = words(command);
     let last = words.pop().ok_or("no output")?;
     let source = words.iter().find(|w| w.starts_with("samples/")).ok_or("no samples")?;
-    let of_folder = root.join(source).is_dir();
+    let is_folder = root.join(source).is_dir();
     let below = |folder: &Path| shell::files_below(folder, |f| shell::ends_in(f, &["svg"]));
-    let mut files = if of_folder { below(&root.join(source))? } else { Vec::new() };
-    let (columns, [width, height]) = if of_folder { (files.len(), SQUARE) } else { (NAMES, NAME) };
-    let name = Path::new(&last).file_name().filter(|_| !of_folder).unwrap_or_default();
+    let mut files = if is_folder { below(&root.join(source))? } else { Vec::new() };
+    let (columns, [width, height]) = if is_folder { (files.len(), SQUARE) } else { (NAMES, NAME) };
+    let name = Path::new(&last).file_name().filter(|_| !is_folder).unwrap_or_default();
     words.push(made.path().join(name).display().to_string());
     pipe(root, program, &words[1..], &[])?;
     files.extend(below(made.path())?);
@@ -114,9 +114,9 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     for (i, file) in files.iter().enumerate() {
         let drawing = fs::read_to_string(file).map_err(at(file))?;
         let start = drawing.find("<svg ").ok_or("no drawing")? + "<svg ".len();
-        // Nest the whole drawing in the sheet, with a new place and size.
+        // Nest the whole drawing in the sheet, with a new position and size.
         let inner = drawing[start..].replacen(" width=", " data-width=", 1).replacen(" height=", " data-height=", 1);
-        let (x, y) = (GAP + i % columns * (width + GAP), GAP + i / columns * (height + GAP));
+        let (x, y) = (GAP + (i % columns) * (width + GAP), GAP + (i / columns) * (height + GAP));
         let _ = write!(sheet, "<svg x='{x}' y='{y}' width='{width}' height='{height}' {inner}");
     }
     let size = [(columns, width), (files.len().div_ceil(columns), height)].map(|(n, side)| GAP + n * (side + GAP));
@@ -124,7 +124,7 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
-/// Draws a photograph and beside it, as high, what a command made of it.
+/// Draws a photograph, and beside it at the same height the result of a command.
 fn beside(root: &Path, program: &Path, png: &Path, (photograph, made): (&str, &[u8])) -> Result<(), ChoreError> {
     /// The height of both, and the space between them.
     const HEIGHT: f64 = 300.0;
@@ -148,7 +148,7 @@ fn beside(root: &Path, program: &Path, png: &Path, (photograph, made): (&str, &[
 
 /// Draws the picture for a command that reduces the number of nodes: the drawing before and after, with its nodes.
 fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str)) -> Result<(), ChoreError> {
-    /// The radius of a node, and how far down the second drawing is moved, as fractions of a drawing's height.
+    /// The radius of a node, and the offset of the second drawing downwards, as fractions of a drawing's height.
     const NODE: f64 = 0.008;
     const DOWN: f64 = 1.05;
     let before = fs::read_to_string(root.join(source)).map_err(at(&root.join(source)))?;
@@ -173,7 +173,7 @@ fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str
     shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
-/// Draws the picture for a command on a model, which writes it itself.
+/// Draws the picture for a command on a model, by its option for previews.
 fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
     let folder = std::env::temp_dir().join(format!("pathwarp-docs-{}", std::process::id()));
     fs::create_dir_all(&folder).map_err(at(&folder))?;
@@ -186,7 +186,7 @@ fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(),
     done
 }
 
-/// Every picture of a page, with the command that draws it: in a table that of its row, else the next line that starts with `pathwarp`.
+/// Every picture of a page, with the command that draws it: the one in its table row, else the next line that starts with `pathwarp`.
 fn pictures(page: &str) -> Vec<(&str, &str)> {
     let mut out = Vec::new();
     let mut pending = None;

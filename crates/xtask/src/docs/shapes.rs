@@ -24,12 +24,12 @@ const ARTWORK: [(&str, &[&str]); 5] = [
     ("four", &["text", "LOVE", "MUSIC", "ALWAYS", "FOREVER", "--font", "display", "-o", "-"]),
     ("logo", &["affine", "samples/logo.svg", "-o", "-"]),
 ];
-/// Artwork for which a shape has no room.
+/// Artwork and a shape that has no room for it.
 const REFUSED: (&str, &str) = ("four", "crescent");
 /// The box that the figures are computed for, of the size of a short word.
 const FRAME: Rect = Rect::new(0.0, 0.0, 300.0, 100.0);
-/// Places along each axis of that box.
-const PLACES: u32 = 41;
+/// Samples along each axis of that box.
+const SAMPLES: u32 = 41;
 
 /// The id and path data of every shape.
 fn shapes(root: &Path) -> Result<Vec<(String, String)>, ChoreError> {
@@ -39,11 +39,11 @@ fn shapes(root: &Path) -> Result<Vec<(String, String)>, ChoreError> {
     Ok(text.lines().filter_map(|l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?))).collect())
 }
 
-/// How a word looks in a shape.
+/// Measures of the look of a word in a shape.
 struct Figures {
-    /// Whether the shape is filled in columns.
+    /// `true` if the shape is filled in columns.
     columns: bool,
-    /// The fraction of places where the map mirrors.
+    /// The fraction of samples where the map mirrors.
     folded: f64,
     /// The largest lean of a stem, in degrees.
     lean: f64,
@@ -52,16 +52,16 @@ struct Figures {
 }
 
 impl Figures {
-    fn of(path: &str) -> Result<Self, ChoreError> {
+    fn measure(path: &str) -> Result<Self, ChoreError> {
         let outline = Outline::from_svg(path).map_err(|e| e.to_string())?;
         let built = Envelope::new(FRAME, &outline).lettering(true).build().map_err(|e| e.to_string())?;
-        let place = |k: u32| {
-            let part = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
-            Point::new(FRAME.x0 + part(k % PLACES) * FRAME.width(), FRAME.y0 + part(k / PLACES) * FRAME.height())
+        let sample = |k: u32| {
+            let part = |i: u32| (f64::from(i) + 0.5) / f64::from(SAMPLES);
+            Point::new(FRAME.x0 + part(k % SAMPLES) * FRAME.width(), FRAME.y0 + part(k / SAMPLES) * FRAME.height())
         };
-        let jets: Vec<Jet> = (0..PLACES * PLACES).map(|k| built.map.jet(place(k))).collect();
+        let jets: Vec<Jet> = (0..SAMPLES * SAMPLES).map(|k| built.map.jet(sample(k))).collect();
         let count = jets.len() as f64;
-        let mean = |of: fn(&Jet) -> Vec2| jets.iter().map(|j| of(j).hypot()).sum::<f64>() / count;
+        let mean = |column: fn(&Jet) -> Vec2| jets.iter().map(|j| column(j).hypot()).sum::<f64>() / count;
         let (x, y) = (mean(|j| j.dx), mean(|j| j.dy));
         let mut ratios: Vec<f64> = jets
             .iter()
@@ -112,7 +112,7 @@ less, and goes from end to end.\n",
 | shape | filled | folded | stems lean | stretch |\n|---|---|---|---|---|\n",
     );
     for (name, path) in shapes(root)? {
-        let f = Figures::of(&path)?;
+        let f = Figures::measure(&path)?;
         let how = if f.columns { "in columns" } else { "between four sides" };
         let _ = writeln!(out, "| {name} | {how} | {:.0} % | {:.0}° | {:.1} |", 100.0 * f.folded, f.lean, f.uneven);
     }
@@ -131,9 +131,9 @@ pub(super) fn write(root: &Path, program: &Path) -> Result<(), ChoreError> {
         let file = root.join(SAMPLE);
         let mut sheet = fs::read_to_string(&file).map_err(at(&file))?.replace("</svg>", "");
         for (id, _) in shapes(root)?.into_iter().filter(|s| (name, s.0.as_str()) != REFUSED) {
-            let shape = format!("{SAMPLE}#{id}");
-            let put = ["envelope", "-", "--envelope", &shape, "--fit", "grow", "--quiet", "-o", "-"].map(str::to_owned);
-            let bent = String::from_utf8_lossy(&pipe(root, program, &put, &artwork)?).into_owned();
+            let path = format!("{SAMPLE}#{id}");
+            let args = ["envelope", "-", "--envelope", &path, "--fit", "grow", "--quiet", "-o", "-"].map(str::to_owned);
+            let bent = String::from_utf8_lossy(&pipe(root, program, &args, &artwork)?).into_owned();
             let _ = write!(sheet, "<image {WHOLE} href=\"data:image/svg+xml;base64,");
             sheet.push_str(&BASE64_STANDARD.encode(on_the_sheet(&bent)));
             sheet.push_str("\"/>");
@@ -167,7 +167,7 @@ mod tests {
         let all = shapes(&workspace()).unwrap();
         assert_eq!(all.len(), 24);
         for (name, path) in all {
-            let f = Figures::of(&path).unwrap();
+            let f = Figures::measure(&path).unwrap();
             assert_eq!(f.folded, 0.0, "{name} folds");
             assert!(!f.columns || f.lean < 1e-6, "{name}: stems lean by {}°", f.lean);
         }

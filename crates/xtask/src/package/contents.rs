@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The shells with completion scripts, and the files of those.
+/// The shells with completion scripts, and their files.
 const COMPLETIONS: [(&str, &str); 3] = [
     ("bash", "usr/share/bash-completion/completions/pathwarp"),
     ("zsh", "usr/share/zsh/vendor-completions/_pathwarp"),
@@ -29,14 +29,14 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Writes all files to `folder`, after emptying it. Manual pages, completions and plug-ins are written by `program` itself.
+    /// Writes all files to `folder`, after emptying it. `program` writes its manual pages, completions and plug-ins.
     pub(super) fn lay_out(root: &Path, program: &Path, folder: &Path) -> Result<Self, ChoreError> {
         if folder.exists() {
             fs::remove_dir_all(folder).map_err(at(folder))?;
         }
         let tree = Self { root: root.to_owned(), folder: folder.to_owned(), program: program.to_owned() };
         tree.copy(program, "usr/bin/pathwarp")?;
-        tree.run(&["man", "--out-dir", &tree.at("usr/share/man/man1")?.display().to_string()])?;
+        tree.run(&["man", "--out-dir", &tree.prepared("usr/share/man/man1")?.display().to_string()])?;
         for (shell, file) in COMPLETIONS {
             let script = tree.run(&["completions", shell])?;
             tree.write(file, &script)?;
@@ -53,7 +53,7 @@ impl Tree {
         let icon = self.root.join("packaging/pathwarp.svg");
         self.copy(&icon, &format!("{ICONS}/scalable/apps/pathwarp.svg"))?;
         for size in ICON_SIZES {
-            let picture = self.at(&format!("{ICONS}/{size}x{size}/apps/pathwarp.png"))?;
+            let picture = self.prepared(&format!("{ICONS}/{size}x{size}/apps/pathwarp.png"))?;
             let (icon, picture) = (icon.display().to_string(), picture.display().to_string());
             self.run(&["render", &icon, "--width", &size.to_string(), "-o", &picture])?;
         }
@@ -62,11 +62,11 @@ impl Tree {
 
     /// Adds the plug-ins for other programs, in the folders for plug-ins of all users. They find the program on the PATH.
     fn plug_ins(&self) -> Result<(), ChoreError> {
-        let gimp = self.at(&format!("usr/lib/{}-linux-gnu/gimp/3.0/plug-ins", std::env::consts::ARCH))?;
+        let gimp = self.prepared(&format!("usr/lib/{}-linux-gnu/gimp/3.0/plug-ins", std::env::consts::ARCH))?;
         self.run(&["install", "gimp", "--dir", &gimp.display().to_string()])?;
         let copy = gimp.join("pathwarp-gimp/bin");
         fs::remove_dir_all(&copy).map_err(at(&copy))?;
-        let inkscape = self.at("usr/share/inkscape/extensions")?;
+        let inkscape = self.prepared("usr/share/inkscape/extensions")?;
         self.run(&["install", "inkscape", "--dir", &inkscape.display().to_string(), "--program", "pathwarp"]).map(drop)
     }
 
@@ -84,7 +84,7 @@ impl Tree {
     }
 
     /// The path of a file in the tree. Creates its folder.
-    fn at(&self, file: &str) -> Result<PathBuf, ChoreError> {
+    fn prepared(&self, file: &str) -> Result<PathBuf, ChoreError> {
         let path = self.folder.join(file);
         let folder = path.parent().unwrap_or(&self.folder);
         fs::create_dir_all(folder).map_err(at(folder))?;
@@ -92,11 +92,11 @@ impl Tree {
     }
 
     fn copy(&self, from: &Path, to: &str) -> Result<(), ChoreError> {
-        fs::copy(from, self.at(to)?).map(drop).map_err(at(from))
+        fs::copy(from, self.prepared(to)?).map(drop).map_err(at(from))
     }
 
     fn write(&self, to: &str, bytes: &[u8]) -> Result<(), ChoreError> {
-        let to = self.at(to)?;
+        let to = self.prepared(to)?;
         fs::write(&to, bytes).map_err(at(&to))
     }
 
@@ -110,7 +110,7 @@ impl Tree {
     }
 }
 
-/// How the names of files with licences and copyright notices start.
+/// Beginnings of the names of files with licences and copyright notices.
 const NAMES: [&str; 6] = ["LICENSE", "LICENCE", "COPYING", "COPYRIGHT", "NOTICE", "UNLICENSE"];
 /// The bundled fonts with their licences.
 const FONTS: [(&str, &str); 2] = [

@@ -1,4 +1,4 @@
-//! `cargo xtask package`: makes the packages of a release. The program writes its own manual pages, completions and plug-ins to
+//! `cargo xtask package`: makes the packages of a release. The program writes its manual pages, completions and plug-ins to
 //! `target/package/`; cargo-deb packs them for Debian, and `tar` packs them with a statically linked program.
 //!
 //! `cargo xtask reproducible` builds and packs two copies of the sources, in different folders, and compares the bytes.
@@ -93,7 +93,7 @@ struct Build<'a> {
     root: &'a Path,
     /// The target folder.
     target: &'a Path,
-    /// Whether the program is to need no library at run time, not even the C library.
+    /// `true` if the program must need no library at run time, not even the C library.
     linked_statically: bool,
     /// The time stamp of packages, in seconds since 1970.
     time: &'a str,
@@ -129,8 +129,8 @@ impl Build<'_> {
 
 /// Cargo's home folder, which holds the sources of the crates.
 fn cargo_home() -> Result<PathBuf, ChoreError> {
-    let own = std::env::var_os("CARGO_HOME").map(PathBuf::from);
-    own.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or_else(|| "set CARGO_HOME".into())
+    let given = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    given.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or_else(|| "set CARGO_HOME".into())
 }
 
 /// The time stamp of packages: `SOURCE_DATE_EPOCH`, or else the time of the last commit.
@@ -145,7 +145,7 @@ fn time(root: &Path) -> Result<String, ChoreError> {
 
 pub(crate) const REPRODUCIBLE: Chore = Chore { command: reproducible_command, run: reproducible };
 
-/// The folders of the copies. Their names differ in length, so that a path left in the program would shift what follows it.
+/// The folders of the copies. Their names differ in length, so that a path left in the program would shift the bytes after it.
 const COPIES: [&str; 2] = ["one", "a-second-folder/with a space"];
 
 fn reproducible_command() -> Command {
@@ -179,11 +179,11 @@ fn reproducible(arguments: &ArgMatches) -> Result<String, ChoreError> {
         let packed = pack(&build, &program)?;
         sums.push([sum(&program)?, sum(&packed)?]);
     }
-    let mut said = String::new();
+    let mut report = String::new();
     for (i, what) in ["program", "package"].into_iter().enumerate() {
-        let _ = writeln!(said, "{what}: {}, {}", sums[0][i], sums[1][i]);
+        let _ = writeln!(report, "{what}: {}, {}", sums[0][i], sums[1][i]);
     }
-    if sums[0] == sums[1] { Ok(said + "the same bytes") } else { Err(said + "the bytes differ") }
+    if sums[0] == sums[1] { Ok(report + "the same bytes") } else { Err(report + "the bytes differ") }
 }
 
 /// Exports the files of the last commit to a folder.

@@ -1,4 +1,4 @@
-//! Drawings of any size, the same in every run.
+//! Drawings of any size, equal in every run.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ pub(super) fn flowers(n: usize, each: usize) -> String {
     let mut out = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {SIZE} {SIZE}'>\n");
     for k in 0..paths {
         let count = each.min(n - k * each);
-        let (x, y) = ((k as f64 % columns + 0.5) * cell, ((k as f64 / columns).floor() + 0.5) * cell);
+        let (x, y) = (((k as f64 % columns) + 0.5) * cell, ((k as f64 / columns).floor() + 0.5) * cell);
         let (a, phase) = (0.1 + 0.2 * random.next(), TAU * random.next());
         let petals = (count as f64 / PER_PETAL).ceil().max(3.0);
         // The point at φ = 2πi/count, and a third of the derivative by i.

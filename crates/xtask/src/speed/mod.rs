@@ -1,6 +1,6 @@
 //! `cargo xtask speed`: times the program as people run it, and prints a table for `docs/benchmarks.md`.
 //!
-//! The yardstick is `usvg IN OUT` on the same file, which reads, resolves and writes a drawing without bending it. Both run alternately, as
+//! The yardstick is `usvg IN OUT` on the input, which reads, resolves and writes a drawing without bending it. Both run alternately, as
 //! whole processes. Unless a row says otherwise, it compares CPU times and gives the median of paired runs.
 
 use crate::chore::{Chore, ChoreError, at, count_option, path_option, paths, program_option, workspace};
@@ -106,9 +106,9 @@ const PARTS: [(&str, Part); 7] = [
     ("files", files),
 ];
 
-/// The run that is measured by default: what the README shows first.
+/// The command that is measured by default, the first in the README.
 const WARP: [&str; 5] = ["warp", "--style", "flag", "--bend", "40%"];
-/// Every deformation that bends, as its help suggests using it.
+/// Every deformation that bends, with arguments from its help.
 const DEFORMATIONS: [&[&str]; 20] = [
     &["shaper", "--shaper", "M0,120 Q60,90 120,120 L110,0 Q60,30 10,0 Z"],
     &["envelope", "--bottom", "M0,160 C120,100 260,220 400,150", "--height", "90"],
@@ -141,7 +141,7 @@ const EACH: usize = 60;
 const BATCH: usize = 3000;
 /// Paragraphs on the page of text.
 const PARAGRAPHS: usize = 85;
-/// The memory of the program itself in bytes. Only what it takes beyond this is compared with the size of the input.
+/// The memory of the program without input, in bytes. Only memory beyond this is compared with the size of the input.
 const FIXED: f64 = 15e6;
 
 impl Bench {
@@ -164,7 +164,7 @@ impl Bench {
         Ok(file)
     }
 
-    /// The pair with the median ratio of two jobs that must both succeed.
+    /// The pair of runs with the median ratio of two jobs that must both succeed.
     fn pair(&self, a: &Job, b: &Job) -> Result<(Usage, Usage), ChoreError> {
         paired(a, b, self.rounds)?.ok_or_else(|| "a generated drawing was refused".into())
     }
@@ -268,7 +268,7 @@ fn growth(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
         let (mut times, mut n, mut peak) = (Vec::new(), 1000, String::new());
         while n <= b.largest {
             let file = b.generate("growth.svg", &generated::flowers(n, each.min(n)))?;
-            // The largest ones take long enough to be measured well in one run.
+            // The largest drawings take long enough to be measured well in one run.
             let rounds = if n > THREADED { 1 } else { b.rounds };
             let used = b.warp(&file).median(rounds, |u| u.cpu)?;
             times.push((n as f64, used.cpu - start.cpu));
@@ -314,8 +314,8 @@ fn files(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
         batch.push(copy);
     }
     let names = batch.iter().map(|f| f.clone().into_os_string());
-    let own = WARP.iter().map(Into::into).chain(names);
-    let job = Job::new(&b.program, own).with(&["--on-error", "skip", "--quiet", "--out-dir", &to.to_string_lossy()]);
+    let args = WARP.iter().map(Into::into).chain(names);
+    let job = Job::new(&b.program, args).with(&["--on-error", "skip", "--quiet", "--out-dir", &to.to_string_lossy()]);
     row(out, &format!("{BATCH} files in one process, elapsed time with one thread ÷ two"), &speedup(b, &job)?);
     let mut pairs = Vec::with_capacity(b.rounds);
     for _ in 0..b.rounds {
