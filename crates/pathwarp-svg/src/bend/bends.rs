@@ -101,7 +101,7 @@ impl<'a> Bends<'a> {
         scene.masks.iter().for_each(|m| fill(&m.parts, m.bend, &m.referrers));
         for (i, (bend, p)) in out.iter_mut().zip(&scene.parts).enumerate() {
             let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-            if far.holds(i) || p.role == PartRole::Pattern || text && self.options.skips_text() {
+            if far.holds(i) || p.role == PartRole::Pattern || (text && self.options.skips_text()) {
                 *bend = None;
             }
         }

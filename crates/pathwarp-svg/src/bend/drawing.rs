@@ -47,7 +47,7 @@ pub(crate) struct BentDrawing {
 pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocument) -> Result<BentDrawing, Error> {
     let (scene, options) = (drawing.scene(), &bends.options);
     let part_bends = bends.part_bends(drawing);
-    let slots = fits::place(drawing, bends, &part_bends);
+    let slots = fits::place_slots(drawing, bends, &part_bends);
     let united = united::unite_drawing(drawing, bends, &part_bends)?;
     let results = warp_parts(drawing, bends, &part_bends, (&slots, &united));
     let mut outcomes = Vec::with_capacity(scene.parts.len());
@@ -80,7 +80,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 let id = &drawing.shapes()[i].id;
                 let e = e.on_shape(id);
                 let limited = matches!(e, GeometryError::Limit(_));
-                if limited || options.on_error == OnError::Stop && part.painted() {
+                if limited || (options.on_error == OnError::Stop && part.painted()) {
                     return Err(Error::Geometry(e));
                 }
                 out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });

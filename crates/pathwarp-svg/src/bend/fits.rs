@@ -139,7 +139,7 @@ pub(crate) fn frame_in_result(scene: &Scene, placed: &[PlacedSlot], slot: Option
 
 /// Places filtered groups and images by the affine fit of their map. A group whose parts have different bends does not move.
 /// `part_bends` has the index of each part's bend.
-pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, part_bends: &[Option<usize>]) -> Vec<PlacedSlot> {
+pub(super) fn place_slots(drawing: &Drawing, bends: &Bends<'_>, part_bends: &[Option<usize>]) -> Vec<PlacedSlot> {
     let scene = drawing.scene();
     let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
     for s in &scene.slots {

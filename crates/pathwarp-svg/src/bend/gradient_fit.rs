@@ -1,9 +1,9 @@
 //! Fits an SVG gradient to a bent one: the nearest linear or radial gradient, with as many stops as needed.
 //!
-//! The image of a gradient is constant along curves, its level curves. If these are nearly lines or ellipses, they are the level curves of
-//! an SVG gradient, and its stops give the colour of each. They are found by variable projection (Golub and Pereyra 1973): for given
-//! level curves, the piecewise linear profile nearest to the samples follows by linear least squares, and the Levenberg–Marquardt method
-//! moves the level curves so that the remaining residuals shrink.
+//! The image of a gradient is constant along its level curves. If these are nearly lines or ellipses, they are also the level curves of an
+//! SVG gradient, whose stops give the colour of each. The level curves are found by variable projection (Golub and Pereyra 1973): for
+//! given level curves, the piecewise linear profile nearest to the samples follows by linear least squares, and the Levenberg–Marquardt
+//! method moves the curves so that the remaining residuals shrink.
 
 use super::shading::{GradientShape, Shading, Stop, premultiplied};
 use pathwarp::kurbo::{Affine, Point, Vec2};
@@ -13,7 +13,7 @@ use usvg::SpreadMethod;
 pub(super) type Moved = (Point, Point);
 
 /// Number of samples in the search for level curves.
-const SOUGHT_BY: usize = 256;
+const SEARCH_SAMPLES: usize = 256;
 /// Number of cells of the profile during the search.
 const CELLS: usize = 10;
 /// Numbers of cells of the profiles that are tried as gradients.
@@ -25,7 +25,7 @@ const SAME: f64 = 1e-4;
 /// Margin on either side of the samples' range, as a fraction of it, for points between and around the samples.
 const AROUND: f64 = 0.03;
 
-/// The largest offset at which the colours of a radial gradient may begin: some renderers hold 256 of them.
+/// Largest offset at which the colours of a radial gradient may begin, since some renderers hold 256 colours from offset 0 on.
 const NARROWEST: f64 = 0.9;
 
 /// Work of the search, in evaluations of a map.
@@ -43,7 +43,7 @@ pub(super) fn nearest(
     const GOOD: f64 = 0.4;
     let ramp = Ramp::new(shading, moved)?;
     let samples = Samples::new(shading, &ramp, moved)?;
-    let few = samples.thinned(SOUGHT_BY);
+    let few = samples.thinned(SEARCH_SAMPLES);
     let mut best: Option<(f64, Shading)> = None;
     let mut is_good = |levels: Levels| {
         for gradient in samples.gradients(&ramp, levels) {
@@ -288,15 +288,8 @@ impl Levels {
             Self::Ellipses(p) => {
                 let (focus, round, shift) = Self::cone(p);
                 let placed = out * Affine::translate(focus.to_vec2()) * round.inverse() * Affine::scale(to);
-                (
-                    GradientShape::Radial {
-                        centre: shift.to_point(),
-                        radius: 1.0,
-                        focus: Point::ORIGIN,
-                        focal_radius: 0.0,
-                    },
-                    placed,
-                )
+                let centre = shift.to_point();
+                (GradientShape::Radial { centre, radius: 1.0, focus: Point::ORIGIN, focal_radius: 0.0 }, placed)
             }
         };
         Shading { inside: placed.inverse(), kind, stops, spread: SpreadMethod::Pad }

@@ -107,8 +107,8 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
     let area = p.local.bounding_box()?;
     match t.pieces {
         // The paint of a single placed letter moves with it.
-        [LetterPiece { places, .. }] if places.len() == 1 => {
-            fits::fit(area, places[0] * p.frame, t.write, &options.letters.after)
+        [LetterPiece { copies, .. }] if copies.len() == 1 => {
+            fits::fit(area, copies[0] * p.frame, t.write, &options.letters.after)
         }
         _ => fits::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, result),
     }
@@ -183,7 +183,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
         })
     };
     let open = |s: &Subpath| !s.closed && s.start != s.end();
-    if p.fill.is_none() && p.role != PartRole::Clip || matches!(map.class(), Class::Affine(_)) {
+    if (p.fill.is_none() && p.role != PartRole::Clip) || matches!(map.class(), Class::Affine(_)) {
         return None;
     }
     if map.prefers_batches() {

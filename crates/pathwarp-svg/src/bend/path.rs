@@ -129,7 +129,7 @@ pub(super) fn with_arcs(
     options: &refit::Options,
     lines: bool,
 ) -> Result<Option<(Outline, PathReport)>, GeometryError> {
-    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || lines && matches!(s, Seg::Line(_));
+    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || (lines && matches!(s, Seg::Line(_)));
     if !outline.segs().any(may_be) || !outline.segs().all(Seg::is_finite) {
         return Ok(None);
     }

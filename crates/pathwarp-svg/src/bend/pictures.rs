@@ -64,7 +64,7 @@ pub trait ImageWarper: Send + Sync {
     /// Bends a bitmap.
     ///
     /// # Errors
-    /// Returns the reason why the bitmap cannot be bent. It then follows the best affine fit.
+    /// [`PictureError`] with the reason why the bitmap cannot be bent. It then follows the best affine fit.
     fn warp(&self, request: &ImageRequest<'_>) -> Result<BentImage, PictureError>;
 }
 
@@ -127,7 +127,7 @@ pub trait GradientPainter: Send + Sync {
     /// Paints a bent gradient over the whole target and a few pixels around it.
     ///
     /// # Errors
-    /// Returns the reason why the gradient cannot be painted. It then follows the best affine fit.
+    /// [`PictureError`] with the reason why the gradient cannot be painted. It then follows the best affine fit.
     fn paint(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError>;
 }
 
@@ -174,7 +174,7 @@ pub trait FilterPainter: Send + Sync {
     /// Returns a picture of each layer under the map, `None` for empty layers; or `None` for all if the fit looks right.
     ///
     /// # Errors
-    /// Returns the reason why the filter cannot be bent. It then follows the best affine fit.
+    /// [`PictureError`] with the reason why the filter cannot be bent. It then follows the best affine fit.
     fn paint(&self, request: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError>;
 }
 
@@ -223,7 +223,7 @@ pub trait EdgePainter: Send + Sync {
     /// Returns a PNG of an SVG drawing in which transparent pixels have the colour of the nearest others. `size` is the drawing's size in px.
     ///
     /// # Errors
-    /// Returns the reason why the drawing cannot be rendered.
+    /// [`PictureError`] with the reason why the drawing cannot be rendered.
     fn continued(&self, drawing: &str, size: [f64; 2]) -> Result<Vec<u8>, PictureError>;
 }
 

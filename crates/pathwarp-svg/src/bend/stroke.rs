@@ -137,15 +137,15 @@ fn outline(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathR
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
     // The outline of every contour, with the contour's index in the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
-        let one = |local: &Outline, places: &[Affine], first: usize| {
+        let one = |local: &Outline, copies: &[Affine], first: usize| {
             let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
-            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(places));
+            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(copies));
             each.into_iter().map(placed).collect::<Vec<_>>()
         };
         if t.pieces.is_empty() {
             one(local, &options.copies, 0)
         } else {
-            t.pieces.iter().flat_map(|piece| one(&piece.cut_from(local), &piece.places, piece.first())).collect()
+            t.pieces.iter().flat_map(|piece| one(&piece.cut_from(local), &piece.copies, piece.first())).collect()
         }
     };
     let extent =

@@ -256,7 +256,7 @@ pub(super) fn placed_outline(
 #[derive(Debug, Clone)]
 pub(crate) struct LetterPiece {
     range: Range<usize>,
-    pub(crate) places: Vec<Affine>,
+    pub(crate) copies: Vec<Affine>,
 }
 
 impl LetterPiece {
@@ -272,12 +272,12 @@ impl LetterPiece {
 
     /// The values of the letter's subpaths in `whole`, repeated for each placed copy.
     pub(crate) fn repeated(&self, whole: &[f64]) -> Vec<f64> {
-        whole.get(self.range.clone()).unwrap_or_default().repeat(self.places.len())
+        whole.get(self.range.clone()).unwrap_or_default().repeat(self.copies.len())
     }
 }
 
 pub(crate) fn place_letters(whole: &Outline, pieces: &[LetterPiece]) -> Outline {
-    Outline { subpaths: pieces.iter().flat_map(|p| p.cut_from(whole).repeated(&p.places).subpaths).collect() }
+    Outline { subpaths: pieces.iter().flat_map(|p| p.cut_from(whole).repeated(&p.copies).subpaths).collect() }
 }
 
 /// The placed letters of every part; empty for parts that the map bends.
@@ -287,8 +287,8 @@ pub(crate) fn placed_letters(drawing: &Drawing, options: &WarpOptions) -> Vec<Ve
         return vec![Vec::new(); drawing.scene().parts.len()];
     }
     let piece = |l: LetterSubpaths| {
-        let places = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
-        Some(LetterPiece { range: l.range, places })
+        let copies = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
+        Some(LetterPiece { range: l.range, copies })
     };
     letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection), options.letters.of_objects)
         .into_iter()

@@ -53,7 +53,7 @@ impl Seen<'_> {
             match n {
                 Node::Group(g) => self.add_group(g, ink, out)?,
                 Node::Text { content, .. } => self.add_group(content, ink, out)?,
-                Node::Image(i) if ink == Ink::Light || ink == Ink::Paint && self.bitmaps[*i] => {
+                Node::Image(i) if ink == Ink::Light || (ink == Ink::Paint && self.bitmaps[*i]) => {
                     out.push(self.picture_area(*i)?);
                 }
                 Node::Image(_) => {}
@@ -85,7 +85,7 @@ impl Seen<'_> {
             out.extend(p.visible.then(|| self.fill_area(i)).transpose()?);
             return Ok(());
         }
-        if !is_seen(p) || p.in_tile || p.role == PartRole::Paint && !self.parts[i] {
+        if !is_seen(p) || p.in_tile || (p.role == PartRole::Paint && !self.parts[i]) {
             return Ok(());
         }
         let shows = |paint: &Paint| ink == Ink::Paint || is_bright(paint);

@@ -105,7 +105,7 @@ impl<'a> StrokeWidth<'a> {
         if t.pieces.is_empty() {
             out.add_outline(&t.outline, t.context.map, pieces)?;
         }
-        for (piece, m) in t.pieces.iter().flat_map(|piece| piece.places.iter().map(move |m| (piece, *m))) {
+        for (piece, m) in t.pieces.iter().flat_map(|piece| piece.copies.iter().map(move |m| (piece, *m))) {
             let mut map = Chain::new([Arc::new(AffineMap(m)) as Arc<dyn Map>]);
             map.push(Arc::new(t.options().letters.after.clone()));
             out.add_outline(&piece.cut_from(&t.whole), &map, pieces / t.pieces.len())?;

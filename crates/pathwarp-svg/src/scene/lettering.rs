@@ -415,7 +415,7 @@ fn colour_code(e: ElementId) -> Option<String> {
 
 /// Decodes an element's index from a colour.
 fn element(c: Color) -> ElementId {
-    usize::from(c.red) << 16 | usize::from(c.green) << 8 | usize::from(c.blue)
+    (usize::from(c.red) << 16) | (usize::from(c.green) << 8) | usize::from(c.blue)
 }
 
 fn collect(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
@@ -453,7 +453,7 @@ pub(crate) fn text_content(source: &SourceText, text: ElementId) -> impl Iterato
 pub(crate) fn is_naming(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
     let plain = name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
-    plain && a.namespace == Namespace::None || a.namespace == Namespace::Inkscape
+    (plain && a.namespace == Namespace::None) || a.namespace == Namespace::Inkscape
 }
 
 /// Returns `true` if an element has a title or an identifying attribute.

@@ -363,7 +363,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             "filter" => filters.extend(urls(value).filter_map(|id| self.by_id.get(id)).map(Node::id)),
             "fill" | "stroke" | "mask" | "clip-path" | "marker" | "marker-start" | "marker-mid" | "marker-end" => {
                 for (i, p) in PROPERTIES.iter().enumerate() {
-                    if (*p == name || name == "marker" && p.starts_with("marker-")) && !out[i].1 {
+                    if (*p == name || (name == "marker" && p.starts_with("marker-"))) && !out[i].1 {
                         out[i] = (self.value(value), important);
                     }
                 }
@@ -496,7 +496,7 @@ fn is_uneven(data: &str) -> bool {
             b'0'..=b'9' => digits += 1,
             _ => (digits, fraction) = (0, false),
         }
-        if digits > 4 || fraction && zeros > 2 {
+        if digits > 4 || (fraction && zeros > 2) {
             return true;
         }
     }

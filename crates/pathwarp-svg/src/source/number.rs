@@ -246,7 +246,7 @@ pub(crate) fn path_data_by(
                 let handles = match quad {
                     Some(q) => [Some((q, handle)), None],
                     None if coarsest.is_none() => [Some((a, handle)), Some((b, handle))],
-                    None => [Some(turn_free(a, (at, from), handle)), Some(turn_free(b, (p, to), handle))],
+                    None => [Some(keep_direction(a, (at, from), handle)), Some(keep_direction(b, (p, to), handle))],
                 };
                 for (q, decimals) in handles.into_iter().flatten() {
                     point(&mut out, q, decimals);
@@ -279,11 +279,11 @@ fn rounded(p: Point, decimals: u8) -> Point {
 fn is_kept(exact: Vec2, v: Vec2) -> bool {
     const TURN: f64 = 0.0035;
     let along = exact.dot(v);
-    exact == Vec2::ZERO || along > 0.0 && exact.cross(v).abs() <= TURN * along
+    exact == Vec2::ZERO || (along > 0.0 && exact.cross(v).abs() <= TURN * along)
 }
 
 /// A handle with enough decimals to keep its direction from `node`, which is written as `written`.
-fn turn_free(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
+fn keep_direction(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
     /// Most additional decimals. Handles that would need more are far too short to be visible.
     const MAX_MORE: u8 = 6;
     let v = handle - node;

@@ -9,7 +9,7 @@ use super::layers::Layer;
 use super::markup::{
     self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
-use super::place::Place;
+use super::surroundings::Surroundings;
 use super::{boxes, filter, mesh};
 use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::gradients::NewGradient;
@@ -48,7 +48,7 @@ pub(super) struct Writer<'a> {
     pub(super) markup: Markup<'a>,
     pub(super) defs: Definitions,
     /// The surroundings of new elements, if these keep the declarations of paint in the source.
-    pub(super) place: Option<Place<'a>>,
+    pub(super) surroundings: Option<Surroundings<'a>>,
     pub(super) skipped: &'a mut Vec<Skipped>,
     pub(super) notes: &'a mut Notes,
 }
@@ -63,7 +63,7 @@ impl<'a> Writer<'a> {
     ) -> Self {
         let markup = Markup::new(input.source, in_source);
         let defs = Definitions::new(input.source, input.scene, in_source);
-        Self { input, markup, defs, place: None, skipped, notes }
+        Self { input, markup, defs, surroundings: None, skipped, notes }
     }
 
     fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
@@ -83,11 +83,11 @@ impl<'a> Writer<'a> {
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
-                let place = self.place.map(|p| p.of_text(self.input.source, *element));
-                let around = std::mem::replace(&mut self.place, place);
+                let inside = self.surroundings.map(|s| s.for_text(self.input.source, *element));
+                let around = std::mem::replace(&mut self.surroundings, inside);
                 let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
-                self.place = around;
+                self.surroundings = around;
                 self.markup.named_group(&id, inner)
             }
         }
@@ -325,11 +325,11 @@ impl<'a> Writer<'a> {
         moves: bool,
     ) -> CssPaint {
         let p = self.input.part(i);
-        let place = self.place.filter(|_| matches!(paint, Paint::Color(_)));
-        if let Some((place, words)) = place.and_then(|place| Some((place, place.words_of(self.input.source, p)?))) {
-            let inherits = |p| place.is_parent && !moves && words.inherits(p, place.words);
+        let around = self.surroundings.filter(|_| matches!(paint, Paint::Color(_)));
+        if let Some((around, words)) = around.and_then(|a| Some((a, a.words_of(self.input.source, p)?))) {
+            let inherits = |p| around.is_parent && !moves && words.inherits(p, around.words);
             let value =
-                |p| if inherits(p) { Some(None) } else { Some(Some(words.taken_over(p, place.words)?.to_owned())) };
+                |p| if inherits(p) { Some(None) } else { Some(Some(words.taken_over(p, around.words)?.to_owned())) };
             let has_opacity = words.says(opacity_property) || inherits(opacity_property);
             let opacity = if has_opacity { value(opacity_property) } else { Some(Some("1".to_owned())) };
             if let Some((paint, opacity)) = value(paint_property).zip(opacity) {
@@ -473,9 +473,9 @@ impl<'a> Writer<'a> {
         if t != Affine::IDENTITY {
             head = head.with("patternTransform", &matrix(t));
         }
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let inner = self.group(&tile.root, "");
-        self.place = around;
+        self.surroundings = around;
         self.defs.push(&head.around(&inner));
         format!("url(#{id})")
     }
@@ -580,9 +580,9 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(next);
             properties.push(("mask", format!("url(#{id})")));
         }
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let mut inner = self.group(&m.root, "");
-        self.place = around;
+        self.surroundings = around;
         if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
@@ -739,9 +739,9 @@ impl<'a> Writer<'a> {
             return String::new();
         };
         let id = self.defs.new_id("picture");
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let text = self.group(picture, &format!(" id=\"{id}\""));
-        self.place = around;
+        self.surroundings = around;
         self.defs.push(&text);
         format!(" {}=\"#{id}\"", self.markup.link())
     }

@@ -74,7 +74,7 @@ pub(super) fn layers_around(f: &Filter, content: Rect, opaque: bool) -> Option<[
     let layers = [layer(f, &stack[..at], opaque, opaque), layer(f, &stack[at + 1..], false, opaque)];
     // Results are composited in sRGB.
     let linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
-    (!linear || opaque && layers[1].is_none()).then_some(layers)
+    (!linear || (opaque && layers[1].is_none())).then_some(layers)
 }
 
 /// Adds the stack of a primitive, from the bottom to the top. Returns `None` if it is not a stack on the graphic.

@@ -154,7 +154,7 @@ pub(super) fn outlined(markup: &Markup<'_>, p: &Part, stroke: CssPaint) -> Prope
     out.extend(stroke.opacity.map(|v| ("fill-opacity", v)));
     out.push(("fill-rule", "nonzero".into()));
     out.push(("stroke", "none".into()));
-    out.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || markup.may_inherit(n));
+    out.retain(|(n, v)| !((*n == "fill-opacity" && v == "1") || *n == "fill-rule") || markup.may_inherit(n));
     out
 }
 

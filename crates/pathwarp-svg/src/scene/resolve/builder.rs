@@ -341,7 +341,7 @@ pub(super) fn add_slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Cont
         return None;
     }
     // The group of an image holds its placing, which is not the element's transform.
-    let before = image.is_some() && at.source == image || image.is_none() && raster;
+    let before = (image.is_some() && at.source == image) || (image.is_none() && raster);
     let corners = rect(g.bounding_box());
     let (frame, area) =
         if before { (at.parent, affine(g.transform()).transform_rect_bbox(corners)) } else { (at.frame, corners) };

@@ -101,7 +101,7 @@ fn marker_transforms(
     if expected.len() != instances.len() {
         return None;
     }
-    let place = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
+    let transform = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
         let (_, at, number) = vertices[k];
         let placed = affine(instance.transform());
         let orient = source.attr(marker, "orient");
@@ -119,7 +119,7 @@ fn marker_transforms(
         let [x, y, ..] = placed.as_coeffs();
         Some(Affine::rotate_about(angles[number?] + turned - y.atan2(x), at) * placed)
     };
-    Some(expected.iter().zip(instances).map(place).collect())
+    Some(expected.iter().zip(instances).map(transform).collect())
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -147,7 +147,7 @@ fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point,
         }
         let (number, step) = expected.peek()?;
         let reached = step.1.is_none_or(|seg| seg.eval(1.0).distance(at) <= NEAR * (1.0 + at.to_vec2().hypot()));
-        if step.0 != kind || !reached && !matches!(step.1, Some(Seg::Arc(_))) {
+        if step.0 != kind || (!reached && !matches!(step.1, Some(Seg::Arc(_)))) {
             return None;
         }
         out.push((kind, at, reached.then_some(*number)));

@@ -90,7 +90,7 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
     };
     let frame = parent * transform;
     let vector = holds_drawing(g);
-    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || vector && b.tag(e) == "image"));
+    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || (vector && b.tag(e) == "image")));
     let at = GroupAt { group: g, source, element, parent, frame };
     let slot = add_slot(b, &at, Context { owner, ..context });
     context.slot = slot.or(context.slot);

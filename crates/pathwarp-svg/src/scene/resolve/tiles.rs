@@ -81,7 +81,7 @@ pub(super) fn lay_out_tiles(
     let Paint::Pattern(pattern) = paint else { return None };
     let tiling = b.tiling.as_ref()?;
     if !p.is_visible()
-        || paint_of == PaintOf::Stroke && !tiling.strokes
+        || (paint_of == PaintOf::Stroke && !tiling.strokes)
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
     {
         return None;

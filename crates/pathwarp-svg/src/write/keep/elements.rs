@@ -13,7 +13,7 @@ use crate::write::boxes;
 use crate::write::fragment::bent_image;
 use crate::write::input::WriteInput;
 use crate::write::markup::{bent_attributes, bent_url, dashes, part_data};
-use crate::write::place::Place;
+use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
 use std::collections::{BTreeMap, BTreeSet};
@@ -290,9 +290,9 @@ fn patch_copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);
     let lead = title + &keeper::kept_animations(source, e);
-    k.writer.place = Place::of_copy(source, e);
+    k.writer.surroundings = Surroundings::of_copy(source, e);
     let text = k.writer.group_with(g, &head, &lead);
-    k.writer.place = None;
+    k.writer.surroundings = None;
     k.edits.replace(e, text);
 }
 

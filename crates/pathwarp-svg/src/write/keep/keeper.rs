@@ -8,7 +8,7 @@ use crate::source::text::SourceText;
 use crate::write::defs::Replaced;
 use crate::write::fragment::Writer;
 use crate::write::input::WriteInput;
-use crate::write::place::Place;
+use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
@@ -89,9 +89,9 @@ impl<'a, 'w> Keeper<'a, 'w> {
 
     /// The content that `write` writes for an element that becomes the group around it.
     pub(super) fn written_inside(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
-        self.writer.place = Place::inside(self.source, e);
+        self.writer.surroundings = Surroundings::inside(self.source, e);
         let text = write(self.writer);
-        self.writer.place = None;
+        self.writer.surroundings = None;
         text
     }
 

@@ -122,7 +122,7 @@ fn hold_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     for e in 0..k.source.elements.len() {
         let Some(new) = k.source.property(e, name).and_then(|v| numbers(&v, diagonal)) else { continue };
         // The root's declarations are inherited, so they count, too.
-        if k.tag(e).is_empty() || e > 0 && !refers_to_root(k.source, e) {
+        if k.tag(e).is_empty() || (e > 0 && !refers_to_root(k.source, e)) {
             continue;
         }
         let style = k.source.attr(e, "style");

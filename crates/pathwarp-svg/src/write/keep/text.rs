@@ -69,7 +69,7 @@ pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, 
         k.writer.group_around(content, &written)
     } else {
         k.written_inside(e, |w| {
-            w.place = w.place.map(|p| p.of_text(source, Some(e)));
+            w.surroundings = w.surroundings.map(|s| s.for_text(source, Some(e)));
             w.group(content, "")
         })
     };
@@ -142,7 +142,7 @@ impl SpanWriter<'_, '_, '_, '_> {
                 SpanItem::Outline(i) => {
                     let (node, owner) = (&self.content.children[i], self.owners[i]);
                     out.push_str(&self.k.written_inside(spans.0[0].element, |w| {
-                        w.place = w.place.map(|p| p.spoken_by(owner));
+                        w.surroundings = w.surroundings.map(|s| s.for_text_element(owner));
                         w.node(node)
                     }));
                 }
@@ -180,7 +180,7 @@ fn line_starts(source: &SourceText, text: ElementId) -> Vec<usize> {
         let (y, dy) = (source.attr(e, "y"), source.attr(e, "dy"));
         let moves_down = dy.is_some_and(|dy| dy.contains(|c: char| matches!(c, '1'..='9')))
             || y.as_ref().is_some_and(|y| last.as_ref().is_some_and(|last| last != y));
-        if is_line || moves_down && source.attr(e, "x").is_some() {
+        if is_line || (moves_down && source.attr(e, "x").is_some()) {
             out.push(source.elements[e].range.start);
         }
         last = y.or(last);

@@ -9,22 +9,22 @@ use std::borrow::Cow;
 
 /// The surroundings of new elements, and the elements that they replace.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct Surroundings<'a> {
     /// The declarations of the element around them.
     pub(super) words: &'a Words,
     /// `true` if they inherit these declarations.
     pub(super) is_parent: bool,
     /// The element of a text that they replace.
-    speaker: Option<ElementId>,
+    text_element: Option<ElementId>,
     /// The `use` that shows the elements that they replace.
     copy: Option<ElementId>,
 }
 
-impl<'a> Place<'a> {
+impl<'a> Surroundings<'a> {
     /// The inside of an element that keeps its attributes.
     pub(super) fn inside(source: &'a SourceText, e: ElementId) -> Option<Self> {
         let words = source.words.get(e)?;
-        Some(Self { words, is_parent: true, speaker: None, copy: None })
+        Some(Self { words, is_parent: true, text_element: None, copy: None })
     }
 
     /// The surroundings of elements that replace a `use`.
@@ -34,18 +34,18 @@ impl<'a> Place<'a> {
     }
 
     /// The surroundings of elements that replace an element of a text.
-    pub(super) fn spoken_by(self, speaker: ElementId) -> Self {
-        Self { speaker: Some(speaker), ..self }
+    pub(super) fn for_text_element(self, text_element: ElementId) -> Self {
+        Self { text_element: Some(text_element), ..self }
     }
 
     /// The surroundings of elements that replace a whole text; they keep its declarations if all elements in it have equal ones.
-    pub(super) fn of_text(self, source: &SourceText, text: Option<ElementId>) -> Self {
+    pub(super) fn for_text(self, source: &SourceText, text: Option<ElementId>) -> Self {
         let text = text.filter(|&t| text_content(source, t).all(|e| source.words.get(e) == source.words.get(t)));
-        Self { speaker: text, ..self }
+        Self { text_element: text, ..self }
     }
 
     pub(super) fn words_of(&self, source: &'a SourceText, p: &Part) -> Option<Cow<'a, Words>> {
-        let e = p.source.or(p.drawn).or(self.speaker)?;
+        let e = p.source.or(p.drawn).or(self.text_element)?;
         let words: &Words = source.words.get(e)?;
         let Some(copy) = self.copy else { return Some(Cow::Borrowed(words)) };
         let target = source.by_id().get(&source.href(copy)?)?.first().copied()?;
