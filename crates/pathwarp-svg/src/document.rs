@@ -1,4 +1,4 @@
-//! The public face of a drawing.
+//! Reads documents, answers questions about them, and warps them.
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::bend;
@@ -53,7 +53,7 @@ const SVG_SPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\" ";
 #[derive(Debug)]
 pub struct Document {
     drawing: Drawing,
-    /// Content of the file, if it is not just the text.
+    /// Content of the file, if it differs from the text.
     packed: Option<Box<[u8]>>,
 }
 
@@ -68,14 +68,14 @@ impl Document {
         Ok(Self { drawing, packed })
     }
 
-    /// The text of the file, decoded: where that was another encoding than UTF-8, the XML declaration names UTF-8. Style that only
-    /// browsers read is in attributes that usvg reads.
+    /// The decoded text of the file. If the encoding was another than UTF-8, the XML declaration names UTF-8. Style that only browsers
+    /// read is in attributes that usvg reads.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.drawing.source.text
     }
 
-    /// The text of the file, decoded, with the style that only browsers read as the file has it: what to read again.
+    /// The decoded text of the file with its style unchanged, which can be read again.
     #[must_use]
     pub fn decoded(&self) -> Cow<'_, str> {
         self.drawing.source.as_in_file()
@@ -108,11 +108,11 @@ impl Document {
     /// The text of the drawing with its page moved to the origin, for readers in single precision; `None` if it lies near enough.
     ///
     /// # Errors
-    /// As [`Document::warp`].
+    /// [`Error::Input`] or [`Error::Geometry`] as for [`Document::warp`].
     pub fn moved_to_origin(&self) -> Result<Option<String>, Error> {
-        /// Beyond this many pages from the origin, single precision would move things by a hundred-thousandth of the page.
+        /// Distance from the origin, in pages, beyond which single precision would move shapes by a hundred-thousandth of the page.
         const FAR: f64 = 64.0;
-        /// Share of the page that rounding may take.
+        /// Fraction of the page that rounding may take.
         const FINE: f64 = 1e-8;
         let page = self.drawing.visible_area();
         let (side, away) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
@@ -127,15 +127,15 @@ impl Document {
         Ok(Some(self.warp(&map, &options)?.svg))
     }
 
-    /// The text of the drawing with plain shapes for the markers and strokes that usvg draws otherwise than browsers; `None` if there are
-    /// none.
+    /// The text of the drawing with plain shapes for the markers and strokes that usvg draws differently from browsers; `None` if there
+    /// are none.
     ///
     /// # Errors
-    /// As [`Document::warp`].
+    /// [`Error::Input`] or [`Error::Geometry`] as for [`Document::warp`].
     pub fn resolved(&self) -> Result<Option<String>, Error> {
         /// The tolerance of an outlined stroke, in px.
         const FINE: f64 = 0.01;
-        if self.drawing.scene().parts.iter().all(|p| !p.is_own) {
+        if self.drawing.scene().parts.iter().all(|p| !p.differs_from_usvg) {
             return Ok(None);
         }
         let tolerance = FINE / stretch(self.user_to_px());
@@ -144,8 +144,8 @@ impl Document {
         Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))
     }
 
-    /// The drawing with its page `scale` times as large, and all that is on it; nothing else changes. The size is written in a unit of
-    /// so many px.
+    /// The drawing with its page and all artwork `scale` times as large. Only the root's size and viewBox change. The size is written in
+    /// `unit`, which is `px` px long.
     #[must_use]
     pub fn resized(&self, scale: f64, unit: &str, px: f64) -> String {
         let source = &self.drawing.source;
@@ -172,19 +172,19 @@ impl Document {
         self.drawing.is_measured()
     }
 
-    /// The images that the drawing links to and that were not read.
+    /// Images to which the drawing links and that were not read.
     #[must_use]
     pub fn unread_images(&self) -> UnreadImages {
-        UnreadImages::of(&self.drawing.missed)
+        UnreadImages::from_missed(&self.drawing.missed)
     }
 
-    /// The limits on the work that the drawing causes, and what is used of them.
+    /// The limits on the work that the drawing causes, and the work done so far.
     #[must_use]
     pub fn budget(&self) -> &Arc<Budget> {
         &self.drawing.budget
     }
 
-    /// Forgets what is used of the limits: for programs that warp a drawing again and again, to which the limits apply each time.
+    /// Renews the limits, for programs that warp a drawing several times.
     pub fn renew_budget(&mut self) {
         self.drawing.budget = Arc::new(Budget::new(self.drawing.budget.limits()));
     }
@@ -194,7 +194,7 @@ impl Document {
         &self.drawing
     }
 
-    /// The paths that are printed in an ink of their own, by their ids; `All` stands for every plate.
+    /// Styles of the paths that are printed in spot inks, by their ids; the ink `All` stands for every plate.
     #[must_use]
     pub fn spots(&self) -> HashMap<String, CutLine> {
         let source = &self.drawing.source;
@@ -206,13 +206,13 @@ impl Document {
         (0..source.elements.len()).filter_map(spot).collect()
     }
 
-    /// Families of fonts that the drawing asks for and that were not found.
+    /// Font families in the drawing that were not found.
     #[must_use]
     pub fn missing_fonts(&self) -> &[String] {
         &self.drawing.missed.fonts
     }
 
-    /// Fonts and images that the drawing asks for and that were not found, in words.
+    /// Sentences about fonts and images that were not found.
     #[must_use]
     pub fn missing(&self) -> Vec<String> {
         let missed = &self.drawing.missed;
@@ -221,13 +221,13 @@ impl Document {
         fonts.chain(missed.images.iter().map(|link| format!("the image {link} cannot be read"))).collect()
     }
 
-    /// What the drawing asks for and a picture of it lacks, in words: content and style that are not supported.
+    /// Sentences about unsupported content and style, which a picture of the drawing lacks.
     #[must_use]
     pub fn undrawn(&self) -> Vec<String> {
         undrawn(&self.drawing.source).into_iter().chain(self.drawing.missed.without_font()).collect()
     }
 
-    /// What browsers show a little otherwise, in words.
+    /// Sentences about content that browsers show a little differently.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         Notes::in_words(&self.drawing.source.notes)
@@ -239,7 +239,7 @@ impl Document {
         self.drawing.shapes()
     }
 
-    /// The elements that hold what is painted, in document order: shapes, texts and pictures, and the groups around them.
+    /// The painted elements in document order: shapes, texts and pictures, and the groups around them.
     #[must_use]
     pub fn parts(&self) -> Vec<DrawingPart> {
         let (source, scene) = (&self.drawing.source, self.drawing.scene());
@@ -270,8 +270,8 @@ impl Document {
         depths.into_iter().map(part).collect()
     }
 
-    /// The drawing with an id for every element that has none: its name in [parts](Self::parts) and reports, so that a viewer can tell
-    /// which one is which. A selection by these names holds for both.
+    /// The drawing with an id for every element that has none: its name in [parts](Self::parts) and reports, so that a viewer can identify
+    /// it. Selections by these names hold for both drawings.
     #[must_use]
     pub fn with_ids(&self) -> String {
         self.drawing.source.with_ids()
@@ -301,7 +301,7 @@ impl Document {
         shapes.chain(pictures).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
-    /// The edges of the selected pictures that are seen, with a name for each.
+    /// The edges of the selected visible pictures, with a name for each.
     #[must_use]
     pub fn picture_edges(&self, selection: &Selection) -> Vec<(String, Outline)> {
         let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection)).filter(|b| b.1);
@@ -310,7 +310,7 @@ impl Document {
         bitmaps.filter_map(|b| edge(b.0)).collect()
     }
 
-    /// Which bitmaps are selected.
+    /// For each bitmap, `true` if it is selected.
     fn selected_bitmaps(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.drawing.source);
         let bitmaps = self.drawing.scene().bitmaps.iter();
@@ -322,25 +322,26 @@ impl Document {
         areas::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
     }
 
-    /// Bounding box of what is seen of the selected shapes, without stroke widths, and pictures: not what clip paths, masks and zero opacity
-    /// hide, nor what lies off the page. If nothing is seen, the same as [`Document::artwork_box`].
+    /// Bounding box of the visible area of the selected shapes, without stroke widths, and pictures: without artwork that is off the page
+    /// or hidden by clip paths, masks or zero opacity. If nothing is visible, [`Document::artwork_box`].
     #[must_use]
     pub fn seen_box(&self, selection: &Selection) -> Option<Rect> {
-        self.box_of(selection, &self.counted(selection))
+        self.counted_box(selection, &self.counted(selection))
     }
 
-    fn box_of(&self, selection: &Selection, counted: &areas::Counted) -> Option<Rect> {
+    fn counted_box(&self, selection: &Selection, counted: &areas::Counted) -> Option<Rect> {
         let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), counted);
         seen.or_else(|| self.artwork_box(selection))
     }
 
-    /// The box of what is seen, [`Document::seen_box`], with strokes by half their width.
+    /// The box of the visible area, [`Document::seen_box`], with strokes extended by half their width.
     #[must_use]
     pub fn painted_box(&self, selection: &Selection) -> Option<Rect> {
-        self.box_of(selection, &areas::Counted { strokes: true, ..self.counted(selection) })
+        self.counted_box(selection, &areas::Counted { strokes: true, ..self.counted(selection) })
     }
 
-    /// The box of what is seen, [`Document::seen_box`], with what the page cuts off the shapes in it. `None` if it cuts nothing.
+    /// The box of the visible area, `seen` ([`Document::seen_box`]), extended by the areas of the shapes in it that lie off the page. `None`
+    /// if there are none.
     #[must_use]
     pub fn uncut_box(&self, selection: &Selection, seen: Rect) -> Option<Rect> {
         let page = self.drawing.specified_area()?;
@@ -355,7 +356,7 @@ impl Document {
         self.shapes().iter().zip(self.are_selected(selection)).filter(|(s, is)| *is && s.painted).map(|(s, _)| s)
     }
 
-    /// For each of [`Document::shapes`], whether it is selected.
+    /// For each of [`Document::shapes`], `true` if it is selected.
     #[must_use]
     pub fn are_selected(&self, selection: &Selection) -> Vec<bool> {
         self.drawing.selected_parts(selection)
@@ -372,8 +373,9 @@ impl Document {
     /// # Errors
     /// Returns [`Error::Input`] with the first selector that matches no element, or selects nothing painted, and similar names.
     pub fn check_selection(&self, selection: &Selection) -> Result<(), Error> {
-        /// Comparisons of an element with a selector, which selects alone, too; and with one that excludes.
+        /// Comparisons of an element with a selector, including the one that selects by it alone.
         const SELECTED: usize = 3;
+        /// Comparisons of an element with a selector that excludes.
         const EXCLUDED: usize = 2;
         let source = &self.drawing.source;
         let each = SELECTED * selection.select.len() + EXCLUDED * selection.exclude.len();
@@ -397,10 +399,10 @@ impl Document {
     /// The outlines of the drawing, for a plotter or cutter.
     ///
     /// # Errors
-    /// Returns [`Error::Input`] if the drawing nests too deep for the memory there is.
+    /// [`Error::Input`] if the drawing nests too deep for the available memory.
     pub fn plot(&self) -> Result<Plot, Error> {
         let (scene, source) = (self.drawing.scene(), &self.drawing.source);
-        // Not inside of `with_stack`, as it may wait for other threads.
+        // Not inside `with_stack`, as it may wait for other threads.
         let _ = self.drawing.shapes();
         self.drawing.with_stack(|| Ok(plot::plot(scene, source)))
     }
@@ -411,8 +413,8 @@ impl Document {
         lettering(&self.drawing, selection)
     }
 
-    /// The objects among the selected painted shapes, from left to right, as letters without outlines: each selected element, or if that is
-    /// the whole drawing, each member of the outermost group that has several. Those whose boxes overlap are one.
+    /// The objects among the selected painted shapes, from left to right, as letters without outlines: each selected element or, if the
+    /// whole drawing is selected, each member of the outermost group that has several. Members whose boxes overlap are one object.
     #[must_use]
     pub fn objects(&self, selection: &Selection) -> Vec<Letter> {
         let letter = |o: PlacedLetter| Letter {
@@ -428,7 +430,7 @@ impl Document {
     /// within `tolerance` there; `None` if it has no stroke.
     ///
     /// # Errors
-    /// More segments than the limit allows.
+    /// [`Exceeded`] if a stroke has more segments than the limit allows.
     pub fn strokes(&self, selection: &Selection, tolerance: f64) -> Result<Vec<Option<Outline>>, Exceeded> {
         let (scene, selected) = (self.drawing.scene(), self.drawing.selected_parts(selection));
         let all = scene.parts.iter().zip(self.shapes()).zip(selected);
@@ -436,8 +438,7 @@ impl Document {
         chosen.map(|((p, _), _)| stroked(p, scene.to_px, tolerance, self.budget())).collect()
     }
 
-    /// For each shape of [`Document::selected`], its outline after letters have been placed one by one; `None` if it has no
-    /// placed letters.
+    /// For each shape of [`Document::selected`], its outline after letters have been placed one by one; `None` if it has no placed letters.
     #[must_use]
     pub fn placed(&self, options: &WarpOptions) -> Vec<Option<Outline>> {
         placed_outlines(&self.drawing, options)
@@ -467,8 +468,8 @@ impl Document {
         out
     }
 
-    /// Finds a path by its id, else by Inkscape label, else by title; a leading `#` is ignored. The path may be invisible or in
-    /// `<defs>`. The name of a group with exactly one path stands for that path.
+    /// Finds a path by its id, or else by its Inkscape label, or else by its title; a leading `#` is ignored. The path may be invisible or
+    /// in `<defs>`. The name of a group with exactly one path stands for that path.
     ///
     /// # Errors
     /// Returns [`Error::Input`] with the names of similar paths.
@@ -515,38 +516,40 @@ impl Document {
         self.warp_each(&[(map, options)])
     }
 
-    /// Bends parts of the drawing, each by a map of its own: what is selected by the options that stand beside the map. Shapes that share
-    /// an edge keep it together if the same map bends both. For the document as a whole, as for its page, the first options count.
+    /// Bends parts of the drawing, each by its map: the part that the options beside the map select. Shapes that share an edge keep sharing
+    /// it if one map bends both. For the document as a whole, such as its page, the first options count.
     ///
     /// # Errors
-    /// As [`Document::warp`].
+    /// [`Error::Geometry`] with the name of a shape that its map cannot bend, unless the options have [`OnError::Skip`]; [`Error::Input`] if
+    /// the structure must be kept and cannot be.
     pub fn warp_each(&self, bends: &[(&dyn Map, &WarpOptions)]) -> Result<WarpedDocument, Error> {
         let each = bends.iter().map(|(map, options)| Bend::new(*map, (*options).clone())).collect();
         bends.iter().try_for_each(|(_, options)| options.refit.check())?;
         let document = bends.first().map_or_else(|| WarpOptions::new(refit::Options::new(1.0)), |b| b.1.clone());
         let bends = &Bends::new(&self.drawing.source, each, &document);
         // If nothing moves, return the source unchanged.
-        let page_stays = document.page == PageFit::None || document.page == PageFit::Auto && document.grown.is_none();
+        let page_stays = document.page == PageFit::None || (document.page == PageFit::Auto && document.grown.is_none());
         if bends.is_identity() && page_stays && document.structure != Structure::Flatten {
             let svg = self.drawing.source.as_in_file().into_owned();
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
         let simplifies = matches!(document.edit, Some(Edit::Simplify { .. }));
-        let own = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
-        let drawing = own.as_ref().unwrap_or(&self.drawing);
-        match fits::laid_out(drawing, bends)? {
+        let again = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
+        let drawing = again.as_ref().unwrap_or(&self.drawing);
+        match fits::with_tiles(drawing, bends)? {
             Some(tiled) => warp(&tiled, bends),
             None => warp(drawing, bends),
         }
     }
 
-    /// Divides the drawing by selections: each part holds what the same ones of them select. What none selects is in no part.
+    /// Divides the drawing by selections: each part holds the elements that an equal set of them selects. Elements that none selects are in
+    /// no part.
     #[must_use]
     pub fn divide(&self, selections: &[Selection]) -> Vec<Division> {
         select::divide(&self.drawing.source, selections)
     }
 
-    /// What any of these selections holds, as one.
+    /// The union of some selections.
     #[must_use]
     pub fn united<'a>(&self, selections: impl Iterator<Item = &'a Selection>) -> Selection {
         Selection::union(&self.drawing.source, selections)
@@ -567,7 +570,7 @@ fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     Ok(out)
 }
 
-/// Lists the names most like `wanted`; `what` they name is in the plural.
+/// Lists the names most like `wanted`. `what` is the plural of the objects that they name.
 fn similar(mut names: Vec<String>, wanted: &str, what: &str) -> String {
     /// Number of names listed, about two lines.
     const SHOWN: usize = 12;
@@ -581,7 +584,7 @@ fn similar(mut names: Vec<String>, wanted: &str, what: &str) -> String {
     }
 }
 
-/// Edit distance, ignoring case, over at most 40 characters, so that long names cost nothing.
+/// Edit distance without regard to case, over at most 40 characters, so that long names take little time.
 fn distance(a: &str, b: &str) -> usize {
     const LONGEST: usize = 40;
     let [a, b] = [a, b].map(|s| s.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>());

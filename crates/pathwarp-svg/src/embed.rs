@@ -1,4 +1,4 @@
-//! The origin of a drawing, embedded in its `<metadata>`: the recipe and the source file.
+//! Embeds the origin of a drawing, the recipe and the source file, in its `<metadata>`.
 
 use crate::source::elements::{PATHWARP as NAMESPACE, tag_end};
 use crate::source::read::{packed, text, unpacked_text};
@@ -29,8 +29,8 @@ impl Origin {
         );
         let doc = parse(svg)?;
         let mut out = String::with_capacity(svg.len() + element.len() + 30);
-        // Keep its neighbours, such as a licence.
-        if let Some(old) = own(&doc) {
+        // Other metadata, such as a licence, stays.
+        if let Some(old) = embedded(&doc) {
             let range = old.range();
             out.push_str(&svg[..range.start]);
             out.push_str(&element);
@@ -61,22 +61,22 @@ impl Origin {
     /// Reads the origin embedded in a file, which may be compressed or in another encoding. `name` identifies it in errors.
     ///
     /// # Errors
-    /// As for [`Origin::read_within`]; also [`Error::Input`] if the file cannot be decoded.
+    /// [`Error::Input`] if the file cannot be decoded, is not XML or exceeds the limits, or the origin is damaged.
     pub fn of_file(data: &[u8], name: &str, limits: &Limits) -> Result<Option<Self>, Error> {
         Self::read_within(&text(data, name, &Budget::new(*limits))?, limits)
     }
 
-    /// Reads the origin embedded in `svg` like [`Origin::read`], within limits.
+    /// Reads the origin embedded in `svg`, if any, within limits.
     ///
     /// # Errors
-    /// As for [`Origin::read`]; also [`Error::Input`] if the source unpacks to more than the limit.
+    /// [`Error::Input`] if `svg` is not XML, or the origin is damaged or unpacks to more than the limit.
     pub fn read_within(svg: &str, limits: &Limits) -> Result<Option<Self>, Error> {
         let budget = Budget::new(*limits);
         xml::check(svg, "the drawing", &budget)?;
         let doc = parse(svg)?;
-        let Some(own) = own(&doc) else { return Ok(None) };
+        let Some(origin) = embedded(&doc) else { return Ok(None) };
         let text = |name: &str| {
-            let node = own.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
+            let node = origin.descendants().find(|n| n.has_tag_name((NAMESPACE, name)));
             node.map(|n| n.children().filter_map(|c| c.text()).collect::<String>()).unwrap_or_default()
         };
         let source = unpacked_text(&text("source"), "the embedded source", &budget)?;
@@ -89,9 +89,9 @@ fn parse(svg: &str) -> Result<roxmltree::Document<'_>, Error> {
 }
 
 /// Finds the embedded origin, in a `<metadata>`.
-fn own<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
-    let own = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
-    own.parent().is_some_and(|p| p.tag_name().name() == "metadata").then_some(own)
+fn embedded<'a>(doc: &'a roxmltree::Document<'a>) -> Option<roxmltree::Node<'a, 'a>> {
+    let origin = doc.root_element().descendants().find(|n| n.has_tag_name((NAMESPACE, "pathwarp")))?;
+    origin.parent().is_some_and(|p| p.tag_name().name() == "metadata").then_some(origin)
 }
 
 #[cfg(test)]

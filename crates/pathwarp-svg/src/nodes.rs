@@ -1,11 +1,11 @@
-//! Nodes and handles drawn over a drawing, as editors of curves show them.
+//! Draws nodes and handles over a drawing, in the style of curve editors.
 
 use crate::document::Document;
 use crate::source::select::Selection;
 use pathwarp::Seg;
 use pathwarp::kurbo::{BezPath, Circle, Point, Rect, Shape as _};
 
-/// Half the side of a node, as a share of the drawing's diagonal.
+/// Half the side of a node, as a fraction of the drawing's diagonal.
 const NODE: f64 = 2.4e-3;
 
 impl Document {

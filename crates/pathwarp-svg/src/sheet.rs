@@ -1,4 +1,4 @@
-//! Contact sheets: labelled drawings side by side in one SVG, which looks the same everywhere.
+//! Writes contact sheets: labelled drawings side by side in one SVG, which looks the same everywhere.
 //!
 //! Every drawing is written in the form resolved by usvg, with prefixed ids, so that drawings cannot refer to one another. Labels
 //! are outlines in the bundled font. All drawings have the same scale, at which three quarters of them fit their cells; larger
@@ -54,14 +54,14 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     let (w, h) = options.cell;
     let columns = options.columns.clamp(1, cells.len().max(1));
     let rows = cells.len().div_ceil(columns);
-    let place = |k: usize| {
+    let corner = |k: usize| {
         let (i, j) = ((k % columns) as f64, (k / columns) as f64);
         (GAP + i * (w + GAP), GAP + TITLE + j * (h + GAP))
     };
     let width = GAP + columns as f64 * (w + GAP);
     let height = GAP + TITLE + rows as f64 * (h + GAP);
     let mut drawn = Vec::with_capacity(cells.len());
-    let shared = shared(cells, read);
+    let shared = shared_options(cells, read);
     for (k, c) in cells.iter().enumerate() {
         drawn.push(embedded(&c.svg, &c.label, &format!("s{k}-"), &shared)?);
     }
@@ -82,16 +82,16 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
         escape_content(&options.title)
     );
     for (k, (seen, content)) in drawn.iter().enumerate() {
-        let (x, y) = place(k);
+        let (x, y) = corner(k);
         let (cx, cy) = (x + 0.5 * w, y + INSET + 0.5 * room.1);
-        let (c, scale) = (seen.center(), common.min(fit(seen)));
+        let (centre, scale) = (seen.center(), common.min(fit(seen)));
         let _ = write!(
             out,
             "<g id=\"cell-{k}\">\n<title>{}</title>\n<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"6\" fill=\"#f5f5f2\"/>\n\
              <g transform=\"matrix({scale} 0 0 {scale} {} {})\">{content}</g>\n</g>\n",
             escape_content(&cells[k].label),
-            cx - scale * c.x,
-            cy - scale * c.y
+            cx - scale * centre.x,
+            cy - scale * centre.y
         );
         let letters = cells[k].label.chars().count().max(1) as f64;
         let _ = writeln!(
@@ -105,13 +105,13 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     labels.push_str("</svg>\n");
     let bundled = ReadOptions { system_fonts: false, ..ReadOptions::default() };
     let outlines = tree::parse(labels.as_bytes(), "labels", &bundled)?.0;
-    let own = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
-    let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&own)));
+    let prefixed = WriteOptions { id_prefix: Some("label-".into()), ..WriteOptions::default() };
+    let _ = write!(out, "<g id=\"labels\">{}</g>\n</svg>\n", inside(&outlines.to_string(&prefixed)));
     Ok(out)
 }
 
-/// The elements of a drawing, in px of its page, and the box of all that they paint, for another drawing to hold. Texts are outlines, and
-/// ids begin with a prefix.
+/// The box that a drawing paints and its elements, in px of its page, for embedding in another drawing. Texts are outlines, and ids begin
+/// with a prefix.
 ///
 /// # Errors
 /// Returns [`Error::Input`] for a drawing that cannot be read.
@@ -120,13 +120,13 @@ pub fn embedded(svg: &str, name: &str, prefix: &str, read: &ReadOptions) -> Resu
     let b = tree.root().abs_layer_bounding_box();
     let (x, y) = (f64::from(b.x()), f64::from(b.y()));
     let seen = Rect::new(x, y, x + f64::from(b.width()), y + f64::from(b.height()));
-    let own = WriteOptions { id_prefix: Some(prefix.to_owned()), ..WriteOptions::default() };
-    Ok((seen, inside(&tree.to_string(&own)).to_owned()))
+    let prefixed = WriteOptions { id_prefix: Some(prefix.to_owned()), ..WriteOptions::default() };
+    Ok((seen, inside(&tree.to_string(&prefixed)).to_owned()))
 }
 
-/// Options with one budget for all cells: that of the largest one, except that many small drawings hold more than one large drawing may.
-fn shared(cells: &[Cell], read: &ReadOptions) -> ReadOptions {
-    /// Together they take as long as a large drawing.
+/// Options with one budget for all cells: the largest cell's, but with more elements and work, as many small drawings need.
+fn shared_options(cells: &[Cell], read: &ReadOptions) -> ReadOptions {
+    /// Factor for elements and work. Within it, the cells together take as long as a large drawing.
     const DRAWINGS: f64 = 6.0;
     let sizes = || cells.iter().map(|c| c.svg.len());
     let largest = read.limits.for_input(sizes().max().unwrap_or_default());
@@ -182,7 +182,6 @@ mod tests {
         );
     }
 
-    /// Bounding boxes of the paths with a gradient.
     fn filled(g: &usvg::Group) -> Vec<usvg::Rect> {
         let of = |n: &usvg::Node| match n {
             usvg::Node::Group(g) => filled(g),

@@ -1,7 +1,6 @@
 //! usvg's resolved tree of a drawing, for rendering. Available with the feature `usvg`.
 //!
-//! This module exposes types of the `usvg` crate, whose major version may change in any release. It is exempt from semantic
-//! versioning.
+//! This module exposes types of the `usvg` crate, whose major version may change in any release. It is exempt from semantic versioning.
 
 use crate::bend::outcome::Notes;
 use crate::document::Document;
@@ -15,8 +14,7 @@ use std::sync::Arc;
 
 pub use crate::source::mesh::CoonsPatch;
 
-/// Reads SVG or svgz data into usvg's tree, with the same fonts and limits as [`Document::read`]. `name` identifies the data
-/// in errors.
+/// Reads SVG or svgz data into usvg's tree, with the fonts and limits of [`Document::read`]. `name` identifies the data in errors.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if the data is not an SVG drawing.
@@ -34,19 +32,19 @@ pub struct ReadTree {
     pub unread: UnreadImages,
     /// Families of fonts that it lacks.
     pub missing_fonts: Vec<String>,
-    /// What else a picture of it lacks, in words: content and style that are not supported.
+    /// Sentences about unsupported content and style.
     pub undrawn: Vec<String>,
-    /// What browsers show a little otherwise, in words.
+    /// Sentences about content that browsers show a little differently.
     pub notes: Vec<String>,
 }
 
-/// Words without which a drawing has neither markers nor strokes of fixed width, which usvg draws otherwise than browsers.
+/// Words in every drawing with markers or strokes of fixed width, which usvg draws differently from browsers.
 const MAY_DIFFER: [&str; 2] = ["marker", "non-scaling-stroke"];
 
-/// Reads SVG or svgz data like [`parse_tree`], and lists what the tree lacks of the drawing.
+/// Reads SVG or svgz data into usvg's tree, and lists the content of the drawing that the tree lacks.
 ///
 /// # Errors
-/// As for [`parse_tree`].
+/// [`Error::Input`] if the data is not an SVG drawing.
 pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadTree, Error> {
     let text = read::text(data, name, &options.begin(data.len()).budget)?;
     let (tree, missed) = if MAY_DIFFER.iter().any(|word| text.contains(word)) {
@@ -56,7 +54,7 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
     } else {
         tree::parse(data, name, options)?
     };
-    let unread = UnreadImages::of(&missed);
+    let unread = UnreadImages::from_missed(&missed);
     Ok(ReadTree {
         tree,
         unread,
@@ -66,11 +64,11 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
     })
 }
 
-/// Returns the tree of a document with plain shapes for what usvg draws otherwise than browsers: markers, and strokes whose width does not
-/// scale. `options` are those that the document was read with.
+/// Returns the tree of a document with plain shapes for markers and strokes of fixed width, which usvg draws differently from browsers.
+/// `options` must be the ones with which the document was read.
 ///
 /// # Errors
-/// As for [`Document::resolved`].
+/// [`Error::Input`] or [`Error::Geometry`] as for [`Document::resolved`].
 pub fn shown(document: &Document, options: &ReadOptions) -> Result<Arc<usvg::Tree>, Error> {
     Ok(match document.resolved()? {
         Some(plain) => tree::parse(plain.as_bytes(), document.name(), options)?.0,
@@ -92,26 +90,26 @@ pub fn with_stack<T: Send>(document: &Document, f: impl FnOnce() -> Result<T, Er
     document.drawing().with_stack(f)
 }
 
-/// The Coons patches of the mesh gradient that a paint of a document's tree stands for, in the user space of a shape with this box; `None`
-/// for other paints. usvg has no mesh gradients, and draws nothing in their place.
+/// The Coons patches of the mesh gradient for which a paint of a document's tree stands, in the user space of a shape with the box
+/// `bounds`; `None` for other paints. usvg has no mesh gradients and draws nothing instead.
 #[must_use]
 pub fn mesh(document: &Document, paint: &usvg::Paint, bounds: Rect) -> Option<Vec<CoonsPatch>> {
     Some(document.drawing().mesh(paint)?.on(bounds).patches())
 }
 
-/// The outlines of the paths whose arcs usvg approximates, by up to a tenth of a unit, and of those so far from the origin that its single
+/// Exact outlines of the paths whose arcs usvg approximates within a tenth of a unit, and of paths so far from the origin that its single
 /// precision is coarse.
 #[derive(Debug)]
 pub struct ExactOutlines<'d> {
     by_address: HashMap<usize, BezPath>,
-    // The tree must not go, or another path could get the address.
+    // Keeps the tree, as another path could otherwise get the address.
     _document: &'d Document,
 }
 
-/// The distance between an arc and the curves that stand for it, as a share of the size of its outline.
+/// Largest distance between an arc and the curves that replace it, as a fraction of the size of its outline.
 const OF_SIZE: f64 = 1e-6;
 
-/// Coordinates that are rounded to a hundredth in single precision.
+/// Coordinate from which single precision rounds to a hundredth.
 const FAR: f64 = 1e5;
 
 impl<'d> ExactOutlines<'d> {
@@ -129,7 +127,7 @@ impl<'d> ExactOutlines<'d> {
         Self { by_address, _document: document }
     }
 
-    /// The outline of a path of the document's tree, in its own coordinates; `None` if usvg's is exact.
+    /// The outline of a path of the document's tree, in the path's coordinates; `None` if usvg's is exact.
     #[must_use]
     pub fn get(&self, path: &usvg::Path) -> Option<&BezPath> {
         self.by_address.get(&(std::ptr::from_ref(path) as usize))

@@ -27,7 +27,7 @@ impl<'a> Bend<'a> {
         Self { map, options }
     }
 
-    /// Whether nothing moves.
+    /// Returns `true` if nothing moves.
     pub(crate) fn is_identity(&self) -> bool {
         let WarpOptions { edit, copies, letters, .. } = &self.options;
         edit.is_none()
@@ -37,11 +37,11 @@ impl<'a> Bend<'a> {
     }
 }
 
-/// The maps of a drawing. If several select an element, the first bends it.
+/// The maps of a drawing. If several select an element, the first one bends it.
 #[derive(Clone)]
 pub(crate) struct Bends<'a> {
     pub(crate) each: Vec<Bend<'a>>,
-    /// The options for the document. Their selection is the union of all.
+    /// The options for the document. Their selection is the union of the bends' selections.
     pub(crate) options: WarpOptions,
     /// For every element, the index of its bend.
     of_element: Vec<Option<usize>>,
@@ -57,53 +57,54 @@ impl<'a> Bends<'a> {
         }
         let mut of_element = vec![None; source.elements.len()];
         for (k, bend) in each.iter().enumerate() {
-            for (of, selected) in of_element.iter_mut().zip(bend.options.selection.resolve(source)) {
-                *of = of.or(selected.then_some(k));
+            for (first, selected) in of_element.iter_mut().zip(bend.options.selection.resolve(source)) {
+                *first = first.or(selected.then_some(k));
             }
         }
         let everything = each.iter().position(|b| b.options.selection.is_everything());
         Self { each, options, of_element, everything }
     }
 
-    /// Whether nothing moves.
+    /// Returns `true` if nothing moves.
     pub(crate) fn is_identity(&self) -> bool {
         self.each.iter().all(Bend::is_identity)
     }
 
     /// The index of an element's bend.
-    pub(crate) fn of(&self, e: Option<ElementId>) -> Option<usize> {
+    pub(crate) fn bend_of(&self, e: Option<ElementId>) -> Option<usize> {
         e.map_or(self.everything, |e| self.of_element.get(e).copied().flatten())
     }
 
-    fn of_referrers(&self, all: &[Referrer]) -> Option<usize> {
-        self.everything.or_else(|| all.iter().find_map(|r| r.owner.or(r.element).and_then(|e| self.of(Some(e)))))
+    /// The index of the bend of the first referrer that has one.
+    fn bend_of_referrers(&self, all: &[Referrer]) -> Option<usize> {
+        self.everything.or_else(|| all.iter().find_map(|r| r.owner.or(r.element).and_then(|e| self.bend_of(Some(e)))))
     }
 
     /// If maps share clip paths or masks, resolves the drawing again with one copy of them for each map.
     pub(crate) fn divided(&self, drawing: &Drawing) -> Result<Option<Drawing>, Error> {
         let Scene { clips, masks, .. } = drawing.scene();
         let mut all = clips.iter().map(|c| &c.referrers).chain(masks.iter().map(|m| &m.referrers));
-        let of = |r: &Referrer| self.of(r.owner.or(r.element));
-        let is_shared = |all: &[Referrer]| all.windows(2).any(|pair| of(&pair[0]) != of(&pair[1]));
+        let bend_of = |r: &Referrer| self.bend_of(r.owner.or(r.element));
+        let is_shared = |all: &[Referrer]| all.windows(2).any(|pair| bend_of(&pair[0]) != bend_of(&pair[1]));
         let divides = self.everything.is_none() && all.any(|referrers| is_shared(referrers));
         divides.then(|| drawing.divided(self.of_element.clone())).transpose()
     }
 
     /// For every part of the drawing, the index of its bend. Clip paths and masks follow the elements that refer to them.
-    pub(crate) fn of_parts(&self, drawing: &Drawing) -> Vec<Option<usize>> {
+    pub(crate) fn part_bends(&self, drawing: &Drawing) -> Vec<Option<usize>> {
         let (scene, far) = (drawing.scene(), drawing.far());
-        let mut of: Vec<Option<usize>> = scene.parts.iter().map(|p| self.of(p.element())).collect();
+        let mut out: Vec<Option<usize>> = scene.parts.iter().map(|p| self.bend_of(p.element())).collect();
         let mut fill = |parts: &Range<usize>, bend: Option<usize>, referrers: &[Referrer]| {
-            of[parts.clone()].fill(bend.or_else(|| self.of_referrers(referrers)));
+            out[parts.clone()].fill(bend.or_else(|| self.bend_of_referrers(referrers)));
         };
         scene.clips.iter().for_each(|c| fill(&c.parts, c.bend, &c.referrers));
         scene.masks.iter().for_each(|m| fill(&m.parts, m.bend, &m.referrers));
-        for (i, (of, p)) in of.iter_mut().zip(&scene.parts).enumerate() {
+        for (i, (bend, p)) in out.iter_mut().zip(&scene.parts).enumerate() {
             let text = p.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-            if far.holds(i) || p.role == PartRole::Pattern || text && self.options.skips_text() {
-                *of = None;
+            if far.holds(i) || p.role == PartRole::Pattern || (text && self.options.skips_text()) {
+                *bend = None;
             }
         }
-        of
+        out
     }
 }

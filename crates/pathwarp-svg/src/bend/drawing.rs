@@ -1,7 +1,7 @@
 //! Bends a whole drawing: all parts, in parallel, with slots and bitmaps.
 
 use super::bends::{Bend, Bends};
-use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, written};
+use super::fits::{self, EmbeddedImage, FilterOutcome, PlacedSlot, frame_in_result};
 use super::line::{self, Line};
 use super::options::{Edit, OnError, has_lines_that_stay};
 use super::outcome::{PartOutcome, Skipped, Warning, WarpedDocument, WarpedPart};
@@ -23,8 +23,8 @@ use pathwarp::{Error, GeometryError, Outline};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Width of a hairline in millimetres. A quarter of a point is 0.088 mm, and laser and plotter programs treat lines up to 0.1 mm as
-/// paths to follow. The excess allows for rounding of the page's size and the width.
+/// Largest width of a hairline in millimetres. A quarter of a point is 0.088 mm, and laser and plotter programs treat lines up to 0.1 mm
+/// as paths to follow. The excess over 0.1 allows for rounding of the page's size and the width.
 const HAIRLINE: f64 = 0.1001;
 
 /// The image of a drawing.
@@ -36,21 +36,20 @@ pub(crate) struct BentDrawing {
     /// One for each slot.
     pub(crate) slots: Vec<PlacedSlot>,
     /// For each part, the index of its bend.
-    pub(crate) of: Vec<Option<usize>>,
-    /// By the index of their slot.
+    pub(crate) part_bends: Vec<Option<usize>>,
+    /// Results for filters, by the index of their slot.
     pub(crate) filters: BTreeMap<usize, FilterOutcome>,
     pub(crate) united: United,
-    /// The line around what is seen.
     pub(crate) line: Option<Line>,
 }
 
 /// Bends everything in a drawing and reports to `out`.
 pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocument) -> Result<BentDrawing, Error> {
     let (scene, options) = (drawing.scene(), &bends.options);
-    let of = bends.of_parts(drawing);
-    let slots = fits::place(drawing, bends, &of);
-    let united = united::all(drawing, bends, &of)?;
-    let results = warp_parts(drawing, bends, &of, (&slots, &united));
+    let part_bends = bends.part_bends(drawing);
+    let slots = fits::place_slots(drawing, bends, &part_bends);
+    let united = united::unite_drawing(drawing, bends, &part_bends)?;
+    let results = warp_parts(drawing, bends, &part_bends, (&slots, &united));
     let mut outcomes = Vec::with_capacity(scene.parts.len());
     // Index each element's report, since tiles and markers may come between the parts of an element.
     let mut reports: HashMap<ElementId, usize> = HashMap::new();
@@ -60,7 +59,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
             None => PartOutcome::Kept,
             Some(Ok(warped)) if united.absorbs(i) => PartOutcome::Warped(Box::new(warped)),
             Some(Ok(mut warped)) => {
-                let stays = matches!(options.edit, Some(Edit::Simplify { .. })) && warped.stays();
+                let stays = matches!(options.edit, Some(Edit::Simplify { .. })) && warped.reset_if_no_fewer();
                 let id = &drawing.shapes()[i].id;
                 if let Some(why) = &warped.unpainted {
                     out.warnings.push(Warning::FittedGradient { id: id.clone(), why: why.to_string() });
@@ -70,7 +69,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 }
                 let element = part.element();
                 let known = element.and_then(|e| reports.get(&e).copied());
-                let copies = of[i].map_or(0, |k| bends.each[k].options.copies.len());
+                let copies = part_bends[i].map_or(0, |k| bends.each[k].options.copies.len());
                 let report = out.report(id.clone(), &warped, copies.max(1), known);
                 reports.extend(element.map(|e| (e, report)));
                 if stays { PartOutcome::Kept } else { PartOutcome::Warped(Box::new(warped)) }
@@ -81,7 +80,7 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
                 let id = &drawing.shapes()[i].id;
                 let e = e.on_shape(id);
                 let limited = matches!(e, GeometryError::Limit(_));
-                if limited || options.on_error == OnError::Stop && part.painted() {
+                if limited || (options.on_error == OnError::Stop && part.painted()) {
                     return Err(Error::Geometry(e));
                 }
                 out.skipped.push(Skipped { id: id.clone(), why: e.to_string() });
@@ -90,40 +89,40 @@ pub(crate) fn bend(drawing: &Drawing, bends: &Bends<'_>, out: &mut WarpedDocumen
         });
     }
     out.skipped.extend(drawing.far().reasons.iter().map(|(id, why)| Skipped { id: id.clone(), why: why.clone() }));
-    warn(drawing, bends, &of, &outcomes, &slots, out);
+    warn(drawing, bends, &part_bends, &outcomes, &slots, out);
     united.report(drawing, &reports, out);
-    let line = line::drawn(drawing, bends, &of, out)?;
-    let bend = |b: &Bitmap| fits::bend(b, scene, &slots, bends.of(b.owner).map(|k| &bends.each[k]));
-    let images: Vec<_> = scene.bitmaps.iter().map(bend).collect();
+    let line = line::draw(drawing, bends, &part_bends, out)?;
+    let bend = |b: &Bitmap| bends.bend_of(b.owner).map(|k| &bends.each[k]);
+    let images: Vec<_> = scene.bitmaps.iter().map(|b| fits::bend_bitmap(b, scene, &slots, bend(b))).collect();
     for (b, image) in scene.bitmaps.iter().zip(&images) {
         if let EmbeddedImage::Bent { image: BentImage { lost: Some(text), .. }, .. } = image {
             let name = drawing.source.image_name(b.owner);
             out.warnings.push(Warning::Note { text, names: vec![name] });
         }
     }
-    Ok(BentDrawing { outcomes, images, slots, of, filters: BTreeMap::new(), united, line })
+    Ok(BentDrawing { outcomes, images, slots, part_bends, filters: BTreeMap::new(), united, line })
 }
 
-/// Warps every part by the bend whose index `of` gives; `None` for parts that are not bent.
+/// Warps every part by the bend whose index `part_bends` has; `None` for parts that are not bent.
 fn warp_parts(
     drawing: &Drawing,
     bends: &Bends<'_>,
-    of: &[Option<usize>],
+    part_bends: &[Option<usize>],
     (slots, united): (&[PlacedSlot], &United),
 ) -> Vec<Option<Result<WarpedPart, GeometryError>>> {
     /// With fewer segments, starting threads takes longer than the work.
     const WORTH_IT: usize = 1000;
     let scene = drawing.scene();
     let (parts, shapes) = (&scene.parts, drawing.shapes());
-    let pieces: Vec<_> = bends.each.iter().map(|b| task::pieces(drawing, &b.options)).collect();
+    let pieces: Vec<_> = bends.each.iter().map(|b| task::placed_letters(drawing, &b.options)).collect();
     let each = bends.each.iter().zip(&pieces).enumerate();
-    let each: Vec<_> = each.map(|(k, (b, pieces))| shared(drawing, b, (of, k), pieces)).collect();
+    let each: Vec<_> = each.map(|(k, (b, pieces))| with_shared_edges(drawing, b, (part_bends, k), pieces)).collect();
     let (each, contours): (Vec<Bend<'_>>, Vec<_>) = each.into_iter().unzip();
-    let known: Vec<_> = each.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, of, k)).collect();
-    let gradients = if bends.options.paints_gradients() { parts.iter().map(gradients).sum() } else { 0 };
+    let known: Vec<_> = each.iter().enumerate().map(|(k, b)| known_shapes(drawing, b, part_bends, k)).collect();
+    let gradients = if bends.options.paints_gradients() { parts.iter().map(count_gradients).sum() } else { 0 };
     let hairline = drawing.millimetre().map_or(0.0, |mm| HAIRLINE * mm);
     let warp = |i: usize| {
-        let k = of[i].filter(|&k| !each[k].is_identity())?;
+        let k = part_bends[i].filter(|&k| !each[k].is_identity())?;
         let (p, Bend { map, options }) = (&parts[i], &each[k]);
         let one = united.outlines.get(&i);
         let unites = matches!(options.edit, Some(Edit::Unite { .. }));
@@ -133,7 +132,7 @@ fn warp_parts(
         let gathered = map.prefers_batches().then(|| Gathered::new(*map));
         let map = gathered.as_ref().map_or(*map, |g| g as &dyn Map);
         let context = PartContext { map, options, known: &known[k], drawing, to_px: scene.to_px, gradients, hairline };
-        let write = written(scene, slots, p.slot, p.frame);
+        let write = frame_in_result(scene, slots, p.slot, p.frame);
         (is_invertible(p.frame) && is_invertible(write)).then(|| {
             let outline = match one {
                 Some(one) => (one.clone(), &[][..]),
@@ -152,29 +151,27 @@ fn warp_parts(
 }
 
 /// The outlines to which bend `k` applies.
-fn bent<'a>(drawing: &'a Drawing, of: &[Option<usize>], k: usize) -> impl Iterator<Item = &'a Outline> {
-    drawing.shapes().iter().zip(of).filter(move |(_, of)| **of == Some(k)).map(|(s, _)| &*s.outline)
+fn outlines_of<'a>(drawing: &'a Drawing, part_bends: &[Option<usize>], k: usize) -> impl Iterator<Item = &'a Outline> {
+    drawing.shapes().iter().zip(part_bends).filter(move |(_, bend)| **bend == Some(k)).map(|(s, _)| &*s.outline)
 }
 
-/// Adds to a bend the edges that its shapes share, which have the same pieces in all. An edge with another map on its other side is not
-/// shared. Also returns the tolerances of the contours of every part.
-fn shared<'a>(
+/// A bend with the edges that its shapes share, which get equal curves in each of them, and the tolerances of the contours of every part.
+/// An edge with another map on its other side is not shared.
+fn with_shared_edges<'a>(
     drawing: &Drawing,
     bend: &Bend<'a>,
-    (of, k): (&[Option<usize>], usize),
+    (part_bends, k): (&[Option<usize>], usize),
     pieces: &[Vec<LetterPiece>],
 ) -> (Bend<'a>, Vec<Vec<f64>>) {
     let mut bend = bend.clone();
-    bend.options.edit = edit_of(drawing, &bend, of, k);
-    let contours = task::of_parts(drawing, &bend, of, k);
+    bend.options.edit = edit_of(drawing, &bend, part_bends, k);
+    let contours = task::contour_tolerances(drawing, &bend, part_bends, k);
     let refit = &bend.options.refit;
     let simplifies = matches!(bend.options.edit, Some(Edit::Simplify { .. }));
     if (refit.nodes.merges() || refit.suited || simplifies) && !bend.is_identity() {
-        let outline = |i: usize| {
-            let (whole, own) = (&drawing.shapes()[i].outline, &contours[i]);
-            task::placed_outline(whole, own, &bend.options, &pieces[i])
-        };
-        let placed: Vec<_> = (0..of.len()).filter(|&i| of[i] == Some(k)).map(outline).collect();
+        let outline =
+            |i: usize| task::placed_outline(&drawing.shapes()[i].outline, &contours[i], &bend.options, &pieces[i]);
+        let placed: Vec<_> = (0..part_bends.len()).filter(|&i| part_bends[i] == Some(k)).map(outline).collect();
         let all = placed.iter().map(|(o, contours)| (&**o, &contours[..]));
         if simplifies {
             let borders = pathwarp::engine::Borders::among(&all.collect::<Vec<_>>(), refit.tolerance);
@@ -186,37 +183,36 @@ fn shared<'a>(
     (bend, contours)
 }
 
-/// The edit of bend `k`, by what it applies to.
-fn edit_of(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> Option<Edit> {
-    let parts = drawing.scene().parts.iter().zip(of).filter(|(_, of)| **of == Some(k));
-    bend.options.edit.map(|edit| edit.among(parts.map(|(p, _)| p)))
+/// The edit of bend `k`, adapted to its parts.
+fn edit_of(drawing: &Drawing, bend: &Bend<'_>, part_bends: &[Option<usize>], k: usize) -> Option<Edit> {
+    let parts = drawing.scene().parts.iter().zip(part_bends).filter(|(_, bend)| **bend == Some(k));
+    bend.options.edit.map(|edit| edit.for_parts(parts.map(|(p, _)| p)))
 }
 
-/// The shapes that recur in several parts.
-fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> KnownShapes {
+/// The images of shapes that recur in several parts.
+fn known_shapes(drawing: &Drawing, bend: &Bend<'_>, part_bends: &[Option<usize>], k: usize) -> KnownShapes {
     if bend.is_identity() {
         return KnownShapes::default();
     }
     // Most parts have less than the whole tolerance, because they are rounded.
     let refit = &bend.options.refit;
     let finer = refit.clone().with_tolerance((1.0 - ROUNDING) * refit.tolerance).with_suited(false);
-    KnownShapes::among(bent(drawing, of, k), bend.map, &finer)
+    KnownShapes::among(outlines_of(drawing, part_bends, k), bend.map, &finer)
 }
 
-/// The number of gradients on a part.
-fn gradients(p: &Part) -> usize {
-    let is_gradient = |p: &usvg::Paint| usize::from(Shading::of(p).is_some());
+fn count_gradients(p: &Part) -> usize {
+    let is_gradient = |p: &usvg::Paint| usize::from(Shading::from_paint(p).is_some());
     p.fill.as_ref().map_or(0, |f| is_gradient(f.paint())) + p.stroke.as_ref().map_or(0, |s| is_gradient(s.paint()))
 }
 
 impl BentDrawing {
-    /// The drawing as it is.
+    /// The drawing without changes.
     pub(crate) fn unbent(scene: &Scene) -> Self {
         Self {
             outcomes: scene.parts.iter().map(|_| PartOutcome::Kept).collect(),
             images: scene.bitmaps.iter().map(|_| EmbeddedImage::Placed).collect(),
             slots: fits::unmoved(scene),
-            of: vec![None; scene.parts.len()],
+            part_bends: vec![None; scene.parts.len()],
             filters: BTreeMap::new(),
             united: United::default(),
             line: None,
@@ -224,10 +220,11 @@ impl BentDrawing {
     }
 }
 
+/// Warns about paints and images that copies share, lines that an edit leaves, emoji, and missing fonts and letters.
 fn warn(
     drawing: &Drawing,
     bends: &Bends<'_>,
-    of: &[Option<usize>],
+    part_bends: &[Option<usize>],
     outcomes: &[PartOutcome],
     slots: &[PlacedSlot],
     out: &mut WarpedDocument,
@@ -240,9 +237,10 @@ fn warn(
         out.warnings.push(Warning::SharedImages);
     }
     for (k, bend) in bends.each.iter().enumerate() {
-        let Some(edit) = edit_of(drawing, bend, of, k) else { continue };
-        let stay = |i: &usize| of[*i] == Some(k) && has_lines_that_stay(edit, &drawing.scene().parts[*i]);
-        let mut names: Vec<String> = (0..of.len()).filter(stay).map(|i| drawing.shapes()[i].id.clone()).collect();
+        let Some(edit) = edit_of(drawing, bend, part_bends, k) else { continue };
+        let stay = |i: &usize| part_bends[*i] == Some(k) && has_lines_that_stay(edit, &drawing.scene().parts[*i]);
+        let mut names: Vec<String> =
+            (0..part_bends.len()).filter(stay).map(|i| drawing.shapes()[i].id.clone()).collect();
         names.dedup();
         if !names.is_empty() {
             out.warnings
@@ -250,7 +248,7 @@ fn warn(
         }
     }
     let of_text = |b: &&Bitmap| b.owner.is_some_and(|e| drawing.source.elements[e].tag == "text");
-    let bent = drawing.scene().bitmaps.iter().filter(of_text).filter(|b| bends.of(b.owner).is_some());
+    let bent = drawing.scene().bitmaps.iter().filter(of_text).filter(|b| bends.bend_of(b.owner).is_some());
     let names: BTreeSet<String> = bent.map(|b| drawing.source.image_name(b.owner)).collect();
     if !names.is_empty() {
         let text = "letters whose font has them as bitmaps only, such as emoji, become pictures";

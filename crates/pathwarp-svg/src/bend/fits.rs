@@ -1,4 +1,4 @@
-//! The best affine fit of a map, for paints, filtered groups, and bitmaps and patterns that are not bent.
+//! The best affine fit of a map, for paints, filtered groups, and bitmaps and patterns that are not bent point by point.
 
 use super::bends::{Bend, Bends};
 use super::options::{Patterns, Strokes, WarpOptions};
@@ -17,21 +17,21 @@ use usvg::ImageRendering;
 /// An affine approximation of a map over a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PaintFit {
-    /// From the shape's user space as read to that as written.
+    /// Leads from the shape's user space in the source to its user space in the result.
     pub(crate) affine: Affine,
     /// Largest distance between fit and map over the samples, relative to the size of the box's image.
     pub(crate) residual: f64,
-    /// The same distance in units of the target space.
+    /// Largest distance between fit and map over the samples, in units of the user space in the result.
     pub(crate) miss: f64,
 }
 
-/// Finds the least-squares affine fit of `map` over a grid on `area`, from a user space with the transform `read` to root user
-/// space to one with the transform `write`. Returns `None` where the map is not finite.
+/// Finds the least-squares affine fit of `map` over a grid on `area`. `read` leads from the user space of `area` to root user space, and
+/// `write` from the user space of the result. Returns `None` where the map is not finite.
 pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Option<PaintFit> {
     let back = write.inverse();
-    let places: Vec<Point> = grid(area).map(|p| read * p).collect();
-    let mut images = places.clone();
-    map.points(&places, &mut images);
+    let points: Vec<Point> = grid(area).map(|p| read * p).collect();
+    let mut images = points.clone();
+    map.points(&points, &mut images);
     let pairs: Vec<(Point, Point)> =
         grid(area).zip(images).map(|(p, q)| (p, back * q)).filter(|(_, q)| q.is_finite()).collect();
     let n = pairs.len() as f64;
@@ -74,7 +74,7 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
 }
 
 /// Finds the fit of a shape with copies: the paint of one copy is stretched over the box of all. If no affine map comes near
-/// the image of that box, as around a ring, the paint is stretched over the image's own box, `result`.
+/// the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
 pub(crate) fn fit_copies(
     area: Rect,
     read: Affine,
@@ -83,7 +83,7 @@ pub(crate) fn fit_copies(
     copies: &[Affine],
     result: Rect,
 ) -> Option<PaintFit> {
-    /// A fit with a larger relative residual is useless.
+    /// Largest relative residual of a useful fit.
     const LOST: f64 = 0.25;
     let back = read.inverse();
     let Some(whole) = copies.iter().map(|m| (back * *m * read).transform_rect_bbox(area)).reduce(|a, b| a.union(b))
@@ -91,7 +91,7 @@ pub(crate) fn fit_copies(
         return fit(area, read, write, map);
     };
     // Without width or height, keep the size.
-    let scale = |own: f64, all: f64| if own > 0.0 && all > 0.0 { all / own } else { 1.0 };
+    let scale = |one: f64, all: f64| if one > 0.0 && all > 0.0 { all / one } else { 1.0 };
     let onto = |all: Rect| {
         Affine::translate(all.origin().to_vec2())
             * Affine::scale_non_uniform(scale(area.width(), all.width()), scale(area.height(), all.height()))
@@ -105,7 +105,7 @@ pub(crate) fn fit_copies(
 }
 
 impl PaintFit {
-    /// Whether the fit moves no corner of `area` by more than 1e-9 of its diagonal.
+    /// Returns `true` if the fit moves no corner of `area` by more than 1e-9 of its diagonal.
     pub(crate) fn is_identity(&self, area: Rect) -> bool {
         let size = area.width().hypot(area.height());
         let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];
@@ -113,6 +113,7 @@ impl PaintFit {
     }
 }
 
+/// A square lattice of points over a box.
 fn grid(r: Rect) -> impl Iterator<Item = Point> {
     const N: u32 = 8;
     let at = |i: u32| f64::from(i) / f64::from(N);
@@ -122,28 +123,28 @@ fn grid(r: Rect) -> impl Iterator<Item = Point> {
 /// A slot under a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedSlot {
-    /// Applied to the slot's transform.
+    /// The affine fit, applied to the slot's transform.
     pub(crate) fit: Affine,
-    /// From the slot's coordinates to root user space, as written.
+    /// Leads from the slot's coordinates to root user space in the result.
     write: Affine,
 }
 
-/// The frame of something in the result, which moves along with its slot.
-pub(crate) fn written(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>, frame: Affine) -> Affine {
+/// The frame in the result of a part, bitmap or slot that moves along with its slot.
+pub(crate) fn frame_in_result(scene: &Scene, placed: &[PlacedSlot], slot: Option<usize>, frame: Affine) -> Affine {
     match slot.and_then(|s| Some((placed.get(s)?, scene.slots.get(s)?))) {
         Some((p, s)) if p.write != s.frame => p.write * s.frame.inverse() * frame,
         _ => frame,
     }
 }
 
-/// Places filtered groups and images by the affine fit of their map. A group whose parts have different bends stays in place. `of` has
-/// the index of each part's bend.
-pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) -> Vec<PlacedSlot> {
+/// Places filtered groups and images by the affine fit of their map. A group whose parts have different bends does not move.
+/// `part_bends` has the index of each part's bend.
+pub(super) fn place_slots(drawing: &Drawing, bends: &Bends<'_>, part_bends: &[Option<usize>]) -> Vec<PlacedSlot> {
     let scene = drawing.scene();
     let mut out: Vec<PlacedSlot> = Vec::with_capacity(scene.slots.len());
     for s in &scene.slots {
-        let outer = written(scene, &out, s.outer, s.frame);
-        let fit = bend_of(s, scene, bends, of)
+        let outer = frame_in_result(scene, &out, s.outer, s.frame);
+        let fit = slot_bend(s, scene, bends, part_bends)
             .filter(|_| is_invertible(s.frame) && is_invertible(outer))
             .and_then(|k| fit(s.area, s.frame, outer, bends.each[k].map))
             .filter(|f| is_invertible(f.affine) && !f.is_identity(s.area));
@@ -153,14 +154,14 @@ pub(super) fn place(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) 
     out
 }
 
-/// The slots of a drawing that does not move.
+/// The slots of a drawing that is not bent.
 pub(crate) fn unmoved(scene: &Scene) -> Vec<PlacedSlot> {
     scene.slots.iter().map(|s| PlacedSlot { fit: Affine::IDENTITY, write: s.frame }).collect()
 }
 
-/// How far a map is from moving everything alike: the largest distance of its derivative from that of a translation. `read` is the user
-/// space of `area`, `write` that of the result.
-pub(crate) fn bends_by(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> f64 {
+/// The largest distance over `area` of a map's derivative from the identity, the derivative of a translation. `read` leads from the user
+/// space of `area` to root user space, and `write` from the user space of the result.
+pub(crate) fn distance_from_translation(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> f64 {
     let linear = |a: Affine, v: Vec2| (a * v.to_point()).to_vec2() - a.translation();
     let back = write.inverse();
     let off = |p: Point| {
@@ -171,29 +172,29 @@ pub(crate) fn bends_by(area: Rect, read: Affine, write: Affine, map: &dyn Map) -
     grid(area).map(off).map(|off| if off.is_finite() { off } else { f64::INFINITY }).fold(0.0, f64::max)
 }
 
-/// Index of the map that bends all of a slot.
-pub(crate) fn bend_of(s: &Slot, scene: &Scene, bends: &Bends<'_>, of: &[Option<usize>]) -> Option<usize> {
+/// Index of the bend of all parts in a slot; `None` if they have several.
+pub(crate) fn slot_bend(s: &Slot, scene: &Scene, bends: &Bends<'_>, part_bends: &[Option<usize>]) -> Option<usize> {
     // Parts of tiles and of filters' pictures are never bent and do not count.
-    let mut own = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
-    match own.next() {
-        Some(first) => of[first].filter(|k| own.all(|i| of[i] == Some(*k))),
-        None => bends.of(s.owner.or(s.element)),
+    let mut parts = s.parts.clone().filter(|&i| scene.parts[i].role != PartRole::Pattern);
+    match parts.next() {
+        Some(first) => part_bends[first].filter(|k| parts.all(|i| part_bends[i] == Some(*k))),
+        None => bends.bend_of(s.owner.or(s.element)),
     }
 }
 
-/// Result for the filters of a slot. Pictures are in the slot's user space as written.
+/// Result for the filters of a slot. Pictures are in the slot's user space in the result.
 #[derive(Debug)]
 pub(crate) enum FilterOutcome {
-    /// They follow the fit, which looks right.
+    /// The filters follow the fit, which looks right.
     Fits,
-    /// What they draw beneath and above their graphic became pictures.
+    /// The filters' drawing beneath and above the graphic became pictures.
     Around { beneath: Option<BentImage>, above: Option<BentImage> },
-    /// All became a picture.
+    /// The graphic with its filters became a picture.
     Whole(BentImage),
 }
 
 impl FilterOutcome {
-    /// The pictures beneath and above; the graphic itself is not drawn in between if it is [`FilterOutcome::Whole`].
+    /// The pictures beneath and above the graphic, which is not drawn in between for [`FilterOutcome::Whole`].
     pub(crate) fn pictures(&self) -> [Option<&BentImage>; 2] {
         match self {
             Self::Fits => [None, None],
@@ -213,20 +214,20 @@ pub(crate) enum EmbeddedImage {
     /// Bent, in the user space outside its placing transform.
     Bent {
         image: BentImage,
-        /// Path data of the outline that clips the image, which may go on beyond it.
+        /// Path data of the outline that clips the image, which may extend beyond it.
         clip: Option<String>,
     },
 }
 
-/// An affine fit with a relative residual below this is exact.
+/// Largest relative residual of an exact affine fit.
 const EXACT: f64 = 1e-6;
 
 /// Bends a bitmap, if a bend applies to it.
-pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option<&Bend<'_>>) -> EmbeddedImage {
+pub(super) fn bend_bitmap(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option<&Bend<'_>>) -> EmbeddedImage {
     let Some(Bend { map, options }) = bend else { return EmbeddedImage::Placed };
     let pixels = b.image.size();
     let area = Rect::new(0.0, 0.0, f64::from(pixels.width()), f64::from(pixels.height()));
-    let write = written(scene, slots, b.slot, b.frame);
+    let write = frame_in_result(scene, slots, b.slot, b.frame);
     if !b.bends || b.is_unread() || !b.image.is_visible() || !is_invertible(b.frame) || !is_invertible(write) {
         return EmbeddedImage::Placed;
     }
@@ -253,7 +254,7 @@ pub(super) fn bend(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend: Option
     }
 }
 
-/// The bent outline of the visible part of a bitmap, as path data in the user space that `after` leads to; `None` if it cannot be bent.
+/// Path data of the bent outline of a bitmap's visible part, in the user space to which `after` leads; `None` if it cannot be bent.
 fn visible_outline(b: &Bitmap, area: Rect, after: Affine, (map, options): (&dyn Map, &WarpOptions)) -> Option<String> {
     let shown = b.crop.map_or(area, |c| c.intersect(area));
     let corners = [(shown.x0, shown.y0), (shown.x1, shown.y0), (shown.x1, shown.y1), (shown.x0, shown.y1)];
@@ -263,8 +264,8 @@ fn visible_outline(b: &Bitmap, area: Rect, after: Affine, (map, options): (&dyn 
     Some(path_data(&(after * path), digits))
 }
 
-/// Lays out pattern tiles as geometry if they are to be warped one by one. Returns `None` if nothing changes.
-pub(crate) fn laid_out(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<Drawing>, Error> {
+/// The drawing with pattern tiles laid out as geometry, if they are to be warped one by one. Returns `None` if nothing changes.
+pub(crate) fn with_tiles(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<Drawing>, Error> {
     /// Visible error as a fraction of the page's diagonal: half a pixel if the page is drawn a thousand pixels across.
     const VISIBLE: f64 = 5e-4;
     let patterns = bends.options.patterns;
@@ -273,16 +274,16 @@ pub(crate) fn laid_out(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<Dr
     }
     let view = drawing.view_box();
     let visible = VISIBLE * view.width().hypot(view.height());
-    let shows = |bend: &Bend<'_>, area: Rect, frame: Affine| {
+    let lays_out = |bend: &Bend<'_>, area: Rect, frame: Affine| {
         let follows = || fit(area, frame, Affine::IDENTITY, bend.map).is_some_and(|f| f.miss <= visible);
         patterns == Patterns::Instantiate || bend.options.copies.len() > 1 || !follows()
     };
     let needed = |painted: Painted, area: Rect, frame: Affine| {
         let bend = match painted {
-            Painted::Element(e) => bends.of(e),
+            Painted::Element(e) => bends.bend_of(e),
             Painted::Mask(bend) => bend.or(Some(0)),
         };
-        bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| shows(bend, area, frame))
+        bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| lays_out(bend, area, frame))
     };
     let strokes = matches!(bends.options.strokes, Strokes::Auto | Strokes::Outline);
     drawing.tiled(Tiling::new(&needed, strokes)).map(Some)

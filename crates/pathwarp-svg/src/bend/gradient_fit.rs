@@ -1,47 +1,49 @@
-//! Gradients of SVG's that show what a bent one does: the nearest linear or radial gradient, with as many stops as it takes.
+//! Fits an SVG gradient to a bent one: the nearest linear or radial gradient, with as many stops as needed.
 //!
-//! A bent gradient is constant along curves. If these are nearly lines or ellipses, a gradient of SVG's has the same ones, and the stops
-//! say which colour lies on each. The lines or ellipses are sought by Gauss–Newton's method, with the colours projected out: for every
-//! choice, the piecewise linear profile nearest to the samples follows by least squares.
+//! The image of a gradient is constant along its level curves. If these are nearly lines or ellipses, they are also the level curves of an
+//! SVG gradient, whose stops give the colour of each. The level curves are found by variable projection (Golub and Pereyra 1973): for
+//! given level curves, the piecewise linear profile nearest to the samples follows by linear least squares, and the Levenberg–Marquardt
+//! method moves the curves so that the remaining residuals shrink.
 
 use super::shading::{GradientShape, Shading, Stop, premultiplied};
 use pathwarp::kurbo::{Affine, Point, Vec2};
 use usvg::SpreadMethod;
 
-/// A place under the map: where it was, and where it is in the user space of the result.
+/// A point of the source and its image, in the user space of the result.
 pub(super) type Moved = (Point, Point);
 
-/// Samples by which the lines or ellipses are sought.
-const SOUGHT_BY: usize = 256;
-/// Cells of the profile while they are sought, and of the profiles that are tried in the end.
+/// Number of samples in the search for level curves.
+const SEARCH_SAMPLES: usize = 256;
+/// Number of cells of the profile during the search.
 const CELLS: usize = 10;
+/// Numbers of cells of the profiles that are tried as gradients.
 const TRIED_CELLS: [usize; 5] = [1, 2, 4, 8, 16];
 /// Most periods of a gradient that repeats.
 const MAX_PERIODS: f64 = 8.0;
-/// Stops nearer than this are at one place; usvg moves them apart by a rounding error.
+/// Stops closer than this coincide; usvg moves them apart by a rounding error.
 const SAME: f64 = 1e-4;
-/// Places between and around the samples, as a share of their range.
+/// Margin on either side of the samples' range, as a fraction of it, for points between and around the samples.
 const AROUND: f64 = 0.03;
 
-/// The largest offset at which the colours of a radial gradient may begin: some renderers hold 256 of them.
+/// Largest offset at which the colours of a radial gradient may begin, since some renderers hold 256 colours from offset 0 on.
 const NARROWEST: f64 = 0.9;
 
 /// Work of the search, in evaluations of a map.
 pub(super) const SEARCH: f64 = 60e3;
 
-/// The gradient that looks like the bent one, if any does: the plainest that is good, or else the best. `fitted` is the gradient under
-/// an affine fit, and `off` tells how far a gradient's look is off: by at most 1 if it is accepted.
+/// The SVG gradient that looks like the bent one, if any does: the plainest good one, or else the best. `fitted` is the gradient under an
+/// affine fit, from which a search starts. `off` measures how far a gradient's look is off; at most 1 is acceptable.
 pub(super) fn nearest(
     shading: &Shading,
     fitted: Option<&Shading>,
     moved: &[Moved],
     off: impl Fn(&Shading) -> f64,
 ) -> Option<Shading> {
-    /// Better than this, more stops are not worth their bytes.
+    /// An error at which more stops are not worth their bytes.
     const GOOD: f64 = 0.4;
-    let ramp = Ramp::of(shading, moved)?;
-    let samples = Samples::of(shading, &ramp, moved)?;
-    let few = samples.thinned(SOUGHT_BY);
+    let ramp = Ramp::new(shading, moved)?;
+    let samples = Samples::new(shading, &ramp, moved)?;
+    let few = samples.thinned(SEARCH_SAMPLES);
     let mut best: Option<(f64, Shading)> = None;
     let mut is_good = |levels: Levels| {
         for gradient in samples.gradients(&ramp, levels) {
@@ -55,28 +57,28 @@ pub(super) fn nearest(
         }
         false
     };
-    if !is_good(few.best(Levels::Lines(few.steepest()))) {
-        let centre = few.best(Levels::Circles(few.circles())).parameters();
+    if !is_good(few.refined(Levels::Lines(few.steepest()))) {
+        let centre = few.refined(Levels::Circles(few.coarse_centre())).parameters();
         if !is_good(Levels::Circles([centre[0], centre[1]])) {
             let around = [centre[0], centre[1], 0.0, 0.0, 0.0, 0.0];
             let starts = [Some(around), fitted.and_then(|f| f.ellipses(samples.out))];
-            let found = starts.into_iter().flatten().map(|start| few.best(Levels::Ellipses(start)));
-            let rated = found.map(|e| (few.off(e).1, e)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let found = starts.into_iter().flatten().map(|start| few.refined(Levels::Ellipses(start)));
+            let rated = found.map(|e| (few.residuals(e).1, e)).min_by(|a, b| a.0.total_cmp(&b.0));
             rated.map(|(_, ellipses)| is_good(ellipses));
         }
     }
     best.map(|b| b.1)
 }
 
-/// The colours along a gradient, with all periods that are seen written out, and a scale on which they change evenly.
+/// The colours along a gradient, with all visible periods written out, and a scale on which they change evenly.
 struct Ramp {
     stops: Vec<Stop>,
-    /// The scale at each stop: it does not grow where colours jump.
+    /// The scale's value at each stop. It does not grow where colours jump.
     scale: Vec<f64>,
 }
 
 impl Ramp {
-    fn of(shading: &Shading, moved: &[Moved]) -> Option<Self> {
+    fn new(shading: &Shading, moved: &[Moved]) -> Option<Self> {
         let along = |p: &Moved| shading.along_one(p.0);
         let all = moved.iter().map(along).filter(|t| t.is_finite());
         let (from, to) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
@@ -96,7 +98,7 @@ impl Ramp {
             a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
         let length = stops.last()?.offset - stops.first()?.offset;
-        // Places count a little even where colours do not change: a jump or an end must lie right.
+        // The scale grows a little even where colours do not change, so that jumps and ends are fitted, too.
         let total: f64 = stops.windows(2).map(change).sum();
         if !(length > 0.0 && total > 0.0) {
             return None;
@@ -111,20 +113,20 @@ impl Ramp {
         Some(Self { stops, scale })
     }
 
-    /// The scale at a parameter. It goes on a little before the first stop and beyond the last, where colours are constant: else, profiles
-    /// would have kinks there.
-    fn at(&self, t: f64) -> f64 {
+    /// The scale's value at the gradient's parameter `t`. It grows a little beyond the first and last stops, although colours are constant
+    /// there, since profiles would otherwise have kinks.
+    fn scale_at(&self, t: f64) -> f64 {
         const BEYOND: f64 = 0.15;
         let last = self.stops.len() - 1;
-        let b = self.stops.partition_point(|s| s.offset <= t).clamp(1, last);
-        let [from, to] = [self.stops[b - 1].offset, self.stops[b].offset];
-        let rate = if to - from <= SAME { 0.0 } else { (self.scale[b] - self.scale[b - 1]) / (to - from) };
+        let next = self.stops.partition_point(|s| s.offset <= t).clamp(1, last);
+        let [from, to] = [self.stops[next - 1].offset, self.stops[next].offset];
+        let rate = if to - from <= SAME { 0.0 } else { (self.scale[next] - self.scale[next - 1]) / (to - from) };
         let end = self.scale[last];
-        (self.scale[b - 1] + (t - from) * rate).clamp(-BEYOND * end, (1.0 + BEYOND) * end)
+        (self.scale[next - 1] + (t - from) * rate).clamp(-BEYOND * end, (1.0 + BEYOND) * end)
     }
 
-    /// The colour at a place of the scale.
-    fn color(&self, v: f64) -> [f64; 4] {
+    /// The colour at the value `v` of the scale.
+    fn color_at(&self, v: f64) -> [f64; 4] {
         let next = self.scale.partition_point(|s| *s < v).clamp(1, self.scale.len() - 1);
         let (a, b) = (self.scale[next - 1], self.scale[next]);
         let share = if b > a { ((v - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
@@ -132,13 +134,13 @@ impl Ramp {
         std::array::from_fn(|k| from[k] + share * (to[k] - from[k]))
     }
 
-    /// The stops of a gradient whose parameter has these values of the scale at evenly spaced offsets.
+    /// The stops of a gradient that has these values of the scale at evenly spaced offsets.
     fn stops(&self, profile: &[f64]) -> Vec<Stop> {
         let mut out = Vec::new();
         let cells = (profile.len() - 1) as f64;
         for (k, pair) in profile.windows(2).enumerate() {
             let (from, to) = (pair[0], pair[1]);
-            out.push(Stop { offset: k as f64 / cells, color: self.color(from) });
+            out.push(Stop { offset: k as f64 / cells, color: self.color_at(from) });
             let inside = |i: &usize| (self.scale[*i] - from) * (self.scale[*i] - to) < 0.0;
             let mut crossed: Vec<usize> = (0..self.scale.len()).filter(inside).collect();
             if to < from {
@@ -147,12 +149,12 @@ impl Ramp {
             let offset = |v: f64| (k as f64 + (v - from) / (to - from)) / cells;
             out.extend(crossed.iter().map(|&i| Stop { offset: offset(self.scale[i]), color: self.stops[i].color }));
         }
-        out.push(Stop { offset: 1.0, color: self.color(profile[profile.len() - 1]) });
+        out.push(Stop { offset: 1.0, color: self.color_at(profile[profile.len() - 1]) });
         pruned(&out)
     }
 }
 
-/// Stops with one before and one after them where the first or the last is a jump, at the ends of a range.
+/// The stops, with another at either end of the range where colours jump at the first or the last stop.
 fn padded(stops: &[Stop], from: f64, to: f64) -> Vec<Stop> {
     let jumps = |a: Option<&Stop>, b: Option<&Stop>| a.zip(b).is_none_or(|(a, b)| (b.offset - a.offset).abs() <= SAME);
     let end = |s: Option<&Stop>, at: f64| s.map(|s| Stop { offset: at, ..*s });
@@ -163,7 +165,7 @@ fn padded(stops: &[Stop], from: f64, to: f64) -> Vec<Stop> {
     before.into_iter().chain(stops.iter().copied()).chain(after).collect()
 }
 
-/// The stops of the period of a gradient that begins at `n`.
+/// The stops of a gradient in its period from `n` to `n + 1`.
 fn period(shading: &Shading, n: f64) -> Vec<Stop> {
     let (Some(first), Some(last)) = (shading.stops.first(), shading.stops.last()) else { return Vec::new() };
     let mut out = vec![Stop { offset: 0.0, ..*first }];
@@ -177,12 +179,12 @@ fn period(shading: &Shading, n: f64) -> Vec<Stop> {
     out
 }
 
-/// Drops stops between which the colours are the same without them.
+/// Drops stops without which the colours stay the same.
 fn pruned(stops: &[Stop]) -> Vec<Stop> {
     /// A difference that rounding to 255 levels hides.
     const HIDDEN: f64 = 0.3 / 255.0;
     let mut out: Vec<Stop> = Vec::with_capacity(stops.len());
-    // The stops since the last one that is kept.
+    // The stops dropped since the last one that is kept.
     let mut between: Vec<Stop> = Vec::new();
     for (i, stop) in stops.iter().enumerate() {
         let follows = |s: &Stop, a: &Stop, b: &Stop| {
@@ -201,15 +203,15 @@ fn pruned(stops: &[Stop]) -> Vec<Stop> {
     out
 }
 
-/// The curves along which a gradient is constant. Coordinates are those of [`Samples`].
+/// The level curves of a gradient, in the coordinates of [`Samples`].
 #[derive(Debug, Clone, Copy)]
 enum Levels {
-    /// Lines across this direction.
+    /// Lines perpendicular to the direction at this angle.
     Lines(f64),
     /// Circles around a point.
     Circles([f64; 2]),
-    /// Ellipses that shrink to a focus: the focus, the logarithm of a symmetric matrix of determinant 1 that makes them circles, and the
-    /// direction in which their centres move.
+    /// Ellipses that shrink to a focus: the focus; p and r, where \[\[p, r\], \[r, −p\]\] is the logarithm of the symmetric matrix of
+    /// determinant 1 that makes circles of them; and the shift of their centres, mapped from the plane to the unit disc.
     Ellipses([f64; 6]),
 }
 
@@ -222,7 +224,7 @@ impl Levels {
         }
     }
 
-    fn with(self, p: &[f64]) -> Self {
+    fn with_parameters(self, p: &[f64]) -> Self {
         match self {
             Self::Lines(_) => Self::Lines(p[0]),
             Self::Circles(_) => Self::Circles([p[0], p[1]]),
@@ -230,59 +232,63 @@ impl Levels {
         }
     }
 
-    /// The focus, the matrix and the movement of the centres.
-    fn cone(p: [f64; 6]) -> (Point, Affine, Vec2) {
-        /// Nearer to 1, the ellipses are no longer within each other.
+    /// The focus, the matrix, and the shift of the centres for each unit of the circles' radius, of the parameters of [`Self::Ellipses`].
+    fn cone(parameters: [f64; 6]) -> (Point, Affine, Vec2) {
+        /// Largest shift. From 1 on, the circles would no longer be nested.
         const FARTHEST: f64 = 0.9;
-        let [fx, fy, p, r, ex, ey] = p;
+        let [fx, fy, p, r, ex, ey] = parameters;
+        // The matrix exponential in closed form.
         let m = p.hypot(r);
         let (even, odd) = (m.cosh(), if m > 1e-9 { m.sinh() / m } else { 1.0 });
-        let e = Vec2::new(ex, ey);
-        let e = e * (FARTHEST / (1.0 + e.hypot2()).sqrt());
-        (Point::new(fx, fy), Affine::new([even + odd * p, odd * r, odd * r, even - odd * p, 0.0, 0.0]), e)
+        let shift = Vec2::new(ex, ey);
+        let shift = shift * (FARTHEST / (1.0 + shift.hypot2()).sqrt());
+        (Point::new(fx, fy), Affine::new([even + odd * p, odd * r, odd * r, even - odd * p, 0.0, 0.0]), shift)
     }
 
-    /// The parameter of the level at every place.
-    fn along(self, places: &[Point]) -> Vec<f64> {
+    /// The parameter of the level curve through each point.
+    fn parameters_at(self, points: &[Point]) -> Vec<f64> {
         match self {
             Self::Lines(angle) => {
-                let d = Vec2::from_angle(angle);
-                places.iter().map(|q| q.to_vec2().dot(d)).collect()
+                let direction = Vec2::from_angle(angle);
+                points.iter().map(|q| q.to_vec2().dot(direction)).collect()
             }
-            Self::Circles(c) => places.iter().map(|q| q.distance(Point::new(c[0], c[1]))).collect(),
+            Self::Circles([x, y]) => points.iter().map(|q| q.distance(Point::new(x, y))).collect(),
             Self::Ellipses(p) => {
-                let (focus, round, e) = Self::cone(p);
-                let a = 1.0 - e.hypot2();
-                let one = |q: &Point| {
+                let (focus, round, shift) = Self::cone(p);
+                // The positive root s of |y − s·shift| = s.
+                let a = 1.0 - shift.hypot2();
+                let radius = |q: &Point| {
                     let y = (round * (*q - focus).to_point()).to_vec2();
-                    let b = y.dot(e);
+                    let b = y.dot(shift);
                     ((b * b + a * y.hypot2()).sqrt() - b) / a
                 };
-                places.iter().map(one).collect()
+                points.iter().map(radius).collect()
             }
         }
     }
 
-    /// The gradient whose offset 1 is at `to`, and whose offset 0 is at `from` for lines and at the focus otherwise.
+    /// The gradient whose offset 1 is at the parameter `to`, and whose offset 0 is at `from` for lines and at the focus otherwise. `out`
+    /// leads from the samples' coordinates to user space.
     fn shading(self, (from, to): (f64, f64), out: Affine, stops: Vec<Stop>) -> Shading {
         let scale = out.determinant().abs().sqrt();
         let (kind, placed) = match self {
             Self::Lines(angle) => {
-                let d = Vec2::from_angle(angle);
-                let fine = fine((to - from) * scale);
-                let [a, b] = [from, to].map(|s| out * (d * s).to_point()).map(|p| Point::new(fine(p.x), fine(p.y)));
+                let direction = Vec2::from_angle(angle);
+                let fine = rounder((to - from) * scale);
+                let [a, b] = [from, to].map(|s| out * (direction * s).to_point());
+                let [a, b] = [a, b].map(|p| Point::new(fine(p.x), fine(p.y)));
                 (GradientShape::Linear { from: a, slope: (b - a) / (b - a).hypot2() }, Affine::IDENTITY)
             }
-            Self::Circles(c) => {
-                let fine = fine(to * scale);
-                let (centre, radius) = (out * Point::new(c[0], c[1]), fine(to * scale));
+            Self::Circles([x, y]) => {
+                let fine = rounder(to * scale);
+                let (centre, radius) = (out * Point::new(x, y), fine(to * scale));
                 let centre = Point::new(fine(centre.x), fine(centre.y));
                 (GradientShape::Radial { centre, radius, focus: centre, focal_radius: 0.0 }, Affine::IDENTITY)
             }
             Self::Ellipses(p) => {
-                let (focus, round, e) = Self::cone(p);
+                let (focus, round, shift) = Self::cone(p);
                 let placed = out * Affine::translate(focus.to_vec2()) * round.inverse() * Affine::scale(to);
-                let centre = e.to_point();
+                let centre = shift.to_point();
                 (GradientShape::Radial { centre, radius: 1.0, focus: Point::ORIGIN, focal_radius: 0.0 }, placed)
             }
         };
@@ -290,39 +296,40 @@ impl Levels {
     }
 }
 
-/// Rounds to a ten thousandth of a length, or less.
-fn fine(length: f64) -> impl Fn(f64) -> f64 {
+/// A function that rounds to the power of ten at or below a ten thousandth of a length.
+fn rounder(length: f64) -> impl Fn(f64) -> f64 {
     let unit = 10.0_f64.powf((1e-4 * length).log10().floor());
     move |v| (v / unit).round() * unit
 }
 
 impl Shading {
-    /// The ellipses around the focus of a radial gradient, as parameters of [`Levels::Ellipses`]; `out` leads from their coordinates.
+    /// The level curves of a radial gradient with the centre moved to the focus, as parameters of [`Levels::Ellipses`]. `out` leads from
+    /// the samples' coordinates to user space.
     fn ellipses(&self, out: Affine) -> Option<[f64; 6]> {
         let GradientShape::Radial { focus, .. } = self.kind else { return None };
         let to = self.inside * out;
         let [a, b, c, d, ..] = to.as_coeffs();
-        // The square of the symmetric matrix, of determinant 1, and half its logarithm.
+        // The square of the symmetric matrix of determinant 1; half of the square's logarithm is the matrix's.
         let unit = to.determinant().abs();
         let [xx, xy, yy] = [a * a + b * b, a * c + b * d, c * c + d * d].map(|v| v / unit);
         let m = (0.5 * (xx + yy)).max(1.0).acosh();
         let half = if m > 1e-6 { 0.5 * m / m.sinh() } else { 0.5 };
-        let place = to.inverse() * focus;
-        let all = [place.x, place.y, half * 0.5 * (xx - yy), half * xy, 0.0, 0.0];
+        let focus = to.inverse() * focus;
+        let all = [focus.x, focus.y, half * 0.5 * (xx - yy), half * xy, 0.0, 0.0];
         all.iter().all(|v| v.is_finite()).then_some(all)
     }
 }
 
-/// Places of the result about their mean, in units of their spread, with their values on the ramp's scale.
+/// Points of the result about their mean, in units of their standard deviation, with their values on the ramp's scale.
 struct Samples {
-    places: Vec<Point>,
+    points: Vec<Point>,
     values: Vec<f64>,
-    /// To the user space of the result.
+    /// Leads to the user space of the result.
     out: Affine,
 }
 
 impl Samples {
-    fn of(shading: &Shading, ramp: &Ramp, moved: &[Moved]) -> Option<Self> {
+    fn new(shading: &Shading, ramp: &Ramp, moved: &[Moved]) -> Option<Self> {
         let n = moved.len() as f64;
         let mean = moved.iter().map(|m| m.1.to_vec2()).fold(Vec2::ZERO, |a, b| a + b) / n;
         let spread = (moved.iter().map(|m| (m.1.to_vec2() - mean).hypot2()).sum::<f64>() / n).sqrt();
@@ -331,15 +338,16 @@ impl Samples {
         }
         let out = Affine::translate(mean) * Affine::scale(spread);
         let into = out.inverse();
-        let values: Vec<f64> = moved.iter().map(|m| ramp.at(shading.along_one(m.0))).collect();
-        let places = moved.iter().map(|m| into * m.1).collect();
-        values.iter().all(|v| v.is_finite()).then_some(Self { places, values, out })
+        let values: Vec<f64> = moved.iter().map(|m| ramp.scale_at(shading.along_one(m.0))).collect();
+        let points = moved.iter().map(|m| into * m.1).collect();
+        values.iter().all(|v| v.is_finite()).then_some(Self { points, values, out })
     }
 
+    /// At most `most` of the samples, evenly taken.
     fn thinned(&self, most: usize) -> Self {
-        let step = self.places.len().div_ceil(most).max(1);
+        let step = self.points.len().div_ceil(most).max(1);
         Self {
-            places: self.places.iter().copied().step_by(step).collect(),
+            points: self.points.iter().copied().step_by(step).collect(),
             values: self.values.iter().copied().step_by(step).collect(),
             out: self.out,
         }
@@ -349,7 +357,7 @@ impl Samples {
     fn steepest(&self) -> f64 {
         let (mut xx, mut xy, mut yy, mut vx, mut vy) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let mean = self.values.iter().sum::<f64>() / self.values.len() as f64;
-        for (q, v) in self.places.iter().zip(&self.values) {
+        for (q, v) in self.points.iter().zip(&self.values) {
             xx += q.x * q.x;
             xy += q.x * q.y;
             yy += q.y * q.y;
@@ -359,52 +367,52 @@ impl Samples {
         (xx * vy - xy * vx).atan2(yy * vx - xy * vy)
     }
 
-    /// Where to seek the centre of circles: the best of some places around the samples, near and far.
-    fn circles(&self) -> [f64; 2] {
+    /// The best centre for circles among points on rings around the samples, near and far.
+    fn coarse_centre(&self) -> [f64; 2] {
         const AROUND: u32 = 16;
         const FAR: [f64; 5] = [0.0, 0.7, 1.5, 3.0, 8.0];
-        let at = |r: f64, k: u32| {
-            let d = Vec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)) * r;
-            [d.x, d.y]
+        let on_ring = |r: f64, k: u32| {
+            let p = Vec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(AROUND)) * r;
+            [p.x, p.y]
         };
-        let all = FAR.into_iter().flat_map(|r| (0..AROUND).map(move |k| at(r, k)));
-        let rated = all.map(|c| (self.off(Levels::Circles(c)).1, c));
+        let all = FAR.into_iter().flat_map(|r| (0..AROUND).map(move |k| on_ring(r, k)));
+        let rated = all.map(|c| (self.residuals(Levels::Circles(c)).1, c));
         rated.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([0.0; 2], |b| b.1)
     }
 
-    /// The differences of the values from the best profile, and the sum of their squares.
-    fn off(&self, levels: Levels) -> (Vec<f64>, f64) {
-        let along = levels.along(&self.places);
+    /// The residuals of the best profile along these level curves, and the sum of their squares.
+    fn residuals(&self, levels: Levels) -> (Vec<f64>, f64) {
+        let along = levels.parameters_at(&self.points);
         let range = range(&along);
-        let profile = profile(&along, &self.values, range, CELLS);
-        let off = along.iter().zip(&self.values).map(|(s, v)| v - read(&profile, range, *s));
-        let off: Vec<f64> = off.collect();
-        let sum = off.iter().map(|r| r * r).sum::<f64>();
-        (off, if sum.is_finite() { sum } else { f64::INFINITY })
+        let profile = fit_profile(&along, &self.values, range, CELLS);
+        let residuals = along.iter().zip(&self.values).map(|(s, v)| v - profile_at(&profile, range, *s));
+        let residuals: Vec<f64> = residuals.collect();
+        let sum = residuals.iter().map(|r| r * r).sum::<f64>();
+        (residuals, if sum.is_finite() { sum } else { f64::INFINITY })
     }
 
-    /// The best levels of a kind, from a start.
-    fn best(&self, start: Levels) -> Levels {
+    /// The level curves near `start` and of its kind whose residuals are least, by the Levenberg–Marquardt method.
+    fn refined(&self, start: Levels) -> Levels {
         const ROUNDS: usize = 24;
         const STEP: f64 = 1e-5;
         let (mut levels, mut damping) = (start, 1e-3);
-        let (mut off, mut sum) = self.off(levels);
+        let (mut residuals, mut sum) = self.residuals(levels);
         for _ in 0..ROUNDS {
             let p = levels.parameters();
             let column = |k: usize| {
                 let mut moved = p.clone();
                 moved[k] += STEP;
-                let (there, _) = self.off(levels.with(&moved));
-                there.iter().zip(&off).map(|(a, b)| (a - b) / STEP).collect::<Vec<f64>>()
+                let (there, _) = self.residuals(levels.with_parameters(&moved));
+                there.iter().zip(&residuals).map(|(a, b)| (a - b) / STEP).collect::<Vec<f64>>()
             };
             let columns: Vec<Vec<f64>> = (0..p.len()).map(column).collect();
             let before = sum;
             for _ in 0..6 {
-                let Some(step) = damped(&columns, &off, damping) else { break };
-                let next = levels.with(&p.iter().zip(&step).map(|(p, s)| p - s).collect::<Vec<f64>>());
-                let (there, less) = self.off(next);
+                let Some(step) = damped_step(&columns, &residuals, damping) else { break };
+                let next = levels.with_parameters(&p.iter().zip(&step).map(|(p, s)| p - s).collect::<Vec<f64>>());
+                let (there, less) = self.residuals(next);
                 if less < sum {
-                    (levels, off, sum, damping) = (next, there, less, damping * 0.2);
+                    (levels, residuals, sum, damping) = (next, there, less, damping * 0.2);
                     break;
                 }
                 damping *= 5.0;
@@ -416,9 +424,9 @@ impl Samples {
         levels
     }
 
-    /// The gradients with these levels, with few stops and then with more.
+    /// The gradients with these level curves, from few stops to many.
     fn gradients(&self, ramp: &Ramp, levels: Levels) -> impl Iterator<Item = Shading> {
-        let along = levels.along(&self.places);
+        let along = levels.parameters_at(&self.points);
         let (from, to) = range(&along);
         let around = AROUND * (to - from);
         let range = (from - around, to + around);
@@ -426,7 +434,7 @@ impl Samples {
         let range = if is_radial { (range.0.max(0.0), range.1) } else { range };
         let tried = if is_radial && range.0 > NARROWEST * range.1 { &[][..] } else { &TRIED_CELLS };
         tried.iter().map(move |&cells| {
-            let profile = monotone(profile(&along, &self.values, range, cells));
+            let profile = monotone(fit_profile(&along, &self.values, range, cells));
             let mut stops = ramp.stops(&profile);
             if is_radial {
                 stops.iter_mut().for_each(|s| s.offset = (range.0 + s.offset * (range.1 - range.0)) / range.1);
@@ -436,27 +444,27 @@ impl Samples {
     }
 }
 
-/// Range of values.
+/// The least and the largest of some values.
 fn range(all: &[f64]) -> (f64, f64) {
     all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(*s), b.max(*s)))
 }
 
-/// A place in a range of some cells: the cell, and the place in it.
+/// The index of the cell that holds the parameter `s` in an evenly divided range, and the parameter within that cell, 0 to 1.
 fn cell(s: f64, (from, to): (f64, f64), cells: usize) -> (usize, f64) {
-    let at = ((s - from) / (to - from) * cells as f64).clamp(0.0, cells as f64);
-    let k = (at as usize).min(cells - 1);
-    (k, at - k as f64)
+    let u = ((s - from) / (to - from) * cells as f64).clamp(0.0, cells as f64);
+    let k = (u as usize).min(cells - 1);
+    (k, u - k as f64)
 }
 
-/// The value of a profile at a place.
-fn read(profile: &[f64], range: (f64, f64), s: f64) -> f64 {
+/// The value of a profile at the parameter `s`.
+fn profile_at(profile: &[f64], range: (f64, f64), s: f64) -> f64 {
     let (k, u) = cell(s, range, profile.len() - 1);
     profile[k] + u * (profile[k + 1] - profile[k])
 }
 
-/// The piecewise linear function nearest to the samples, by its values between `cells` cells.
-fn profile(along: &[f64], values: &[f64], range: (f64, f64), cells: usize) -> Vec<f64> {
-    /// Ties neighbours where there are no samples.
+/// The piecewise linear function nearest to the samples, by its values at the ends of `cells` cells.
+fn fit_profile(along: &[f64], values: &[f64], range: (f64, f64), cells: usize) -> Vec<f64> {
+    /// Weight of the differences between neighbours, which determine the values of cells without samples.
     const TIE: f64 = 1e-6;
     let tie = TIE * along.len() as f64;
     let (mut diagonal, mut beside, mut right) = (vec![0.0; cells + 1], vec![-tie; cells], vec![0.0; cells + 1]);
@@ -486,7 +494,7 @@ fn profile(along: &[f64], values: &[f64], range: (f64, f64), cells: usize) -> Ve
     right
 }
 
-/// Makes a profile rise or fall throughout.
+/// The profile with its values raised or lowered to the last extreme, so that it rises or falls throughout.
 fn monotone(mut profile: Vec<f64>) -> Vec<f64> {
     let falls = profile[profile.len() - 1] < profile[0];
     let sign = if falls { -1.0 } else { 1.0 };
@@ -498,12 +506,13 @@ fn monotone(mut profile: Vec<f64>) -> Vec<f64> {
     profile
 }
 
-/// The step of Levenberg and Marquardt.
-fn damped(columns: &[Vec<f64>], off: &[f64], damping: f64) -> Option<Vec<f64>> {
+/// The step of the Levenberg–Marquardt method: the solution of the damped normal equations. `columns` are the derivatives of the residuals.
+/// Returns `None` if the equations are singular.
+fn damped_step(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Option<Vec<f64>> {
     let n = columns.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut rows: Vec<Vec<f64>> = (0..n)
-        .map(|i| (0..n).map(|j| dot(&columns[i], &columns[j])).chain([dot(&columns[i], off)]).collect())
+        .map(|i| (0..n).map(|j| dot(&columns[i], &columns[j])).chain([dot(&columns[i], residuals)]).collect())
         .collect();
     let largest = (0..n).map(|i| rows[i][i]).fold(0.0, f64::max);
     for (i, row) in rows.iter_mut().enumerate() {
@@ -546,28 +555,28 @@ mod tests {
         Point::new((x * a + y * b) / size, (y * a - x * b) / size)
     }
 
-    fn places(n: u32) -> impl Iterator<Item = Point> {
+    fn points(n: u32) -> impl Iterator<Item = Point> {
         (0..n).map(move |k| {
             let k = f64::from(k);
             Point::new((k * 0.618_033_988_749_895).fract() * 100.0, (k + 0.5) / f64::from(n) * 80.0)
         })
     }
 
-    /// The nearest gradient, and its largest difference from the definition on 99 % of places that it was not fitted to.
+    /// The nearest gradient, and its largest difference from the definition on 99 % of points to which it was not fitted.
     fn fitted(gradient: &str, map: fn(Point) -> Point) -> Option<(Shading, f64)> {
-        let of = shading(gradient);
-        let off = |found: &Shading, places: &mut dyn Iterator<Item = Point>| {
+        let source = shading(gradient);
+        let off = |found: &Shading, points: &mut dyn Iterator<Item = Point>| {
             let one = |p: Point| {
-                let (a, b) = (of.premultiplied(p), found.premultiplied(map(p)));
+                let (a, b) = (source.premultiplied(p), found.premultiplied(map(p)));
                 a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
             };
-            let mut all: Vec<f64> = places.map(one).collect();
+            let mut all: Vec<f64> = points.map(one).collect();
             all.sort_by(f64::total_cmp);
             all[all.len() * 99 / 100]
         };
-        let moved: Vec<Moved> = places(400).map(|p| (p, map(p))).collect();
-        let found = nearest(&of, None, &moved, |s| off(s, &mut places(400)) / (8.0 / 255.0))?;
-        let worst = off(&found, &mut places(5000));
+        let moved: Vec<Moved> = points(400).map(|p| (p, map(p))).collect();
+        let found = nearest(&source, None, &moved, |s| off(s, &mut points(400)) / (8.0 / 255.0))?;
+        let worst = off(&found, &mut points(5000));
         Some((found, worst))
     }
 
@@ -576,8 +585,8 @@ mod tests {
         let stops = "<stop stop-color='red'/><stop offset='.3' stop-color='#0f8' stop-opacity='.5'/><stop offset='1' \
                      stop-color='blue'/>";
         for (spread, end, most) in [("pad", "1", 0.5), ("reflect", ".4", 1.0)] {
-            let place = format!("x2='0' y2='{end}' spreadMethod='{spread}'");
-            let gradient = format!("<linearGradient id='a' {place}>{stops}</linearGradient>");
+            let geometry = format!("x2='0' y2='{end}' spreadMethod='{spread}'");
+            let gradient = format!("<linearGradient id='a' {geometry}>{stops}</linearGradient>");
             let (found, worst) = fitted(&gradient, ring).unwrap();
             let GradientShape::Radial { centre, .. } = found.kind else { panic!("{gradient}: {found:?}") };
             let centre = found.inside.inverse() * centre;

@@ -1,4 +1,4 @@
-//! Gradients on a part that the affine fit would show wrong: another gradient, or else the request for a picture.
+//! Replaces gradients that would look wrong under an affine fit: by another gradient, or else by a picture.
 
 use super::fits::PaintFit;
 use super::gradient_fit::{Moved, SEARCH, nearest};
@@ -18,24 +18,24 @@ use usvg::{FillRule, Paint};
 const VISIBLE: f64 = 1.5 / 255.0;
 /// Smallest difference that is noticeable without a comparison.
 const NOTICEABLE: f64 = 8.0 / 255.0;
-/// Fraction of the shape on which a difference must be noticeable. Edges between hard stops, which shift a little, cover less.
+/// Fraction of the shape on which a difference must be noticeable to count. Edges between hard stops that shift a little cover less.
 const NOTICEABLE_SHARE: f64 = 0.01;
-/// Bound on the ratio of an affine fit's largest error over a shape to that at the samples.
+/// Bound on the ratio of an affine fit's largest error over a shape to its largest error at the samples.
 const BETWEEN: f64 = 1.25;
 
 /// A gradient that an affine fit would show wrong.
 pub(super) enum BentGradient {
-    /// Another gradient shows it right.
+    /// Another gradient looks right.
     Near(NewGradient),
     Picture(PaintedGradient),
     /// A mesh gradient that cannot be bent.
     Unbent(PictureError),
 }
 
-/// A gradient in the place of one of the source.
+/// A gradient that replaces one of the source.
 #[derive(Debug)]
 pub(crate) enum NewGradient {
-    /// A linear or radial one.
+    /// A linear or radial gradient.
     Plain(Shading),
     Mesh(MeshGradient),
 }
@@ -51,9 +51,9 @@ pub(super) struct PaintedGradient {
 }
 
 impl BentGradient {
-    /// Returns the gradient of a paint of the part if the affine fit would be seen to be wrong; one that needs a picture only if it
+    /// Returns a replacement for the gradient of a paint of the part if the affine fit would look wrong; a picture only if the paint
     /// can be `pictured`.
-    pub(super) fn of(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>, pictured: bool) -> Option<Self> {
+    pub(super) fn replacing(t: &PartTask<'_>, paint: &Paint, fit: Option<PaintFit>, pictured: bool) -> Option<Self> {
         let (p, options) = (t.part, t.options());
         // A gradient spans all copies, which the map does not describe. In tiles, errors are too small to see.
         let repeated = options.copies.len() > 1 || !options.letters.places.is_empty();
@@ -61,13 +61,13 @@ impl BentGradient {
             return None;
         }
         if let Some(mesh) = t.context.drawing.mesh(paint) {
-            let bent = options.moves(paint).then(|| meshes::bent(t, mesh))?;
+            let bent = options.moves(paint).then(|| meshes::bend_mesh(t, mesh))?;
             return Some(bent.map_or_else(Self::Unbent, |m| Self::Near(NewGradient::Mesh(m))));
         }
         if !options.paints_gradients() {
             return None;
         }
-        let shading = Shading::of(paint)?;
+        let shading = Shading::from_paint(paint)?;
         let strict = options.gradients == Gradients::Exact;
         let (least, share) = if strict { (VISIBLE, 0.0) } else { (NOTICEABLE, NOTICEABLE_SHARE) };
         let fill = p.fill.as_ref().filter(|f| std::ptr::eq(f.paint(), paint));
@@ -79,20 +79,20 @@ impl BentGradient {
         if fit.is_some_and(|f| off(f) <= least) {
             return None;
         }
-        let places = match fill {
-            Some(f) => inside(&p.local, f.rule(), strict),
-            None => along(&p.local, width),
+        let points = match fill {
+            Some(f) => points_inside(&p.local, f.rule(), strict),
+            None => points_along(&p.local, width),
         };
-        let moved = moved(t, &places);
+        let moved = with_images(t, &points);
         let color = |(p, at): &Moved| SeenColor { at: *at, color: shading.premultiplied(*p) };
         let seen: Vec<SeenColor> = moved.iter().map(color).collect();
         let look = Look { opacity, share };
-        let fitted = fit.map(|f| shading.moved(f.affine));
+        let fitted = fit.map(|f| shading.transformed(f.affine));
         if fitted.as_ref().is_some_and(|fitted| look.off(fitted, &seen) <= least) {
             return None;
         }
-        // An edge between hard stops must lie right: a gradient with one is taken only if it is right everywhere.
-        let sharp = shading.jumps(places.iter().copied(), NOTICEABLE);
+        // An edge between hard stops must lie right, so a gradient with one is accepted only if it is right everywhere.
+        let sharp = shading.jumps(points.iter().copied(), NOTICEABLE);
         let look = Look { share: if sharp { 0.0 } else { share }, ..look };
         let near = || nearest(&shading, fitted.as_ref(), &moved, |s| look.off(s, &seen) / least);
         if t.options().refit.budget.spend(SEARCH).is_ok()
@@ -109,19 +109,20 @@ impl BentGradient {
     }
 }
 
-/// How a gradient is seen: with an opacity, and on a share of places whatever it likes.
+/// Measures how far a gradient's look is off.
 #[derive(Clone, Copy)]
 struct Look {
     opacity: f64,
+    /// The fraction of points at which it may have any colours.
     share: f64,
 }
 
 impl Look {
-    /// The largest difference from what is to be seen, but for the share.
+    /// The largest difference from the colours to be seen, except at the given fraction of points.
     fn off(self, shading: &Shading, seen: &[SeenColor]) -> f64 {
         let off = |s: &SeenColor| {
             let found = shading.premultiplied(s.at);
-            s.color.iter().zip(found).map(|(w, f)| (w - f).abs() * self.opacity).fold(0.0, f64::max)
+            s.color.iter().zip(found).map(|(wanted, f)| (wanted - f).abs() * self.opacity).fold(0.0, f64::max)
         };
         let mut all: Vec<f64> = seen.iter().map(off).collect();
         all.sort_by(f64::total_cmp);
@@ -131,7 +132,7 @@ impl Look {
 }
 
 impl PaintedGradient {
-    /// Paints the gradient over the box of `target`. Records the error if there is one.
+    /// A picture of the gradient over the box of `target`. If it cannot be painted, records the reason in `unpainted`.
     pub(super) fn painted(
         &self,
         t: &PartTask<'_>,
@@ -140,7 +141,7 @@ impl PaintedGradient {
     ) -> Option<BentImage> {
         let painter = t.options().painter.as_ref()?;
         let request = GradientRequest {
-            colors: &|places, colors| self.shading.colors(places, colors),
+            colors: &|points, colors| self.shading.colors(points, colors),
             area: self.area,
             placed: t.part.frame,
             map: t.context.map,
@@ -157,19 +158,19 @@ impl PaintedGradient {
     }
 }
 
-/// Places of the part with their images in the user space of the result.
-fn moved(t: &PartTask<'_>, places: &[Point]) -> Vec<Moved> {
-    let roots: Vec<Point> = places.iter().map(|p| t.part.frame * *p).collect();
+/// Points of the part with their images in the user space of the result, where those are finite.
+fn with_images(t: &PartTask<'_>, points: &[Point]) -> Vec<Moved> {
+    let roots: Vec<Point> = points.iter().map(|p| t.part.frame * *p).collect();
     let mut images = vec![Point::ORIGIN; roots.len()];
     t.context.map.points(&roots, &mut images);
-    places.iter().zip(images).map(|(p, q)| (*p, t.back * q)).filter(|(_, q)| q.is_finite()).collect()
+    points.iter().zip(images).map(|(p, q)| (*p, t.back * q)).filter(|(_, q)| q.is_finite()).collect()
 }
 
 /// Number of lattice points over the box of a fill. The lattice is most even for Fibonacci numbers.
 const POINTS: usize = 610;
-/// The same if every point counts, and for thin shapes, which contain few of the first lattice.
+/// Number of lattice points if every point counts, and for thin shapes, which contain few of [`POINTS`].
 const DENSE_POINTS: usize = 6765;
-/// Fewer points inside are too few to judge by.
+/// Least number of points inside a shape that suffices to judge a gradient by.
 const FEW: usize = 128;
 /// Number of points along a stroke.
 const ALONG: usize = 377;
@@ -177,7 +178,7 @@ const ALONG: usize = 377;
 const FLATNESS: f64 = 1e-3;
 
 /// Points spread evenly inside an outline. No two share a coordinate, so that bands in any direction contain some.
-pub(super) fn inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Point> {
+pub(super) fn points_inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
     let lines = lines(outline, bounds);
     let found = if densely { Vec::new() } else { lattice(&lines, bounds, rule, POINTS) };
@@ -185,9 +186,9 @@ pub(super) fn inside(outline: &Outline, rule: FillRule, densely: bool) -> Vec<Po
 }
 
 /// Points on a stroke of the given width around an outline, without caps and dashes.
-pub(super) fn along(outline: &Outline, width: f64) -> Vec<Point> {
+pub(super) fn points_along(outline: &Outline, width: f64) -> Vec<Point> {
     let Some(bounds) = outline.bounding_box() else { return Vec::new() };
-    let path = flat(outline, bounds);
+    let path = flattened(outline, bounds);
     let lengths: Vec<(kurbo::PathSeg, f64)> = path.segments().map(|s| (s, s.arclen(bounds.width()))).collect();
     let total: f64 = lengths.iter().map(|l| l.1).sum();
     let mut out = Vec::with_capacity(ALONG);
@@ -214,7 +215,7 @@ fn flatness(bounds: Rect) -> f64 {
     FLATNESS * bounds.width().hypot(bounds.height())
 }
 
-fn flat(outline: &Outline, bounds: Rect) -> BezPath {
+fn flattened(outline: &Outline, bounds: Rect) -> BezPath {
     let tolerance = flatness(bounds);
     let mut out = BezPath::new();
     kurbo::flatten(outline.to_bez_path(tolerance), tolerance, |e| out.push(e));
@@ -229,8 +230,8 @@ fn lines(outline: &Outline, bounds: Rect) -> Vec<(Point, Point)> {
     out
 }
 
-/// The points of the Fibonacci lattice of `n` points over a box that lie inside. Every line adds to the winding numbers of the
-/// points to its right, which have ordered ordinates.
+/// The points of a Fibonacci lattice of `n` points over a box that lie inside the closed lines. Every line adds to the winding numbers of
+/// the points to its right, which are ordered by y.
 fn lattice(lines: &[(Point, Point)], bounds: Rect, rule: FillRule, n: usize) -> Vec<Point> {
     let size = Vec2::new(bounds.width(), bounds.height());
     let row = |k: usize| bounds.y0 + size.y * (k as f64 + 0.5) / n as f64;
@@ -259,7 +260,7 @@ mod tests {
 
     /// Agrees with kurbo's winding numbers, computed point by point.
     #[test]
-    fn places_inside_are_inside_and_evenly_spread() {
+    fn points_inside_are_inside_and_evenly_spread() {
         for data in [
             "M0,0 H100 V80 H0 Z M20,20 V60 H80 V20 Z",
             "M50,0 C110,10 90,100 40,90 S-20,10 50,0 Z M30,30 h20 v20 h-20 Z",
@@ -276,7 +277,7 @@ mod tests {
                 let bounds = outline.bounding_box().unwrap();
                 let every = lattice(&[], bounds, rule, POINTS);
                 assert!(every.is_empty());
-                let found = inside(&outline, rule, false);
+                let found = points_inside(&outline, rule, false);
                 let wrong = found.iter().filter(|p| !filled(**p)).count();
                 assert!(wrong <= found.len() / 100, "{data}: {wrong} of {}", found.len());
                 // Their share is that of the area.
@@ -298,7 +299,7 @@ mod tests {
     #[test]
     fn thin_shapes_are_sampled_more_densely() {
         let sliver = Outline::from_svg("M0,0 L100,100 L100,101 L0,1 Z").unwrap();
-        let found = inside(&sliver, FillRule::NonZero, false);
+        let found = points_inside(&sliver, FillRule::NonZero, false);
         assert!(found.len() > 40, "{}", found.len());
         assert!(found.iter().all(|p| p.y - p.x > -0.01 && p.y - p.x < 1.01));
     }
@@ -306,11 +307,11 @@ mod tests {
     #[test]
     fn strokes_are_sampled_along_their_path() {
         let path = Outline::from_svg("M0,0 H100 V50").unwrap();
-        let found = along(&path, 4.0);
+        let found = points_along(&path, 4.0);
         assert_eq!(found.len(), ALONG);
         assert!(found.iter().all(|p| (p.y.abs() <= 2.0 && p.x <= 100.0) || (p.x - 100.0).abs() <= 2.0));
         let down = found.iter().filter(|p| p.y > 2.0).count();
         assert!((down as f64 / ALONG as f64 - 48.0 / 150.0).abs() < 0.03, "{down}");
-        assert!(along(&Outline::from_svg("M5,5").unwrap(), 1.0).is_empty());
+        assert!(points_along(&Outline::from_svg("M5,5").unwrap(), 1.0).is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! The line around what a drawing shows.
+//! Draws the line around the visible artwork.
 
 use super::bends::Bends;
 use super::options::Edit;
@@ -12,7 +12,7 @@ use pathwarp::kurbo::Rect;
 use pathwarp::map::AffineMap;
 use pathwarp::{Error, Outline};
 
-/// Share of the tolerance within which the visible area is found; the rest is for the line.
+/// Fraction of the tolerance within which the visible area is found; the rest is for the line.
 const FINE: f64 = 0.1;
 
 /// A line around artwork, in root user space.
@@ -20,15 +20,15 @@ const FINE: f64 = 0.1;
 pub(crate) struct Line {
     pub(crate) data: String,
     pub(crate) bounds: Rect,
-    /// The line to which the artwork's colours go on.
+    /// Path data and bounds of the line to which the artwork's colours are continued.
     pub(crate) bled: Option<(String, Rect)>,
 }
 
 /// Draws the line, if one is wanted, and reports it.
-pub(super) fn drawn(
+pub(super) fn draw(
     drawing: &Drawing,
     bends: &Bends<'_>,
-    of: &[Option<usize>],
+    part_bends: &[Option<usize>],
     out: &mut WarpedDocument,
 ) -> Result<Option<Line>, Error> {
     let wanted = bends.each.iter().enumerate().find_map(|(k, b)| match b.options.edit {
@@ -36,8 +36,9 @@ pub(super) fn drawn(
         _ => None,
     });
     let Some((k, contour, options)) = wanted else { return Ok(None) };
-    let parts: Vec<bool> = of.iter().map(|of| *of == Some(k)).collect();
-    let bitmaps: Vec<bool> = drawing.scene().bitmaps.iter().map(|b| b.bends && bends.of(b.owner) == Some(k)).collect();
+    let parts: Vec<bool> = part_bends.iter().map(|bend| *bend == Some(k)).collect();
+    let bitmaps: Vec<bool> =
+        drawing.scene().bitmaps.iter().map(|b| b.bends && bends.bend_of(b.owner) == Some(k)).collect();
     let fine = FINE * options.refit.tolerance;
     let seen = Seen { drawing, parts: &parts, bitmaps: &bitmaps, painter: options.painter.as_ref(), fine };
     let area = seen.area().map_err(Error::Geometry)?;
@@ -54,7 +55,7 @@ pub(super) fn drawn(
         let by = trimmed(-contour.by, 3);
         return Err(Error::input(
             &drawing.name,
-            format!("nothing is left {by} units inside of the edge; the artwork is narrower"),
+            format!("nothing is left {by} units inside part_bends the edge; the artwork is narrower"),
         ));
     };
     let bleed = options.line.bleed;

@@ -1,5 +1,5 @@
-//! Bends mesh gradients. The image of a mesh is cut along lines of constant u and v until the Coons patches of the pieces' sides come near
-//! enough to it. Each side is the cubic that has the image's ends and derivatives.
+//! Bends mesh gradients. The image of a mesh is cut along lines of constant u and v until the Coons patches over the sides of the pieces
+//! are within the tolerance of it. Each side is the Hermite cubic with the ends and derivatives of the image.
 
 use super::pictures::PictureError;
 use super::task::PartTask;
@@ -8,27 +8,27 @@ use pathwarp::budget::cost;
 use pathwarp::kurbo::Point;
 use pathwarp::map::{Jet, Map};
 
-/// Limit on the patches of a bent mesh, beside those of the source.
+/// Limit on the patches that cuts add to a mesh.
 const MAX_PATCHES: usize = 4096;
 
 /// Parameters of a patch at which it is compared with the image.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// Work of a patch: it is compared with the image, and its sides are laid out and written.
+/// Work of a patch, whose samples are compared and whose sides are computed and written.
 const PATCH: f64 = (SAMPLES.len() * SAMPLES.len()) as f64 + 4.0 * cost::SEGMENT;
 
-/// How far bilinear colours may be from smooth ones: half of what is noticeable.
+/// Largest difference of bilinear colours from smooth ones: half of a noticeable one.
 const COLOR: f64 = 4.0 / 255.0;
 
 /// The image of a mesh gradient on a part.
-pub(super) fn bent(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
+pub(super) fn bend_mesh(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
     let bounds = t.part.local.bounding_box().unwrap_or_default();
-    let source = mesh.on(bounds).moved(t.part.frame);
+    let source = mesh.on(bounds).transformed(t.part.frame);
     let spend = |work: f64| t.options().refit.budget.spend(work).is_ok();
-    image(&source, t.context.map, t.finest, spend).map(|m| m.moved(t.back))
+    image(&source, t.context.map, t.finest, spend).map(|m| m.transformed(t.back))
 }
 
-/// The image of a mesh within a tolerance. `spend` says whether some work may be done.
+/// The image of a mesh within a tolerance. `spend` takes work from the budget and returns `true` if it may be done.
 fn image(
     source: &MeshGradient,
     map: &dyn Map,
@@ -42,7 +42,7 @@ fn image(
         if patches > limit || !spend(patches as f64 * PATCH) {
             return Err("its mesh would take too many patches".into());
         }
-        // Once it is cut, a mesh of smooth colours has bilinear ones that look alike.
+        // Once it is cut, a mesh of smooth colours gets bilinear ones that look alike.
         let cut = patches > source.rows() * source.columns();
         let image = MeshGradient { smooth: source.smooth && !cut, ..grid.image(map) };
         let Some([u, v]) = grid.coarse(&image, map, tolerance) else {
@@ -55,7 +55,7 @@ fn image(
     }
 }
 
-/// A mesh with its cuts, which are parameters of the whole mesh and count patches.
+/// A mesh with its cuts: parameters of the whole mesh, in which each patch of the source has length 1.
 struct Grid<'a> {
     source: &'a MeshGradient,
     u: Vec<f64>,
@@ -74,31 +74,31 @@ impl Grid<'_> {
     /// The image, with a Hermite cubic for each side.
     fn image(&self, map: &dyn Map) -> MeshGradient {
         self.source.cut(&self.u, &self.v, |ends| {
-            let places: Vec<Point> = ends.iter().map(|e| e.0).collect();
-            let mut jets = vec![Jet::UNDEFINED; places.len()];
-            map.jets(&places, &mut jets);
+            let points: Vec<Point> = ends.iter().map(|e| e.0).collect();
+            let mut jets = vec![Jet::UNDEFINED; points.len()];
+            map.jets(&points, &mut jets);
             jets.iter().zip(ends).map(|(jet, end)| (jet.p, jet.push(end.1))).collect()
         })
     }
 
-    /// Whether the columns and the rows of an image are too coarse. Returns `None` where the map is undefined.
+    /// For each column and each row of an image, `true` if it is too coarse. Returns `None` where the map is undefined.
     fn coarse(&self, image: &MeshGradient, map: &dyn Map, tolerance: f64) -> Option<[Vec<bool>; 2]> {
         let lattice = || SAMPLES.iter().flat_map(|y| SAMPLES.iter().map(|x| (*x, *y)));
         let cells = || (0..self.rows()).flat_map(|i| (0..self.columns()).map(move |k| (i, k)));
         let between = |c: &[f64], t: f64| c[0] + t * (c[1] - c[0]);
         let in_cell = |(i, k): (usize, usize), (x, y)| [between(&self.u[k..], x), between(&self.v[i..], y)];
-        let place = |cell: (usize, usize), at| {
-            let [u, v] = in_cell(cell, at);
+        let point = |cell: (usize, usize), xy| {
+            let [u, v] = in_cell(cell, xy);
             self.source.point(u, v, [self.u[cell.1], self.v[cell.0]]).at
         };
-        let place = &place;
-        let places: Vec<Point> = cells().flat_map(|cell| lattice().map(move |at| place(cell, at))).collect();
-        let mut images = places.clone();
-        map.points(&places, &mut images);
+        let point = &point;
+        let points: Vec<Point> = cells().flat_map(|cell| lattice().map(move |xy| point(cell, xy))).collect();
+        let mut images = points.clone();
+        map.points(&points, &mut images);
         let (mut columns, mut rows) = (vec![false; self.columns()], vec![false; self.rows()]);
         for ((i, k), wanted) in cells().zip(images.chunks_exact(SAMPLES.len().pow(2))) {
             let sides = [image.across[i][k], image.down[i][k + 1], image.across[i + 1][k], image.down[i][k]];
-            // How far sides along u and along v are off, and what lies between them: 1 is the limit.
+            // Largest errors of the sides along u and along v, and inside; 1 is the limit.
             let [mut along_u, mut along_v, mut inside] = [0.0_f64; 3];
             for ((x, y), wanted) in lattice().zip(wanted) {
                 let mut off = coons(sides, x, y).at.distance(*wanted) / tolerance;
@@ -130,7 +130,7 @@ fn cuts(patches: usize) -> Vec<f64> {
     (0..=patches).map(|i| i as f64).collect()
 }
 
-/// The cuts with a further one in the middle of each interval that asks for it.
+/// The cuts with another one in the middle of each interval that asks for it.
 fn halved(cuts: &[f64], asks: &[bool]) -> Vec<f64> {
     let between =
         cuts.windows(2).zip(asks).flat_map(|(c, asks)| [c[0], if *asks { 0.5 * (c[0] + c[1]) } else { c[0] }]);

@@ -18,9 +18,8 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Strokes {
-    /// Scale the width if the edges are then within the tolerance, or the width is right within 2 % along the whole shape, or the
-    /// stroke is a hairline: no wider than the tolerance or, on a page measured in physical units, than 0.1 mm. Else expand the
-    /// stroke.
+    /// Scale the width if the edges are then within the tolerance, if the width is right within 2 % along the whole shape, or if the stroke
+    /// is a hairline: no wider than the tolerance or, on a page measured in physical units, than 0.1 mm. Otherwise, expand the stroke.
     #[default]
     Auto,
     /// Warp the centre line and keep the width.
@@ -66,17 +65,18 @@ pub enum OnError {
     Skip,
 }
 
-/// Treatment of gradients. Without a [painter](WarpOptions::painter), those that may become pictures follow the fit.
+/// Treatment of gradients. Without a [painter](WarpOptions::painter), all but the kept ones follow the fit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Gradients {
     /// Transform them by the map's best affine fit over the painted shape.
     #[default]
     Fit,
-    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would look wrong: if its colour is off by more
+    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would look wrong: if the colour would be off by more
     /// than 3 % over more than 1 % of the shape.
     Auto,
-    /// As [`Auto`](Self::Auto), but replace a gradient if its colour is off by more than 0.6 % anywhere.
+    /// Replace a gradient by a picture, bent pixel by pixel, if the affine fit would be off by more than 0.6 % of the colour's range
+    /// anywhere.
     Exact,
     /// Leave them unchanged.
     Keep,
@@ -89,10 +89,10 @@ pub enum Filters {
     /// Transform them with what they are applied to by the map's best affine fit.
     #[default]
     Affine,
-    /// Replace what a filter draws by a picture, bent pixel by pixel, if the affine fit would look wrong: if it would be off by
-    /// more than 3 % over more than 1 % of what is painted. A shape beneath or above a shadow stays a shape.
+    /// Replace the drawing of a filter by a picture, bent pixel by pixel, if the affine fit would look wrong: if it would be off by
+    /// more than 3 % over more than 1 % of the painted area. A shape beneath or above a shadow stays a shape.
     Auto,
-    /// Replace it in any case.
+    /// Replace the drawing of a filter by a picture, bent pixel by pixel, in any case.
     Picture,
 }
 
@@ -113,13 +113,13 @@ pub enum PageFit {
     /// Set the page to the bounding box of the warped artwork with the margin of the original: the smallest distance between the
     /// original artwork and the edge of its page.
     PageWithMargin,
-    /// Leave it unchanged, and say how artwork that leaves it would get back
+    /// Leave it unchanged, and report the transform that takes artwork back onto it
     /// ([`WarpedDocument::back`](crate::WarpedDocument::back)).
     Shrink,
     /// Move the page to the origin, with its size unchanged.
     Origin,
-    /// Set the page to a sheet of paper with these sides in mm, in its true size, upright or on its side as the warped artwork needs,
-    /// which lies in its middle.
+    /// Set the page to a sheet of paper with these sides in mm, in its true size, upright or on its side as the warped artwork needs. The
+    /// artwork lies in its middle.
     Sheet([f64; 2]),
 }
 
@@ -143,25 +143,25 @@ pub enum Patterns {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Clones {
-    /// Replace them by copies of what they showed, so that they look as before.
+    /// Replace them by copies of the unwarped elements, so that they look as before.
     #[default]
     Copy,
-    /// Leave them, so that they show what is warped.
+    /// Leave them, so that they show the warped elements.
     Follow,
 }
 
-/// How the line around artwork is written.
+/// Style of the line around artwork.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CutLine {
     /// The name of its layer, and of its ink on a printing press. `None`: an ordinary colour.
     pub spot: Option<String>,
-    /// The ink knocks out what lies below. Otherwise it is printed over that.
+    /// `true` if the ink knocks out the inks below; otherwise it is printed over them.
     pub knockout: bool,
-    /// Without the artwork.
+    /// `true` if only the line is written, without the artwork.
     pub only: bool,
-    /// How far the artwork's colours go on beyond the line, in user units.
+    /// Distance by which the artwork's colours go on beyond the line, in user units.
     pub bleed: f64,
-    /// Crop and register marks around it.
+    /// `true` if crop and register marks are drawn around it.
     pub marks: bool,
 }
 
@@ -182,9 +182,9 @@ options! {
         /// Options for refitting paths; the tolerance is in root user units.
         pub refit: refit::Options = refit, with_refit;
         /// Number of decimals in written coordinates. `None` takes enough to keep rounding below a hundredth of the tolerance, or a
-        /// tenth of a small contour's own tolerance, and smooth joints smooth.
+        /// tenth of the tolerance of a small contour, and to keep smooth joints smooth.
         pub precision: Option<u8> = None, with_precision;
-        /// How the line of [`Edit::Contour`] is written.
+        /// Style of the line of [`Edit::Contour`].
         pub line: CutLine = CutLine::default(), with_line;
         /// An edit to apply to the shapes in place of the map, which is ignored.
         pub edit: Option<Edit> = None, with_edit;
@@ -213,8 +213,8 @@ options! {
         /// Treatment of the page: viewBox, width and height. If it changes, lengths in percent of it become numbers, except in style
         /// sheets.
         pub page: PageFit = PageFit::default(), with_page;
-        /// Transforms to the copies of every shape before the warp, in root user space, including the original. A shape and its
-        /// copies become one path, also in clip paths and masks. If empty, there is just the shape.
+        /// Transforms of every shape to its copies before the warp, in root user space, including the identity for the original. A shape
+        /// and its copies become one path, also in clip paths and masks. If empty, there is only the shape.
         pub copies: Vec<Affine> = Vec::new(), with_copies;
         /// Letters to place one by one.
         pub letters: LetterPlaces = LetterPlaces::default(), with_letters;
@@ -222,11 +222,11 @@ options! {
         pub images: Images = Images::default(), with_images;
         /// Treatment of `use` elements that are not warped themselves but show something that is.
         pub clones: Clones = Clones::default(), with_clones;
-        /// Leave viewBox, width and height as they are, to show the result on the page of the source.
+        /// Leave viewBox, width and height unchanged, to show the result on the page of the source.
         /// [`WarpedDocument::page`](crate::WarpedDocument::page) still reports the new page.
         pub same_view: bool = false, with_same_view;
-        /// The page that an edit before bending has grown to. What lies on it counts as shown, and the page may have to grow although nothing is
-        /// bent.
+        /// The page after an earlier edit that made it grow. Artwork on it counts as shown, and the page may have to grow although nothing
+        /// is bent.
         pub grown: Option<Rect> = None, with_grown;
         /// Measure how far the result extends past its page, and list artwork that has moved onto it. This examines every path.
         pub overhang: bool = true, with_overhang;
@@ -240,7 +240,7 @@ impl WarpOptions {
         Self::defaults(refit)
     }
 
-    /// Options for an edit in place of a warp. Everything that the edit doesn't concern stays as it is.
+    /// Options for an edit in place of a warp. Everything that the edit does not concern stays unchanged.
     #[must_use]
     pub fn editing(self, edit: Edit) -> Self {
         let options = self.with_edit(Some(edit)).with_images(Images::Keep).with_overhang(false);
@@ -259,7 +259,7 @@ impl WarpOptions {
         }
     }
 
-    /// Whether paint servers of this kind follow the map.
+    /// Returns `true` if paint servers of this kind follow the map.
     pub(crate) fn moves(&self, paint: &usvg::Paint) -> bool {
         match paint {
             usvg::Paint::Color(_) => false,
@@ -268,12 +268,10 @@ impl WarpOptions {
         }
     }
 
-    /// Whether text stays as it is.
     pub(crate) fn skips_text(&self) -> bool {
         self.text == TextMode::Skip
     }
 
-    /// Whether gradients may become pictures.
     pub(crate) fn paints_gradients(&self) -> bool {
         self.painter.is_some() && matches!(self.gradients, Gradients::Exact | Gradients::Auto)
     }
@@ -285,32 +283,31 @@ impl WarpOptions {
 pub enum Edit {
     /// Reduces paths to the fewest nodes within the tolerance. A path that would not get fewer stays as it is written.
     Simplify {
-        /// Joints that turn by more than this, in radians, stay corners. `None`: those for which no smooth curve can stand within the
+        /// Smallest turn of a joint, in radians, that stays a corner. `None` keeps joints for which no smooth curve can stand within the
         /// tolerance.
         corner: Option<f64>,
     },
     /// Converts strokes and text to filled outlines.
     Outline,
-    /// Makes one shape of all that have an area, by the rules of their fills: the last in painting order that is an element of its own gets
-    /// the outline of all and names them in `data-united`. Gaps narrower than the tolerance close. What clip paths, masks, filters and
-    /// transparent groups hold is united within them.
+    /// Unites all shapes that have an area, by their fill rules: the last one in painting order that is a separate element gets the outline
+    /// of all and names them in `data-united`. Gaps narrower than the tolerance close. Shapes in clip paths, masks, filters and transparent
+    /// groups are united within them.
     Unite {
-        /// One shape for each paint.
+        /// `true` if each paint gets a shape.
         by_fill: bool,
     },
-    /// Draws a line around all that is visible, in a layer of its own ([`WarpOptions::line`]): strokes with their width, text, pictures by their
-    /// opacity, as clip paths and masks leave them. Filters do not count. A distance below zero is inside.
+    /// Draws a line around all visible artwork, in a new layer ([`WarpOptions::line`]): strokes with their width, text, and pictures by
+    /// their opacity, cut by clip paths and masks. Filters do not count. A distance below zero is inside.
     Contour(Contour),
-    /// Grows or shrinks areas, by the rule of their fill. Open paths without a fill move sideways if that is wanted, or if there is nothing
-    /// else.
+    /// Grows or shrinks areas, by their fill rules. Open paths without a fill move sideways on request, or if there are no areas.
     Offset(Offset),
-    /// Writes markers and strokes that usvg draws otherwise than browsers as plain shapes.
+    /// Writes markers and strokes that usvg draws differently from browsers as plain shapes.
     Resolve,
 }
 
 impl Edit {
     /// The edit with the fill rule of a part.
-    pub(super) fn of(self, part: &Part) -> Self {
+    pub(super) fn for_part(self, part: &Part) -> Self {
         match self {
             Self::Offset(offset) => {
                 let even_odd = part.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
@@ -321,8 +318,8 @@ impl Edit {
         }
     }
 
-    /// Edits an outline. Returns `None` if refitting the outline is all there is to do.
-    pub(super) fn edited(
+    /// Edits an outline. Returns `None` if the edit only refits it.
+    pub(super) fn apply(
         self,
         outline: &Outline,
         options: &refit::Options,
@@ -343,8 +340,8 @@ impl Edit {
         }
     }
 
-    /// The edit for parts, of which some may be areas: without any, lines move.
-    pub(super) fn among<'p>(self, mut parts: impl Iterator<Item = &'p Part>) -> Self {
+    /// The edit for these parts: if none of them is an area, an offset moves lines.
+    pub(super) fn for_parts<'p>(self, mut parts: impl Iterator<Item = &'p Part>) -> Self {
         match self {
             Self::Offset(offset) if !parts.any(|p| p.role == PartRole::Paint && p.painted() && is_area(p)) => {
                 Self::Offset(Offset { open: OpenPaths::Move, ..offset })
@@ -353,7 +350,7 @@ impl Edit {
         }
     }
 
-    /// Whether a part may change.
+    /// Returns `true` if the edit may change a part.
     pub(super) fn concerns(self, part: &Part, source: &SourceText) -> bool {
         let tag = |e: Option<ElementId>| e.map_or("", |e| &*source.elements[e].tag);
         match self {
@@ -368,32 +365,32 @@ impl Edit {
             }
             Self::Unite { .. } => true,
             Self::Contour(_) => false,
-            Self::Resolve => part.is_own,
+            Self::Resolve => part.differs_from_usvg,
         }
     }
 }
 
-/// Whether a part has a fill or closed lines.
+/// Returns `true` if a part has a fill or closed lines.
 fn is_area(part: &Part) -> bool {
     part.fill.is_some() || part.local.subpaths.iter().any(|s| s.closed)
 }
 
-/// Whether a part has open lines that an edit leaves where they are.
+/// Returns `true` if a part has open lines that an edit leaves where they are.
 pub(super) fn has_lines_that_stay(edit: Edit, part: &Part) -> bool {
     let stay = matches!(edit, Edit::Offset(offset) if offset.open == OpenPaths::Stay);
     let is_line = part.role == PartRole::Paint && part.painted() && part.fill.is_none();
     stay && is_line && part.local.subpaths.iter().any(|s| !s.closed)
 }
 
-/// Placement of letters one by one.
+/// Positions of letters that are placed one by one.
 #[derive(Clone, Default)]
 pub struct LetterPlaces {
     /// Affine maps to the copies of each letter of [`Lettering::letters`](crate::engine::Lettering::letters). If empty, letters are bent
     /// like everything else.
     pub places: Vec<Vec<Affine>>,
-    /// They are the places of [objects](crate::Document::objects).
+    /// `true` if [objects](crate::Document::objects) are placed in place of letters.
     pub of_objects: bool,
-    /// The selection that contains these letters. `None` stands for that of the warp.
+    /// The selection that contains these letters. `None` stands for the warp's selection.
     pub of: Option<Selection>,
     /// Map applied to the placed letters: the remaining steps.
     pub after: Chain,

@@ -25,14 +25,15 @@ pub struct WarpedDocument {
     /// Distance by which the artwork extends past the page. `None` if it does not, or no farther than the original, or the page is
     /// adapted (see [`PageFit`](crate::PageFit)).
     pub overhang: Option<Overhang>,
-    /// The visible area before and after, in root user units, if the page is adapted.
+    /// The visible areas of the source and the result, in root user units, if the page is adapted.
     pub page: Option<[Rect; 2]>,
-    /// With [`PageFit::Shrink`](crate::PageFit::Shrink), what scales and moves the result so that its artwork lies on the page, with the
+    /// With [`PageFit::Shrink`](crate::PageFit::Shrink), the transform of the result that takes its artwork back onto the page, with the
     /// margin of the original.
     pub back: Option<Affine>,
-    /// Names of the elements whose filters' drawing became a picture, and of those whose filters follow a fit that looks right.
+    /// Names of elements with filters: first the ones whose filters became pictures, then the ones whose filters follow a fit that looks
+    /// right.
     pub filters: [Vec<String>; 2],
-    /// Whether nothing of the result lies on its page.
+    /// `true` if nothing of the result lies on its page.
     pub blank: bool,
 }
 
@@ -52,13 +53,13 @@ pub struct ShapeReport {
     pub paint_residual: Option<f64>,
     /// Number of gradients that became pictures.
     pub pictures: usize,
-    /// Largest distance between a stroke that remains a stroke and the exact one, as painted areas, in root user units; infinite if
-    /// it is unknown. An estimate for dashes, which shift along the path: one that ends beside a corner or at the end of the path may
-    /// gain or lose a piece there. `None` if there is no such stroke, or its width is kept on request.
+    /// Largest distance between the painted areas of a stroke that remains a stroke and of the exact one, in root user units; infinite if
+    /// it is unknown. For dashes, it is an estimate: they shift along the path, and may gain or lose a piece at its corners and ends.
+    /// `None` if there is no such stroke, or its width is kept on request.
     pub stroke_error: Option<f64>,
     /// Number of strokes that became outlines.
     pub outlined_strokes: usize,
-    /// Names of the shapes that have become this one, itself among them; empty for others.
+    /// Names of the shapes that were united to this one, including itself; empty if none were.
     pub united: Vec<String>,
 }
 
@@ -112,7 +113,7 @@ pub struct Overhang {
 }
 
 impl WarpedDocument {
-    /// Adds a part's report to that of its shape, `known` if the shape has one. Returns the index of the report.
+    /// Adds a part to its shape's report, whose index is `known` if there is one. Returns the index of the report.
     pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
         let mut path = part.report.clone();
         path.max_error += part.rounding;
@@ -144,7 +145,7 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
-    /// Words the notes of the reader for people.
+    /// The sentences for the reader's notes, given as pairs of a text and a name.
     pub(crate) fn in_words(read: &BTreeSet<(&'static str, String)>) -> Vec<String> {
         let mut notes = Self::default();
         read.iter().for_each(|(text, name)| notes.add(text, name));
@@ -157,7 +158,7 @@ impl Notes {
     }
 }
 
-/// Result for a part.
+/// Result of warping a part.
 #[derive(Debug)]
 pub(crate) enum PartOutcome {
     Kept,
@@ -177,31 +178,31 @@ impl PartOutcome {
 pub(crate) struct WarpedPart {
     /// Outline in the part's user space.
     pub(crate) path: BezPath,
-    /// The filled outline, if it differs from `path`: an open path is filled as if closed by a line, and that line is bent,
-    /// too. Empty if there is nothing to fill.
+    /// The filled outline, if it differs from `path`: an open path is filled as if closed by a line, which is bent, too. Empty if there
+    /// is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// The largest unit of the last decimal that any transform leads to; `None` for a requested number of decimals.
+    /// The largest unit of the last decimal under any transform of a drawing; `None` for a requested number of decimals.
     pub(crate) coarsest: Option<f64>,
-    /// The text of `path`, if already written: either it has arcs, which `path` approximates, or a large drawing was bent on several
-    /// threads, which also write the text.
+    /// The path data of `path`, if already written: because it has arcs, which `path` approximates, or because the threads that bend a
+    /// large drawing also write its path data.
     pub(crate) data: Option<String>,
     pub(crate) stroke: StrokeOutcome,
     /// Largest distance between a scaled stroke and the exact one, in root user units.
     pub(super) stroke_error: Option<f64>,
-    /// Whether the stroke is scaled because the map is not defined around it.
+    /// `true` if the stroke is scaled because the map is not defined around it.
     pub(super) stroke_refused: bool,
     /// Fit to be applied to gradients and patterns; `None` if they are unchanged.
     pub(crate) fit: Option<PaintFit>,
-    /// Gradients in the place of the fill's and the stroke's, which no affine map makes right.
+    /// Gradients that replace the ones of fill and stroke, where the fit would look wrong.
     pub(crate) fill_gradient: Option<NewGradient>,
     pub(crate) stroke_gradient: Option<NewGradient>,
-    /// Pictures of the fill's and the stroke's gradient.
+    /// Pictures that replace the gradients of fill and stroke.
     pub(crate) fill_image: Option<BentImage>,
     pub(crate) stroke_image: Option<BentImage>,
-    /// The reason why a picture is missing.
+    /// The reason why a gradient that should be a picture is not.
     pub(super) unpainted: Option<PictureError>,
-    /// Error of the fit for paints that follow it, in root user units.
+    /// Largest distance between the map and the fit for paints that follow it, in root user units.
     pub(super) residual: Option<f64>,
     pub(super) report: PathReport,
     /// Largest error from rounding coordinates, in root user units.
@@ -209,13 +210,13 @@ pub(crate) struct WarpedPart {
 }
 
 impl WarpedPart {
-    /// Whether anything is left of the part.
+    /// Returns `true` if anything of the part is drawn.
     pub(crate) fn draws(&self) -> bool {
         !self.path.is_empty() || self.stroke.outline().is_some()
     }
 
-    /// Resets the report and returns `true` if the part got no fewer segments, so that it stays as it was.
-    pub(super) fn stays(&mut self) -> bool {
+    /// Returns `true` if the part got no fewer segments, so that it stays as it was, and then resets its report.
+    pub(super) fn reset_if_no_fewer(&mut self) -> bool {
         let r = &mut self.report;
         let stays = r.segments_out >= r.segments_in;
         if stays {
@@ -226,12 +227,12 @@ impl WarpedPart {
         stays
     }
 
-    /// Writes a path of the part as text.
+    /// Writes a path of the part as path data.
     pub(crate) fn text(&self, path: &BezPath) -> String {
         path_data_by(path, |_| self.coarsest, |_| [self.decimals; 2])
     }
 
-    /// Writes `data`, if it is missing.
+    /// The part with its path data written.
     pub(super) fn with_data(mut self) -> Self {
         self.data = Some(self.data.take().unwrap_or_else(|| self.text(&self.path)));
         self
@@ -292,7 +293,7 @@ pub enum Warning {
     SharedImages,
     /// Text uses another font, as these are missing.
     MissingFonts(Vec<String>),
-    /// Letters that no font has, each with the text around it, in words.
+    /// Sentences about letters that no font has, each with the text around it.
     MissingLetters(Vec<String>),
     /// Artwork that lay off the page has moved onto it: these elements, in the order of the file.
     Arrivals(Vec<String>),
@@ -345,9 +346,8 @@ impl Display for Warning {
     }
 }
 
-/// Writes the names that a warning is about.
 fn write_names(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
-    /// A few names are enough to find the place.
+    /// Names listed; the others are counted.
     const MAX_NAMES: usize = 4;
     if let Some((first, others)) = names.split_first() {
         write!(f, ": {first}")?;

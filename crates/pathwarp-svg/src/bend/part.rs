@@ -1,4 +1,4 @@
-//! Bends a part: its path, fill, stroke, and paints.
+//! Bends a part: its path, fill, stroke and paints.
 
 use super::fits::{self, PaintFit};
 use super::gradients::{BentGradient, NewGradient, PaintedGradient};
@@ -16,19 +16,18 @@ use pathwarp::refit::PathReport;
 use pathwarp::{GeometryError, Outline, Seg};
 use usvg::{Paint, Stroke};
 
-/// Warps a part.
 pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     let p = t.part;
-    // The centre line of an outlined stroke is not written, so a draft will do.
+    // The centre line of an outlined stroke is not written, so a draft suffices.
     let draft = p.fill.is_none() && p.stroke.as_ref().is_some_and(|s| expands(t, s)) && !p.in_tile;
     let bent = if draft { t.draft()? } else { t.bend(&t.outline, &t.contours)? };
     let fit = paint_fit(t, &bent.path);
     let (centre, pieces) = (bent.report.segments_in, bent.report.segments_out);
-    let Filled { mut path, mut data, fill, mut report } = filled(t, bent)?;
+    let Filled { mut path, mut data, fill, mut report } = bend_fill(t, bent)?;
     // A gradient on a stroke can become a picture only if the stroke is expanded.
-    let stroke_gradient = p.stroke.as_ref().and_then(|s| BentGradient::of(t, s.paint(), fit, expands(t, s)));
+    let stroke_gradient = p.stroke.as_ref().and_then(|s| BentGradient::replacing(t, s.paint(), fit, expands(t, s)));
     let mut unpainted = None;
-    let (stroke_gradient, stroke_picture) = divided(stroke_gradient, &mut unpainted);
+    let (stroke_gradient, stroke_picture) = by_kind(stroke_gradient, &mut unpainted);
     let bent = stroke::stroke(t, &path, pieces, stroke_picture.is_some())?;
     if draft && bent.outcome.outline().is_none() {
         let refitted = t.bend(&t.outline, &t.contours)?;
@@ -36,11 +35,11 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     }
     let error = report[0].as_ref().map_or(0.0, |r| r.max_error);
     // Report only what is written. If only the expanded stroke is painted, the path is not.
-    let mut written = written(p, &bent.outcome, report, fill.is_some());
+    let mut written = kept_reports(p, &bent.outcome, report, fill.is_some());
     written.extend(bent.report);
-    let report = combined(centre, written);
-    let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::of(t, f.paint(), fit, true));
-    let (fill_gradient, fill_picture) = divided(fill_gradient, &mut unpainted);
+    let report = combined_report(centre, written);
+    let fill_gradient = p.fill.as_ref().and_then(|f| BentGradient::replacing(t, f.paint(), fit, true));
+    let (fill_gradient, fill_picture) = by_kind(fill_gradient, &mut unpainted);
     let mut out = WarpedPart {
         path,
         fill,
@@ -69,8 +68,8 @@ pub(super) fn warp(t: &PartTask<'_>) -> Result<WarpedPart, GeometryError> {
     Ok(out)
 }
 
-/// A gradient that became another, or one to be painted.
-fn divided(
+/// The replacement of a gradient, by kind: a gradient or a picture. Records the reason why there is none in `unpainted`.
+fn by_kind(
     bent: Option<BentGradient>,
     unpainted: &mut Option<PictureError>,
 ) -> (Option<NewGradient>, Option<PaintedGradient>) {
@@ -108,8 +107,8 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
     let area = p.local.bounding_box()?;
     match t.pieces {
         // The paint of a single placed letter moves with it.
-        [LetterPiece { places, .. }] if places.len() == 1 => {
-            fits::fit(area, places[0] * p.frame, t.write, &options.letters.after)
+        [LetterPiece { copies, .. }] if copies.len() == 1 => {
+            fits::fit(area, copies[0] * p.frame, t.write, &options.letters.after)
         }
         _ => fits::fit_copies(area, p.frame, t.write, t.context.map, &options.copies, result),
     }
@@ -118,7 +117,7 @@ fn paint_fit(t: &PartTask<'_>, path: &BezPath) -> Option<PaintFit> {
 /// The bent path of a part and its fill.
 struct Filled {
     path: BezPath,
-    /// The text of the path if it has arcs.
+    /// The path data of the path, if already written.
     data: Option<String>,
     /// The filled outline if it is separate.
     fill: Option<BezPath>,
@@ -126,15 +125,15 @@ struct Filled {
     report: [Option<PathReport>; 2],
 }
 
-/// The reports on those of a path and its fill that are written.
-fn written(p: &Part, stroke: &StrokeOutcome, reports: [Option<PathReport>; 2], separate: bool) -> Vec<PathReport> {
+/// The reports on a path and its fill, as far as they are written.
+fn kept_reports(p: &Part, stroke: &StrokeOutcome, reports: [Option<PathReport>; 2], separate: bool) -> Vec<PathReport> {
     let [path, fill] = reports;
     let hidden = stroke.outline().is_some() && !p.in_tile && (p.fill.is_none() || separate);
     path.filter(|_| !hidden).into_iter().chain(fill).collect()
 }
 
 /// Combines the reports on several outlines of a source with `segments_in` segments.
-fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
+fn combined_report(segments_in: usize, all: Vec<PathReport>) -> PathReport {
     let mut none = PathReport::default();
     none.segments_in = segments_in;
     all.into_iter().fold(none, |mut sum, r| {
@@ -144,11 +143,11 @@ fn combined(segments_in: usize, all: Vec<PathReport>) -> PathReport {
     })
 }
 
-/// Bends the filled area if it differs from the path.
-fn filled(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
+/// Bends the filled area if it differs from the path, whose image is `bent`.
+fn bend_fill(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> {
     let BentPath { path, data, report } = bent;
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
-    // With `Strokes::Keep`, each centre line has to stay one path, so only close fills without a stroke.
+    // With `Strokes::Keep`, each centre line has to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
     let area = filled_area(t, t.finest).filter(|(a, _)| closes || a.is_empty());
     let report = Some(report);
@@ -184,7 +183,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
         })
     };
     let open = |s: &Subpath| !s.closed && s.start != s.end();
-    if p.fill.is_none() && p.role != PartRole::Clip || matches!(map.class(), Class::Affine(_)) {
+    if (p.fill.is_none() && p.role != PartRole::Clip) || matches!(map.class(), Class::Affine(_)) {
         return None;
     }
     if map.prefers_batches() {
@@ -210,7 +209,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     Some((Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() }, contours))
 }
 
-/// Returns `true` if one of the part's paints follows the affine fit. Only gradients become others or pictures, and only patterns tiles.
+/// Returns `true` if one of the part's paints follows the affine fit: it is neither replaced by a gradient or a picture nor laid out as tiles.
 fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
     let follows = |paint: &Paint, replaced: [bool; 3]| options.moves(paint) && !replaced.contains(&true);
     let w = warped;

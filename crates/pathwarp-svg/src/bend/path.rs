@@ -27,17 +27,18 @@ pub struct WarpedPath {
 }
 
 /// Edits a path and writes it as path data, as [`Document::warp`](crate::Document::warp) with the option
-/// [`edit`](crate::WarpOptions::edit) writes that of a `<path>`. It has no stroke that could become an outline.
+/// [`edit`](crate::WarpOptions::edit) writes a `<path>` without a stroke.
 ///
 /// # Errors
-/// A coordinate is not finite, or the work exceeds the budget of the options.
+/// [`GeometryError::NotFinite`] if a coordinate is not finite, [`GeometryError::Limit`] if the work exceeds the budget of the options,
+/// [`GeometryError::Crossings`] if the crossings of an area's edges are not found.
 pub fn edit_path(
     outline: &Outline,
     edit: Edit,
     options: &refit::Options,
     precision: Option<u8>,
 ) -> Result<WarpedPath, GeometryError> {
-    // Nothing says what is filled: what returns to its start is an area, and the rest are lines.
+    // Nothing specifies the fill: subpaths that return to their start are areas, and the others are lines.
     let outline = &returning_closed(outline);
     let edit = match edit {
         Edit::Offset(offset) => Edit::Offset(Offset { open: OpenPaths::Move, ..offset }),
@@ -48,10 +49,10 @@ pub fn edit_path(
         let one = area.with_arcs_of(outline, FINE * options.tolerance);
         return warp_path(&one, &AffineMap::IDENTITY, options, precision);
     }
-    let Some(RefittedPath { path, report, .. }) = edit.edited(outline, options, &[])? else {
+    let Some(RefittedPath { path, report, .. }) = edit.apply(outline, options, &[])? else {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     };
-    // What would not get fewer nodes stays as it is written.
+    // A path that would not get fewer nodes stays as it is written.
     if matches!(edit, Edit::Simplify { .. }) && report.segments_out >= report.segments_in {
         return warp_path(outline, &AffineMap::IDENTITY, options, precision);
     }
@@ -83,7 +84,8 @@ fn returning_closed(outline: &Outline) -> Outline {
 /// ```
 ///
 /// # Errors
-/// The map is undefined on the path, a coordinate is not finite, or the work exceeds the budget of the options.
+/// [`GeometryError::Infinity`] if the map is undefined on the path, [`GeometryError::NotFinite`] if a coordinate is not finite,
+/// [`GeometryError::Limit`] if the work exceeds the budget of the options, [`GeometryError::Tolerance`] if a tolerance is not positive.
 pub fn warp_path(
     outline: &Outline,
     map: &dyn Map,
@@ -114,21 +116,21 @@ pub fn warp_path(
 /// Largest sweep of a written arc. The centre of a longer one is too sensitive to rounding of its ends, without bound at half a turn.
 const MAX_SWEEP: f64 = 2.0 / 3.0 * PI;
 
-/// Largest distance of an image from its circle, as a fraction of the radius; rounding is below a thousandth of that.
+/// Largest distance of an image from its circle, as a fraction of the radius. Rounding of f64 is far below it.
 const ROUND: f64 = 1e-10;
 
-/// Largest radius of an image, in lengths of its chord. Flatter ones are better written as curves.
+/// Largest radius of an image, in distances between the image's start and its middle. Flatter arcs are better written as curves.
 const MAX_RADIUS: f64 = 1e4;
 
-/// Bends an outline and keeps its arcs where their images are arcs, in root user space, and takes `lines` to arcs where they become such.
-/// Returns `None` if there are none.
+/// Bends an outline in root user space, and writes images of arcs that are arcs again, and of lines (if `lines`) that become arcs, as
+/// arcs. Returns `None` if there are no such images.
 pub(super) fn with_arcs(
     map: &dyn Map,
     outline: &Outline,
     options: &refit::Options,
     lines: bool,
 ) -> Result<Option<(Outline, PathReport)>, GeometryError> {
-    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || lines && matches!(s, Seg::Line(_));
+    let may_be = |s: &Seg| matches!(s, Seg::Arc(_)) || (lines && matches!(s, Seg::Line(_)));
     if !outline.segs().any(may_be) || !outline.segs().all(Seg::is_finite) {
         return Ok(None);
     }
@@ -136,15 +138,15 @@ pub(super) fn with_arcs(
     let image = if let Class::Affine(m) = map.class() {
         outline.transformed(m)
     } else if options.certify {
-        // The test for circles only samples, so it certifies nothing.
+        // The test for circles only compares samples, so it certifies nothing.
         return Ok(None);
     } else {
         if map.prefers_batches() {
             let starts = outline.subpaths.iter().map(|s| s.start);
-            map.prepare(&outline.segs().flat_map(on_circle).chain(starts).collect::<Vec<_>>(), &[]);
+            map.prepare(&outline.segs().flat_map(compared_points).chain(starts).collect::<Vec<_>>(), &[]);
         }
         let images = |s: &Subpath| {
-            s.segs.iter().map(|g| Some(g).filter(|g| may_be(g)).and_then(|g| circle_of(g, map))).collect()
+            s.segs.iter().map(|g| Some(g).filter(|g| may_be(g)).and_then(|g| circular_image(g, map))).collect()
         };
         let all: Vec<Vec<Option<EllipticArc>>> = outline.subpaths.iter().map(images).collect();
         if all.iter().flatten().all(Option::is_none) {
@@ -158,10 +160,10 @@ pub(super) fn with_arcs(
         let subpaths = outline.subpaths.iter().zip(&all);
         let subpaths = subpaths
             .zip(outline.subpaths.iter().map(|s| s.segs.len()).scan(0, ends))
-            .map(|((s, arcs), end)| subpath((s, end - s.segs.len()), arcs, map, (options, &spans), &mut report));
+            .map(|((s, arcs), end)| bend_subpath((s, end - s.segs.len()), arcs, map, (options, &spans), &mut report));
         Outline { subpaths: subpaths.collect::<Result<_, _>>()? }
     };
-    let image = Outline { subpaths: image.subpaths.into_iter().map(short_arcs).collect() };
+    let image = Outline { subpaths: image.subpaths.into_iter().map(divide_long_arcs).collect() };
     report.segments_in = outline.segs().count();
     report.segments_out = image.segs().count();
     report.account_for_rounding(outline, image.extent(), options.tolerance);
@@ -172,13 +174,13 @@ pub(super) fn with_arcs(
 const SAMPLES: u32 = 24;
 
 /// The points of an arc whose images are compared with a circle; none for other segments.
-fn on_circle(g: &Seg) -> Vec<Point> {
+fn compared_points(g: &Seg) -> Vec<Point> {
     let Seg::Arc(arc) = g else { return Vec::new() };
     (0..=SAMPLES).map(|i| arc.eval(f64::from(i) / f64::from(SAMPLES))).collect()
 }
 
-/// The image of a circular arc, or a line, if it is a circular arc.
-fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
+/// The image of a circular arc or a line, if that is a circular arc.
+fn circular_image(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     if let Seg::Arc(arc) = g {
         let r = arc.a.hypot();
         if (arc.b.hypot() - r).abs() > ROUND * r || arc.a.dot(arc.b).abs() > ROUND * r * r {
@@ -187,7 +189,7 @@ fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     }
     let image = |i: u32| map.point(g.eval(f64::from(i) / f64::from(SAMPLES)));
     let (first, last) = (image(0), image(SAMPLES));
-    let center = center(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
+    let center = circumcenter(first, image(SAMPLES / 3), image(2 * SAMPLES / 3))?;
     let radius = first.distance(center);
     if radius > MAX_RADIUS * first.distance(image(SAMPLES / 2)) {
         return None;
@@ -210,8 +212,8 @@ fn circle_of(g: &Seg, map: &dyn Map) -> Option<EllipticArc> {
     Some(EllipticArc { p0: first, p1: last, center, a, b, start, sweep })
 }
 
-/// The centre of the circle through three points.
-fn center(p: Point, q: Point, r: Point) -> Option<Point> {
+/// The centre of the circle through three points; `None` if they lie on a line.
+fn circumcenter(p: Point, q: Point, r: Point) -> Option<Point> {
     let (u, v) = (q - p, r - p);
     let d = 2.0 * u.cross(v);
     let to = Vec2::new(v.y * u.hypot2() - u.y * v.hypot2(), u.x * v.hypot2() - v.x * u.hypot2()) / d;
@@ -219,8 +221,8 @@ fn center(p: Point, q: Point, r: Point) -> Option<Point> {
 }
 
 /// Bends a subpath, given the images of its arcs; the segments between them are refitted. `first` is the index of its first segment in
-/// the outline, and `ends` are the ends of the spans.
-fn subpath(
+/// the outline, and `ends` are the indices of the segments at which the spans end.
+fn bend_subpath(
     (s, first): (&Subpath, usize),
     arcs: &[Option<EllipticArc>],
     map: &dyn Map,
@@ -241,7 +243,7 @@ fn subpath(
         while let Some(((g, _), _)) = rest.next_if(|((_, arc), _)| arc.is_none()) {
             run.segs.push(*g);
         }
-        let options = options.clone().with_spans(within(&options.spans, ends, from..from + run.segs.len()));
+        let options = options.clone().with_spans(spans_within(&options.spans, ends, from..from + run.segs.len()));
         let refitted = refit::warp_path(&Outline { subpaths: vec![run] }, map, &options)?;
         report.add(refitted.report);
         out.segs.extend(Outline::from(&refitted.path).subpaths.into_iter().flat_map(|s| s.segs));
@@ -249,19 +251,19 @@ fn subpath(
     Ok(out)
 }
 
-/// The spans within a range of segments. `ends` are the ends of all spans.
-fn within(spans: &[Span], ends: &[usize], segments: Range<usize>) -> Vec<Span> {
+/// The spans within a range of segments, cut at its ends. `ends` are the indices of the segments at which the spans end.
+fn spans_within(spans: &[Span], ends: &[usize], segments: Range<usize>) -> Vec<Span> {
     let first = ends.partition_point(|end| *end <= segments.start);
-    let own = spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
+    let inside = spans[first..].iter().zip(&ends[first..]).take_while(|(s, end)| **end - s.segments < segments.end);
     let cut = |(s, &end): (&Span, &usize)| {
         let start = (end - s.segments).max(segments.start);
         Span { segments: end.min(segments.end) - start, ..*s }
     };
-    own.map(cut).collect()
+    inside.map(cut).collect()
 }
 
-/// Divides long arcs.
-fn short_arcs(s: Subpath) -> Subpath {
+/// Divides arcs of more than [`MAX_SWEEP`].
+fn divide_long_arcs(s: Subpath) -> Subpath {
     let divided = |g: Seg| -> Vec<Seg> {
         match g {
             Seg::Arc(a) => {
@@ -277,8 +279,8 @@ fn short_arcs(s: Subpath) -> Subpath {
 /// The fraction of the tolerance that rounding may use.
 pub(super) const ROUNDING: f64 = 0.01;
 
-/// The number of decimals of coordinates: the given one, or enough for [`ROUNDING`]. A unit as written is `size` units of root user
-/// space.
+/// The number of decimals of coordinates: the given one, or enough for [`ROUNDING`]. `size` is the length of a unit as written, in root
+/// user units.
 pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     given.unwrap_or_else(|| {
         let needed = (size * std::f64::consts::FRAC_1_SQRT_2 / (ROUNDING * tolerance)).log10().ceil();
@@ -286,7 +288,7 @@ pub(super) fn decimals(size: f64, tolerance: f64, given: Option<u8>) -> u8 {
     })
 }
 
-/// Largest error from rounding, in units of the last decimal: half the diagonal of one, and a third for cubics written as quadratics.
+/// Largest error from rounding, in units of the last decimal: half the diagonal of a square unit, and 0.3 for cubics written as quadratics.
 const OF_UNIT: f64 = std::f64::consts::FRAC_1_SQRT_2 + 0.3;
 
 /// Largest error from rounding to `decimals`, in root user units.
@@ -299,7 +301,7 @@ pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
     (tolerance - rounding).max(0.5 * tolerance)
 }
 
-/// Turns [`ROUNDING`] into a tenth.
+/// Factor of [`ROUNDING`] that gives the fraction of a contour's tolerance that rounding may use: a tenth.
 const COARSE: f64 = 10.0;
 
 /// Determines the decimals of written coordinates.
@@ -314,7 +316,7 @@ pub(super) struct Digits {
 }
 
 impl Digits {
-    /// The decimals for a contour: those of the whole drawing, unless their rounding exceeds a tenth of the contour's tolerance.
+    /// The number of decimals for a contour: the whole drawing's, or more if its rounding exceeds a tenth of the contour's tolerance.
     pub(super) fn decimals(self, tolerance: f64) -> u8 {
         decimals(self.size, self.whole.min(COARSE * tolerance), self.given)
     }
@@ -324,17 +326,20 @@ impl Digits {
         if self.given.is_none() { 4 } else { 0 }
     }
 
+    /// The largest error from rounding a contour with this tolerance, in root user units.
     pub(super) fn rounding(self, tolerance: f64) -> f64 {
         rounding(self.size, self.decimals(tolerance))
     }
 
-    /// The largest unit of the last decimal that any transform leads to, as written here; `None` for a requested number of decimals.
+    /// The largest unit of the last decimal under any transform of a drawing, in units as written here; `None` for a requested number of
+    /// decimals.
     pub(super) fn coarsest(self, tolerance: f64) -> Option<f64> {
         let unit = || ROUNDING * self.whole.min(COARSE * tolerance) * std::f64::consts::SQRT_2 / self.size;
         self.given.is_none().then(unit)
     }
 
-    /// The tolerance that remains after rounding. It is the same for neighbours under different transforms, so that they share edges.
+    /// The tolerance that remains after rounding. It does not depend on the transform (`size`) unless a number of decimals is requested,
+    /// so that neighbours under different transforms share edges.
     pub(super) fn remaining(self, tolerance: f64) -> f64 {
         let rounding = self.coarsest(tolerance).map_or_else(|| self.rounding(tolerance), |u| u * self.size * OF_UNIT);
         allowed(tolerance, rounding)
@@ -345,7 +350,7 @@ impl Digits {
         spans.iter().map(|s| Span { tolerance: self.remaining(s.tolerance), ..*s }).collect()
     }
 
-    /// The largest error of the spans, including rounding, and the largest as a fraction of the span's tolerance.
+    /// The largest error of the spans, including rounding, and the largest fraction of a span's tolerance that its error takes.
     pub(super) fn errors(self, spans: &[Span], reports: &[SpanReport]) -> [f64; 2] {
         let each = spans.iter().zip(reports).map(|(s, r)| (r.max_error + self.rounding(s.tolerance), s.tolerance));
         each.fold([0.0, 0.0], |[error, share], (e, t)| [f64::max(error, e), f64::max(share, e / t)])
@@ -375,14 +380,14 @@ impl Digits {
                     None => [MAX_DECIMALS; 2],
                     Some((s, pieces)) => {
                         let is_last = *pieces <= 1;
-                        let own = self.decimals(s.tolerance);
-                        let node = if is_last { own.max(self.decimals(s.nodes[1])) } else { own };
+                        let handles = self.decimals(s.tolerance);
+                        let node = if is_last { handles.max(self.decimals(s.nodes[1])) } else { handles };
                         *pieces = pieces.saturating_sub(1);
                         if is_last {
                             left -= s.segments.min(left);
                             spans.next();
                         }
-                        [own, node]
+                        [handles, node]
                     }
                 },
             });
@@ -391,7 +396,7 @@ impl Digits {
     }
 }
 
-/// Whether a subpath ends with a closing line not longer than `shortest`, after other segments.
+/// Returns `true` if a subpath ends with a closing line not longer than `shortest`, after other segments.
 pub(super) fn has_closing_stub(s: &Subpath, shortest: f64) -> bool {
     matches!(s.segs.as_slice(), [.., _, Seg::Line(stub)] if s.closed && stub.p0.distance(stub.p1) <= shortest)
 }
@@ -401,12 +406,12 @@ pub(super) fn drop_closing_stub(s: &mut Subpath, shortest: f64) {
     if has_closing_stub(s, shortest) {
         s.segs.pop();
         if let Some(before) = s.segs.last_mut() {
-            *end(before) = s.start;
+            *end_mut(before) = s.start;
         }
     }
 }
 
-fn end(s: &mut Seg) -> &mut Point {
+fn end_mut(s: &mut Seg) -> &mut Point {
     match s {
         Seg::Line(l) => &mut l.p1,
         Seg::Quad(q) => &mut q.p2,

@@ -1,4 +1,4 @@
-//! Interfaces to programs that make pictures for this library: bent bitmaps and gradients.
+//! Interfaces that a program implements to make pictures for this library: of bent bitmaps, gradients and filters.
 
 use super::traced::Opacity;
 use pathwarp::kurbo::{Affine, BezPath, Point, Rect};
@@ -7,12 +7,12 @@ use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-/// A bent bitmap, or a picture of a bent gradient.
+/// A picture of a bent bitmap, gradient or filter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BentImage {
     /// Content of a PNG or JPEG file.
     pub file: Vec<u8>,
-    /// Position in the requested user space.
+    /// The box that the picture fills, in the requested user space.
     pub area: Rect,
     /// A sentence about colours or a profile that the picture has lost.
     pub lost: Option<&'static str>,
@@ -25,7 +25,6 @@ impl BentImage {
         Self { file, area, lost: None }
     }
 
-    /// The media type of the file.
     pub(crate) fn media_type(&self) -> &'static str {
         if is_jpeg(&self.file) { "image/jpeg" } else { "image/png" }
     }
@@ -65,7 +64,7 @@ pub trait ImageWarper: Send + Sync {
     /// Bends a bitmap.
     ///
     /// # Errors
-    /// Returns the reason why the bitmap cannot be bent. It then follows the best affine fit.
+    /// [`PictureError`] with the reason why the bitmap cannot be bent. It then follows the best affine fit.
     fn warp(&self, request: &ImageRequest<'_>) -> Result<BentImage, PictureError>;
 }
 
@@ -78,9 +77,9 @@ pub struct ImageRequest<'a> {
     pub placed: Affine,
     /// The visible pixels, if not all are visible. The drawing clips the result to them, so the others need not be bent.
     pub crop: Option<Rect>,
-    /// The drawing clips the result to the outline of its visible pixels, so it may have any colours beyond, as a JPEG must.
+    /// `true` if the drawing clips the result to the outline of its visible pixels, so that it may have any colours beyond, as a JPEG must.
     pub clipped: bool,
-    /// Whether pixels are shown as squares, however large.
+    /// `true` if pixels are shown as squares, however large.
     pub pixelated: bool,
     /// The map of root user space.
     pub map: &'a dyn Map,
@@ -128,7 +127,7 @@ pub trait GradientPainter: Send + Sync {
     /// Paints a bent gradient over the whole target and a few pixels around it.
     ///
     /// # Errors
-    /// Returns the reason why the gradient cannot be painted. It then follows the best affine fit.
+    /// [`PictureError`] with the reason why the gradient cannot be painted. It then follows the best affine fit.
     fn paint(&self, request: &GradientRequest<'_>) -> Result<BentImage, PictureError>;
 }
 
@@ -158,9 +157,9 @@ pub struct GradientRequest<'a> {
     pub among: usize,
     /// Exact colours at points spread over the shape, for choosing a resolution.
     pub seen: &'a [SeenColor],
-    /// Whether no difference may be visible. If `false`, none may be noticeable.
+    /// `true` if no difference may be visible; `false` if none may be noticeable.
     pub strict: bool,
-    /// Whether colours jump, so that only the highest resolution shows them well.
+    /// `true` if colours jump, so that only the highest resolution shows them well.
     pub sharp: bool,
 }
 
@@ -170,32 +169,33 @@ impl fmt::Debug for GradientRequest<'_> {
     }
 }
 
-/// Draws what filters draw, and bends it.
+/// Makes pictures of bent filters.
 pub trait FilterPainter: Send + Sync {
-    /// Returns pictures of the layers under the map, without those that are empty; or `None` if the fit looks right.
+    /// Returns a picture of each layer under the map, `None` for empty layers; or `None` for all if the fit looks right.
     ///
     /// # Errors
-    /// Returns the reason why it cannot be bent. The filter then follows the best affine fit.
+    /// [`PictureError`] with the reason why the filter cannot be bent. It then follows the best affine fit.
     fn paint(&self, request: &FilterRequest<'_>) -> Result<Option<Vec<Option<BentImage>>>, PictureError>;
 }
 
 /// Makes an SVG drawing whose visible area is a box.
 pub type FilterDrawing<'a> = dyn Fn(Rect) -> String + 'a;
 
-/// What a filter draws.
+/// A filter to bend, with its graphic.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct FilterRequest<'a> {
-    /// SVG drawings of `area` that are to become pictures: what lies beneath and above the graphic, or all of it.
+    /// SVG drawings of `area` that are to become pictures: the filter's drawing beneath and above the graphic, or the graphic with its
+    /// filter.
     pub layers: &'a dyn Fn() -> Vec<Option<String>>,
-    /// Draw a part of all of it, and a part of the user space of the result, where the filter follows its fit. `None`: pictures are wanted
-    /// in any case.
+    /// Drawings to compare: the graphic with its filter, and the result where the filter follows its fit. `None` if pictures are wanted in
+    /// any case.
     pub compared: Option<[&'a FilterDrawing<'a>; 2]>,
-    /// What may be drawn on, in the user space of the filter.
+    /// The box that the filter may paint, in its user space.
     pub area: Rect,
-    /// What the graphic covers of it, without the filter.
+    /// The box that the graphic covers without the filter.
     pub graphic: Rect,
-    /// From that user space to root user space.
+    /// From the filter's user space to root user space.
     pub placed: Affine,
     /// The map of root user space.
     pub map: &'a dyn Map,
@@ -215,15 +215,15 @@ impl fmt::Debug for FilterRequest<'_> {
     }
 }
 
-/// Reads where pictures are opaque, and continues what is drawn beyond its edge.
+/// Reads the opacity of pictures, and continues colours beyond the edge of a drawing.
 pub trait EdgePainter: Send + Sync {
     /// The opacity of a PNG, GIF or WebP; `None` if it cannot be read.
     fn opacity(&self, data: &[u8]) -> Option<Opacity>;
 
-    /// Returns a PNG of an SVG drawing in which transparent pixels have the colour of the nearest that are not. `size` is its size in px.
+    /// Returns a PNG of an SVG drawing in which transparent pixels have the colour of the nearest others. `size` is the drawing's size in px.
     ///
     /// # Errors
-    /// Returns the reason why it cannot be drawn.
+    /// [`PictureError`] with the reason why the drawing cannot be rendered.
     fn continued(&self, drawing: &str, size: [f64; 2]) -> Result<Vec<u8>, PictureError>;
 }
 
@@ -236,7 +236,7 @@ pub struct SeenColor {
     pub color: [f64; 4],
 }
 
-/// Paints bent gradients, what filters draw, and what goes on beyond edges.
+/// Paints bent gradients and filters, and continues colours beyond edges.
 #[derive(Clone)]
 pub struct Painter(Arc<dyn PaintsAll>);
 
@@ -244,7 +244,7 @@ trait PaintsAll: GradientPainter + FilterPainter + EdgePainter {}
 impl<P: GradientPainter + FilterPainter + EdgePainter> PaintsAll for P {}
 
 impl Painter {
-    /// A painter of all.
+    /// Wraps an implementation of the three interfaces.
     pub fn new(painter: Arc<impl GradientPainter + FilterPainter + EdgePainter + 'static>) -> Self {
         Self(painter)
     }

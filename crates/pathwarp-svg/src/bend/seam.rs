@@ -1,16 +1,16 @@
-//! Seams: where a map brings two ends of a contour together, as a ring does with those of a band.
+//! Removes seams: edges of a contour that a map brings together, as a ring joins the ends of a band.
 
 use pathwarp::kurbo::Point;
 use pathwarp::map::{Class, Map};
 use pathwarp::outline::Subpath;
 use pathwarp::{Outline, Seg};
 
-/// Images this near, against the size of the image, are the same.
+/// Largest distance of coinciding images, as a fraction of their coordinates.
 const SAME: f64 = 1e-9;
 
-/// Returns an outline without what would lie along seams: of a contour, two segments with one image that have the area on either side, so that a band
-/// becomes two contours; and open lines whose ends meet in the image are closed. Each with the index of its source subpath. `None` if the map
-/// brings nothing together.
+/// The subpaths of an outline without seams, each with the index of its source subpath. A seam is a pair of segments of a contour that have
+/// one image, with the area on either side of it; without them, a band becomes two contours. Open lines whose ends meet in the image are
+/// closed. Returns `None` if the map brings nothing together.
 pub(super) fn without_seams(outline: &Outline, map: &dyn Map) -> Option<Vec<(usize, Subpath)>> {
     if matches!(map.class(), Class::Affine(_) | Class::Projective(_)) || map.prefers_batches() {
         return None;
@@ -44,7 +44,7 @@ fn divide(segs: Vec<Seg>, map: &dyn Map, out: &mut dyn FnMut(Vec<Seg>)) {
     let images: Vec<Point> = segs.iter().map(|s| map.point(s.start())).collect();
     let mut sorted: Vec<usize> = (0..n).collect();
     sorted.sort_by(|a, b| images[*a].x.total_cmp(&images[*b].x));
-    // The other segments that begin where a segment ends.
+    // The segments whose images begin where the image of segment `a` ends.
     let (images, sorted) = (&images, &sorted);
     let after = |a: usize| {
         let q = images[(a + 1) % n];
@@ -60,13 +60,13 @@ fn divide(segs: Vec<Seg>, map: &dyn Map, out: &mut dyn FnMut(Vec<Seg>)) {
             && !(s.start() == t.end() && s.end() == t.start())
             && meet(map.point(p), map.point(q))
             && !meet(images[a], map.point(p))
-            // A fold has the area on one side of both.
+            // Both segments of a fold have the area on one side.
             && map.jet(p).det() * map.jet(q).det() > 0.0
     };
     let seam = (0..n).find_map(|a| after(a).find(|b| *b > a && is_seam(a, *b)).map(|b| (a, b)));
     let Some((a, b)) = seam else { return out(segs) };
     for part in [[&segs[b + 1..], &segs[..a]].concat(), segs[a + 1..b].to_vec()] {
-        // What the map takes to a point is nothing.
+        // A part that the map takes to a point is dropped.
         if part.iter().any(|s| !meet(map.point(s.start()), map.point(s.eval(0.5)))) {
             divide(part, map, out);
         }

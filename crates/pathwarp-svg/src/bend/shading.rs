@@ -1,4 +1,4 @@
-//! A gradient as a function of the plane: its colour at every place, and how fast it changes.
+//! Gradients as functions of the plane: colours at points, and bounds on their change.
 
 use crate::scene::geometry::{affine, is_invertible, stretch};
 use pathwarp::kurbo::{Affine, Point, Vec2};
@@ -10,7 +10,7 @@ const BATCH: usize = 32;
 /// A gradient as a function of the plane.
 #[derive(Debug, Clone)]
 pub(crate) struct Shading {
-    /// From user space to the gradient's space.
+    /// Leads from user space to the gradient's space.
     pub(crate) inside: Affine,
     pub(crate) kind: GradientShape,
     pub(crate) stops: Vec<Stop>,
@@ -50,8 +50,8 @@ pub(crate) enum GradientShape {
 }
 
 impl Shading {
-    /// Reads a gradient. Returns `None` for other paints.
-    pub(super) fn of(paint: &Paint) -> Option<Self> {
+    /// Reads a gradient. Returns `None` for other paints, and for transforms that cannot be inverted.
+    pub(super) fn from_paint(paint: &Paint) -> Option<Self> {
         let p = |x: f32, y: f32| Point::new(f64::from(x), f64::from(y));
         let (base, kind): (&usvg::BaseGradient, _) = match paint {
             Paint::LinearGradient(g) => {
@@ -79,7 +79,7 @@ impl Shading {
         })
     }
 
-    /// The name of its element, and the attributes that say where it is.
+    /// The tag and the attributes of its geometry.
     pub(crate) fn geometry(&self) -> (&'static str, Vec<(&'static str, f64)>) {
         match self.kind {
             GradientShape::Linear { from, slope } => {
@@ -96,14 +96,14 @@ impl Shading {
         }
     }
 
-    /// The gradient in the place of its image under an affine map.
-    pub(super) fn moved(&self, by: Affine) -> Self {
+    /// The image of the gradient under an affine map.
+    pub(super) fn transformed(&self, by: Affine) -> Self {
         Self { inside: self.inside * by.inverse(), ..self.clone() }
     }
 
-    /// Parameters along the stops at points of user space; NaN outside of the cone of a focal gradient.
-    fn along(&self, places: &[Point], out: &mut [f64]) {
-        let pairs = out.iter_mut().zip(places);
+    /// Parameters along the stops at points of user space; NaN outside the cone of a focal gradient.
+    fn along(&self, points: &[Point], out: &mut [f64]) {
+        let pairs = out.iter_mut().zip(points);
         match self.kind {
             GradientShape::Linear { from, slope } => {
                 pairs.for_each(|(t, p)| *t = (self.inside * *p - from).dot(slope));
@@ -125,15 +125,16 @@ impl Shading {
         t[0]
     }
 
-    /// Parameter of a radial gradient at a point of its space. Returns `None` outside the cone of a focal one.
+    /// Parameter of a radial gradient at a point of its space. Returns `None` outside the cone of a focal gradient.
     fn cone(&self, p: Point) -> Option<f64> {
         match self.kind {
             GradientShape::Linear { .. } => None,
-            // The largest t for which the interpolated circle (0: focal, 1: outer) passes through the point.
+            // The largest t for which the circle interpolated between the focal (0) and the outer one (1) passes through the point: the
+            // larger root of a·t² − 2b·t + c with a radius that is not negative.
             GradientShape::Radial { centre, radius, focus, focal_radius } => {
-                let (d, grow, q) = (centre - focus, radius - focal_radius, p - focus);
-                let a = d.hypot2() - grow * grow;
-                let b = q.dot(d) + focal_radius * grow;
+                let (shift, grow, q) = (centre - focus, radius - focal_radius, p - focus);
+                let a = shift.hypot2() - grow * grow;
+                let b = q.dot(shift) + focal_radius * grow;
                 let c = q.hypot2() - focal_radius * focal_radius;
                 let reaches = |t: &f64| t.is_finite() && focal_radius + t * grow >= 0.0;
                 if a.abs() <= 1e-12 * grow * grow {
@@ -147,10 +148,10 @@ impl Shading {
     }
 
     /// Colours at points of user space: red, green, blue, alpha, not premultiplied.
-    pub(super) fn colors(&self, places: &[Point], out: &mut [[f64; 4]]) {
+    pub(super) fn colors(&self, points: &[Point], out: &mut [[f64; 4]]) {
         let (mut along, mut band) = ([0.0; BATCH], Band::default());
-        for (places, out) in places.chunks(BATCH).zip(out.chunks_mut(BATCH)) {
-            self.along(places, &mut along);
+        for (points, out) in points.chunks(BATCH).zip(out.chunks_mut(BATCH)) {
+            self.along(points, &mut along);
             for (color, t) in out.iter_mut().zip(along) {
                 *color = self.color(t, &mut band);
             }
@@ -174,7 +175,6 @@ impl Shading {
         std::array::from_fn(|k| band.color[k] + (t - band.from) * band.rate[k])
     }
 
-    /// The stops around a parameter.
     fn band(&self, t: f64) -> Band {
         let next = self.stops.partition_point(|s| s.offset <= t);
         match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
@@ -206,13 +206,13 @@ impl Shading {
         self.steps().map(|(_, rate, _)| rate).fold(0.0, f64::max) * along * stretch(self.inside)
     }
 
-    /// Whether the colour jumps by more than `least` between stops in the range of the given points.
-    pub(super) fn jumps(&self, places: impl Iterator<Item = Point>, least: f64) -> bool {
+    /// Returns `true` if the colour jumps by more than `least` between stops in the range of the given points.
+    pub(super) fn jumps(&self, points: impl Iterator<Item = Point>, least: f64) -> bool {
         /// Stops closer than this coincide; usvg moves them apart by a rounding error.
         const SAME: f64 = 1e-4;
         /// Margin for the gaps between points, as a fraction of the range.
         const BETWEEN: f64 = 0.05;
-        let range = places
+        let range = points
             .map(|p| self.along_one(p))
             .filter(|t| !t.is_nan())
             .fold(None, |r: Option<(f64, f64)>, t| Some(r.map_or((t, t), |(a, b)| (a.min(t), b.max(t)))));
@@ -222,7 +222,7 @@ impl Shading {
         self.steps().any(|(t, rate, change)| change > least && rate * SAME >= change && is_seen(t))
     }
 
-    /// Offset, rate of change and change of the colour between neighbouring stops.
+    /// For each pair of neighbouring stops, its offset, and the rate and amount by which a premultiplied channel changes at most.
     fn steps(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let wrap = match (self.spread, self.stops.first(), self.stops.last()) {
             (SpreadMethod::Repeat, Some(first), Some(last)) => Some((0.0, first, last, 0.0)),
@@ -234,7 +234,7 @@ impl Shading {
             let change = p.iter().zip(q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
             let alpha = (a.color[3] - b.color[3]).abs();
             // The product rule for colour times alpha.
-            let most = |k: usize, of: [f64; 4]| (a.color[k] - b.color[k]).abs() * of[3] + of[k] * alpha;
+            let most = |k: usize, c: [f64; 4]| (a.color[k] - b.color[k]).abs() * c[3] + c[k] * alpha;
             let larger: [f64; 4] = std::array::from_fn(|k| a.color[k].max(b.color[k]));
             let rate = (0..3).map(|k| most(k, larger)).fold(alpha, f64::max);
             (t, if rate > 0.0 { rate / apart.max(0.0) } else { 0.0 }, change)
@@ -257,7 +257,7 @@ pub(super) mod tests {
         );
         let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
         let usvg::Node::Path(path) = &tree.root().children()[0] else { panic!("{svg}") };
-        Shading::of(path.fill().unwrap().paint()).unwrap()
+        Shading::from_paint(path.fill().unwrap().paint()).unwrap()
     }
 
     const SMOOTH: &[&str] = &[
@@ -290,14 +290,14 @@ pub(super) mod tests {
                 </linearGradient>";
         let repeated = "<linearGradient id='a' spreadMethod='repeat' x2='.2'><stop stop-color='red'/><stop offset='1' \
                     stop-color='blue'/></linearGradient>";
-        let places = |from: f64, to: f64| [Point::new(from, 5.0), Point::new(to, 50.0)].into_iter();
+        let points = |from: f64, to: f64| [Point::new(from, 5.0), Point::new(to, 50.0)].into_iter();
         assert!(shading(hard).steepest() > 1e3 && shading(repeated).steepest() == f64::INFINITY);
-        assert!(shading(hard).jumps(places(0.0, 100.0), 0.05));
-        assert!(!shading(hard).jumps(places(0.0, 40.0), 0.05));
-        assert!(!shading(&hard.replace("blue", "#fe0000")).jumps(places(0.0, 100.0), 0.05));
-        assert!(shading(repeated).jumps(places(0.0, 100.0), 0.05));
+        assert!(shading(hard).jumps(points(0.0, 100.0), 0.05));
+        assert!(!shading(hard).jumps(points(0.0, 40.0), 0.05));
+        assert!(!shading(&hard.replace("blue", "#fe0000")).jumps(points(0.0, 100.0), 0.05));
+        assert!(shading(repeated).jumps(points(0.0, 100.0), 0.05));
         for gradient in SMOOTH {
-            assert!(!shading(gradient).jumps(places(0.0, 100.0), 0.05));
+            assert!(!shading(gradient).jumps(points(0.0, 100.0), 0.05));
         }
     }
 }

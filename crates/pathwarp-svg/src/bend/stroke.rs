@@ -14,7 +14,7 @@ use usvg::Stroke;
 
 /// Fraction of the tolerance for the sides of a stroke.
 const SIDES: f64 = 0.15;
-/// Fraction of the tolerance for gaps between sides, of which half counts from either side.
+/// Fraction of the tolerance for gaps between sides, half of it for either side.
 const GAPS: f64 = 0.3;
 /// Fraction of the tolerance for expanding the stroke. The rest is for refitting the outline.
 const EXPANSION: f64 = SIDES + 0.5 * GAPS;
@@ -25,14 +25,14 @@ const UNION: f64 = 0.1;
 /// Fraction of the tolerance that an expansion may take before it is repeated.
 const MISSED: f64 = 0.5;
 
-/// Finest tolerance of an expansion: in user units, and as a share of the largest coordinate, so that rounding is smaller.
+/// Finest tolerance of an expansion, in user units.
 const FINEST: f64 = 1e-9;
+/// Finest tolerance of an expansion as a fraction of the largest coordinate, so that rounding is smaller.
 const FINEST_SHARE: f64 = 64.0 * f64::EPSILON;
 
-/// Index that stands for the whole drawing in place of a contour.
+/// Index that stands for the whole drawing instead of a contour.
 const DRAWING: usize = usize::MAX;
 
-/// The image of a stroke.
 pub(super) struct BentStroke {
     pub(super) outcome: StrokeOutcome,
     /// Report on the outline.
@@ -41,7 +41,7 @@ pub(super) struct BentStroke {
     pub(super) error: Option<f64>,
     /// Factor by which the path's error adds to `error`.
     pub(super) leverage: f64,
-    /// Whether the stroke should be outlined, but the map is not defined around it.
+    /// `true` if the stroke should be outlined, but the map is not defined around it.
     pub(super) refused: bool,
 }
 
@@ -65,15 +65,14 @@ impl BentStroke {
     }
 }
 
-/// Whether a stroke is a hairline, which only marks its centre line: thinner than the tolerance, or than a hairline in print.
+/// Returns `true` if a stroke is a hairline, which only marks its centre line: no wider than the tolerance, or than a hairline in print.
 pub(super) fn is_hairline(t: &PartTask<'_>, s: &Stroke) -> bool {
     let width = f64::from(s.width().get()) * stretch(t.part.frame);
     // usvg keeps widths in single precision.
     width <= t.options().refit.tolerance.max(t.context.hairline) * (1.0 + f64::from(f32::EPSILON))
 }
 
-/// Warps the stroke of a part whose path is bent to `path` of `pieces` segments. A stroke with a picture (`pictured`) is always
-/// expanded.
+/// Warps the stroke of a part whose path is bent to `path` of `pieces` segments. A stroke with a picture (`pictured`) is always expanded.
 pub(super) fn stroke(
     t: &PartTask<'_>,
     path: &BezPath,
@@ -87,17 +86,17 @@ pub(super) fn stroke(
     let resolves = t.options().edit == Some(Edit::Resolve);
     let bends = |_: &&Stroke| !p.fixed_width || resolves;
     let Some(s) = p.stroke.as_ref().filter(bends) else { return Ok(BentStroke::scaled(1.0, None)) };
-    // Even a stroke that remains one is expanded with its dashes, to measure its box.
+    // Even a stroke that is not outlined is expanded with its dashes, to measure its box.
     spend_dashes(&p.local, s, &t.options().refit.budget).map_err(GeometryError::Limit)?;
     let mode = t.options().strokes;
     if p.fixed_width {
-        let (path, report) = outlined(t, s, stretch(t.part.frame))?;
+        let (path, report) = outline(t, s, stretch(t.part.frame))?;
         return Ok(BentStroke::outlined(path, Some(report)));
     }
     if mode == Strokes::Keep {
         return Ok(BentStroke::scaled(1.0, None));
     }
-    let width = StrokeWidth::of(t, s, pieces);
+    let width = StrokeWidth::sample(t, s, pieces);
     let scaled = |w: &StrokeWidth<'_>, scale: f64| BentStroke::with_width(w, scale, pieces);
     let mean = || width.as_ref().map_or_else(BentStroke::unknown, |w| scaled(w, w.mean()));
     if mode == Strokes::Scale {
@@ -113,7 +112,7 @@ pub(super) fn stroke(
             }
         }
     }
-    match outlined(t, s, stretched(t, width.as_ref())) {
+    match outline(t, s, stretch_on_path(t, width.as_ref())) {
         Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
         Err(e @ GeometryError::Limit(_)) => Err(e),
         // The outline may leave the map's domain; scale the width instead.
@@ -123,35 +122,35 @@ pub(super) fn stroke(
 }
 
 /// The factor by which the map stretches lengths on a path, from its user space to root user space.
-fn stretched(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
+fn stretch_on_path(t: &PartTask<'_>, width: Option<&StrokeWidth<'_>>) -> f64 {
     let known = width.map(StrokeWidth::stretch).filter(|s| *s > 0.0 && s.is_finite());
     known.unwrap_or_else(|| stretch(t.part.frame))
 }
 
-/// Expands a part's stroke and bends the outline. `stretch` is the factor by which the map stretches lengths near the path, from
-/// the part's user space to root user space.
-fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
+/// Expands a part's stroke and bends the outline. `stretch` is the assumed factor by which the map stretches lengths near the path, from
+/// the part's user space to root user space. If the map turns out to stretch the outline more, the stroke is expanded again.
+fn outline(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathReport), GeometryError> {
     let (p, options) = (t.part, t.options());
-    // A stroke of fixed width is one on the page.
+    // A stroke of fixed width is expanded on the page.
     let to_px = t.context.to_px;
     let on_page = p.fixed_width.then(|| Outline::clone(&t.outline).transformed(to_px));
-    let (own, frame) = on_page.as_ref().map_or((&*p.local, p.frame), |o| (o, to_px.inverse()));
+    let (local, frame) = on_page.as_ref().map_or((&*p.local, p.frame), |o| (o, to_px.inverse()));
     spend_stroke(&p.local, s, &options.refit.budget).map_err(GeometryError::Limit)?;
     // The outline of every contour, with the contour's index in the part.
     let expanded = |fine: &dyn Fn(usize) -> f64| -> Vec<(usize, Outline)> {
-        let one = |local: &Outline, places: &[Affine], first: usize| {
+        let one = |local: &Outline, copies: &[Affine], first: usize| {
             let each = stroke_outlines(local, s, |i| [SIDES, GAPS].map(|share| share / EXPANSION * fine(first + i)));
-            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(places));
+            let placed = |(i, o): (usize, Outline)| (first + i, o.transformed(frame).repeated(copies));
             each.into_iter().map(placed).collect::<Vec<_>>()
         };
         if t.pieces.is_empty() {
-            one(own, &options.copies, 0)
+            one(local, &options.copies, 0)
         } else {
-            t.pieces.iter().flat_map(|piece| one(&piece.of(own), &piece.places, piece.first())).collect()
+            t.pieces.iter().flat_map(|piece| one(&piece.cut_from(local), &piece.copies, piece.first())).collect()
         }
     };
     let extent =
-        own.bounding_box().map_or(0.0, |b| [b.x0, b.x1, b.y0, b.y1].map(f64::abs).into_iter().fold(0.0, f64::max));
+        local.bounding_box().map_or(0.0, |b| [b.x0, b.x1, b.y0, b.y1].map(f64::abs).into_iter().fold(0.0, f64::max));
     let least = FINEST.max(FINEST_SHARE * extent);
     let fine = |i: usize, stretch: f64| (t.allowed_of(i) * EXPANSION / stretch).max(least);
     let largest = |each: &[(usize, Outline)]| each.iter().map(|(_, o)| largest_stretch(t, o)).fold(0.0, f64::max);
@@ -166,20 +165,20 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
         found = largest(&each);
     }
     let expansion = |i: usize| fine(i, assumed) * found;
-    let finest = t.own.iter().copied().fold(allowed, f64::min);
+    let finest = t.whole_contours.iter().copied().fold(allowed, f64::min);
     let united = if options.union { UNION * finest } else { 0.0 };
     let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i)) - united;
     let mut refit = t.refit(rest(DRAWING));
     let contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
     let whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
-    if !t.own.is_empty() {
+    if !t.whole_contours.is_empty() {
         let rests: Vec<f64> = contours.iter().map(|i| rest(*i)).collect();
         refit = refit.with_spans(SharedEdges::default().spans(&whole, &rests));
     }
     let warped = refit::warp_path(&whole, t.map, &refit)?;
     let mut report = warped.report;
     let largest = contours.iter().map(|i| expansion(*i)).fold(0.0, f64::max);
-    report.max_error += united + if t.own.is_empty() { expansion(DRAWING) } else { largest };
+    report.max_error += united + if t.whole_contours.is_empty() { expansion(DRAWING) } else { largest };
     // Hide that the fractions add up to a little more than the whole after rounding.
     if (allowed..allowed * (1.0 + 1e-12)).contains(&report.max_error) {
         report.max_error = allowed;
@@ -189,14 +188,13 @@ fn outlined(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, Path
     Ok((t.to_local(path), report))
 }
 
-/// The largest factor by which the map stretches lengths at the nodes of an expanded stroke, from the part's user space to root user
-/// space.
+/// The largest factor by which the map stretches lengths at the nodes of an expanded stroke, from the part's user space to root user space.
 fn largest_stretch(t: &PartTask<'_>, outline: &Outline) -> f64 {
     let frame = stretch(t.part.frame);
-    let at = |p: Point| {
+    let stretch_at = |p: Point| {
         let jet = t.map.jet(p);
         stretch(Affine::new([jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y, 0.0, 0.0])) * frame
     };
     // NaN is ignored: the refit reports where the map is undefined.
-    outline.segs().map(|s| at(s.start())).fold(0.0, f64::max)
+    outline.segs().map(|s| stretch_at(s.start())).fold(0.0, f64::max)
 }

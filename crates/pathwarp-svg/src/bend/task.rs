@@ -23,7 +23,7 @@ use std::sync::Arc;
 pub(super) struct PartContext<'a> {
     pub(super) map: &'a dyn Map,
     pub(super) options: &'a WarpOptions,
-    /// Shapes that recur in the drawing.
+    /// Images of shapes that recur in the drawing.
     pub(super) known: &'a KnownShapes,
     pub(super) drawing: &'a Drawing,
     /// Root user space to px.
@@ -37,12 +37,11 @@ pub(super) struct PartContext<'a> {
 /// The image of an outline in the part's user space as written.
 pub(super) struct BentPath {
     pub(super) path: BezPath,
-    /// The text of the path if it has arcs, which `path` approximates.
+    /// The path data of the image if it is already written, because it has arcs, which `path` approximates, or spans.
     pub(super) data: Option<String>,
     pub(super) report: PathReport,
 }
 
-/// A part to warp.
 pub(super) struct PartTask<'a> {
     pub(super) part: &'a Part,
     pub(super) context: &'a PartContext<'a>,
@@ -50,16 +49,15 @@ pub(super) struct PartTask<'a> {
     pub(super) write: Affine,
     /// From root user space to the part's user space as written.
     pub(super) back: Affine,
-    /// The placed letters of the part.
     pub(super) pieces: &'a [LetterPiece],
     /// The part's outline in root user space.
     pub(super) whole: Arc<Outline>,
     /// The outline to bend: all copies, or the placed letters.
     pub(super) outline: Arc<Outline>,
-    /// The tolerances of the contours of `outline`; empty if they all have that of the drawing.
+    /// The tolerances of the contours of `outline`; empty if they all have the drawing's.
     pub(super) contours: Vec<f64>,
-    /// The same for the contours of `whole`.
-    pub(super) own: &'a [f64],
+    /// The tolerances of the contours of `whole`; empty if they all have the drawing's.
+    pub(super) whole_contours: &'a [f64],
     /// The smallest tolerance.
     pub(super) finest: f64,
     /// The map that bends `outline`.
@@ -72,16 +70,16 @@ pub(super) struct PartTask<'a> {
 }
 
 impl<'a> PartTask<'a> {
-    /// `whole` is the part's outline in root user space.
+    /// `whole` is the part's outline in root user space, with the tolerances of its contours.
     pub(super) fn new(
         part: &'a Part,
-        (whole, own): (Arc<Outline>, &'a [f64]),
+        (whole, whole_contours): (Arc<Outline>, &'a [f64]),
         write: Affine,
         context: &'a PartContext<'a>,
         pieces: &'a [LetterPiece],
     ) -> Self {
         let options = context.options;
-        let (mut outline, contours) = placed_outline(&whole, own, options, pieces);
+        let (mut outline, contours) = placed_outline(&whole, whole_contours, options, pieces);
         // Placed letters skip the first step; everything else goes through the whole map.
         let map: &dyn Map = if pieces.is_empty() { context.map } else { &options.letters.after };
         let digits = Digits { size: stretch(write), given: options.precision, whole: options.refit.tolerance };
@@ -101,7 +99,7 @@ impl<'a> PartTask<'a> {
             whole,
             outline,
             contours,
-            own,
+            whole_contours,
             finest,
             map,
             digits,
@@ -117,21 +115,21 @@ impl<'a> PartTask<'a> {
     /// Bends an outline whose contours have these tolerances.
     pub(super) fn bend(&self, outline: &Outline, contours: &[f64]) -> Result<BentPath, GeometryError> {
         if let Some(parts) = without_seams(outline, self.map) {
-            let own: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
+            let divided: Vec<f64> = parts.iter().filter_map(|(i, _)| contours.get(*i).copied()).collect();
             let subpaths = parts.into_iter().map(|(_, s)| s).collect();
-            return self.bend_contours(&Outline { subpaths }, &own, true);
+            return self.bend_contours(&Outline { subpaths }, &divided, true);
         }
         self.bend_contours(outline, contours, false)
     }
 
-    /// Bends an outline; `rings` tells that some of its contours go around as rings.
+    /// Bends an outline without seams. If contours go around as `rings`, lines may become arcs.
     fn bend_contours(&self, outline: &Outline, contours: &[f64], rings: bool) -> Result<BentPath, GeometryError> {
         let spans = self.options().refit.shared.spans(outline, contours);
         let options = self.refit(self.allowed()).with_spans(self.digits.allowed(&spans));
         if let Some(edit) = self.options().edit {
             let held: Vec<f64> = (0..contours.len()).map(|i| self.allowed_of(i)).collect();
             if let Some(RefittedPath { path, report, .. }) =
-                edit.of(self.part).edited(outline, &self.refit(self.allowed()), &held)?
+                edit.for_part(self.part).apply(outline, &self.refit(self.allowed()), &held)?
             {
                 return Ok(BentPath { path: self.to_local(path), data: None, report });
             }
@@ -159,7 +157,7 @@ impl<'a> PartTask<'a> {
         Ok(BentPath { path, data: Some(data), report })
     }
 
-    /// Bends the part's outline just to measure it, without merging, which would take most of the time.
+    /// Bends the part's outline to measure it, without merging segments, which would take most of the time.
     pub(super) fn draft(&self) -> Result<BentPath, GeometryError> {
         let options = self.refit(allowed(self.finest, self.rounding)).with_nodes(Nodes::Source).with_certify(false);
         let warped = self.context.known.warp_path(&self.outline, self.map, &options)?;
@@ -171,17 +169,18 @@ impl<'a> PartTask<'a> {
         self.options().refit.clone().with_tolerance(tolerance).with_suited(false)
     }
 
-    /// The tolerance that remains after rounding, for a contour of `whole`, or for the drawing if there is no such contour.
+    /// The tolerance that remains after rounding for a contour of `whole`, or for the drawing if there is no such contour.
     pub(super) fn allowed_of(&self, contour: usize) -> f64 {
-        let tolerance = self.own.get(contour).copied().unwrap_or(self.options().refit.tolerance);
+        let tolerance = self.whole_contours.get(contour).copied().unwrap_or(self.options().refit.tolerance);
         self.digits.remaining(tolerance)
     }
 
-    /// See [`Digits::coarsest`].
+    /// The largest unit of the last decimal under any transform; `None` for a requested number of decimals.
     pub(super) fn coarsest(&self) -> Option<f64> {
         self.digits.coarsest(self.finest)
     }
 
+    /// The drawing's tolerance that remains after rounding.
     fn allowed(&self) -> f64 {
         self.allowed_of(usize::MAX)
     }
@@ -195,37 +194,44 @@ impl<'a> PartTask<'a> {
     }
 }
 
-/// The tolerances of the contours of every part, one for each subpath; empty for parts with that of the drawing.
-pub(super) fn of_parts(drawing: &Drawing, bend: &Bend<'_>, of: &[Option<usize>], k: usize) -> Vec<Vec<f64>> {
+/// The tolerances of the contours of every part, one for each subpath; empty for parts with the drawing's tolerance or with another bend
+/// than `k`.
+pub(super) fn contour_tolerances(
+    drawing: &Drawing,
+    bend: &Bend<'_>,
+    part_bends: &[Option<usize>],
+    k: usize,
+) -> Vec<Vec<f64>> {
     let (parts, shapes) = (&drawing.scene().parts, drawing.shapes());
     let tolerance = bend.options.refit.tolerance;
     let to_px = drawing.scene().to_px;
-    let own = |i: usize| {
-        if of[i] != Some(k) || !bend.options.refit.suited {
+    let tolerances = |i: usize| {
+        if part_bends[i] != Some(k) || !bend.options.refit.suited {
             return Vec::new();
         }
         let is_text = shapes[i].element == "text";
-        of_part(&shapes[i].outline, reach(&parts[i], to_px), is_text, tolerance)
+        suited_tolerances(&shapes[i].outline, reach(&parts[i], to_px), is_text, tolerance)
     };
-    let all: Vec<Vec<f64>> = (0..parts.len()).map(own).collect();
+    let all: Vec<Vec<f64>> = (0..parts.len()).map(tolerances).collect();
     let is_small = |t: &f64| *t < tolerance;
     if all.iter().flatten().any(is_small) { all } else { vec![Vec::new(); parts.len()] }
 }
 
-fn of_part(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
+/// The tolerances suited to the sizes of an outline's contours; in text, to the sizes of letters. `reach` is half the stroke's width.
+fn suited_tolerances(outline: &Outline, reach: f64, is_text: bool, tolerance: f64) -> Vec<f64> {
     // A tolerance below the resolution of the numbers cannot be met.
     let finest = (4.0 * RESOLUTION * outline.extent()).min(tolerance);
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let size = |b: Rect| b.size().to_vec2().hypot();
-    let own = |i: usize| {
-        let around = if is_text { letter(&boxes, i) } else { boxes[i] };
+    let tolerance_of = |i: usize| {
+        let around = if is_text { letter_box(&boxes, i) } else { boxes[i] };
         suited(tolerance, size(around)).max(finest)
     };
-    (0..boxes.len()).map(own).collect()
+    (0..boxes.len()).map(tolerance_of).collect()
 }
 
-/// The box of the letter that a subpath of a text belongs to: its own, or if it is a hole, that of the neighbour around it.
-fn letter(boxes: &[Rect], i: usize) -> Rect {
+/// The box of the letter that a subpath of a text belongs to: the subpath's box or, if it is a hole, the box of the neighbour around it.
+fn letter_box(boxes: &[Rect], i: usize) -> Rect {
     /// Letters have at most a few holes.
     const NEIGHBOURS: usize = 4;
     let near = &boxes[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(boxes.len())];
@@ -243,20 +249,20 @@ pub(super) fn placed_outline(
     match (pieces, options.copies.as_slice()) {
         ([], []) => (Arc::clone(whole), contours.to_vec()),
         ([], copies) => (Arc::new(whole.repeated(copies)), contours.repeat(copies.len())),
-        _ => (Arc::new(placed(whole, pieces)), pieces.iter().flat_map(|p| p.repeated(contours)).collect()),
+        _ => (Arc::new(place_letters(whole, pieces)), pieces.iter().flat_map(|p| p.repeated(contours)).collect()),
     }
 }
 
-/// The subpaths of a part that belong to one letter, with the letter's places.
+/// The subpaths of a part that belong to one letter, with the transforms that place its copies.
 #[derive(Debug, Clone)]
 pub(crate) struct LetterPiece {
     range: Range<usize>,
-    pub(crate) places: Vec<Affine>,
+    pub(crate) copies: Vec<Affine>,
 }
 
 impl LetterPiece {
     /// The letter's subpaths of `whole`.
-    pub(crate) fn of(&self, whole: &Outline) -> Outline {
+    pub(crate) fn cut_from(&self, whole: &Outline) -> Outline {
         Outline { subpaths: whole.subpaths.get(self.range.clone()).unwrap_or_default().to_vec() }
     }
 
@@ -265,26 +271,25 @@ impl LetterPiece {
         self.range.start
     }
 
-    /// Repeats the values of the letter's subpaths in `whole` for each of its places.
+    /// The values of the letter's subpaths in `whole`, repeated for each placed copy.
     pub(crate) fn repeated(&self, whole: &[f64]) -> Vec<f64> {
-        whole.get(self.range.clone()).unwrap_or_default().repeat(self.places.len())
+        whole.get(self.range.clone()).unwrap_or_default().repeat(self.copies.len())
     }
 }
 
-/// Places all letters of an outline.
-pub(crate) fn placed(whole: &Outline, pieces: &[LetterPiece]) -> Outline {
-    Outline { subpaths: pieces.iter().flat_map(|p| p.of(whole).repeated(&p.places).subpaths).collect() }
+pub(crate) fn place_letters(whole: &Outline, pieces: &[LetterPiece]) -> Outline {
+    Outline { subpaths: pieces.iter().flat_map(|p| p.cut_from(whole).repeated(&p.copies).subpaths).collect() }
 }
 
-/// Lists the placed letters of every part; empty for parts that the map bends.
-pub(crate) fn pieces(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<LetterPiece>> {
+/// The placed letters of every part; empty for parts that the map bends.
+pub(crate) fn placed_letters(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<LetterPiece>> {
     let places = &options.letters.places;
     if places.is_empty() {
         return vec![Vec::new(); drawing.scene().parts.len()];
     }
     let piece = |l: LetterSubpaths| {
-        let places = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
-        Some(LetterPiece { range: l.range, places })
+        let copies = places.get(l.letter).filter(|p| !p.is_empty())?.clone();
+        Some(LetterPiece { range: l.range, copies })
     };
     letters_by_part(drawing, options.letters.of.as_ref().unwrap_or(&options.selection), options.letters.of_objects)
         .into_iter()
@@ -295,7 +300,7 @@ pub(crate) fn pieces(drawing: &Drawing, options: &WarpOptions) -> Vec<Vec<Letter
 /// For the selected painted shapes in order, the outline with its letters placed, if there are any.
 pub(crate) fn placed_outlines(drawing: &Drawing, options: &WarpOptions) -> Vec<Option<Outline>> {
     let selected = drawing.selected_parts(&options.selection);
-    let shapes = drawing.shapes().iter().zip(selected).zip(pieces(drawing, options));
+    let shapes = drawing.shapes().iter().zip(selected).zip(placed_letters(drawing, options));
     let chosen = shapes.filter(|((s, selected), _)| *selected && s.painted);
-    chosen.map(|((s, _), pieces)| (!pieces.is_empty()).then(|| placed(&s.outline, &pieces))).collect()
+    chosen.map(|((s, _), pieces)| (!pieces.is_empty()).then(|| place_letters(&s.outline, &pieces))).collect()
 }

@@ -1,4 +1,4 @@
-//! The outline of what is opaque in a picture.
+//! Traces the opaque area of a picture.
 
 use pathwarp::Outline;
 use pathwarp::kurbo::Point;
@@ -7,24 +7,24 @@ use std::collections::HashMap;
 /// The opacity of a picture's pixels, row by row, from 0 to 255.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Opacity {
-    /// Pixels in a row.
+    /// Number of pixels in a row.
     pub width: usize,
-    /// All pixels.
+    /// The opacity of each pixel.
     pub values: Vec<u8>,
 }
 
-/// Half opaque.
+/// The opacity along the outline: one half.
 const LEVEL: f64 = 127.5;
 
 impl Opacity {
-    /// Whether all pixels are more than half opaque.
+    /// Returns `true` if all pixels are more than half opaque.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.values.iter().all(|v| f64::from(*v) > LEVEL)
     }
 
-    /// Polygons along which the picture is half opaque, in pixels: between the middles of pixels it changes evenly, and beyond the edge it is
-    /// transparent.
+    /// Polygons along which the picture is half opaque, in pixels, by marching squares: opacity changes linearly between the centres of
+    /// neighbouring pixels, and is 0 beyond the picture's edge.
     ///
     /// ```
     /// use pathwarp_svg::engine::Opacity;
@@ -35,14 +35,14 @@ impl Opacity {
     #[must_use]
     pub fn traced(&self) -> Outline {
         let height = self.values.len() / self.width.max(1);
-        // The grid has a row and a column of nothing around the pixels.
-        let at = |x: usize, y: usize| {
+        // The grid has a border of transparent pixels.
+        let value = |x: usize, y: usize| {
             let inside = (1..=self.width).contains(&x) && (1..=height).contains(&y);
             if inside { f64::from(self.values[(y - 1) * self.width + x - 1]) } else { 0.0 }
         };
-        // On the edges of the grid, named by their first ends: across to the right (0), or down (1).
-        let place = |&(x, y, down): &(usize, usize, usize)| {
-            let (a, b) = (at(x, y), at(x + 1 - down, y + down));
+        // The crossing on an edge of the grid, which is identified by its first end and its direction: to the right (0) or down (1).
+        let crossing = |&(x, y, down): &(usize, usize, usize)| {
+            let (a, b) = (value(x, y), value(x + 1 - down, y + down));
             let t = (LEVEL - a) / (b - a);
             let [dx, dy] = if down == 1 { [0.0, t] } else { [t, 0.0] };
             Point::new(x as f64 - 0.5 + dx, y as f64 - 0.5 + dy)
@@ -50,9 +50,9 @@ impl Opacity {
         let mut next = HashMap::new();
         for y in 0..=height {
             for x in 0..=self.width {
-                let corners = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)].map(|v| v > LEVEL);
+                let corners = [value(x, y), value(x + 1, y), value(x + 1, y + 1), value(x, y + 1)].map(|v| v > LEVEL);
                 let edges = [(x, y, 0), (x + 1, y, 1), (x, y + 1, 0), (x, y, 1)];
-                // Opaque pixels lie to the right. In a cell with two opaque corners across, those are apart.
+                // Opaque pixels lie to the right of the outline, which separates two diagonally opposite ones.
                 for i in (0..4).filter(|i| corners[*i] && !corners[(i + 3) % 4]) {
                     let turns = (1..4).find(|k| !corners[(i + k) % 4]).unwrap_or(1);
                     next.insert(edges[(i + turns + 3) % 4], edges[(i + 3) % 4]);
@@ -65,7 +65,7 @@ impl Opacity {
         for start in starts {
             let (mut ring, mut edge) = (Vec::new(), start);
             while let Some(to) = next.remove(&edge) {
-                ring.push(place(&edge));
+                ring.push(crossing(&edge));
                 edge = to;
             }
             if ring.len() > 2 {

@@ -1,4 +1,4 @@
-//! Shapes that become one: the last of them in painting order that is an element of its own gets the outline of all.
+//! Unites shapes: the last of them in painting order that is a separate element gets the outline of all.
 
 use super::bends::Bends;
 use super::options::Edit;
@@ -14,30 +14,34 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 use usvg::{Fill, Paint};
 
-/// Share of the tolerance within which areas are found; the rest is for gaps.
+/// Fraction of the tolerance within which areas are found; the rest is for gaps.
 pub(super) const FINE: f64 = 0.1;
 
-/// What becomes of the parts of a drawing.
+/// The united shapes of a drawing.
 #[derive(Default)]
 pub(crate) struct United {
-    /// By the index of the part: the outline of all, or an empty one for what is now part of another.
+    /// By the index of the part: the united outline, or an empty one for a part that another one has absorbed.
     pub(super) outlines: HashMap<usize, Arc<Outline>>,
-    /// For each element that has become the outline of all, those that went in, itself among them.
-    pub(crate) of: BTreeMap<ElementId, BTreeSet<ElementId>>,
+    /// For each element with a united outline, the elements that were united, including itself.
+    pub(crate) merged: BTreeMap<ElementId, BTreeSet<ElementId>>,
     /// Elements without an area.
     left: BTreeSet<ElementId>,
-    /// Whether shapes are to unite at all.
-    unites: bool,
+    /// `true` if uniting was requested.
+    requested: bool,
 }
 
-/// Unites the shapes of each bend that does. `of` has the index of the bend of every part.
-pub(super) fn all(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) -> Result<United, Error> {
+/// Unites the shapes of each bend that requests it. `part_bends` has the index of every part's bend.
+pub(super) fn unite_drawing(
+    drawing: &Drawing,
+    bends: &Bends<'_>,
+    part_bends: &[Option<usize>],
+) -> Result<United, Error> {
     let mut out = United::default();
     for (k, bend) in bends.each.iter().enumerate() {
         let Some(Edit::Unite { by_fill }) = bend.options.edit else { continue };
         let tolerance = bend.options.refit.tolerance;
-        out.unites = true;
-        if !unite_all(drawing, (of, k), (by_fill, tolerance), &mut out).map_err(Error::Geometry)? {
+        out.requested = true;
+        if !unite_bend(drawing, (part_bends, k), (by_fill, tolerance), &mut out).map_err(Error::Geometry)? {
             return Err(Error::input(
                 &drawing.name,
                 "there is nothing to unite: no shape has a fill (outline turns strokes into areas)",
@@ -48,17 +52,17 @@ pub(super) fn all(drawing: &Drawing, bends: &Bends<'_>, of: &[Option<usize>]) ->
 }
 
 /// Unites the shapes of bend `k`. Returns `false` if there are none.
-fn unite_all(
+fn unite_bend(
     drawing: &Drawing,
-    (of, k): (&[Option<usize>], usize),
+    (part_bends, k): (&[Option<usize>], usize),
     (by_fill, finest): (bool, f64),
     out: &mut United,
 ) -> Result<bool, GeometryError> {
     let scene = drawing.scene();
-    let is_own = |i: usize| of[i] == Some(k) && scene.parts[i].role == PartRole::Paint && is_seen(&scene.parts[i]);
-    // An element is one shape, and stays as a whole.
+    let unites =
+        |i: usize| part_bends[i] == Some(k) && scene.parts[i].role == PartRole::Paint && is_seen(&scene.parts[i]);
     let mut areas: BTreeMap<usize, Area> = BTreeMap::new();
-    for i in (0..of.len()).filter(|i| is_own(*i) && !scene.parts[*i].in_tile) {
+    for i in (0..part_bends.len()).filter(|i| unites(*i) && !scene.parts[*i].in_tile) {
         let (p, outline) = (&scene.parts[i], &drawing.shapes()[i].outline);
         let Some(e) = p.element() else { continue };
         let even_odd = p.fill.as_ref().is_some_and(|f| f.rule() == usvg::FillRule::EvenOdd);
@@ -75,17 +79,18 @@ fn unite_all(
     let mut sets: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     let around = surroundings(scene);
     for &i in areas.keys().filter(|i| scene.parts[**i].element().is_some_and(|e| !out.left.contains(&e))) {
-        let paint = if by_fill { scene.parts[i].fill.as_ref().map(key).unwrap_or_default() } else { String::new() };
+        let paint =
+            if by_fill { scene.parts[i].fill.as_ref().map(paint_key).unwrap_or_default() } else { String::new() };
         sets.entry(format!("{:?} {paint}", around.get(&i))).or_default().push(i);
     }
     for set in sets.values() {
-        unite(drawing, set, &areas, finest, out)?;
+        unite_set(drawing, set, &areas, finest, out)?;
     }
     Ok(!sets.is_empty())
 }
 
 /// Unites a set of parts, unless it is a single one that does not overlap itself.
-fn unite(
+fn unite_set(
     drawing: &Drawing,
     set: &[usize],
     areas: &BTreeMap<usize, Area>,
@@ -104,18 +109,17 @@ fn unite(
     out.outlines.extend(set.iter().map(|i| (*i, Arc::default())));
     out.outlines.insert(one, Arc::new(all.with_arcs_of(&sources, FINE * tolerance)));
     if let Some(e) = parts[one].element() {
-        out.of.entry(e).or_default().extend(set.iter().filter_map(|i| parts[*i].element()));
+        out.merged.entry(e).or_default().extend(set.iter().filter_map(|i| parts[*i].element()));
     }
     Ok(())
 }
 
-/// The clip paths, masks, filters and transparent groups around each part, where there are any.
+/// The groups with clip paths, masks, filters or opacity around each part, identified by their addresses, where there are any.
 fn surroundings(scene: &Scene) -> HashMap<usize, Vec<usize>> {
     fn walk(g: &Group, around: &[usize], out: &mut HashMap<usize, Vec<usize>>) {
         let has_effect = g.clip.is_some() || g.mask.is_some() || !g.filters.is_empty() || g.opacity < 1.0;
-        // The address is that of the group, which is unique.
-        let own = has_effect.then_some(std::ptr::from_ref(g).addr());
-        let around: Vec<usize> = around.iter().copied().chain(own).collect();
+        let address = has_effect.then_some(std::ptr::from_ref(g).addr());
+        let around: Vec<usize> = around.iter().copied().chain(address).collect();
         for n in &g.children {
             match n {
                 Node::Group(g) => walk(g, &around, out),
@@ -130,8 +134,8 @@ fn surroundings(scene: &Scene) -> HashMap<usize, Vec<usize>> {
     out
 }
 
-/// A name for the paint of a fill.
-fn key(fill: &Fill) -> String {
+/// A string that is equal for fills with equal paints and opacities.
+fn paint_key(fill: &Fill) -> String {
     let paint = match fill.paint() {
         Paint::Color(c) => format!("{} {} {}", c.red, c.green, c.blue),
         Paint::LinearGradient(g) => format!("gradient {}", g.id()),
@@ -142,20 +146,20 @@ fn key(fill: &Fill) -> String {
 }
 
 impl United {
-    /// Whether a part is now part of another.
+    /// Returns `true` if a part has become part of another.
     pub(crate) fn absorbs(&self, i: usize) -> bool {
         self.outlines.get(&i).is_some_and(|o| o.is_empty())
     }
 
-    /// Reports what went in to the shapes that it has become, whose indices `reports` has, and names what stays.
+    /// Adds the names of the united elements to the reports of their shapes, whose indices `reports` has, and warns about shapes that stay.
     pub(super) fn report(&self, drawing: &Drawing, reports: &HashMap<ElementId, usize>, out: &mut WarpedDocument) {
         let names = |all: &BTreeSet<ElementId>| all.iter().map(|e| drawing.source.display_name(*e)).collect();
-        for (e, all) in &self.of {
+        for (e, all) in &self.merged {
             if let Some(shape) = reports.get(e).and_then(|i| out.shapes.get_mut(*i)) {
                 shape.united = names(all);
             }
         }
-        if self.of.is_empty() && self.unites {
+        if self.merged.is_empty() && self.requested {
             let text = "there is nothing to unite: each shape stands alone, and overlaps neither itself nor others";
             out.warnings.push(Warning::Note { text, names: Vec::new() });
         }

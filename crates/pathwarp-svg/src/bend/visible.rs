@@ -1,4 +1,4 @@
-//! The area of all that a drawing shows.
+//! Finds the visible area of a drawing.
 
 use super::pictures::Painter;
 use crate::scene::areas::{is_seen, picture_corners, stroked};
@@ -11,35 +11,34 @@ use pathwarp::refit;
 use pathwarp::{GeometryError, Outline};
 use usvg::{FillRule, ImageKind, MaskType, Paint};
 
-/// What is visible of the selected parts and bitmaps.
+/// The selected parts and bitmaps, with the settings for finding their visible area.
 pub(super) struct Seen<'a> {
     pub(super) drawing: &'a Drawing,
     pub(super) parts: &'a [bool],
     pub(super) bitmaps: &'a [bool],
-    /// Reads the opacity of pictures; without it, they are as large as their boxes.
+    /// Reads the opacity of pictures. Without it, they fill their boxes.
     pub(super) painter: Option<&'a Painter>,
-    /// How closely areas are found.
+    /// Tolerance of areas, in root user units.
     pub(super) fine: f64,
 }
 
-/// What counts of a part.
+/// The content of a group that counts.
 #[derive(Clone, Copy, PartialEq)]
 enum Ink {
-    /// What is painted.
+    /// Everything painted.
     Paint,
-    /// The area of clip paths, whatever their paint.
+    /// All areas, whatever their paint, as in clip paths.
     Clip,
-    /// What is not black.
+    /// Everything painted that is not black, as in luminance masks.
     Light,
 }
 
 impl Seen<'_> {
-    /// The area of all.
     pub(super) fn area(&self) -> Result<Area, GeometryError> {
-        self.of_group(&self.drawing.scene().root, Ink::Paint)
+        self.group_area(&self.drawing.scene().root, Ink::Paint)
     }
 
-    fn of_group(&self, g: &Group, ink: Ink) -> Result<Area, GeometryError> {
+    fn group_area(&self, g: &Group, ink: Ink) -> Result<Area, GeometryError> {
         let mut areas = Vec::new();
         self.add_group(g, ink, &mut areas)?;
         Area::union(&areas, self.fine)
@@ -54,12 +53,12 @@ impl Seen<'_> {
             match n {
                 Node::Group(g) => self.add_group(g, ink, out)?,
                 Node::Text { content, .. } => self.add_group(content, ink, out)?,
-                Node::Image(i) if ink == Ink::Light || ink == Ink::Paint && self.bitmaps[*i] => {
-                    out.push(self.picture(*i)?);
+                Node::Image(i) if ink == Ink::Light || (ink == Ink::Paint && self.bitmaps[*i]) => {
+                    out.push(self.picture_area(*i)?);
                 }
                 Node::Image(_) => {}
                 Node::Part(i) if ink == Ink::Light && is_black(&self.drawing.scene().parts[*i]) => {
-                    let black = self.filled(*i)?;
+                    let black = self.fill_area(*i)?;
                     for area in &mut out[first..] {
                         *area = area.difference(&black, self.fine)?;
                     }
@@ -70,10 +69,10 @@ impl Seen<'_> {
         if (g.clip.is_some() || g.mask.is_some()) && out.len() > first {
             let mut area = Area::union(&out[first..], self.fine)?;
             if let Some(clip) = g.clip {
-                area = area.intersection(&self.clip(clip)?, self.fine)?;
+                area = area.intersection(&self.clip_area(clip)?, self.fine)?;
             }
             if let Some(mask) = g.mask {
-                area = area.intersection(&self.mask(mask)?, self.fine)?;
+                area = area.intersection(&self.mask_area(mask)?, self.fine)?;
             }
             out.splice(first.., [area]);
         }
@@ -83,15 +82,15 @@ impl Seen<'_> {
     fn add_part(&self, i: usize, ink: Ink, out: &mut Vec<Area>) -> Result<(), GeometryError> {
         let p = &self.drawing.scene().parts[i];
         if ink == Ink::Clip {
-            out.extend(p.visible.then(|| self.filled(i)).transpose()?);
+            out.extend(p.visible.then(|| self.fill_area(i)).transpose()?);
             return Ok(());
         }
-        if !is_seen(p) || p.in_tile || p.role == PartRole::Paint && !self.parts[i] {
+        if !is_seen(p) || p.in_tile || (p.role == PartRole::Paint && !self.parts[i]) {
             return Ok(());
         }
         let shows = |paint: &Paint| ink == Ink::Paint || is_bright(paint);
         if p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0 && shows(f.paint())) {
-            out.push(self.filled(i)?);
+            out.push(self.fill_area(i)?);
         }
         if p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0 && shows(s.paint())) {
             let drawing = self.drawing;
@@ -101,38 +100,38 @@ impl Seen<'_> {
         Ok(())
     }
 
-    fn filled(&self, i: usize) -> Result<Area, GeometryError> {
+    fn fill_area(&self, i: usize) -> Result<Area, GeometryError> {
         let fill = self.drawing.scene().parts[i].fill.as_ref();
         let even_odd = fill.is_some_and(|f| f.rule() == FillRule::EvenOdd);
         Area::of(&self.drawing.shapes()[i].outline, even_odd, self.fine)
     }
 
-    fn clip(&self, i: usize) -> Result<Area, GeometryError> {
+    fn clip_area(&self, i: usize) -> Result<Area, GeometryError> {
         let clip = &self.drawing.scene().clips[i];
-        let own = self.of_group(&clip.root, Ink::Clip)?;
+        let area = self.group_area(&clip.root, Ink::Clip)?;
         match clip.clip {
-            Some(next) => own.intersection(&self.clip(next)?, self.fine),
-            None => Ok(own),
+            Some(next) => area.intersection(&self.clip_area(next)?, self.fine),
+            None => Ok(area),
         }
     }
 
-    /// Where a mask is neither black nor transparent.
-    fn mask(&self, i: usize) -> Result<Area, GeometryError> {
+    /// The area in which a mask is neither black nor transparent.
+    fn mask_area(&self, i: usize) -> Result<Area, GeometryError> {
         let mask = &self.drawing.scene().masks[i];
         let r = mask.rect;
         let corners = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(|p| mask.frame * Point::from(p));
         let region = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
         let ink = if mask.kind == MaskType::Luminance { Ink::Light } else { Ink::Paint };
-        let own = self.of_group(&mask.root, ink)?.intersection(&region, self.fine)?;
+        let area = self.group_area(&mask.root, ink)?.intersection(&region, self.fine)?;
         match mask.mask {
-            Some(next) => own.intersection(&self.mask(next)?, self.fine),
-            None => Ok(own),
+            Some(next) => area.intersection(&self.mask_area(next)?, self.fine),
+            None => Ok(area),
         }
     }
 
-    /// What of a picture is more than half opaque.
-    fn picture(&self, i: usize) -> Result<Area, GeometryError> {
-        /// Within this many pixels it is not known where the picture ends.
+    /// The area in which a picture is more than half opaque.
+    fn picture_area(&self, i: usize) -> Result<Area, GeometryError> {
+        /// Distance in pixels within which the edge of a picture is uncertain.
         const UNKNOWN: f64 = 0.2;
         let b = &self.drawing.scene().bitmaps[i];
         let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };
@@ -150,13 +149,13 @@ impl Seen<'_> {
     }
 }
 
-/// Whether a part paints black over what lies below.
+/// Returns `true` if a part paints opaque black.
 fn is_black(p: &Part) -> bool {
     let fill = p.fill.as_ref().filter(|f| f.opacity().get() >= 1.0);
     p.visible && fill.is_some_and(|f| !is_bright(f.paint()))
 }
 
-/// Whether any colour of a paint is other than black. Patterns are.
+/// Returns `true` if a paint has another colour than black. Patterns count as bright.
 fn is_bright(paint: &Paint) -> bool {
     let is_bright = |c: usvg::Color| [c.red, c.green, c.blue] != [0; 3];
     match paint {

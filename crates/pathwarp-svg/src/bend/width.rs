@@ -1,14 +1,14 @@
 //! Computes the factor that scales a stroke under a map, and the distance of the scaled stroke from the exact one.
 //!
-//! Let h be half the width. To first order the map turns the circle of radius h about a point of the path into an ellipse. Along
+//! Let h be half the width. To first order, the map turns the circle of radius h about a point of the path into an ellipse. Along
 //! the tangent and normal of the path and of its image, the derivative is
 //!
 //! > \[\[α, σ\], \[0, β\]\]
 //!
 //! α stretches along the path, β across it, and σ shears. A stroke scaled by s has a circle of radius s·h, so its edges are off by
-//! |β − s|·h. At ends, corners and dashes, other points count as well. Each is a [`Pair`]: its exact position and the drawn one,
-//! relative to the path and in units of h. The distance is the largest |exact − s·drawn|·h. It is that of the painted areas:
-//! a narrow gap between two edges may close faster than the edges move.
+//! |β − s|·h. At ends, corners and dashes, other points of the edge count as well. Each is a [`Pair`]: its exact position and the drawn
+//! one, relative to the path and in units of h. The error is the largest |exact − s·drawn|·h. It bounds the distance between the painted
+//! areas, not between their borders: a narrow gap between two edges may close faster than the edges move.
 
 use super::task::PartTask;
 use crate::scene::areas::is_point;
@@ -20,8 +20,8 @@ use pathwarp::{Outline, Seg};
 use std::sync::Arc;
 use usvg::{LineCap, LineJoin, Stroke};
 
-/// Largest relative error of a width that hardly varies: edges off by a hundredth of the width. The eye tells lines side by side
-/// apart if their widths differ by about a twentieth.
+/// Largest relative error of a width that hardly varies: edges are then off by at most a hundredth of the width. The eye tells lines
+/// side by side apart if their widths differ by about a twentieth.
 const WIDTH_ERROR: f64 = 0.02;
 
 /// Factor for errors between samples. At [`TURN`] between samples, a sinusoid over half a turn is missed by at most 1 − cos(π/8).
@@ -33,8 +33,8 @@ const TURN: f64 = std::f64::consts::PI / 8.0;
 /// Smallest turn of a corner, in radians. At smaller ones, joins don't extend past the edges by more than a millionth.
 const CORNER: f64 = 2e-3;
 
-/// How far an edge point may lie ahead of its point on the path, as a fraction of half the width, before a nearer point is found.
-/// The distance is then right within 0.2 %.
+/// Largest distance along the path between an edge point and its foot, as a fraction of half the width, up to which the foot counts as
+/// the nearest point. The distance from the path is then right within 0.2 % (½·0.05²).
 const AHEAD: f64 = 0.05;
 
 /// A corner of a dashed path.
@@ -56,18 +56,18 @@ pub(super) struct StrokeWidth<'a> {
     read: Affine,
     /// From root user space to the stroke's user space in the result.
     after: Affine,
-    /// Largest number of root units per unit of that space.
+    /// Largest number of root units per unit of the stroke's user space in the result.
     unit: f64,
     pairs: Vec<Pair>,
-    /// Local scale integrated along the path, and the path's length.
-    area: f64,
+    /// Integral of the local scale along the path, and the path's length.
+    scale_integral: f64,
     length: f64,
     /// For dashes, at each sample: the lengths of the path and of its image so far, and the factor by which the outer edge is
     /// longer than the path.
     lengths: Vec<[f64; 3]>,
     corners: Vec<DashedCorner>,
-    /// Whether part of the edge lies outside the map's domain.
-    open: bool,
+    /// `true` if part of the edge lies outside the map's domain.
+    leaves_domain: bool,
     /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
     stretch: f64,
     /// For dashes: the sum of the path's turns, in radians.
@@ -86,7 +86,7 @@ struct Node {
 impl<'a> StrokeWidth<'a> {
     /// Samples the stroke of a part, over all placed letters. `pieces` is the number of segments of the bent path.
     /// Returns `None` if the map's derivative is not finite on the path.
-    pub(super) fn of(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
+    pub(super) fn sample(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
         let mut out = Self {
             stroke,
             half: 0.5 * f64::from(stroke.width().get()),
@@ -94,21 +94,21 @@ impl<'a> StrokeWidth<'a> {
             after: t.back,
             unit: stretch(t.write),
             pairs: Vec::new(),
-            area: 0.0,
+            scale_integral: 0.0,
             length: 0.0,
             lengths: Vec::new(),
             corners: Vec::new(),
-            open: false,
+            leaves_domain: false,
             stretch: 0.0,
             turns: 0.0,
         };
         if t.pieces.is_empty() {
-            out.add(&t.outline, t.context.map, pieces)?;
+            out.add_outline(&t.outline, t.context.map, pieces)?;
         }
-        for (piece, m) in t.pieces.iter().flat_map(|piece| piece.places.iter().map(move |m| (piece, *m))) {
+        for (piece, m) in t.pieces.iter().flat_map(|piece| piece.copies.iter().map(move |m| (piece, *m))) {
             let mut map = Chain::new([Arc::new(AffineMap(m)) as Arc<dyn Map>]);
             map.push(Arc::new(t.options().letters.after.clone()));
-            out.add(&piece.of(&t.whole), &map, pieces / t.pieces.len())?;
+            out.add_outline(&piece.cut_from(&t.whole), &map, pieces / t.pieces.len())?;
         }
         Some(out)
     }
@@ -118,9 +118,9 @@ impl<'a> StrokeWidth<'a> {
         self.stretch
     }
 
-    /// The mean local scale.
+    /// The mean local scale along the path.
     pub(super) fn mean(&self) -> f64 {
-        if self.length > 0.0 { self.area / self.length } else { self.middle() }
+        if self.length > 0.0 { self.scale_integral / self.length } else { self.middle() }
     }
 
     /// The middle of the range of local scales, which nearly minimizes the largest error.
@@ -136,36 +136,36 @@ impl<'a> StrokeWidth<'a> {
         BETWEEN * (edges * self.half + self.drift(s)) * self.unit
     }
 
-    /// Factor by which an error of the bent path moves the corners of dashes. A cubic fitted to sixth order oscillates about the
-    /// curve in three waves, so an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it changes
-    /// the length by up to ε·θ. The ends of the path are not tilted.
+    /// Factor by which an error of the bent path moves the corners of dashes; 1 without dashes. A cubic fitted to sixth order oscillates
+    /// about the curve in three waves. So an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it
+    /// changes the length by up to ε·θ.
     pub(super) fn leverage(&self, pieces: usize) -> f64 {
         let tilt = 3.0 * std::f64::consts::TAU * pieces as f64 / self.length;
         if self.stroke.dasharray().is_some() && self.length > 0.0 { 1.0 + self.half * tilt + self.turns } else { 1.0 }
     }
 
-    /// Whether the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
+    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
     pub(super) fn is_right(&self, s: f64, tolerance: f64) -> bool {
         let off = |p: &Pair| (p.exact - p.drawn * s).hypot() <= WIDTH_ERROR * s * p.drawn.hypot();
-        !self.open && (self.error(s) <= tolerance || self.pairs.iter().all(off))
+        !self.leaves_domain && (self.error(s) <= tolerance || self.pairs.iter().all(off))
     }
 
-    /// Largest shift of a dash along the path, in user units of the result. A point of a dash is never farther from another one
-    /// than half a gap.
+    /// Largest shift of a dash along the path, in user units of the result. It counts up to half a gap, since no point of a gap is farther
+    /// from a dash.
     fn drift(&self, s: f64) -> f64 {
         let Some(dashes) = self.stroke.dasharray() else { return 0.0 };
         let gap = dashes.iter().skip(1).step_by(2).fold(0.0_f32, |m, g| m.max(*g));
         let shifts = self.lengths.iter().map(|[source, image, outer]| (image - s * source).abs() * outer);
         let shift = shifts.fold(0.0, f64::max).min(0.5 * f64::from(gap) * s);
         // A dash that ends at a corner may be shifted across it, and show its join.
-        let crosses = |c: &&DashedCorner| (c.image - s * c.source).abs() >= s * self.to_next_end(c.source, dashes);
+        let crosses = |c: &&DashedCorner| (c.image - s * c.source).abs() >= s * self.to_nearest_end(c.source, dashes);
         self.corners.iter().filter(crosses).map(|c| c.reach * s).fold(shift, f64::max)
     }
 
-    /// Distance along the path from the length `at` to the nearest end of a dash.
-    fn to_next_end(&self, at: f64, dashes: &[f32]) -> f64 {
+    /// Distance along the path from the point at `length` to the nearest end of a dash.
+    fn to_nearest_end(&self, length: f64, dashes: &[f32]) -> f64 {
         let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
-        let mut phase = (at + f64::from(self.stroke.dashoffset())).rem_euclid(period);
+        let mut phase = (length + f64::from(self.stroke.dashoffset())).rem_euclid(period);
         let mut nearest = f64::INFINITY;
         for d in dashes {
             nearest = nearest.min(phase.abs());
@@ -174,7 +174,7 @@ impl<'a> StrokeWidth<'a> {
         nearest.min(phase.abs())
     }
 
-    fn add(&mut self, outline: &Outline, map: &dyn Map, pieces: usize) -> Option<()> {
+    fn add_outline(&mut self, outline: &Outline, map: &dyn Map, pieces: usize) -> Option<()> {
         /// Up to this many segments, each gets at least four intervals.
         const FEW: usize = 64;
         /// Up to this many segments, each gets at least two intervals. Longer paths need fewer.
@@ -185,16 +185,16 @@ impl<'a> StrokeWidth<'a> {
         let more = if segments <= MANY { 2 * pieces / segments.max(1) } else { 0 };
         for sub in &outline.subpaths {
             if sub.segs.iter().all(|s| is_point(s, sub.start)) {
-                self.dot(sub, &map.jet(sub.start));
+                self.add_dot(sub, &map.jet(sub.start));
             } else {
-                self.subpath(sub, map, least.max(more))?;
+                self.add_subpath(sub, map, least.max(more))?;
             }
         }
         Some(())
     }
 
     /// Adds the caps of a subpath of zero length, which extend in all directions.
-    fn dot(&mut self, sub: &Subpath, jet: &Jet) {
+    fn add_dot(&mut self, sub: &Subpath, jet: &Jet) {
         let [x, y] = columns(jet, self.read, self.after);
         if !(x.is_finite() && y.is_finite()) || sub.segs.is_empty() && !sub.closed {
             return;
@@ -209,13 +209,13 @@ impl<'a> StrokeWidth<'a> {
         }
     }
 
-    fn subpath(&mut self, sub: &Subpath, map: &dyn Map, least: usize) -> Option<()> {
+    fn add_subpath(&mut self, sub: &Subpath, map: &dyn Map, least: usize) -> Option<()> {
         let dashed = self.stroke.dasharray().is_some();
         let mut ends: Vec<[Node; 2]> = Vec::with_capacity(sub.segs.len());
         let mut run = [0.0; 2];
         for seg in sub.segs.iter().filter(|s| !is_point(s, s.start())) {
             let start = run;
-            let spots = self.segment(seg, map, least)?;
+            let spots = self.sample_segment(seg, map, least)?;
             let &[(t0, first), .., (_, last)] = spots.as_slice() else {
                 // Segments among very many have one sample, in the middle.
                 if let [(_, s)] = spots.as_slice() {
@@ -227,7 +227,7 @@ impl<'a> StrokeWidth<'a> {
             for &(t, spot) in &spots[1..] {
                 self.integrate(&before.1, &spot, t - before.0, &mut run);
                 if dashed {
-                    self.cap(&spot);
+                    self.add_cap(&spot);
                 }
                 before = (t, spot);
             }
@@ -235,25 +235,25 @@ impl<'a> StrokeWidth<'a> {
             ends.push([node(seg.start(), first, start), node(seg.end(), last, run)]);
         }
         for joint in ends.windows(2) {
-            self.join(map, &joint[0][1], &joint[1][0].spot);
+            self.add_join(map, &joint[0][1], &joint[1][0].spot);
         }
         if let [first, ..] = ends.as_slice()
             && let Some(last) = ends.last()
         {
             if sub.closed {
-                self.join(map, &last[1], &first[0].spot);
+                self.add_join(map, &last[1], &first[0].spot);
             } else {
-                self.cap(&first[0].spot);
-                self.cap(&last[1].spot);
+                self.add_cap(&first[0].spot);
+                self.add_cap(&last[1].spot);
             }
         }
         Some(())
     }
 
-    /// Adds the stretch of path between two samples.
+    /// Adds the path between two samples to the integrals, by the trapezoidal rule.
     fn integrate(&mut self, a: &Spot, b: &Spot, dt: f64, run: &mut [f64; 2]) {
         let mean = |f: &dyn Fn(&Spot) -> f64| 0.5 * dt * (f(a) + f(b));
-        self.area += mean(&|s| s.area_scale() * s.here);
+        self.scale_integral += mean(&|s| s.scale() * s.here);
         self.length += mean(&|s| s.here);
         run[0] += mean(&|s| s.here);
         run[1] += mean(&|s| s.there);
@@ -264,8 +264,8 @@ impl<'a> StrokeWidth<'a> {
         }
     }
 
-    /// Samples a segment and its edges.
-    fn segment(&mut self, seg: &Seg, map: &dyn Map, least: usize) -> Option<Vec<(f64, Spot)>> {
+    /// Samples a segment and its edges. Returns the samples with their parameters; `None` if the map's derivative is not finite.
+    fn sample_segment(&mut self, seg: &Seg, map: &dyn Map, least: usize) -> Option<Vec<(f64, Spot)>> {
         // Shifts of dashes are integrals, which need more samples.
         let finer = if self.stroke.dasharray().is_some() { 4 } else { 1 };
         let n = if least == 0 { 0 } else { finer * least.max((turn(seg) / TURN).ceil() as usize) };
@@ -301,10 +301,11 @@ impl<'a> StrokeWidth<'a> {
         Some(spots)
     }
 
-    /// Distance of the image `q` of an edge point from the image of the path, in units of half the width.
+    /// Distance of the image `q` of an edge point from the image of the path, in units of half the width. `centre` is the image of the
+    /// point of the path.
     fn distance(&mut self, seg: &Seg, t: f64, spot: &Spot, map: &dyn Map, centre: Point, q: Point) -> f64 {
         if !q.is_finite() {
-            self.open = true;
+            self.leaves_domain = true;
             return spot.in_image(spot.push(spot.normal)).y.abs();
         }
         let off = spot.in_image(linear(self.after, q - centre)) / self.half;
@@ -316,7 +317,7 @@ impl<'a> StrokeWidth<'a> {
     }
 
     /// Adds the outermost points of a cap.
-    fn cap(&mut self, at: &Spot) {
+    fn add_cap(&mut self, at: &Spot) {
         let [along, across] = [at.tangent, at.normal].map(|v| at.in_image(at.push(v)));
         let up = Vec2::new(0.0, 1.0);
         match self.stroke.linecap() {
@@ -330,7 +331,7 @@ impl<'a> StrokeWidth<'a> {
     }
 
     /// Adds a corner of a dashed path whose join extends `reach` times half the width.
-    fn corner(&mut self, at: &Node, reach: f64) {
+    fn add_corner(&mut self, at: &Node, reach: f64) {
         if self.stroke.dasharray().is_some() {
             let [source, image] = at.run;
             self.corners.push(DashedCorner { source, image, reach: reach * self.half });
@@ -338,7 +339,7 @@ impl<'a> StrokeWidth<'a> {
     }
 
     /// Adds the outermost points of the join of two segments.
-    fn join(&mut self, map: &dyn Map, at: &Node, b: &Spot) {
+    fn add_join(&mut self, map: &dyn Map, at: &Node, b: &Spot) {
         let (p, a) = (at.p, &at.spot);
         let turned = a.tangent.cross(b.tangent).atan2(a.tangent.dot(b.tangent));
         if turned.abs() < CORNER {
@@ -346,7 +347,7 @@ impl<'a> StrokeWidth<'a> {
         }
         if self.stroke.linejoin() == LineJoin::Round {
             self.pairs.extend(ellipse(a.columns));
-            self.corner(at, 1.0);
+            self.add_corner(at, 1.0);
             return;
         }
         let mitered = !matches!(self.stroke.linejoin(), LineJoin::Bevel);
@@ -354,12 +355,12 @@ impl<'a> StrokeWidth<'a> {
         let outer = -turned.signum();
         let (exact, from) = tip(a.normal * outer, b.normal * outer, limit);
         let (drawn, to) = tip(a.image[1] * outer, b.image[1] * outer, limit);
-        self.corner(at, exact.hypot().max(drawn.hypot()).max(1.0));
+        self.add_corner(at, exact.hypot().max(drawn.hypot()).max(1.0));
         let reach = linear(self.read, exact * self.half);
         let image = [p, p + reach].map(|p| map.point(p));
         let image = linear(self.after, image[1] - image[0]) / self.half;
         if from || to {
-            self.open |= !image.is_finite();
+            self.leaves_domain |= !image.is_finite();
             self.pairs.push(Pair { exact: if image.is_finite() { image } else { a.push(exact) }, drawn });
         }
         if !(from && to) {
@@ -377,21 +378,22 @@ struct Pair {
     drawn: Vec2,
 }
 
-/// A point of a path and its image, in the stroke's user space before and after.
+/// The frame of a path at a point, and of its image, in the stroke's user space before and after.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
-    /// Images of the unit vectors of user space.
+    /// Columns of the map's derivative between the two spaces.
     columns: [Vec2; 2],
-    /// Unit tangent and normal.
+    /// Unit tangent and normal of the path.
     tangent: Vec2,
     normal: Vec2,
-    /// Those of the image, with the normal on the image's side.
+    /// Unit tangent and normal of the image, with the normal on the side to which the path's is mapped.
     image: [Vec2; 2],
     /// Speeds along the path and along its image.
     here: f64,
     there: f64,
 }
 
+/// The image of a vector under the linear part of `m`.
 fn linear(m: Affine, v: Vec2) -> Vec2 {
     let [a, b, c, d, ..] = m.as_coeffs();
     Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
@@ -417,24 +419,28 @@ impl Spot {
         Some(Self { columns, tangent, normal: perpendicular(tangent), image, here, there })
     }
 
+    /// The image of a vector under the map's derivative.
     fn push(&self, v: Vec2) -> Vec2 {
         self.columns[0] * v.x + self.columns[1] * v.y
     }
 
+    /// The components of a vector along the image's tangent and normal.
     fn in_image(&self, v: Vec2) -> Vec2 {
         Vec2::new(v.dot(self.image[0]), v.dot(self.image[1]))
     }
 
-    fn area_scale(&self) -> f64 {
+    /// The local scale: the square root of the factor by which areas grow.
+    fn scale(&self) -> f64 {
         self.columns[0].cross(self.columns[1]).abs().sqrt()
     }
 }
 
+/// The columns of the map's derivative, from the stroke's user space in the source to that in the result.
 fn columns(jet: &Jet, read: Affine, after: Affine) -> [Vec2; 2] {
     [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|e| linear(after, jet.push(linear(read, e))))
 }
 
-/// Pairs the semi-axes of the ellipse that a matrix with these columns makes of the unit circle with that circle.
+/// Pairs the semi-axes of an ellipse with the radius of the unit circle, of which the matrix with these columns makes the ellipse.
 fn ellipse([x, y]: [Vec2; 2]) -> [Pair; 2] {
     let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
     let short = if long > 0.0 { x.cross(y).abs() / long } else { 0.0 };
@@ -450,7 +456,7 @@ fn tip(a: Vec2, b: Vec2, limit: f64) -> (Vec2, bool) {
     (if mitered { bisector * (2.0 / bisector.hypot2()) } else { bisector * 0.5 }, mitered)
 }
 
-/// The turn of a segment's control polygon in radians, an upper bound on that of the segment.
+/// The turn of a segment's control polygon in radians, an upper bound on the segment's turn.
 fn turn(seg: &Seg) -> f64 {
     let angle = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
     match seg {

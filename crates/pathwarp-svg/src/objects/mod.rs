@@ -1,8 +1,8 @@
-//! Objects that remember what they were: a warped element carries its source and its recipe in attributes, so that editors keep
+//! Objects that remember their source: a warped element carries its source and its recipe in attributes, so that editors keep
 //! them when they save, copy and paste it.
 //!
-//! [`remember`] adds the attributes to the result of a warp, [`restore`] puts sources back in place, and [`objects`] lists the
-//! elements of a file with what they remember. None of them resolves what a drawing shows.
+//! [`remember`] adds the attributes to the result of a warp, [`restore`] puts sources back, and [`objects`] lists the elements of a file
+//! with their recipes. They work on the file alone and do not resolve the drawing.
 
 mod nodes;
 mod remembering;

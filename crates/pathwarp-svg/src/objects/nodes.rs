@@ -1,4 +1,4 @@
-//! The elements of a file: ids, labels, and what they remember.
+//! Lists the elements of a file with their ids, labels and recipes, and edits its text.
 
 use crate::source::elements::{INKSCAPE, SVG, is_shape, is_sodipodi};
 use pathwarp::Error;
@@ -19,7 +19,7 @@ pub struct Object {
     pub label: Option<String>,
     /// Source element, e.g. `circle`.
     pub element: String,
-    /// `true` for a path or basic shape that is drawn where it stands, not in `<defs>` or inside a clip path, mask or symbol.
+    /// `true` for a path or basic shape that is drawn without a reference: not in `<defs>` or inside a clip path, mask or symbol.
     pub is_path: bool,
     /// `true` for a child of the root that may paint something.
     pub is_top: bool,
@@ -27,11 +27,11 @@ pub struct Object {
     pub is_locked: bool,
     /// Ids of the elements around it, the nearest first.
     pub inside: Vec<String>,
-    /// The recipe that it was warped by, if it remembers one.
+    /// The recipe by which it was warped, if it remembers one.
     pub recipe: Option<String>,
 }
 
-/// Lists the elements of the SVG namespace that have an id, in document order. Of several with the same id, the first counts.
+/// Lists the elements of the SVG namespace that have an id, in document order. Of several with one id, the first counts.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if `svg` is not XML, or takes more work than the limits allow.
@@ -60,12 +60,11 @@ pub fn objects(svg: &str, limits: &Limits) -> Result<Vec<Object>, Error> {
     Ok(out)
 }
 
-/// Parses a file within limits.
 pub(super) fn parse<'a>(svg: &'a str, limits: &Limits) -> Result<Document<'a>, Error> {
     xml::parse(svg, "the drawing", &Budget::new(limits.for_input(svg.len())))
 }
 
-/// The elements by id; of several with the same, the first.
+/// The elements by id; of several with one id, the first.
 pub(super) fn by_id<'a, 'i>(doc: &'a Document<'i>) -> HashMap<&'a str, Node<'a, 'i>> {
     let mut out = HashMap::new();
     for n in doc.descendants() {
@@ -76,7 +75,7 @@ pub(super) fn by_id<'a, 'i>(doc: &'a Document<'i>) -> HashMap<&'a str, Node<'a, 
     out
 }
 
-/// Returns `true` for elements that are only drawn where something refers to them.
+/// Returns `true` for elements that are only drawn by reference.
 pub(super) fn is_definition(tag: &str) -> bool {
     matches!(
         tag,
@@ -94,7 +93,7 @@ pub(super) fn is_definition(tag: &str) -> bool {
     )
 }
 
-/// Returns `true` for what Inkscape's tools cannot select.
+/// Returns `true` for elements that Inkscape's tools cannot select.
 fn is_locked(n: Node<'_, '_>) -> bool {
     let insensitive = |a: &usvg::roxmltree::Attribute<'_, '_>| {
         a.name() == "insensitive" && a.namespace().is_some_and(is_sodipodi) && a.value() == "true"
@@ -125,13 +124,13 @@ pub(super) fn references(value: &str) -> impl Iterator<Item = Range<usize>> + '_
     })
 }
 
-/// All names that an element and its descendants refer to.
+/// All names to which an element and its descendants refer.
 pub(super) fn referred(n: Node<'_, '_>) -> Vec<String> {
     let values = n.descendants().flat_map(|n| n.attributes().map(|a| a.value()).collect::<Vec<_>>());
     values.flat_map(|v| references(v).map(|r| v[r].to_owned()).collect::<Vec<_>>()).collect()
 }
 
-/// Replacements in `text` that rename ids, and the references to them, of an element and its descendants.
+/// Replacements in `text` that rename the ids of an element and its descendants, and references to such ids in them.
 pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> Vec<(Range<usize>, String)> {
     let mut out = Vec::new();
     for a in n.descendants().flat_map(|n| n.attributes().collect::<Vec<_>>()) {
@@ -152,9 +151,9 @@ pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, Stri
     out
 }
 
-/// Applies replacements. Those inside a range replaced as a whole are dropped.
+/// Applies replacements. A replacement inside a range that is replaced as a whole is dropped.
 pub(super) fn apply(text: &str, mut patches: Vec<(Range<usize>, String)>) -> String {
-    // Insertions at one place keep their order and precede a replacement that starts there.
+    // Insertions at one position keep their order and precede a replacement that starts there.
     patches.sort_by_key(|(r, _)| (r.start, !r.is_empty(), std::cmp::Reverse(r.end)));
     let mut out = String::with_capacity(text.len());
     let mut done = 0;
@@ -170,7 +169,7 @@ pub(super) fn apply(text: &str, mut patches: Vec<(Range<usize>, String)>) -> Str
     out
 }
 
-/// Copies of paths, as they lie in root user space.
+/// Copies of paths in root user space.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Guides {
     /// Elements, in groups with the transforms around them.

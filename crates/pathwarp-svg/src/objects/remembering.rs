@@ -1,4 +1,4 @@
-//! Adds to the objects of a result what they were.
+//! Adds sources and recipes to the objects of a result.
 
 use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, is_definition, parse, referred};
 use crate::source::elements::SVG;
@@ -12,21 +12,21 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use usvg::roxmltree::{Document, Node};
 
-/// What an object is to remember.
+/// The source and recipe that an object remembers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Memory {
     /// Its id, in the source and in the result.
     pub id: String,
-    /// The recipe, on one line: editors turn line ends in attributes into spaces.
+    /// The recipe, on one line, as editors turn line ends in attributes into spaces.
     pub recipe: String,
-    /// The paths that the recipe refers to.
+    /// The paths to which the recipe refers.
     pub guides: Guides,
-    /// A summary of the result's nodes, for finding out later what was done to them by hand.
+    /// A summary of the result's nodes, for finding later edits by hand.
     pub nodes: String,
 }
 
-/// Adds sources and recipes to the objects of `after`, the result of warping `before`. An object that has not changed gets none;
-/// what is inside one forgets its own, which lives on in the source around it.
+/// Adds sources and recipes to the objects of `after`, the result of warping `before`. An unchanged object gets none. Objects inside an
+/// object lose theirs, which its source contains.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if one of the files is not XML, or takes more work than the limits allow.
@@ -37,16 +37,16 @@ pub fn remember(before: &str, after: &str, memories: &[Memory], limits: &Limits)
     for m in memories {
         let (Some(&source), Some(&result)) = (olds.get(m.id.as_str()), news.get(m.id.as_str())) else { continue };
         let used = definitions(&olds, source);
-        // A group around a clip path that was warped may itself read as before.
+        // The text of an object may be unchanged although a clip path that it uses was warped.
         let same_definitions = || definitions(&news, result).iter().all(|d| is_same(before, after, &olds, *d));
         if before[source.range()] == after[result.range()] && same_definitions() {
             continue;
         }
         for n in result.descendants() {
-            patches.extend(own_attributes(after, n).map(|r| (r, String::new())));
+            patches.extend(pathwarp_attributes(after, n).map(|r| (r, String::new())));
         }
         let packed = pack(before, source, &used, &m.guides.markup)?;
-        let made = made(&olds, &news, result).join(" ");
+        let made = new_definitions(&olds, &news, result).join(" ");
         let name_end = name_end(after, result);
         let attributes = format!(
             " xmlns:pathwarp=\"{NAMESPACE}\" pathwarp:{RECIPE}=\"{}\" pathwarp:{MADE}=\"{}\" pathwarp:{NODES}=\"{}\" pathwarp:{SOURCE}=\"{packed}\"",
@@ -59,7 +59,7 @@ pub fn remember(before: &str, after: &str, memories: &[Memory], limits: &Limits)
     Ok(apply(after, patches))
 }
 
-/// An element may declare a prefix only once.
+/// The attributes without the declaration of their prefix if the element has it, as it may declare a prefix only once.
 fn without_declared(text: &str, n: Node<'_, '_>, attributes: String) -> String {
     let start = n.range().start;
     let tag = &text[start..n.first_child().map_or(n.range().end, |c| c.range().start)];
@@ -70,20 +70,24 @@ fn without_declared(text: &str, n: Node<'_, '_>, attributes: String) -> String {
     }
 }
 
-/// The attributes of ours at an element, each with the space before it.
-fn own_attributes(text: &str, n: Node<'_, '_>) -> impl Iterator<Item = Range<usize>> {
+/// The attributes in pathwarp's namespace on an element, each with the space before it.
+fn pathwarp_attributes(text: &str, n: Node<'_, '_>) -> impl Iterator<Item = Range<usize>> {
     let ours = n.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.range()).collect::<Vec<_>>();
     ours.into_iter().map(|r| text[..r.start].trim_end().len()..r.end)
 }
 
-/// Returns `true` if a definition of the result reads as in the source.
+/// Returns `true` if a definition of the result has the text that it has in the source.
 fn is_same(before: &str, after: &str, olds: &HashMap<&str, Node<'_, '_>>, n: Node<'_, '_>) -> bool {
     let old = n.attribute("id").and_then(|id| olds.get(id));
     old.is_some_and(|o| before[o.range()] == after[n.range()])
 }
 
-/// Ids of the definitions that a result uses and the source did not have.
-fn made(olds: &HashMap<&str, Node<'_, '_>>, news: &HashMap<&str, Node<'_, '_>>, result: Node<'_, '_>) -> Vec<String> {
+/// Ids of the definitions that a result uses and the source does not have.
+fn new_definitions(
+    olds: &HashMap<&str, Node<'_, '_>>,
+    news: &HashMap<&str, Node<'_, '_>>,
+    result: Node<'_, '_>,
+) -> Vec<String> {
     let mut found = BTreeSet::new();
     let mut open = referred(result);
     while let Some(name) = open.pop() {
@@ -96,7 +100,7 @@ fn made(olds: &HashMap<&str, Node<'_, '_>>, news: &HashMap<&str, Node<'_, '_>>, 
     found.into_iter().collect()
 }
 
-/// The definitions that an element refers to, directly or by way of others, in document order.
+/// The definitions to which an element refers, directly or through others, in document order.
 pub(super) fn definitions<'a, 'i>(by_id: &HashMap<&'a str, Node<'a, 'i>>, n: Node<'a, 'i>) -> Vec<Node<'a, 'i>> {
     let mut found: BTreeSet<Node<'a, 'i>> = BTreeSet::new();
     let mut open = vec![n];
@@ -109,12 +113,12 @@ pub(super) fn definitions<'a, 'i>(by_id: &HashMap<&'a str, Node<'a, 'i>>, n: Nod
             }
         }
     }
-    // What lies inside another definition comes with it.
+    // A definition inside another one comes with it.
     let inner = |d: &Node<'a, 'i>| d.ancestors().skip(1).any(|a| found.contains(&a) || a == n);
     found.iter().filter(|d| !inner(d)).copied().collect()
 }
 
-/// Packs an element of a document.
+/// An element of a document, packed with its definitions and guides as a small SVG file.
 pub(super) fn pack(text: &str, n: Node<'_, '_>, definitions: &[Node<'_, '_>], guides: &str) -> Result<String, Error> {
     let mut out = String::from("<svg");
     for ns in n.namespaces() {
@@ -138,14 +142,13 @@ pub(super) fn pack(text: &str, n: Node<'_, '_>, definitions: &[Node<'_, '_>], gu
     packed(out.as_bytes())
 }
 
-/// Unpacks to the text of the small SVG file.
+/// The text of a packed SVG file.
 pub(super) fn unpack(value: &str, limits: &Limits) -> Result<String, Error> {
     const PLACE: &str = "the source of a warped object";
     let text = unpacked_text(value, PLACE, &Budget::new(*limits))?;
     String::from_utf8(text).map_err(|e| Error::input(PLACE, format!("is damaged: {e}")))
 }
 
-/// The parts of a parsed package.
 pub(super) struct Package<'a, 'i> {
     pub(super) element: Node<'a, 'i>,
     pub(super) definitions: Vec<Node<'a, 'i>>,
@@ -154,11 +157,11 @@ pub(super) struct Package<'a, 'i> {
 
 impl<'a, 'i> Package<'a, 'i> {
     /// Finds the parts. Returns `None` if one is missing.
-    pub(super) fn of(doc: &'a Document<'i>) -> Option<Self> {
+    pub(super) fn find(doc: &'a Document<'i>) -> Option<Self> {
         let mut parts = doc.root_element().children().filter(Node::is_element);
         let (defs, guides, element) = (parts.next()?, parts.next()?, parts.next()?);
-        let named = |n: Node<'_, '_>, tag| n.tag_name().namespace() == Some(SVG) && n.tag_name().name() == tag;
-        (named(defs, "defs") && named(guides, "g")).then(|| Self {
+        let has_tag = |n: Node<'_, '_>, tag| n.tag_name().namespace() == Some(SVG) && n.tag_name().name() == tag;
+        (has_tag(defs, "defs") && has_tag(guides, "g")).then(|| Self {
             element,
             definitions: defs.children().filter(Node::is_element).collect(),
             guides,

@@ -1,4 +1,4 @@
-//! Puts the sources of warped objects back in place.
+//! Replaces warped objects by their sources.
 
 use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, referred, renaming};
 use super::remembering::{Package, unpack};
@@ -9,34 +9,34 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use usvg::roxmltree::{Document, Node};
 
-/// A file with sources back in place.
+/// A file whose warped objects have been replaced by their sources.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Restored {
     /// Its text.
     pub svg: String,
-    /// The objects that are their sources again.
+    /// The objects that have been replaced.
     pub objects: Vec<RestoredObject>,
 }
 
-/// An object that is its source again.
+/// An object that has been replaced by its source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RestoredObject {
-    /// Its id, as in the warped file.
+    /// Its id in the warped file.
     pub id: String,
-    /// The recipe that it was warped by.
+    /// The recipe by which it was warped.
     pub recipe: String,
-    /// The paths that the recipe refers to, as they were then.
+    /// The paths to which the recipe refers, at the time of the warp.
     pub guides: Guides,
-    /// The summary of the warped object's nodes that it was given.
+    /// The summary of its nodes ([`Memory::nodes`](super::Memory::nodes)).
     pub nodes: String,
 }
 
 /// Replaces the objects with these ids by their sources, byte for byte. Ids in a source that are in use elsewhere, as after copying
-/// the object, are changed. Definitions that the warp or an editor changed or removed come back; those that the warp added and
-/// nothing else uses are removed. An object without a source stays, and is not in the list.
+/// the object, are changed. Definitions that the warp or an editor changed or removed come back; definitions that the warp added are
+/// removed unless something else uses them. An object without a source stays, and is not in the list.
 ///
 /// # Errors
-/// Returns [`Error::Input`] if the file is not XML, a source is damaged, or either takes more work than the limits allow.
+/// [`Error::Input`] if the file is not XML, a source is damaged, or either takes more work than the limits allow.
 pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, Error> {
     let doc = parse(svg, limits)?;
     let found = by_id(&doc);
@@ -51,7 +51,7 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
     for (n, text) in &packages {
         let package = parse(text, limits)?;
         let damaged = || Error::input("the source of a warped object", "is damaged: it has no element");
-        let package = Package::of(&package).ok_or_else(damaged)?;
+        let package = Package::find(&package).ok_or_else(damaged)?;
         work.replace(*n, text, &package);
         objects.push(RestoredObject {
             id: n.attribute("id").unwrap_or_default().to_owned(),
@@ -91,16 +91,16 @@ impl<'a, 'i> Around<'a, 'i> {
         !n.ancestors().any(|a| self.replaced.contains(&a))
     }
 
-    /// Returns `true` if something that stays, outside of the definition `n` and of those in `except`, refers to `name`.
+    /// Returns `true` if an element that stays, outside the definition `n` and the definitions with the ids `except`, refers to `name`.
     fn is_used(&self, name: &str, n: Node<'a, 'i>, except: &HashSet<String>) -> bool {
         let counts = |o: &Node<'a, 'i>| {
             self.stays(*o) && !o.ancestors().any(|a| a == n || a.attribute("id").is_some_and(|id| except.contains(id)))
         };
-        let own = |o: Node<'a, 'i>| {
+        let refers = |o: Node<'a, 'i>| {
             let values = o.attributes().map(|a| a.value());
             values.into_iter().any(|v| super::nodes::references(v).any(|r| &v[r] == name))
         };
-        self.doc.descendants().filter(Node::is_element).filter(counts).any(own)
+        self.doc.descendants().filter(Node::is_element).filter(counts).any(refers)
     }
 
     /// The insertion of definitions into the file.
@@ -120,7 +120,7 @@ impl<'a, 'i> Around<'a, 'i> {
 
 struct Work<'a, 'i> {
     around: Around<'a, 'i>,
-    /// Ids of the sources already in place.
+    /// Ids in the sources and definitions that have been inserted.
     taken: HashSet<String>,
     patches: Vec<(Range<usize>, String)>,
     /// Definitions to be added.
@@ -179,7 +179,7 @@ impl<'a, 'i> Work<'a, 'i> {
         self.patches.push((n.range(), source));
     }
 
-    /// Removes the definitions that the warp added, unless something else uses them by now.
+    /// Removes the definitions that the warp added, unless another element uses them.
     fn remove_made(&mut self, made: &HashSet<String>) {
         for id in made {
             let Some(&d) = self.around.by_id.get(id.as_str()) else { continue };
@@ -210,7 +210,7 @@ fn renamed(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> Stri
     apply(&text[n.range()], patches.collect())
 }
 
-/// Returns `true` if two texts differ in white space only, as an editor may lay them out anew.
+/// Returns `true` if two texts differ at most in white space, which editors change.
 fn same_words(a: &str, b: &str) -> bool {
     a.split_ascii_whitespace().eq(b.split_ascii_whitespace())
 }

@@ -1,5 +1,5 @@
-//! Appearance that was changed by hand: what differs between an object as the warp left it and as it is now goes into the object
-//! warped again.
+//! Keeps changes of appearance that were made by hand: differences between an object after its warp and the object now are repeated on
+//! the object after another warp.
 
 use super::nodes::{apply, by_id, parse};
 use crate::scene::geometry::transform;
@@ -36,8 +36,8 @@ const PROPERTIES: [&str; 17] = [
     "mix-blend-mode",
 ];
 
-/// Copies to the object `id` of `new`, and to what it holds, the properties and labels that differ between `then` and `now`.
-/// References to gradients, patterns and the like are left as the warp makes them, and so are the properties in `except`.
+/// Copies to the object `id` of `new`, and to the elements in it, the properties and labels that differ between `then` and `now`.
+/// References to gradients, patterns and the like, and the properties in `except`, are not copied.
 ///
 /// # Errors
 /// Returns [`Error::Input`] if one of the files is not XML, or takes more work than the limits allow.
@@ -48,46 +48,46 @@ pub fn restyled([then, now, new]: [&str; 3], id: &str, except: &[&str], limits: 
     let inside = nows.get(id).into_iter().flat_map(Node::descendants);
     for n in inside.filter(Node::is_element) {
         let Some(name) = n.attribute("id") else { continue };
-        if let (Some(was), Some(will)) = (thens.get(name), news.get(name)) {
-            patches.extend(changes(*was, n, *will, new, except));
+        if let (Some(before), Some(target)) = (thens.get(name), news.get(name)) {
+            patches.extend(changes(*before, n, *target, new, except));
         }
     }
     Ok(if patches.is_empty() { new.to_owned() } else { apply(new, patches) })
 }
 
-/// The edits to `will` that repeat what happened between `was` and `is`.
+/// The edits to `target` that repeat the changes from `before` to `after`.
 fn changes(
-    was: Node<'_, '_>,
-    is: Node<'_, '_>,
-    will: Node<'_, '_>,
+    before: Node<'_, '_>,
+    after: Node<'_, '_>,
+    target: Node<'_, '_>,
     text: &str,
     except: &[&str],
 ) -> Vec<(Range<usize>, String)> {
     let mut out = Vec::new();
-    let (old, now) = (properties(was), properties(is));
+    let (old, now) = (properties(before), properties(after));
     let names = old.keys().chain(now.keys()).collect::<std::collections::BTreeSet<_>>();
     let refers = |v: Option<&String>| v.is_some_and(|v| v.contains("url("));
     let differs = |name: &&&String| {
         let (a, b) = (old.get(**name), now.get(**name));
         a != b && !refers(a) && !refers(b) && !except.contains(&name.as_str())
     };
-    let style = will.attribute("style").unwrap_or_default();
-    // A property that was removed is inherited again.
+    let style = target.attribute("style").unwrap_or_default();
+    // A removed property becomes inherited.
     let set = |style: String, name: &&String| {
         with_declaration(&style, name, now.get(*name).map_or("inherit", String::as_str))
     };
     let new = names.iter().filter(differs).fold(style.to_owned(), set);
     if new != style {
-        out.push(attribute(will, text, None, "style", &new));
+        out.push(set_attribute(target, text, None, "style", &new));
     }
     let label = |n: Node<'_, '_>| n.attribute((INKSCAPE, "label")).map(ToOwned::to_owned);
-    if let Some(label) = label(is).filter(|l| Some(l) != label(was).as_ref()) {
-        out.push(attribute(will, text, Some(INKSCAPE), "label", &label));
+    if let Some(label) = label(after).filter(|l| Some(l) != label(before).as_ref()) {
+        out.push(set_attribute(target, text, Some(INKSCAPE), "label", &label));
     }
     out
 }
 
-/// The properties of an element, by its attributes and its style.
+/// The properties of an element, from its attributes and its style.
 fn properties(n: Node<'_, '_>) -> BTreeMap<String, String> {
     let plain = PROPERTIES.iter().filter_map(|p| Some(((*p).to_owned(), n.attribute(*p)?.to_owned())));
     let mut out: BTreeMap<String, String> = plain.collect();
@@ -96,8 +96,14 @@ fn properties(n: Node<'_, '_>) -> BTreeMap<String, String> {
     out
 }
 
-/// Sets an attribute.
-fn attribute(n: Node<'_, '_>, text: &str, namespace: Option<&str>, name: &str, value: &str) -> (Range<usize>, String) {
+/// The edit that sets an attribute.
+fn set_attribute(
+    n: Node<'_, '_>,
+    text: &str,
+    namespace: Option<&str>,
+    name: &str,
+    value: &str,
+) -> (Range<usize>, String) {
     let found = n.attributes().find(|a| a.name() == name && a.namespace() == namespace);
     if let Some(a) = found {
         // Escaped for either kind of quotes.
@@ -121,10 +127,9 @@ pub fn moved(svg: &str, id: &str, by: Affine, limits: &Limits) -> Result<String,
     let around: Vec<Affine> = n.ancestors().skip(1).map(own_transform).collect();
     let around = around.into_iter().rev().fold(Affine::IDENTITY, |all, t| all * t);
     let new = matrix(around.inverse() * by * around * own_transform(n));
-    Ok(apply(svg, vec![attribute(n, svg, None, "transform", &new)]))
+    Ok(apply(svg, vec![set_attribute(n, svg, None, "transform", &new)]))
 }
 
-/// The element's own transform.
 fn own_transform(n: Node<'_, '_>) -> Affine {
     n.attribute("transform").and_then(transform).unwrap_or_default()
 }

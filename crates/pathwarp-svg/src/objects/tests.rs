@@ -73,7 +73,7 @@ fn definitions_come_back_and_added_ones_go() {
     let without = with.replace("<linearGradient id='l'/>", "").replace(" xlink:href='#l'", "");
     let back = restore(&without, &ids(&["a"]), &limits).unwrap().svg;
     assert!(back.contains("<linearGradient id='l'/>") && !back.contains("l-warped"), "{back}");
-    // Another object still needs the warped clip path, so the source gets its own.
+    // Another object still needs the warped clip path, so the source gets a new one.
     let shared = with.replace("</svg>", "<path id='b' clip-path='url(#c)' d='M3,3'/></svg>");
     let back = restore(&shared, &ids(&["a"]), &limits).unwrap().svg;
     assert!(back.contains("<clipPath id='c-2'><path id='p' d='M0,0'/>"), "{back}");

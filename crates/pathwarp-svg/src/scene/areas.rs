@@ -15,18 +15,18 @@ use usvg::{LineCap, LineJoin, Stroke};
 pub(crate) struct Counted {
     pub(crate) parts: Vec<bool>,
     pub(crate) bitmaps: Vec<bool>,
-    /// Whether strokes extend the box by half their width.
+    /// `true` if strokes extend the box by half their width.
     pub(crate) strokes: bool,
 }
 
-/// Bounding box of the visible part of what `counted` includes. `page` is the visible area, if there is one.
+/// Bounding box of the visible area of the counted artwork. `page` is the visible area of the drawing, if it has one.
 pub(crate) fn seen_box(scene: &Scene, page: Option<Rect>, counted: &Counted) -> Option<Rect> {
-    in_group(scene, &scene.root, page, counted, &|_| true)
+    group_box(scene, &scene.root, page, counted, &|_| true)
 }
 
-/// As [`seen_box`], but shapes that touch the page count as a whole.
+/// Bounding box of the visible area of the counted artwork that touches the page. Shapes count with their area beyond the page.
 pub(crate) fn uncut_box(scene: &Scene, page: Rect, counted: &Counted) -> Option<Rect> {
-    in_group(scene, &scene.root, None, counted, &|b| overlap(b, page).is_some())
+    group_box(scene, &scene.root, None, counted, &|b| overlap(b, page).is_some())
 }
 
 /// Bounding box of a bitmap in root user space. `None` if it is hidden or was not read.
@@ -44,8 +44,8 @@ pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
     (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
 }
 
-/// Bounding box of what `counted` includes of a group, clipped to `room`. Includes only content whose own box is `kept`.
-fn in_group(
+/// Bounding box of the counted artwork in a group, clipped to `room`. Includes only parts and bitmaps whose box is `kept`.
+fn group_box(
     scene: &Scene,
     g: &Group,
     room: Option<Rect>,
@@ -55,8 +55,8 @@ fn in_group(
     let room = room_in(scene, g, room)?;
     let left = |all: Rect| room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b));
     let one = |n: &Node| match n {
-        Node::Group(g) => in_group(scene, g, room, counted, kept),
-        Node::Text { content, .. } => in_group(scene, content, room, counted, kept),
+        Node::Group(g) => group_box(scene, g, room, counted, kept),
+        Node::Text { content, .. } => group_box(scene, content, room, counted, kept),
         Node::Part(i) => {
             let p = &scene.parts[*i];
             let seen = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
@@ -68,13 +68,13 @@ fn in_group(
     g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
 }
 
-/// How far a part's stroke extends from its path, in root user space: half its width.
+/// Distance by which a part's stroke extends from its path, in root user units: half its width.
 pub(crate) fn reach(p: &Part, to_px: Affine) -> f64 {
     let space = if p.fixed_width { to_px.inverse() } else { p.frame };
     p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
 }
 
-/// Whether a part is visible and has a paint that is not transparent.
+/// Returns `true` if a part is visible and has a paint that is not transparent.
 pub(crate) fn is_seen(p: &Part) -> bool {
     let fill = p.fill.as_ref().is_some_and(|f| f.opacity().get() > 0.0);
     let stroke = p.stroke.as_ref().is_some_and(|s| s.opacity().get() > 0.0);
@@ -101,19 +101,19 @@ fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>>
 /// Bounding box of a clip path, given the boxes of parts; `None` if it hides everything.
 pub(crate) fn clip_box(scene: &Scene, i: usize, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
     fn content(g: &Group, part_box: &dyn Fn(usize) -> Option<Rect>) -> Option<Rect> {
-        let own = g.children.iter().filter_map(|n| match n {
+        let boxes = g.children.iter().filter_map(|n| match n {
             Node::Group(g) => content(g, part_box),
             Node::Text { content: text, .. } => content(text, part_box),
             Node::Part(i) => part_box(*i),
             Node::Image(_) => None,
         });
-        own.reduce(|a, b| a.union(b))
+        boxes.reduce(|a, b| a.union(b))
     }
     let clip = &scene.clips[i];
-    let own = content(&clip.root, part_box)?;
+    let bounds = content(&clip.root, part_box)?;
     match clip.clip {
-        Some(next) => overlap(own, clip_box(scene, next, part_box)?),
-        None => Some(own),
+        Some(next) => overlap(bounds, clip_box(scene, next, part_box)?),
+        None => Some(bounds),
     }
 }
 
@@ -130,15 +130,15 @@ pub(crate) fn overlap(a: Rect, b: Rect) -> Option<Rect> {
     (x0 <= x1 && y0 <= y1).then(|| Rect::new(x0, y0, x1, y1))
 }
 
-/// Work of each segment below. It is less than that of an ordinary one, since the numbers are upper bounds, and fitting them is
-/// charged separately.
+/// Work of each segment of an expanded stroke. It is less than for other segments, since their number is an upper bound, and fitting them
+/// is charged separately.
 const EXPANDED: f64 = 18.0;
 
 /// Segments of the outline of a dash or a subpath with its caps. Each segment is held three times: expanded, bent, and as written.
 const PER_DASH: f64 = 3.0 * 8.0;
-/// Segments of the outline of a segment with its join.
+/// Segments of the outline of a segment with its join, held three times.
 const PER_SEGMENT: f64 = 3.0 * 2.0;
-/// The same for round joins.
+/// Segments of the outline of a segment with its round join, held three times.
 const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 
 /// Work of expanding a dash, in segments.
@@ -195,7 +195,7 @@ fn style(stroke: &Stroke, is_dashed: bool) -> kurbo::Stroke {
 /// space to px.
 ///
 /// # Errors
-/// The stroke has more segments than the limit allows.
+/// [`Exceeded`] if the stroke has more segments than the budget allows.
 pub(crate) fn stroked(
     part: &Part,
     to_px: Affine,
@@ -217,13 +217,13 @@ pub(crate) fn stroked(
     Ok(Some(stroke_outline(&path, stroke, tolerance / scale).transformed(frame)))
 }
 
-/// Whether a segment is just the point `at`.
+/// Returns `true` if a segment has no extent beyond the point `at`.
 pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
     let c = s.to_cubic();
     [c.p0, c.p1, c.p2, c.p3].iter().all(|p| *p == at)
 }
 
-/// Charges for expanding the dashes of a stroke only to measure it.
+/// Charges for expanding the dashes of a stroke that is only measured.
 pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
 }
@@ -231,7 +231,7 @@ pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) ->
 /// Charges for an upper bound on the segments into which a stroke is expanded.
 ///
 /// # Errors
-/// The work exceeds the budget.
+/// [`Exceeded`] if the work exceeds the budget.
 pub(crate) fn spend_stroke(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
     let dashes = drawn_dashes(local, stroke);
     let each = if stroke.linejoin() == LineJoin::Round { PER_ROUND_SEGMENT } else { PER_SEGMENT };
@@ -245,27 +245,29 @@ fn drawn_dashes(local: &Outline, stroke: &Stroke) -> f64 {
     local.drawn_dashes(&pattern)
 }
 
-/// Extent of a Gaussian in standard deviations; a renderer's three box blurs end there as well (Filter Effects Module Level 1, §9.14).
+/// Extent of a Gaussian in standard deviations, about that of the three box blurs by which renderers approximate it (Filter Effects Module
+/// Level 1, §9.14).
 const BLUR_REACH: f64 = 3.0;
 
-/// Bounds the area that `filter` paints from `content`, with `region` in place of its own region, all in the filter's user space.
+/// A bound on the area that `filter` paints from `content`, with `region` for the filter region, all in the filter's user space.
 /// Returns `None` if it paints nothing.
-pub(crate) fn painted(filter: &Filter, region: Rect, content: Rect) -> Option<Rect> {
+pub(crate) fn filter_box(filter: &Filter, region: Rect, content: Rect) -> Option<Rect> {
     let mut results: HashMap<&str, Option<Rect>> = HashMap::new();
     let mut last = overlap(content, region);
     for p in filter.primitives() {
-        let region = part(filter, p, region);
-        let of = |input: &Input| match input {
+        let region = primitive_region(filter, p, region);
+        let input_box = |input: &Input| match input {
             Input::SourceGraphic | Input::SourceAlpha => Some(content),
             Input::Reference(name) => results.get(name.as_str()).copied().unwrap_or(Some(region)),
         };
-        last = primitive(p.kind(), &of, region).and_then(|b| overlap(b, region));
+        last = primitive_box(p.kind(), &input_box, region).and_then(|b| overlap(b, region));
         results.insert(p.result(), last);
     }
     last
 }
 
-fn primitive(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
+/// A bound on the area that a primitive paints, given the boxes of its inputs.
+fn primitive_box(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
     let either = |a: Option<Rect>, b: Option<Rect>| a.into_iter().chain(b).reduce(|a, b| a.union(b));
     let grown = |b: Rect, x: f32, y: f32| b.inflate(f64::from(x), f64::from(y));
     let blurred = |b: Rect, x: f32, y: f32| b.inflate(BLUR_REACH * f64::from(x), BLUR_REACH * f64::from(y));
@@ -314,7 +316,6 @@ fn primitive(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> 
     }
 }
 
-/// Whether transparent pixels stay transparent.
 fn keeps_transparent(alpha: &TransferFunction) -> bool {
     match alpha {
         TransferFunction::Identity => true,
@@ -324,7 +325,7 @@ fn keeps_transparent(alpha: &TransferFunction) -> bool {
     }
 }
 
-/// The region of a primitive: its own if it has one, else `region`, that of the filter.
-pub(crate) fn part(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
+/// The region of a primitive; without one, `region`, the filter region.
+pub(crate) fn primitive_region(filter: &Filter, p: &Primitive, region: Rect) -> Rect {
     if p.rect() == filter.rect() { region } else { rect(p.rect().to_rect()) }
 }

@@ -21,11 +21,12 @@ use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 use svgtypes::{Length, LengthUnit};
 
+/// A drawing that has been read.
 #[derive(Debug)]
 pub(crate) struct Drawing {
     pub(crate) name: String,
     pub(crate) source: Arc<SourceText>,
-    /// Computed on first use, except for deep drawings, which need a large stack.
+    /// Resolved on first use; for deep drawings, which need a large stack, at once.
     scene: OnceLock<Scene>,
     shapes: OnceLock<Vec<Shape>>,
     lines: OnceLock<Vec<TextLine>>,
@@ -36,8 +37,9 @@ pub(crate) struct Drawing {
     /// `true` if walking the drawing takes little stack.
     shallow: bool,
     pub(crate) tree: Arc<usvg::Tree>,
+    /// The source elements of the letters in texts.
     letters: Arc<lettering::Owners>,
-    /// For every element, the index of the bend that applies to it. Clip paths and masks are resolved once for each bend.
+    /// For every element, the index of its bend; empty if the drawing is not divided. Clip paths and masks are resolved once for each bend.
     division: Vec<Option<usize>>,
     dpi: f64,
     /// Turns images.
@@ -91,8 +93,8 @@ impl Drawing {
     /// The mesh gradient that a paint stands for.
     pub(crate) fn mesh(&self, paint: &usvg::Paint) -> Option<&MeshGradient> {
         let usvg::Paint::LinearGradient(g) = paint else { return None };
-        let is_own = || !self.scene().foreign.contains(&(Arc::as_ptr(g) as usize));
-        self.source.meshes.get(g.id()).filter(|_| is_own())
+        let is_defined_here = || !self.scene().foreign.contains(&(Arc::as_ptr(g) as usize));
+        self.source.meshes.get(g.id()).filter(|_| is_defined_here())
     }
 
     /// Resolves the drawing again, with pattern tiles laid out as geometry.
@@ -105,8 +107,8 @@ impl Drawing {
         self.resolved_again(None, division)
     }
 
-    /// Resolves the drawing with each shape that only `use` elements show in place of its copies; the largest copy stands for all.
-    /// Shapes that are also drawn themselves are not replaced. Returns `None` if no `use` shows anything.
+    /// Resolves the drawing with shapes instead of their copies: the largest copy of each shape that only `use` elements show stands for
+    /// the shape. Returns `None` if no `use` shows anything.
     pub(crate) fn at_originals(&self) -> Result<Option<Self>, Error> {
         let is_use = |p: &Part| p.owner.is_some_and(|e| self.source.elements[e].tag == "use");
         if !self.scene().parts.iter().any(is_use) {
@@ -182,8 +184,8 @@ impl Drawing {
         self.shapes.get_or_init(|| shapes(self.scene(), &self.source))
     }
 
-    /// The lines of lettering with their letters: those of texts, then those of outlines. Computed on first use, because it takes
-    /// longer than reading the drawing, and few deformations need it.
+    /// The lines of lettering with their letters: first the lines of texts, then the lines of outlines. Found on first use, because this
+    /// takes longer than reading the drawing, and few deformations need it.
     pub(crate) fn lines(&self) -> &[TextLine] {
         self.lines.get_or_init(|| lettering::lines(&self.tree, &self.reader(), self.scene()))
     }
@@ -204,7 +206,7 @@ impl Drawing {
         specified.then(|| self.visible_area())
     }
 
-    /// Returns `true` if the page is a share of the window. Such a page goes on to the right and downwards as far as there is artwork.
+    /// Returns `true` if the page is a fraction of the window. Such a page extends to the right and downwards as far as there is artwork.
     pub(crate) fn shares_window(&self) -> bool {
         let is_share = |name| page_length(&self.source, name).is_some_and(|l| l.unit == LengthUnit::Percent);
         self.source.attr(0, "viewBox").is_none() && (is_share("width") || is_share("height"))
@@ -237,7 +239,7 @@ impl Drawing {
         self.reader().own_transform(e).unwrap_or_default()
     }
 
-    /// Determines for every part whether it is selected.
+    /// For every part, `true` if it is selected and in range.
     pub(crate) fn selected_parts(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
@@ -252,25 +254,25 @@ impl Drawing {
         if let Some(far) = self.far.get() {
             return far;
         }
-        // Don't compute this inside `get_or_init`, for the same reason as the shapes.
-        let far = Far::of(&self.source, self.scene(), self.shapes());
+        // Not inside `get_or_init`: see `shapes`.
+        let far = Far::find(&self.source, self.scene(), self.shapes());
         self.far.get_or_init(|| far)
     }
 }
 
-/// The size of the page in px. If a side is a share of the window, usvg takes the artwork's extent for both.
+/// The size of the page in px. If one side is a fraction of the window, it is the artwork's extent; usvg takes that for both sides.
 fn page_size(source: &SourceText, tree: &usvg::Tree, dpi: f64) -> Size {
     let drawn = Size::new(f64::from(tree.size().width()), f64::from(tree.size().height()));
     let reader = GeometryReader { source, dpi, page: drawn };
-    let own = |name, of| {
+    let length = |name, dimension| {
         page_length(source, name).filter(|l| l.unit != LengthUnit::Percent && source.attr(0, "viewBox").is_none())?;
-        reader.length(0, name, of)?
+        reader.length(0, name, dimension)?
     };
-    let [w, h] = [own("width", Dimension::Width), own("height", Dimension::Height)];
+    let [w, h] = [length("width", Dimension::Width), length("height", Dimension::Height)];
     if w.is_some() == h.is_some() { drawn } else { Size::new(w.unwrap_or(drawn.width), h.unwrap_or(drawn.height)) }
 }
 
-/// The `width` or `height` of the page, as it is written.
+/// The `width` or `height` of the page as written.
 pub(crate) fn page_length(source: &SourceText, name: &str) -> Option<Length> {
     Length::from_str(source.attr(0, name)?.trim()).ok()
 }
@@ -285,8 +287,8 @@ pub(crate) struct Far {
 }
 
 impl Far {
-    pub(super) fn of(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
-        let reach: Vec<bool> = shapes.iter().map(|s| !is_near(&s.outline)).collect();
+    pub(super) fn find(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
+        let reach: Vec<bool> = shapes.iter().map(|s| !is_in_range(&s.outline)).collect();
         if source.far.is_empty() && !reach.contains(&true) {
             return Self::default();
         }
@@ -299,10 +301,10 @@ impl Far {
                 (source.display_name(*e), format!("its number {n} is out of range, which ends at {LARGEST:e}"))
             })
             .collect();
-        let (mut parts, mut told) = (Vec::with_capacity(reach.len()), BTreeSet::new());
+        let (mut parts, mut reported) = (Vec::with_capacity(reach.len()), BTreeSet::new());
         for ((p, shape), far) in scene.parts.iter().zip(shapes).zip(reach) {
             let by_number = inside(p.source) || inside(p.owner) || inside(p.drawn);
-            if far && !by_number && told.insert(&shape.id) {
+            if far && !by_number && reported.insert(&shape.id) {
                 let why = format!("it extends beyond the range of coordinates, which ends at {LARGEST:e}");
                 reasons.push((shape.id.clone(), why));
             }
@@ -311,23 +313,23 @@ impl Far {
         Self { parts, reasons }
     }
 
-    /// Whether part `i` is out of range.
+    /// Returns `true` if part `i` is out of range.
     pub(crate) fn holds(&self, i: usize) -> bool {
         self.parts.get(i).is_some_and(|far| *far)
     }
 }
 
-/// Whether all points of an outline are in range.
-fn is_near(o: &Outline) -> bool {
+/// Returns `true` if all points of an outline are in range.
+fn is_in_range(o: &Outline) -> bool {
     o.segs().all(|s| {
         let [a, b] = [s.start(), s.end()];
-        // The middle stands in for the control points. NaN fails the comparison, too.
-        let m = s.eval(0.5);
-        [a.x, a.y, b.x, b.y, m.x, m.y].iter().all(|v| v.abs() < LARGEST)
+        // The middle stands for the control points. NaN fails the comparison, too.
+        let middle = s.eval(0.5);
+        [a.x, a.y, b.x, b.y, middle.x, middle.y].iter().all(|v| v.abs() < LARGEST)
     })
 }
 
-/// A shape that is painted, or that clips or masks.
+/// A shape that is painted, clips or masks.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Shape {
@@ -341,7 +343,7 @@ pub struct Shape {
     pub at: (usize, usize),
     /// `true` if the shape is visible, has a fill or a stroke, and is not part of a clip path or mask.
     pub painted: bool,
-    /// `true` if the shape's interior is painted, clips or masks.
+    /// `true` if the shape has a fill, clips or masks.
     pub filled: bool,
     /// `true` if the even-odd rule determines the interior, `false` for the nonzero rule.
     pub even_odd: bool,
@@ -375,7 +377,6 @@ fn read_outlines(scene: &Scene, source: &SourceText) {
     }
 }
 
-/// Lists the shapes of a scene.
 pub(super) fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
     let shape = |p: &Part| {
         let e = p.element();
@@ -416,7 +417,7 @@ pub(crate) fn named_path(scene: &Scene, reader: &GeometryReader<'_>, e: ElementI
     })
 }
 
-/// Links to images that were not read, as they are shown in messages.
+/// Links to images that were not read, in the form shown in messages.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UnreadImages {
@@ -427,12 +428,12 @@ pub struct UnreadImages {
 }
 
 impl UnreadImages {
-    pub(crate) fn of(missed: &Missed) -> Self {
+    pub(crate) fn from_missed(missed: &Missed) -> Self {
         let unreadable = missed.images.iter().filter(|l| !missed.outside.contains(l)).map(|l| shown(l).to_owned());
         Self { unreadable: unreadable.collect(), outside: missed.outside.clone() }
     }
 
-    /// Whether every image was read.
+    /// Returns `true` if every image was read.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.unreadable.is_empty() && self.outside.is_empty()

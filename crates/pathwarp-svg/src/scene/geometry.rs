@@ -22,7 +22,7 @@ pub(crate) fn rect(r: usvg::Rect) -> Rect {
 
 pub(super) const MM_PER_INCH: f64 = 25.4;
 
-/// The dimension of the viewport that a percentage refers to.
+/// The dimension of the viewport to which a percentage refers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Dimension {
     Width,
@@ -32,7 +32,7 @@ pub(crate) enum Dimension {
 
 impl Dimension {
     /// The length of 100 % in a viewport.
-    pub(crate) fn of(self, view: Size) -> f64 {
+    pub(crate) fn in_view(self, view: Size) -> f64 {
         match self {
             Self::Width => view.width,
             Self::Height => view.height,
@@ -51,7 +51,8 @@ pub(crate) struct GeometryReader<'a> {
 }
 
 impl GeometryReader<'_> {
-    pub(super) fn length(&self, e: ElementId, name: &str, of: Dimension) -> Option<Option<f64>> {
+    /// The length in an attribute; `Some(None)` if it is absent, `None` if the source alone does not determine it.
+    pub(super) fn length(&self, e: ElementId, name: &str, dimension: Dimension) -> Option<Option<f64>> {
         let Some(text) = self.source.attr(e, name) else { return Some(None) };
         // An invalid value counts as absent.
         let Ok(l) = Length::from_str(text.trim()) else { return Some(None) };
@@ -63,14 +64,14 @@ impl GeometryReader<'_> {
             LengthUnit::Mm => n * self.dpi / MM_PER_INCH,
             LengthUnit::Pt => n * self.dpi / 72.0,
             LengthUnit::Pc => n * self.dpi / 6.0,
-            LengthUnit::Percent => n / 100.0 * of.of(self.viewport_size(e)?),
+            LengthUnit::Percent => n / 100.0 * dimension.in_view(self.viewport_size(e)?),
             // Needs the font.
             LengthUnit::Em | LengthUnit::Ex => return None,
         }))
     }
 
-    fn length_or_zero(&self, e: ElementId, name: &str, of: Dimension) -> Option<f64> {
-        Some(self.length(e, name, of)?.unwrap_or(0.0))
+    fn length_or_zero(&self, e: ElementId, name: &str, dimension: Dimension) -> Option<f64> {
+        Some(self.length(e, name, dimension)?.unwrap_or(0.0))
     }
 
     /// Returns the size of the nearest enclosing viewport. `None` if it cannot be read from the source alone.
@@ -82,7 +83,7 @@ impl GeometryReader<'_> {
         if let Some(v) = self.view_box(svg) {
             return Some(v.size());
         }
-        // Percentages of an outer viewport are left to usvg.
+        // Sides in percent of an outer viewport are left to usvg.
         let side = |name| {
             let text = self.source.attr(svg, name)?;
             let l = Length::from_str(text.trim()).ok()?;
@@ -96,7 +97,6 @@ impl GeometryReader<'_> {
         self.view_box(0).map_or(self.page, |v| v.size())
     }
 
-    /// Returns an element's `viewBox`.
     pub(crate) fn view_box(&self, e: ElementId) -> Option<Rect> {
         let text = self.source.attr(e, "viewBox")?;
         let v = svgtypes::ViewBox::from_str(&text).ok()?;
@@ -128,8 +128,8 @@ impl GeometryReader<'_> {
         Affine::new([sx, 0.0, 0.0, sy, x + dx, y + dy])
     }
 
-    /// Returns the transform from an element's user space to its parent's: its `transform`, the position and viewBox of a
-    /// nested viewport, the shift of a `use`. Returns `None` if it cannot be read from the source alone.
+    /// Returns the transform from an element's user space to its parent's: its `transform`, with the position and viewBox of a
+    /// nested viewport or the shift of a `use`. Returns `None` if it cannot be read from the source alone.
     pub(crate) fn own_transform(&self, e: ElementId) -> Option<Affine> {
         let el = &self.source.elements[e];
         let mut t = Affine::IDENTITY;
@@ -146,7 +146,7 @@ impl GeometryReader<'_> {
             "svg" if el.parent.is_some() => {
                 t = shifted(t)?;
                 let view = self.viewport_size(e);
-                let side = |name, of, full: fn(Size) -> f64| match self.length(e, name, of)? {
+                let side = |name, dimension, full: fn(Size) -> f64| match self.length(e, name, dimension)? {
                     Some(l) => Some(l),
                     None => view.map(full),
                 };
@@ -171,8 +171,7 @@ impl GeometryReader<'_> {
         Some(t)
     }
 
-    /// Returns the outline of a shape element in its user space, or `None` if the source alone does not determine it or the
-    /// shape is empty.
+    /// Returns the outline of a shape element in its user space, or `None` if the source alone does not determine it or the shape is empty.
     pub(crate) fn outline(&self, e: ElementId) -> Option<Outline> {
         let x = |name| self.length_or_zero(e, name, Dimension::Width);
         let y = |name| self.length_or_zero(e, name, Dimension::Height);
@@ -222,7 +221,7 @@ impl GeometryReader<'_> {
     }
 }
 
-/// Parses a transform list and multiplies it out.
+/// Parses a transform list and multiplies its transforms.
 pub(crate) fn transform(text: &str) -> Option<Affine> {
     let t = svgtypes::Transform::from_str(text).ok()?;
     Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
@@ -243,7 +242,6 @@ pub(super) fn ellipse(b: &mut Builder, c: Point, r: Vec2) -> Option<()> {
     Some(())
 }
 
-/// Adds quarter `i` of an ellipse.
 fn quarter(b: &mut Builder, c: Point, r: Vec2, i: usize, end: Point) {
     let arc = EllipticArc::new(c, Vec2::new(r.x, 0.0), Vec2::new(0.0, r.y), i as f64 * FRAC_PI_2, FRAC_PI_2);
     b.arc(EllipticArc { p0: b.at(), p1: end, ..arc });
@@ -282,19 +280,19 @@ pub(crate) fn affine(t: usvg::Transform) -> Affine {
     single(Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from)))
 }
 
-/// Whether `m` is finite and can be inverted.
+/// Returns `true` if `m` is finite and can be inverted.
 pub(crate) fn is_invertible(m: Affine) -> bool {
     m.is_finite() && m.determinant() != 0.0 && m.inverse().is_finite()
 }
 
-/// The largest factor by which `m` stretches a length, its larger singular value.
+/// The largest factor by which `m` stretches a length: its larger singular value.
 pub(crate) fn stretch(m: Affine) -> f64 {
     let [a, b, c, d, ..] = m.as_coeffs();
     let (s, t) = ((a + d).hypot(b - c), (a - d).hypot(b + c));
     (s + t) / 2.0
 }
 
-/// Whether two transforms agree up to f32 rounding of a short product.
+/// Returns `true` if two transforms agree up to f32 rounding of a short product.
 pub(crate) fn is_near(a: Affine, b: Affine) -> bool {
     let (a, b) = (a.as_coeffs(), b.as_coeffs());
     let linear = a[..4].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -302,7 +300,6 @@ pub(crate) fn is_near(a: Affine, b: Affine) -> bool {
     (0..4).all(|i| (a[i] - b[i]).abs() <= 1e-6 * linear) && (4..6).all(|i| (a[i] - b[i]).abs() <= 1e-6 * shift)
 }
 
-/// Removes the translation.
 pub(crate) fn linear_part(m: Affine) -> Affine {
     let [a, b, c, d, ..] = m.as_coeffs();
     Affine::new([a, b, c, d, 0.0, 0.0])
@@ -335,7 +332,7 @@ pub(crate) fn from_usvg(path: &ts::Path) -> Outline {
     b.finish()
 }
 
-/// Whether usvg's path is `outline` in f32: the same subpaths with the same anchors, and cubics in place of arcs.
+/// Returns `true` if usvg's path is `outline` in f32: it has equal subpaths with equal anchors, and cubics instead of arcs.
 pub(crate) fn same_path(outline: &Outline, path: &ts::Path) -> bool {
     let b = path.bounds();
     let size = [b.left(), b.right(), b.top(), b.bottom()].iter().fold(0.0_f32, |m, v| m.max(v.abs()));
@@ -348,7 +345,7 @@ pub(crate) fn same_path(outline: &Outline, path: &ts::Path) -> bool {
     ours.len() == theirs.len() && ours.iter().zip(&theirs).all(|(a, b)| same_subpath(a, b, tolerance))
 }
 
-/// Compares a subpath of the source with usvg's.
+/// Returns `true` if a subpath of the source equals usvg's within `tolerance`.
 fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
     let close = |p: Point, q: Point| (p.x - q.x).abs() <= tolerance && (p.y - q.y).abs() <= tolerance;
     let handles = |s: &Seg| {
@@ -401,7 +398,7 @@ mod tests {
 
     fn read(shape: &str) -> (SourceText, Size) {
         let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 100'>{shape}</svg>");
-        let s = SourceText::of(&xml::document(&svg).unwrap(), Plain::default(), "t").unwrap();
+        let s = SourceText::from_plain(&xml::document(&svg).unwrap(), Plain::default(), "t").unwrap();
         (s, Size::new(200.0, 100.0))
     }
 

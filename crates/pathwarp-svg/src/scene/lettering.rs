@@ -1,7 +1,7 @@
-//! Lettering in a drawing: lines with their baselines and letters.
+//! Finds the lettering in a drawing: lines with their baselines and letters.
 //!
-//! It comes from two sources, which behave alike: text (from usvg's layout), and outlines with data attributes, as
-//! [`write_lettering`](crate::engine::write_lettering) makes them:
+//! It comes from two sources: text (by usvg's layout), and outlines with data attributes, as
+//! [`write_lettering`](crate::engine::write_lettering) writes them:
 //!
 //! ```xml
 //! <g data-ascent="57" data-descent="16" data-cap-height="38" data-x-height="29">
@@ -11,8 +11,8 @@
 //! </g>
 //! ```
 //!
-//! `data-baseline` holds the line's start and end, `data-glyph` a letter's origin on the baseline and its advance, all in the
-//! element's user units. The heights count from the baseline.
+//! `data-baseline` holds the line's start and end, and `data-glyph` a letter's origin on the baseline and its advance. The other
+//! attributes are heights from the baseline. All are in the element's user units.
 
 use super::geometry::{GeometryReader, from_usvg};
 use super::model::{Part, PartRole, PlacedText, Scene};
@@ -32,7 +32,7 @@ use std::ops::Range;
 use usvg::layout::{PositionedGlyph, Span};
 use usvg::{Color, Fill, Node, Paint, tiny_skia_path as ts};
 
-/// Finds all lines of a drawing: those of texts in painting order, then those of outlines.
+/// Finds all lines of a drawing: first the lines of texts in painting order, then the lines of outlines.
 pub(super) fn lines(tree: &usvg::Tree, reader: &GeometryReader<'_>, scene: &Scene) -> Vec<TextLine> {
     let mut out = Vec::new();
     let texts = if scene.texts.is_empty() { HashMap::new() } else { texts_by_address(tree) };
@@ -57,7 +57,7 @@ pub(crate) struct PlacedLetter {
     pub(crate) subpaths: Vec<(usize, Range<usize>)>,
 }
 
-/// Heights of a line's font above the baseline (the descent: below it), in the line's user units.
+/// Heights of a line's font above the baseline, and its descent below it, in the line's user units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Heights {
     pub(crate) ascent: f64,
@@ -126,10 +126,9 @@ fn texts_by_address(tree: &usvg::Tree) -> HashMap<usize, &usvg::Text> {
     out
 }
 
-/// Baselines at least this far apart, in font sizes, belong to different lines; closer ones to raised or lowered letters.
+/// Least distance of the baselines of different lines, in font sizes. Closer baselines are those of raised or lowered letters.
 const ANOTHER_LINE: f64 = 0.5;
 
-/// A glyph in the text's user space.
 struct Glyph {
     text: String,
     origin: Point,
@@ -138,7 +137,7 @@ struct Glyph {
     heights: Heights,
     part: usize,
     range: Range<usize>,
-    /// Centre of the outline's box.
+    /// Centre of the outline's box in x.
     centre: f64,
     turned: bool,
 }
@@ -171,8 +170,8 @@ fn shaped_lines(
 fn shaped_line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLine> {
     let (wide, marks): (Vec<Glyph>, Vec<Glyph>) = row.into_iter().partition(|g| g.advance > 0.0);
     // The line's baseline is the one with the largest total advance; raised letters keep their height above it.
-    let share = |y: f64| wide.iter().filter(|g| g.origin.y == y).map(|g| g.advance).sum::<f64>();
-    let y = wide.iter().map(|g| g.origin.y).max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
+    let length = |y: f64| wide.iter().filter(|g| g.origin.y == y).map(|g| g.advance).sum::<f64>();
+    let y = wide.iter().map(|g| g.origin.y).max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
     let from = wide.iter().map(|g| g.origin.x).fold(f64::INFINITY, f64::min);
     let to = wide.iter().map(|g| g.origin.x + g.advance).fold(f64::NEG_INFINITY, f64::max);
     let largest = wide.iter().max_by(|a, b| a.size.total_cmp(&b.size))?;
@@ -202,7 +201,7 @@ fn shaped_line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLin
     Some(line)
 }
 
-/// Lists the glyphs with an outline. Returns `None` if they do not add up to the text's paths.
+/// Lists the glyphs that have an outline. Returns `None` if their outlines are not the text's paths.
 fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], first: usize) -> Option<Vec<Glyph>> {
     let mut out = Vec::new();
     let mut part = first;
@@ -210,7 +209,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
         part += usize::from(span.overline.is_some()) + usize::from(span.underline.is_some());
         let mut taken = 0;
         for g in &span.positioned_glyphs {
-            let Some((outline, metrics)) = drawn(g, span, fonts) else { continue };
+            let Some((outline, metrics)) = draw_glyph(g, span, fonts) else { continue };
             let range = taken..taken + outline.subpaths.len();
             if parts.get(part)?.local.subpaths.get(range.clone())? != outline.subpaths {
                 return None;
@@ -241,7 +240,6 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
     Some(out)
 }
 
-/// A glyph's metrics from its font.
 struct Metrics {
     /// In font units.
     advance: f64,
@@ -249,8 +247,8 @@ struct Metrics {
     heights: Heights,
 }
 
-/// Draws a glyph as usvg does. Returns `None` if it has no outline, such as a space.
-fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Option<(Outline, Metrics)> {
+/// The outline of a glyph as usvg draws it, with its metrics. Returns `None` if it has no outline, such as a space.
+fn draw_glyph(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Option<(Outline, Metrics)> {
     fonts.with_face_data(g.font, |data, index| {
         let font = skrifa::FontRef::from_index(data, index).ok()?;
         let axes = font.axes();
@@ -275,7 +273,7 @@ fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Op
         let height = |c: char| font.charmap().map(c).and_then(|id| glyphs.bounds(id)).map(|b| b.y_max);
         let per_unit = f64::from(g.font_size()) / f64::from(metrics.units_per_em.max(1));
         let scaled = |v: Option<f32>| v.map_or(0.0, |v| f64::from(v).abs() * per_unit);
-        let own = Metrics {
+        let metrics = Metrics {
             advance: f64::from(glyphs.advance_width(id)?),
             heights: Heights {
                 ascent: scaled(Some(metrics.ascent)),
@@ -284,7 +282,7 @@ fn drawn(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) -> Op
                 x_height: scaled(metrics.x_height.filter(|h| *h > 0.0).or_else(|| height('x'))),
             },
         };
-        Some((from_usvg(&path), own))
+        Some((from_usvg(&path), metrics))
     })?
 }
 
@@ -322,9 +320,9 @@ fn marked_lines(reader: &GeometryReader<'_>, scene: &Scene) -> Vec<TextLine> {
         let Some((group, ends)) = above.find_map(|a| Some((a, numbers(reader, a, "data-baseline")?))) else { continue };
         match out.entry(group) {
             Entry::Occupied(mut line) => line.get_mut().letters.push(letter),
-            Entry::Vacant(place) => {
+            Entry::Vacant(entry) => {
                 if let Some(line) = marked_line(reader, group, ends) {
-                    place.insert(line).letters.push(letter);
+                    entry.insert(line).letters.push(letter);
                 }
             }
         }
@@ -343,34 +341,34 @@ fn marked_line(reader: &GeometryReader<'_>, e: ElementId, [x0, y0, x1, y1]: [f64
 fn marked_letter(reader: &GeometryReader<'_>, scene: &Scene, e: ElementId) -> Option<PlacedLetter> {
     let parts = &scene.parts;
     let [x, y, advance] = numbers(reader, e, "data-glyph")?;
-    let own: Vec<usize> = scene
+    let painted: Vec<usize> = scene
         .by_source
         .get(&e)?
         .iter()
         .copied()
         .filter(|&i| parts[i].role == PartRole::Paint && parts[i].painted())
         .collect();
-    let frame = parts[*own.first()?].frame;
+    let frame = parts[*painted.first()?].frame;
     let [a, b, ..] = frame.as_coeffs();
     let label = reader.source.attr(e, "aria-label");
     Some(PlacedLetter {
         name: label.map_or_else(|| reader.source.display_name(e), std::borrow::Cow::into_owned),
         origin: frame * Point::new(x, y),
         advance: (Vec2::new(a, b) * advance).hypot(),
-        subpaths: own.into_iter().map(|i| (i, 0..parts[i].local.subpaths.len())).collect(),
+        subpaths: painted.into_iter().map(|i| (i, 0..parts[i].local.subpaths.len())).collect(),
     })
 }
 
 fn heights(reader: &GeometryReader<'_>, e: ElementId) -> Heights {
-    let named = |name: &str| {
+    let height = |name: &str| {
         let found = reader.source.ancestors(e).find_map(|a| numbers::<1>(reader, a, name));
         found.map_or(0.0, |[v]| v.abs())
     };
     Heights {
-        ascent: named("data-ascent"),
-        descent: named("data-descent"),
-        cap_height: named("data-cap-height"),
-        x_height: named("data-x-height"),
+        ascent: height("data-ascent"),
+        descent: height("data-descent"),
+        cap_height: height("data-cap-height"),
+        x_height: height("data-x-height"),
     }
 }
 
@@ -385,24 +383,25 @@ fn numbers<const N: usize>(reader: &GeometryReader<'_>, e: ElementId, name: &str
 /// The source element of each outline of a text, by the text's element.
 pub(crate) type Owners = HashMap<ElementId, Vec<ElementId>>;
 
-/// Finds the owners of all letters in texts that contain named elements, or elements whose colours can be changed elsewhere. To do so, it
-/// has usvg resolve the drawing again with every element of these texts in a colour of its own.
+/// Finds the owners of all letters in texts that contain named elements, or elements whose colours depend on declarations elsewhere. For
+/// this, usvg resolves the drawing again with a different colour for every element of these texts.
 pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> Result<Owners, Error> {
     let mut out = Owners::new();
     if source.unpatchable.is_some() {
         return Ok(out);
     }
     let texts = (0..source.elements.len()).filter(|&e| source.elements[e].tag == "text");
-    let says = |e: ElementId| source.words.get(e);
-    let depends = |e: ElementId| says(e).is_some_and(|words| words.depends());
-    let themed = |t| inside(source, t).any(|e| says(e) != says(t) && (depends(e) || depends(t)));
+    let words = |e: ElementId| source.words.get(e);
+    let depends = |e: ElementId| words(e).is_some_and(|words| words.depends());
+    let themed = |t| text_content(source, t).any(|e| words(e) != words(t) && (depends(e) || depends(t)));
     let named: Vec<ElementId> =
-        texts.filter(|&t| themed(t) || inside(source, t).any(|e| is_named(source, e))).collect();
+        texts.filter(|&t| themed(t) || text_content(source, t).any(|e| is_named(source, e))).collect();
     if named.is_empty() {
         return Ok(out);
     }
-    let painted: Vec<ElementId> = named.iter().flat_map(|&t| std::iter::once(t).chain(inside(source, t))).collect();
-    let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour(e)?))));
+    let painted: Vec<ElementId> =
+        named.iter().flat_map(|&t| std::iter::once(t).chain(text_content(source, t))).collect();
+    let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour_code(e)?))));
     let Some(painted) = source.instrumented(styles).0 else { return Ok(out) };
     let (tree, _) = tree::tree(&xml::parse_checked(&painted, name)?, name, &options.begin_again())?;
     collect(tree.root(), source, &mut out);
@@ -410,13 +409,13 @@ pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> 
 }
 
 /// Encodes an element's index as a colour.
-fn colour(e: ElementId) -> Option<String> {
+fn colour_code(e: ElementId) -> Option<String> {
     (e < 1 << 24).then(|| format!("#{e:06x}"))
 }
 
 /// Decodes an element's index from a colour.
 fn element(c: Color) -> ElementId {
-    usize::from(c.red) << 16 | usize::from(c.green) << 8 | usize::from(c.blue)
+    (usize::from(c.red) << 16) | (usize::from(c.green) << 8) | usize::from(c.blue)
 }
 
 fn collect(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
@@ -445,19 +444,19 @@ fn collect(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
     }
 }
 
-/// Lists the elements that make up a text.
-pub(crate) fn inside(source: &SourceText, text: ElementId) -> impl Iterator<Item = ElementId> + '_ {
+/// Lists the elements inside a text that hold letters.
+pub(crate) fn text_content(source: &SourceText, text: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     source.descendants(text).filter(|&e| matches!(source.elements[e].tag.as_ref(), "tspan" | "textPath" | "tref" | "a"))
 }
 
-/// Whether an attribute identifies an element: id, class, data and ARIA attributes, and Inkscape's.
+/// Returns `true` if an attribute identifies an element: id, class, data and ARIA attributes, and Inkscape's.
 pub(crate) fn is_naming(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
     let plain = name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
-    plain && a.namespace == Namespace::None || a.namespace == Namespace::Inkscape
+    (plain && a.namespace == Namespace::None) || a.namespace == Namespace::Inkscape
 }
 
-/// Whether an element has a title or an identifying attribute.
+/// Returns `true` if an element has a title or an identifying attribute.
 pub(crate) fn is_named(source: &SourceText, e: ElementId) -> bool {
     let el = &source.elements[e];
     el.title.is_some() || el.attrs.iter().any(|a| is_naming(a, &source.text))

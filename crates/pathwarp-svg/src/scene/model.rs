@@ -1,5 +1,5 @@
 //! The data model of a drawing as it is painted: usvg's tree in f64. Each shape has its source element, its exact outline and its
-//! transform to root user space, the coordinate system inside the root `<svg>` (viewBox units).
+//! transform to root user space, the coordinate system inside the root `<svg>`.
 
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::images::is_unread;
@@ -40,17 +40,17 @@ pub(crate) struct Part {
     pub(crate) paint_order: PaintOrder,
     pub(crate) rendering: ShapeRendering,
     pub(crate) visible: bool,
-    /// Whether the stroke width is in px regardless of the transform (`vector-effect`).
+    /// `true` if the stroke width is in px regardless of the transform (`vector-effect`).
     pub(crate) fixed_width: bool,
-    /// Whether usvg draws it otherwise than browsers, and the scene as they do.
-    pub(crate) is_own: bool,
+    /// `true` if usvg draws the part differently from browsers, which the scene follows.
+    pub(crate) differs_from_usvg: bool,
     pub(crate) slot: Option<usize>,
     /// Address of usvg's path, which the document keeps alive; 0 if there is none.
     #[cfg_attr(not(feature = "usvg"), expect(dead_code, reason = "for the module of that feature"))]
     pub(crate) path: usize,
     /// `true` for parts of laid-out pattern tiles. If such a part has a stroke, `local` is the outline of that stroke.
     pub(crate) in_tile: bool,
-    /// Laid-out tiles of the fill's pattern, and of the stroke's.
+    /// Laid-out tiles of the patterns of fill and stroke.
     pub(crate) fill_tiles: Option<Tiles>,
     pub(crate) stroke_tiles: Option<Tiles>,
 }
@@ -71,7 +71,7 @@ impl Part {
             rendering: ShapeRendering::GeometricPrecision,
             visible: true,
             fixed_width: false,
-            is_own: false,
+            differs_from_usvg: false,
             slot: None,
             path: 0,
             in_tile: false,
@@ -80,7 +80,7 @@ impl Part {
         }
     }
 
-    /// Whether the part is visible and has a fill or a stroke.
+    /// Returns `true` if the part is visible and has a fill or a stroke.
     pub(crate) fn painted(&self) -> bool {
         self.visible && (self.fill.is_some() || self.stroke.is_some())
     }
@@ -103,7 +103,7 @@ pub(crate) struct Tiles {
     pub(crate) content: Group,
 }
 
-/// An outline computed on first use. Shapes that are read and written unchanged never need theirs.
+/// An outline computed on first use. Shapes that are written unchanged never need one.
 pub(crate) struct LazyOutline(LazyLock<Arc<Outline>, Box<dyn FnOnce() -> Arc<Outline> + Send>>);
 
 impl LazyOutline {
@@ -161,7 +161,7 @@ pub(crate) struct Group {
     pub(crate) clip: Option<usize>,
     pub(crate) mask: Option<usize>,
     pub(crate) filters: Vec<Arc<usvg::filter::Filter>>,
-    /// The group's own slot, if it is moved as a whole.
+    /// The slot by which the group moves as a whole, if it does.
     pub(crate) slot: Option<usize>,
     pub(crate) children: Vec<Node>,
 }
@@ -222,7 +222,7 @@ pub(crate) struct Bitmap {
 }
 
 impl Bitmap {
-    /// Whether it is the placeholder for a picture that was not read.
+    /// Returns `true` if it is the placeholder for a picture that was not read.
     pub(crate) fn is_unread(&self) -> bool {
         is_unread(self.image.kind())
     }
@@ -240,7 +240,7 @@ pub(crate) struct Clip {
     pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
-    /// `true` if the source has no such definition: in laid-out tiles, in a drawing shown as an image.
+    /// `true` if the source has no such definition, as in laid-out tiles and in a drawing shown as an image.
     pub(crate) foreign: bool,
 }
 
@@ -298,7 +298,7 @@ pub(crate) struct Referrer {
     pub(crate) owner: Option<ElementId>,
 }
 
-/// A remark on something that could not be resolved as requested, with the name of the thing.
+/// A remark on an object that could not be resolved as requested, with the object's name.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneNote {
     pub(crate) text: &'static str,
@@ -332,7 +332,6 @@ pub(crate) struct Scene {
     pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
     pub(crate) texts: Vec<PlacedText>,
-    /// Parts by source element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
     pub(crate) to_px: Affine,

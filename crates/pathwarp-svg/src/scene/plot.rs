@@ -1,6 +1,6 @@
 //! Lists the outlines of a drawing for a plotter or cutter, each once, with its layer and colour.
 //!
-//! A plotter knows neither areas nor transparency, so an outline is drawn whether it is filled, stroked or both. Strokes are
+//! A plotter knows neither areas nor transparency, so an outline is drawn once, be it filled, stroked or both. Strokes are
 //! drawn along their centre lines.
 
 use super::areas::{clip_box, is_seen, overlap};
@@ -20,7 +20,7 @@ use usvg::{Fill, Paint, Stroke};
 pub struct Plot {
     /// The outlines, in painting order.
     pub shapes: Vec<PlotShape>,
-    /// The parts of the drawing that outlines cannot show.
+    /// The content of the drawing that outlines cannot show.
     pub lost: PlotLoss,
 }
 
@@ -30,26 +30,26 @@ pub struct Plot {
 pub struct PlotShape {
     /// Its index in [`Document::shapes`](crate::Document::shapes).
     pub shape: usize,
-    /// The name of the layer; `None` outside of all layers. A layer is an Inkscape layer, or in a drawing without any, a named
-    /// group of the outermost level that has several members.
+    /// The name of the layer; `None` outside all layers. Layers are Inkscape's, or in a drawing without any, the named groups of the
+    /// outermost level that has several members.
     pub layer: Option<Arc<str>>,
     /// The colour of the stroke, else of the fill; of a gradient, the mean of its stops. `None` for a pattern.
     pub color: Option<[u8; 3]>,
-    /// Outline in root user space. The subpaths of a fill are closed, and those whose ends meet.
+    /// Outline in root user space. All subpaths of a fill, and other subpaths whose ends meet, are closed.
     pub outline: Arc<Outline>,
-    /// Whether the fill, if there is one, follows the even-odd rule.
+    /// The rule of the fill, if there is one: `true` for even-odd, `false` for nonzero.
     pub even_odd: Option<bool>,
     /// Width of the stroke in px, if there is one.
     pub stroke_width: Option<f64>,
 }
 
-/// The number of things that outlines cannot show.
+/// Numbers of objects that outlines cannot show.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlotLoss {
     /// Bitmaps, which are left out.
     pub bitmaps: usize,
-    /// Groups of which a clip path or mask hides a part, which is drawn all the same.
+    /// Groups partly hidden by a clip path or mask. They are drawn whole.
     pub hidden: usize,
     /// Filters, which are left out.
     pub filters: usize,
@@ -57,10 +57,9 @@ pub struct PlotLoss {
     pub patterns: usize,
 }
 
-/// Lists the outlines of a drawing.
 pub(crate) fn plot(scene: &Scene, source: &SourceText) -> Plot {
-    let mut walk = Walk { scene, source, layers: Layers::of(source), out: Plot::default() };
-    walk.group(&scene.root, None);
+    let mut walk = Walk { scene, source, layers: Layers::find(source), out: Plot::default() };
+    walk.add_group(&scene.root, None);
     walk.out
 }
 
@@ -73,7 +72,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     /// Adds the content of a group. `room` is the area that clip paths leave visible.
-    fn group(&mut self, g: &Group, room: Option<Rect>) {
+    fn add_group(&mut self, g: &Group, room: Option<Rect>) {
         if g.opacity <= 0.0 {
             return;
         }
@@ -89,9 +88,9 @@ impl Walk<'_> {
         let (shapes, bitmaps) = (self.out.shapes.len(), self.out.lost.bitmaps);
         for child in &g.children {
             match child {
-                Node::Group(g) => self.group(g, room),
-                Node::Text { content, .. } => self.group(content, room),
-                Node::Part(i) => self.part(*i, room),
+                Node::Group(g) => self.add_group(g, room),
+                Node::Text { content, .. } => self.add_group(content, room),
+                Node::Part(i) => self.add_part(*i, room),
                 Node::Image(_) => self.out.lost.bitmaps += 1,
             }
         }
@@ -106,7 +105,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The area of a clip path that is a rectangle. `None` for others.
+    /// The area of a clip path that is a rectangle; `None` for other shapes.
     fn clip_area(&self, clip: usize) -> Option<Rect> {
         let clip = &self.scene.clips[clip];
         let mut parts = clip.parts.clone().map(|i| self.scene.parts[i].outline());
@@ -114,7 +113,7 @@ impl Walk<'_> {
         rectangle(&only)
     }
 
-    fn part(&mut self, i: usize, room: Option<Rect>) {
+    fn add_part(&mut self, i: usize, room: Option<Rect>) {
         let p = &self.scene.parts[i];
         let outline = p.outline();
         let bounds = outline.bounding_box().filter(Rect::is_finite);
@@ -143,7 +142,7 @@ impl Walk<'_> {
 
 /// Closes the subpaths whose ends meet, and of a fill also those that enclose an area.
 fn closed(outline: Arc<Outline>, filled: bool) -> Arc<Outline> {
-    /// Rounding, as a share of the size.
+    /// Largest gap from rounding, as a fraction of the size.
     const SLACK: f64 = 1e-9;
     if outline.subpaths.iter().all(|s| s.closed) {
         return outline;
@@ -178,7 +177,7 @@ fn color(paint: &Paint) -> Option<[u8; 3]> {
 
 /// The bounding box of an outline that is a rectangle along the axes.
 fn rectangle(o: &Outline) -> Option<Rect> {
-    /// Rounding, as a share of the area.
+    /// Largest difference from rounding, as a fraction of the area.
     const SLACK: f64 = 1e-6;
     let bounds = o.bounding_box()?;
     let [only] = o.subpaths.as_slice() else { return None };
@@ -192,29 +191,28 @@ fn rectangle(o: &Outline) -> Option<Rect> {
     ((area.abs() - bounds.area()).abs() <= SLACK * bounds.area()).then_some(bounds)
 }
 
-/// The layers of a drawing.
 struct Layers {
     elements: HashSet<ElementId>,
-    /// The layer of everything else.
+    /// The layer of all other elements.
     rest: Option<Arc<str>>,
 }
 
 impl Layers {
-    fn of(source: &SourceText) -> Self {
+    fn find(source: &SourceText) -> Self {
         let all = 0..source.elements.len();
         let is_layer =
             |e: &ElementId| source.attr_in(*e, Namespace::Inkscape, "groupmode").is_some_and(|mode| mode == "layer");
         let elements: HashSet<ElementId> = all.filter(is_layer).collect();
-        // The layer of a cutting line is no reason to take named groups for less than layers.
+        // The layer of a cutting line does not count, so that named groups are layers beside it.
         if elements.iter().all(|e| source.attr(*e, "data-contour").is_some()) {
-            Self::of_groups(source)
+            Self::from_groups(source)
         } else {
             Self { elements, rest: None }
         }
     }
 
     /// The named groups of the outermost level that has several members.
-    fn of_groups(source: &SourceText) -> Self {
+    fn from_groups(source: &SourceText) -> Self {
         let mut members: Vec<Vec<ElementId>> = vec![Vec::new(); source.elements.len()];
         for (e, element) in source.elements.iter().enumerate() {
             if let Some(parent) = element.parent.filter(|_| is_drawn(&element.tag)) {
@@ -233,14 +231,13 @@ impl Layers {
         Self { elements: groups.into_iter().filter(is_layer).collect(), rest }
     }
 
-    /// The name of the layer that an element is in.
     fn layer(&self, source: &SourceText, e: ElementId) -> Option<Arc<str>> {
         let layer = source.ancestors(e).find(|a| self.elements.contains(a));
         layer.and_then(|a| name(source, a)).or_else(|| self.rest.clone())
     }
 }
 
-/// The label of a group, else its id.
+/// The label of a group, or else its id.
 fn name(source: &SourceText, e: ElementId) -> Option<Arc<str>> {
     let found = source.label(e).or_else(|| source.attr(e, "id")).filter(|n| !n.trim().is_empty());
     found.map(|n| n.as_ref().into())
@@ -250,7 +247,7 @@ fn is_group(tag: &str) -> bool {
     matches!(tag, "g" | "a" | "svg" | "switch")
 }
 
-/// Whether elements of this name are drawn where they stand.
+/// Returns `true` if elements with this tag are drawn where they stand.
 fn is_drawn(tag: &str) -> bool {
     is_group(tag) || crate::source::elements::is_shape(tag) || matches!(tag, "use" | "text" | "image")
 }

@@ -62,24 +62,24 @@ impl Lettering {
         &self.letters
     }
 
-    /// Whether there is lettering and every baseline is horizontal, so that frames can be made.
+    /// Returns `true` if there is lettering and every baseline is horizontal, so that frames can be made.
     #[must_use]
     pub fn is_level(&self) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|l| l.level)
     }
 
-    /// Whether the selected artwork consists of lettering only.
+    /// Returns `true` if the selected artwork consists of lettering only.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self.is_all
     }
 
-    /// Makes a frame around the lettering. Horizontally, it extends from the leftmost start to the rightmost end of a line;
-    /// vertically, by `kind` over all lines. For [`BaselineAscent`](LetteringFrame::BaselineAscent), that is from the lowest baseline
-    /// to the highest ascent.
+    /// Makes a frame around the lettering. Horizontally, it extends from the leftmost start to the rightmost end of a line; vertically, by
+    /// `kind` over all lines: for [`BaselineAscent`](LetteringFrame::BaselineAscent), from the lowest baseline to the highest ascent.
     ///
     /// # Errors
-    /// Returns the reason why there is no such frame.
+    /// [`LetteringFrameError::NoLettering`] without lines, [`LetteringFrameError::NotLevel`] if a baseline is not horizontal,
+    /// [`LetteringFrameError::NoOutlines`] if letters have no ink, [`LetteringFrameError::NoHeight`] if the font does not specify the height.
     pub fn frame(&self, kind: LetteringFrame) -> Result<Frame, LetteringFrameError> {
         if self.lines.is_empty() {
             return Err(LetteringFrameError::NoLettering);
@@ -87,10 +87,10 @@ impl Lettering {
         if let Some(l) = self.lines.iter().find(|l| !l.level) {
             return Err(LetteringFrameError::NotLevel { line: l.name.clone() });
         }
-        let min = |of: &dyn Fn(&TextLine) -> f64| self.lines.iter().map(of).fold(f64::INFINITY, f64::min);
-        let max = |of: &dyn Fn(&TextLine) -> f64| -min(&|l| -of(l));
+        let min = |y: &dyn Fn(&TextLine) -> f64| self.lines.iter().map(y).fold(f64::INFINITY, f64::min);
+        let max = |y: &dyn Fn(&TextLine) -> f64| -min(&|l| -y(l));
         let baseline = max(&|l| l.start.y);
-        let above = |of: fn(&Heights) -> f64| min(&|l| l.start.y - of(&l.heights));
+        let above = |height: fn(&Heights) -> f64| min(&|l| l.start.y - height(&l.heights));
         let (top, bottom) = match kind {
             LetteringFrame::BaselineAscent => (above(|h| h.ascent), baseline),
             LetteringFrame::BaselineCapHeight => (above(|h| h.cap_height), baseline),
@@ -117,7 +117,6 @@ pub(crate) struct LetterSubpaths {
     pub(crate) range: Range<usize>,
 }
 
-/// Finds the lettering among the painted and selected shapes.
 pub(crate) fn lettering(drawing: &Drawing, selection: &Selection) -> Lettering {
     let selected = drawing.selected_parts(selection);
     let shapes = drawing.shapes();
@@ -158,11 +157,11 @@ fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     lines.filter(|l| !l.letters.is_empty()).collect()
 }
 
-/// More members of one group are hardly meant as objects.
+/// Limit on objects, since more members of one group are hardly meant as objects.
 const MOST_OBJECTS: usize = 10_000;
 
-/// Finds the objects among the painted and selected shapes, from left to right: each selected element, or if that is all of the drawing, each
-/// member of the outermost group that has several. Those whose boxes overlap are one.
+/// Finds the objects among the painted and selected shapes, from left to right: each selected element or, if the whole drawing is selected,
+/// each member of the outermost group that has several. Members whose boxes overlap are one object.
 pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLetter> {
     let (source, shapes) = (&drawing.source, drawing.shapes());
     let selected = drawing.selected_parts(selection);
@@ -185,8 +184,8 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
     for (i, path) in &paths {
         let Some(bounds) = shapes[*i].outline.bounding_box().filter(Rect::is_finite) else { continue };
         let named = path.iter().find(|e| !is_whole && elements[**e]);
-        let of = named.copied().unwrap_or(path[level.min(path.len() - 1)]);
-        let (all, parts) = found.entry(of).or_insert((bounds, Vec::new()));
+        let object = named.copied().unwrap_or(path[level.min(path.len() - 1)]);
+        let (all, parts) = found.entry(object).or_insert((bounds, Vec::new()));
         *all = all.union(bounds);
         parts.push(*i);
     }
@@ -214,7 +213,7 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
     apart.into_iter().map(object).collect()
 }
 
-/// Lists the letters, or the objects, in every part.
+/// For every part, its letters, or its `objects`.
 pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection, objects: bool) -> Vec<Vec<LetterSubpaths>> {
     let mut out = vec![Vec::new(); drawing.scene().parts.len()];
     let letters: Vec<PlacedLetter> = if objects {

@@ -1,4 +1,4 @@
-//! Bounds the size of a drawing before usvg resolves it, including everything that references, style sheets and text add to it.
+//! Bounds the size of a drawing before usvg resolves it, including all that references, style sheets and text add to it.
 
 use super::elements::is_shape;
 use memchr::{memchr2, memmem};
@@ -19,7 +19,7 @@ pub(super) struct Features {
 }
 
 impl Features {
-    fn of(xml: &roxmltree::Document<'_>) -> Self {
+    fn find(xml: &roxmltree::Document<'_>) -> Self {
         let mut out = Self::default();
         for n in xml.descendants() {
             match n.tag_name().name() {
@@ -37,52 +37,52 @@ impl Features {
     }
 }
 
-/// Checks a drawing. `name` identifies it in errors.
+/// Checks a drawing, and returns its features. `name` identifies it in errors.
 ///
 /// # Errors
-/// Returns [`Error::Input`] if it exceeds the budget or nests too deeply.
-pub(super) fn drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
-    let features = Features::of(xml);
+/// [`Error::Input`] if it exceeds the budget or nests too deeply.
+pub(super) fn check_drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<Features, Error> {
+    let features = Features::find(xml);
     if features.text {
         let too_much = |e| Error::limit(name, "its texts take", e);
-        spans(xml, budget).and_then(|()| text_paths(xml, budget)).map_err(too_much)?;
+        spend_spans(xml, budget).and_then(|()| spend_text_paths(xml, budget)).map_err(too_much)?;
     }
-    wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
+    spend_wide_strokes(xml, budget).map_err(|e| Error::limit(name, "with such wide strokes, its shapes take", e))?;
     let segments = if may_be_large(xml, features.markers, features.references) {
-        check(xml, name, budget)?
+        count_expanded(xml, name, budget)?
     } else {
         count_plain(xml, name, budget)?
     };
-    wide_arcs(xml, segments, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
+    spend_wide_arcs(xml, segments, budget).map_err(|e| Error::limit(name, "with such wide arcs, its paths take", e))?;
     Ok(features)
 }
 
 /// Limit on the nesting of references and elements after expansion. The stack of 128 MiB allows several times as much, but
 /// usvg needs quadratic time for markers on markers.
 const MAX_DEPTH: usize = 2_000;
-/// Drawings with at most this many references cannot expand to much.
+/// Number of references up to which a drawing cannot expand to much.
 const FEW: usize = 16;
-/// Below this many bytes, vertices times one marker stays small.
+/// Length of a text in bytes up to which one marker at all vertices stays small.
 const SMALL: usize = 4096;
-/// Below this many bytes times references, a drawing cannot expand to much.
+/// Product of the bytes and references of a text up to which it cannot expand to much.
 const LARGE: usize = 1 << 22;
 
-/// Whether a drawing could expand to a large number of elements: it has more than a few references, and either markers, which
-/// are drawn at every vertex, or other elements that show what they refer to (`referring`).
+/// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either markers, which
+/// are drawn at every vertex, or other elements that show others by reference (`referring`).
 fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) -> bool {
     let text = doc.input_text();
     // Entities may contain references.
     let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
     let large = |references: usize| references > FEW || references.saturating_mul(text.len()) > LARGE;
-    markers > 1 || markers == 1 && text.len() > SMALL || (referring || markers > 0) && large(references())
+    markers > 1 || (markers == 1 && text.len() > SMALL) || ((referring || markers > 0) && large(references()))
 }
 
 /// Counts a drawing that cannot expand to much, and returns the number of its segments.
 ///
 /// # Errors
-/// Returns [`Error::Input`] if it exceeds the budget as it is.
+/// [`Error::Input`] if it exceeds the budget.
 fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
-    let sizes = doc.descendants().filter(Node::is_element).map(Size::of);
+    let sizes = doc.descendants().filter(Node::is_element).map(Size::of_element);
     let sum = sizes.fold(Size::default(), Size::plus);
     sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
     sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
@@ -92,9 +92,9 @@ fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Re
 /// Counts a drawing after expansion, and returns the number of its segments. `name` identifies the drawing in errors.
 ///
 /// # Errors
-/// Returns [`Error::Input`] with the element that expands to too much.
-pub(crate) fn check(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
-    let (size, _) = Unfolding::of(doc).count(budget).map_err(|(node, why)| {
+/// [`Error::Input`] with the element that expands to too much.
+pub(crate) fn count_expanded(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
+    let (size, _) = Unfolding::new(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let which = node.attribute("id").map_or(format!("<{tag}>"), |id| format!("<{tag} id=\"{id}\">"));
@@ -131,7 +131,7 @@ struct Size {
 
 impl Size {
     /// The size of an element without its children.
-    fn of(node: Node<'_, '_>) -> Self {
+    fn of_element(node: Node<'_, '_>) -> Self {
         let tag = node.tag_name().name();
         let is_text = is_painted(tag) && !is_shape(tag);
         Self {
@@ -162,7 +162,7 @@ impl Size {
         cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
-    /// Compares with the limits, regardless of what has been used of them.
+    /// Compares with the limits, regardless of the work done so far.
     fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.check(Limit::Elements, self.elements as f64)?;
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
@@ -176,8 +176,9 @@ impl Size {
 
 /// Properties that may refer to an element to show.
 const PROPERTIES: [&str; 7] = ["fill", "stroke", "marker-start", "marker-mid", "marker-end", "clip-path", "mask"];
-/// The first two are paints; paints and markers are inherited.
+/// Number of the first [`PROPERTIES`] that are paints.
 const PAINTS: usize = 2;
+/// Number of the first [`PROPERTIES`] that are inherited: paints and markers.
 const INHERITED: usize = 5;
 
 /// The reference in a property's value.
@@ -196,21 +197,20 @@ enum Reference {
 /// Targets of the inherited properties.
 type Inherited = [Option<NodeId>; INHERITED];
 
-/// A subtree to show, with everything that affects its content.
+/// A subtree to show, with all that affects its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Body {
     node: NodeId,
-    /// Inherited values; `None` stands for those at the element's own position in the file.
+    /// Inherited values; `None` for the ones at the element's position in the file.
     inherited: Option<Inherited>,
     /// Paints of the context element.
     context: [Option<NodeId>; PAINTS],
 }
 
-/// Content of a body.
-struct Inside {
+struct Content {
     size: Size,
     depth: usize,
-    /// Bodies shown inside, with how many times and at which depth.
+    /// Bodies shown inside, each with the number of times and the depth.
     shown: Vec<(Body, u64, usize)>,
 }
 
@@ -222,7 +222,7 @@ struct Unfolding<'a, 'i> {
 }
 
 impl<'a, 'i> Unfolding<'a, 'i> {
-    fn of(doc: &'a roxmltree::Document<'i>) -> Self {
+    fn new(doc: &'a roxmltree::Document<'i>) -> Self {
         let mut by_id = HashMap::new();
         for node in doc.descendants().filter(Node::is_element) {
             if let Some(id) = node.attribute("id") {
@@ -232,10 +232,10 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         Self { doc, by_id, known: HashMap::new() }
     }
 
-    /// Adds up everything with repetitions, and finds the deepest nesting.
+    /// The size of the drawing with all repetitions, and the depth of the deepest nesting.
     fn count(&mut self, budget: &Budget) -> Result<(Size, usize), (Node<'a, 'i>, TooMuch)> {
         let root = Body { node: self.doc.root_element().id(), inherited: None, context: [None; PAINTS] };
-        let first = self.inside(root);
+        let first = self.content(root);
         // Visiting elements takes time, too, so bound it as well.
         let mut visited = first.size;
         let mut open = vec![(root, first)];
@@ -253,7 +253,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                     Some(None) => {}
                     None => {
                         inside.shown.push(next);
-                        let new = self.inside(other);
+                        let new = self.content(other);
                         visited.elements += new.size.elements + new.shown.len() as u64;
                         self.known.insert(other, None);
                         open.push((other, new));
@@ -278,14 +278,14 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
 
-    /// Examines a body without the bodies shown inside.
-    fn inside(&self, body: Body) -> Inside {
-        let mut out = Inside { size: Size::default(), depth: 0, shown: Vec::new() };
+    /// The content of a body, with the bodies shown inside still to be counted.
+    fn content(&self, body: Body) -> Content {
+        let mut out = Content { size: Size::default(), depth: 0, shown: Vec::new() };
         let Some(top) = self.doc.get_node(body.node) else { return out };
         let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
-        let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.place(top)), 1)];
+        let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.inherited(top)), 1)];
         while let Some((node, mut inherited, depth)) = todo.pop() {
-            out.size = out.size.plus(Size::of(node));
+            out.size = out.size.plus(Size::of_element(node));
             out.depth = out.depth.max(depth);
             let tag = node.tag_name().name();
             if node != top && is_defined(tag) {
@@ -336,8 +336,8 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// Finds the values an element inherits at its position in the file.
-    fn place(&self, node: Node<'a, 'i>) -> Inherited {
+    /// The values that an element inherits at its position in the file.
+    fn inherited(&self, node: Node<'a, 'i>) -> Inherited {
         let mut out = Inherited::default();
         let mut open: Vec<usize> = (0..INHERITED).collect();
         for around in node.ancestors().skip(1).filter(Node::is_element) {
@@ -363,7 +363,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             "filter" => filters.extend(urls(value).filter_map(|id| self.by_id.get(id)).map(Node::id)),
             "fill" | "stroke" | "mask" | "clip-path" | "marker" | "marker-start" | "marker-mid" | "marker-end" => {
                 for (i, p) in PROPERTIES.iter().enumerate() {
-                    if (*p == name || name == "marker" && p.starts_with("marker-")) && !out[i].1 {
+                    if (*p == name || (name == "marker" && p.starts_with("marker-"))) && !out[i].1 {
                         out[i] = (self.value(value), important);
                     }
                 }
@@ -400,17 +400,16 @@ pub(super) fn letters(n: Node<'_, '_>) -> u64 {
     n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
 }
 
-/// Whether elements of this name are drawn only by reference.
+/// Returns `true` if elements with this tag are drawn only by reference.
 fn is_defined(tag: &str) -> bool {
     matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
 }
 
-/// Whether elements of this name have a fill and a stroke.
+/// Returns `true` if elements with this tag have a fill and a stroke.
 fn is_painted(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath")
 }
 
-/// Lists the ids in `url(#…)` references.
 fn urls(value: &str) -> impl Iterator<Item = &str> {
     value.split("url(").skip(1).filter_map(|rest| {
         let inside = rest.split(')').next()?;
@@ -424,7 +423,8 @@ fn vertices(node: Node<'_, '_>) -> u64 {
     const BLOCK: usize = u8::MAX as usize;
     let text = node.attribute("d").or_else(|| node.attribute("points")).unwrap_or("");
     // Comparing adjacent bytes needs no state, so the compiler vectorizes it.
-    let starts = |(before, b): (&u8, &u8)| u8::from(b.is_ascii_digit() & !before.is_ascii_digit() | (b | 0x20 == b'z'));
+    let starts =
+        |(before, b): (&u8, &u8)| u8::from((b.is_ascii_digit() & !before.is_ascii_digit()) | ((b | 0x20) == b'z'));
     let bytes = text.as_bytes();
     let first = bytes.first().map_or(0, |b| starts((&b' ', b)));
     let pairs = bytes.chunks(BLOCK).zip(bytes.get(1..).unwrap_or_default().chunks(BLOCK));
@@ -433,7 +433,7 @@ fn vertices(node: Node<'_, '_>) -> u64 {
 }
 
 /// Charges for the segments of paths that carry text. Each text measures the whole of its path.
-fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+fn spend_text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
     /// Fewest bytes of path data for a curve. Lines can be shorter, but measuring them takes hardly any time.
     const MIN_CURVE: usize = 12;
     let links = || xml.descendants().filter(|n| n.tag_name().name() == "textPath").filter_map(href);
@@ -448,17 +448,16 @@ fn text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exce
     })
 }
 
-/// The id that a link refers to.
 fn href<'a>(n: Node<'a, '_>) -> Option<&'a str> {
     let link = n.attributes().find(|a| a.name() == "href")?.value();
     link.trim().strip_prefix('#')
 }
 
-/// Charges for arcs whose ellipses are much wider than any page, such as those that have to be enlarged to reach their ends while
-/// keeping the ratio of a small radius to a large one. usvg turns an arc into cubics; their number grows with the radius, and the
-/// time with the square of their number.
-fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> Result<(), Exceeded> {
-    /// Smaller radii take no time worth counting.
+/// Charges for arcs whose ellipses are much wider than any page, such as ellipses that are enlarged to reach the arc's ends while their
+/// radii keep an extreme ratio. usvg turns an arc into cubics, whose number grows with the radius; the time grows with the square of
+/// their number.
+fn spend_wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> Result<(), Exceeded> {
+    /// Radius up to which arcs take a negligible time.
     const WIDE: f64 = 1e8;
     /// The error of n cubics that approximate the unit circle, times n⁶.
     const ERROR: f64 = 1.1163;
@@ -466,7 +465,7 @@ fn wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget) -> R
     const ALLOWED: f64 = 0.1;
     /// Comparisons for an arc, divided by the square of the number of its cubics.
     const MOVED: f64 = 0.0125;
-    // Only parse path data again if its numbers may amount to such an arc.
+    // Path data is parsed again only if its numbers may describe such an arc.
     let arcs = |d: &str| {
         let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
         suspected.then(|| Outline::from_svg_lossy(d))
@@ -497,17 +496,17 @@ fn is_uneven(data: &str) -> bool {
             b'0'..=b'9' => digits += 1,
             _ => (digits, fraction) = (0, false),
         }
-        if digits > 4 || fraction && zeros > 2 {
+        if digits > 4 || (fraction && zeros > 2) {
             return true;
         }
     }
     false
 }
 
-/// Charges for strokes so wide that single precision fails usvg when it outlines them to find their boxes. The time grows with the
+/// Charges for strokes so wide that single precision is too coarse for usvg to outline them and find their boxes. The time grows with the
 /// width.
-fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Narrower strokes take no time worth counting.
+fn spend_wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Width up to which strokes take a negligible time.
     const WIDE: f64 = 2e6;
     /// Comparisons for each shape and unit of width.
     const UNIT: f64 = 350e-6;
@@ -526,8 +525,8 @@ fn wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Ex
 }
 
 /// Charges for texts: every letter is compared with every span, and with every other letter.
-pub(super) fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
-    /// Letters that are compared in the time of one comparison.
+pub(super) fn spend_spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+    /// Number of letters that are compared in the time of one comparison.
     const AT_A_TIME: f64 = 64.0;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");
     for text in texts {
@@ -538,7 +537,7 @@ pub(super) fn spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<()
             }
             all_letters += letters(n) as f64;
         }
-        // The text itself is no span.
+        // The text element counts as an element, but is no span.
         budget.spend(cost::COMPARISON * ((spans - 1.0) * all_letters + all_letters * all_letters / AT_A_TIME))?;
     }
     Ok(())

@@ -1,5 +1,4 @@
-//! Edits attributes, style properties, tags and whole elements of the source text. Everything else stays as it is, byte for
-//! byte.
+//! Edits attributes, style properties, tags and whole elements of the source text. All other bytes stay unchanged.
 
 use super::elements::{Attr, ElementId, Namespace, declared, with_declaration};
 use super::text::SourceText;
@@ -28,10 +27,11 @@ struct Change {
 }
 
 impl Change {
-    /// Whether the change determines an attribute. If path data is also declared (`has_data`), setting `d` changes `style`, too.
+    /// Returns `true` if the change determines an attribute. If path data is also declared (`has_data`), setting `d` changes `style`, too.
     fn sets(&self, name: &str, has_data: bool) -> bool {
-        let styled = !self.properties.is_empty() || has_data && self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some());
-        self.attrs.iter().any(|a| a.0 == name) || name == "style" && styled
+        let styled =
+            !self.properties.is_empty() || (has_data && self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some()));
+        self.attrs.iter().any(|a| a.0 == name) || (name == "style" && styled)
     }
 }
 
@@ -67,7 +67,6 @@ impl<'a> Edits<'a> {
         attrs.push((name, None));
     }
 
-    /// Removes the attributes that satisfy a condition.
     pub(crate) fn remove_attrs(&mut self, e: ElementId, mut condition: impl FnMut(&Attr) -> bool) {
         let hits: Vec<_> =
             self.source.elements[e].attrs.iter().filter(|a| condition(a)).map(|a| a.range.clone()).collect();
@@ -100,8 +99,8 @@ impl<'a> Edits<'a> {
         self.change(e).after.push_str(text);
     }
 
-    /// Sets a presentation property where it takes effect: in the style attribute if that or a style sheet mentions the
-    /// property, else as an attribute.
+    /// Sets a presentation property so that it takes effect: in the style attribute if that or a style sheet declares the
+    /// property, or else as an attribute.
     pub(crate) fn set_property(&mut self, e: ElementId, name: &'static str, value: String) {
         let styled = self.source.attr(e, "style").is_some_and(|s| declared(&s, name).is_some());
         if styled || self.source.css_declares(name) {
@@ -144,7 +143,7 @@ impl<'a> Edits<'a> {
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
         }
-        // These come after new content, which may begin at the same position.
+        // Restored originals come after new content, which may begin at their position.
         patches.extend(kept);
         // The sort is stable, so insertions at one position keep their order. An insertion precedes a replacement that starts
         // at the same position, and an outer replacement precedes an inner one.
@@ -152,7 +151,7 @@ impl<'a> Edits<'a> {
         let text = &source.text;
         let mut out = String::with_capacity(text.len() * 2);
         let mut done = 0;
-        let mut places = Vec::new();
+        let mut starts = Vec::new();
         let mut elements = source.elements.iter().map(|e| e.range.start).enumerate().peekable();
         patches.push((text.len(), text.len(), String::new()));
         for (from, to, new) in patches {
@@ -160,13 +159,13 @@ impl<'a> Edits<'a> {
                 continue;
             }
             while let Some((e, start)) = elements.next_if(|(_, start)| *start < from) {
-                places.extend((start >= done).then(|| (e, out.len() + start - done)));
+                starts.extend((start >= done).then(|| (e, out.len() + start - done)));
             }
             out.push_str(&text[done..from]);
             out.push_str(&new);
             done = to;
         }
-        (out, places)
+        (out, starts)
     }
 }
 
@@ -186,7 +185,7 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     let beside = [(el.range.start, c.before), (el.range.end, c.after)].into_iter().filter(|(_, new)| !new.is_empty());
     out.extend(beside.map(|(at, new)| (at, at, new)));
     if let Some(new) = c.replaced {
-        // What is removed leaves no empty line.
+        // A removed element leaves no empty line.
         let indented = text[..el.range.start].trim_end_matches([' ', '\t']);
         let line = indented.len() - usize::from(indented.ends_with('\n'));
         let start = if new.is_empty() && line < indented.len() { line } else { el.range.start };

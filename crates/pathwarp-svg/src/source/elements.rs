@@ -12,7 +12,7 @@ pub(crate) const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 /// The namespace of the attributes that pathwarp stores in files.
 pub(crate) const PATHWARP: &str = "https://github.com/pathwarp/pathwarp/ns/1";
 
-/// Whether a URI is Sodipodi's namespace, whose host has changed over the years.
+/// Returns `true` if a URI is Sodipodi's namespace, whose host has changed over the years.
 pub(crate) fn is_sodipodi(uri: &str) -> bool {
     uri.ends_with("/DTD/sodipodi-0.dtd")
 }
@@ -33,7 +33,7 @@ pub(crate) enum Namespace {
 }
 
 impl Namespace {
-    pub(crate) fn of(uri: Option<&str>) -> Self {
+    pub(crate) fn from_uri(uri: Option<&str>) -> Self {
         match uri {
             None => Self::None,
             Some(XLINK) => Self::Xlink,
@@ -46,12 +46,12 @@ impl Namespace {
     }
 }
 
-/// Whether a tag is that of a basic shape or a `path`.
+/// Returns `true` for the tag of a basic shape or a `path`.
 pub(crate) fn is_shape(tag: &str) -> bool {
     matches!(tag, "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon")
 }
 
-/// Whether usvg keeps the ids of elements with this tag in its tree.
+/// Returns `true` if usvg keeps the ids of elements with this tag in its tree.
 pub(crate) fn is_tracked(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "g" | "a" | "use" | "text" | "image" | "svg" | "switch")
 }
@@ -105,7 +105,6 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// Finds an attribute without a namespace.
     pub(crate) fn find(&self, text: &str, name: &str) -> Option<&Attr> {
         self.attrs.iter().find(|a| a.namespace == Namespace::None && a.name(text) == name)
     }
@@ -148,7 +147,6 @@ const LIVE_SODIPODI: [&str; 23] = [
     "linespacing",
 ];
 
-/// Live attributes in Inkscape's namespace.
 const LIVE_INKSCAPE: [&str; 12] = [
     "flatsided",
     "rounded",
@@ -164,10 +162,10 @@ const LIVE_INKSCAPE: [&str; 12] = [
     "corner7",
 ];
 
-/// Prefixes of further ones in Inkscape's namespace: connectors, centres of rotation, and the positions of tiled clones.
+/// Prefixes of further live attributes in Inkscape's namespace: of connectors, centres of rotation, and positions of tiled clones.
 const LIVE_FAMILIES: [&str; 5] = ["connector-", "connection-", "transform-center-", "tiled-clone-", "tile-"];
 
-/// Whether an attribute is out of date once its element has been warped.
+/// Returns `true` if an attribute is out of date once its element has been warped.
 pub(crate) fn is_live(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
     match a.namespace {
@@ -179,7 +177,6 @@ pub(crate) fn is_live(a: &Attr, text: &str) -> bool {
     }
 }
 
-/// The elements of a document.
 pub(crate) struct Table {
     pub(crate) elements: Vec<Element>,
     /// Text of all style sheets.
@@ -190,7 +187,7 @@ pub(crate) struct Table {
 
 impl Table {
     /// Lists the elements of a document. Returns `None` if the root is not `<svg>`.
-    pub(crate) fn of(doc: &roxmltree::Document<'_>) -> Option<Self> {
+    pub(crate) fn read(doc: &roxmltree::Document<'_>) -> Option<Self> {
         let root = doc.root_element();
         if root.tag_name().name() != "svg" || !matches!(root.tag_name().namespace(), Some(SVG) | None) {
             return None;
@@ -257,7 +254,7 @@ fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>)
         let full = a.range_qname();
         attrs.push(Attr {
             name: full.end.checked_sub(a.name().len())?..full.end,
-            namespace: Namespace::of(a.namespace()),
+            namespace: Namespace::from_uri(a.namespace()),
             range: r,
             value: (raw != a.value()).then(|| a.value().to_owned()),
             value_range: v,
@@ -274,7 +271,8 @@ fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>)
         .and_then(|t| t.text())
         .map(|t| t.trim().to_owned())
         .filter(|t| !t.is_empty());
-    let tag = if svg { known(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
+    let tag =
+        if svg { common_tag(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
     Some(Element {
         parent,
         tag,
@@ -287,8 +285,8 @@ fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>)
     })
 }
 
-/// Interns common element names to avoid allocating them.
-fn known(tag: &str) -> Option<&'static str> {
+/// Interns common tags to avoid allocating them.
+fn common_tag(tag: &str) -> Option<&'static str> {
     Some(match tag {
         "path" => "path",
         "g" => "g",
@@ -372,7 +370,7 @@ pub(crate) fn declared<'a>(style: &'a str, name: &str) -> Option<&'a str> {
     declarations(style).filter(|(n, _)| n.eq_ignore_ascii_case(name)).last().map(|d| d.1)
 }
 
-/// Sets a property in a style attribute, in place of an existing declaration if there is one.
+/// The style attribute with a property set, in place of an existing declaration if there is one.
 pub(crate) fn with_declaration(style: &str, name: &str, value: &str) -> String {
     let mut out: Vec<String> = Vec::new();
     let mut set = false;

@@ -5,8 +5,9 @@ use usvg::fontdb::{self, Database, Family, ID, Source};
 
 pub(super) static BUNDLED: &[u8] = include_bytes!("../../fonts/NotoSans-Regular.subset.ttf");
 pub(super) const BUNDLED_FAMILY: &str = "Noto Sans";
-/// A heavy condensed face for lettering, Fira Sans Extra Condensed Black, and the family that it is found by.
+/// A heavy condensed face for lettering: Fira Sans Extra Condensed Black.
 pub(super) static DISPLAY: &[u8] = include_bytes!("../../fonts/FiraSansExtraCondensed-Black.subset.ttf");
+/// The family name of [`DISPLAY`].
 pub(super) const DISPLAY_FAMILY: &str = "display";
 
 /// Families for CSS's generic family names. `None` selects a common family of that kind.
@@ -30,7 +31,7 @@ pub fn bundled_font() -> &'static [u8] {
     BUNDLED
 }
 
-/// The weight, stretch and style that a drawing asks for.
+/// A weight, a stretch and a style.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub(super) weight: fontdb::Weight,
@@ -45,13 +46,11 @@ impl Look {
         Self { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style }
     }
 
-    /// That of a text.
     pub(super) fn of_text(font: &usvg::Font) -> Self {
         let weight = fontdb::Weight(font.weight());
         Self { weight, stretch: font.stretch().into(), style: font.style().into() }
     }
 
-    /// That of a face.
     pub(super) fn of_face(face: &fontdb::FaceInfo) -> Self {
         Self { weight: face.weight, stretch: face.stretch, style: face.style }
     }
@@ -61,8 +60,8 @@ impl Look {
         db.query(&fontdb::Query { families: &[Family::Name(family)], weight, stretch, style })
     }
 
-    /// Finds a face by a family name in different case, or by its full or PostScript name, as Illustrator writes. The look of a
-    /// face so named applies where the drawing specifies none.
+    /// Finds a face by a family name in different case, or by its full or PostScript name, which Illustrator writes. The look of such a
+    /// face applies where the drawing specifies none.
     pub(super) fn face_called(self, name: &str, db: &Database) -> Option<ID> {
         let family =
             |f: &fontdb::FaceInfo| f.families.iter().find(|(n, _)| n.to_lowercase() == name.to_lowercase()).cloned();
@@ -76,13 +75,13 @@ impl Look {
 
     /// Finds a face of a family whose letters are as wide as those of a missing one.
     pub(super) fn face_with_metrics_of(self, missing: &str, db: &Database) -> Option<ID> {
-        let (families, weight, style) = named(&METRIC_COMPATIBLE, missing)?;
+        let (families, weight, style) = substitutes(&METRIC_COMPATIBLE, missing)?;
         let look = self.or(weight, style, fontdb::Stretch::Normal);
         families.iter().find_map(|f| look.face_of(f, db))
     }
 
-    /// Finds the face that Chromium uses if no family is found or specified: its standard one or one with the same metrics, else
-    /// a sans-serif.
+    /// Finds the face that Chromium uses if no family is found or specified: its standard one or one with equal metrics, or else a
+    /// sans-serif.
     pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
         const STANDARD: &str = "Times New Roman";
         let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
@@ -91,10 +90,10 @@ impl Look {
         found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
     }
 
-    /// Finds a face of a family similar to one of the missing families, or of the same generic family.
+    /// Finds a face of a family similar to one of the missing families, or of its generic family.
     pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
         let alike = |name: &String| {
-            let (families, weight, style) = named(&ALIKE, name)?;
+            let (families, weight, style) = substitutes(&ALIKE, name)?;
             let look = self.or(weight, style, fontdb::Stretch::Normal);
             families.iter().find_map(|f| look.face_of(f, db))
         };
@@ -108,7 +107,7 @@ impl Look {
         missing.iter().find_map(|name| alike(name).or_else(|| of_kind(name)))
     }
 
-    /// Replaces each of weight, style and stretch that is normal.
+    /// The look with the given values in place of normal weight, style and stretch.
     fn or(self, weight: fontdb::Weight, style: fontdb::Style, stretch: fontdb::Stretch) -> Self {
         Self {
             weight: if self.weight == fontdb::Weight::NORMAL { weight } else { self.weight },
@@ -117,7 +116,7 @@ impl Look {
         }
     }
 
-    /// Finds a face of a generic family: the configured one, else a common one that is installed, else the bundled one.
+    /// Finds a face of a generic family: the configured one, or else a common installed one, or else the bundled one.
     pub(super) fn face_of_kind(self, kind: &FontFamily, set: &GenericFamilies, db: &Database) -> Option<ID> {
         let common: &[&str] = match kind {
             FontFamily::Serif => SERIFS,
@@ -138,7 +137,7 @@ impl Look {
     }
 }
 
-/// Fonts that browsers use for the generic families: the usual ones, then those with the same metrics, then those of Linux.
+/// Fonts that browsers use for `serif`: the usual one, then fonts with equal metrics, then Linux's. The lists below have this order, too.
 const SERIFS: &[&str] =
     &["Times New Roman", "Liberation Serif", "Tinos", "Times", "Nimbus Roman", "Noto Serif", "DejaVu Serif"];
 const SANS_SERIFS: &[&str] =
@@ -154,7 +153,7 @@ const MONOSPACED: &[&str] = &[
     "Courier New",
 ];
 
-/// Prefixes of family names, as [`plain`] writes them, by generic family (fontconfig's `45-latin.conf`, and others whose names tell).
+/// Prefixes of [`plain`] family names, by generic family (fontconfig's `45-latin.conf`, and others).
 const KINDS: [(FontFamily, &[&str]); 4] = [
     (
         FontFamily::Monospace,
@@ -252,7 +251,7 @@ const KINDS: [(FontFamily, &[&str]); 4] = [
 fn kind_of(missing: &str) -> Option<FontFamily> {
     let name = plain(missing);
     // A word anywhere in the name counts for more than a known prefix.
-    let said = [
+    let words = [
         ("mono", FontFamily::Monospace),
         ("typewriter", FontFamily::Monospace),
         ("gothic", FontFamily::SansSerif),
@@ -263,21 +262,21 @@ fn kind_of(missing: &str) -> Option<FontFamily> {
         ("script", FontFamily::Cursive),
         ("handwriting", FontFamily::Cursive),
     ];
-    let by_word = || said.iter().find(|(word, _)| name.contains(word)).map(|(_, kind)| kind.clone());
+    let by_word = || words.iter().find(|(word, _)| name.contains(word)).map(|(_, kind)| kind.clone());
     let known = KINDS.iter().find(|(_, names)| names.iter().any(|n| name.starts_with(n)));
     let specific = known.filter(|(_, names)| names.iter().any(|n| *n == name)).map(|k| k.0.clone());
     specific.or_else(by_word).or_else(|| known.map(|k| k.0.clone()))
 }
 
-/// Reduces a name to lowercase letters and digits, without `regular` at its end.
+/// A name reduced to lowercase letters and digits, without `regular` at its end.
 fn plain(name: &str) -> String {
     let mut letters: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     letters.truncate(letters.strip_suffix("regular").unwrap_or(&letters).len());
     letters
 }
 
-/// Families with the same widths as others (fontconfig's `30-metric-aliases.conf`), by plain name. Chromium substitutes them before it
-/// tries the next family of a list.
+/// Families with equal widths (fontconfig's `30-metric-aliases.conf`), by plain name. Chromium substitutes them before it tries the next
+/// family of a list.
 const METRIC_COMPATIBLE: [(&str, &[&str]); 13] = [
     ("arial", &["Liberation Sans", "Arimo", "Helvetica", "Nimbus Sans"]),
     ("helvetica", &["Nimbus Sans", "Arial", "Liberation Sans", "Arimo"]),
@@ -294,7 +293,7 @@ const METRIC_COMPATIBLE: [(&str, &[&str]); 13] = [
     ("itcavantgardegothic", &["URW Gothic", "TeX Gyre Adventor"]),
 ];
 
-/// Families that look like others, by plain name. They stand in only if no other family of the list is found.
+/// Similar families, by plain name. They are substituted only if no other family of the list is found.
 const ALIKE: [(&str, &[&str]); 4] = [
     ("verdana", &["DejaVu Sans", "Bitstream Vera Sans"]),
     ("segoeui", &["Selawik", "Open Sans"]),
@@ -302,8 +301,8 @@ const ALIKE: [(&str, &[&str]); 4] = [
     ("menlo", &["DejaVu Sans Mono"]),
 ];
 
-/// Looks up the substitutes of a missing family, with the weight and style that its name, perhaps a PostScript name, implies.
-fn named(
+/// The substitutes of a missing family, with the weight and style that its name, perhaps a PostScript name, implies.
+fn substitutes(
     table: &[(&str, &'static [&'static str])],
     missing: &str,
 ) -> Option<(&'static [&'static str], fontdb::Weight, fontdb::Style)> {
@@ -357,7 +356,9 @@ mod tests {
     #[test]
     fn names_of_fonts() {
         assert_eq!(plain("Noto Sans-Regular"), "notosans");
-        let of = |name| named(&METRIC_COMPATIBLE, name).map(|(families, weight, style)| (families[0], weight.0, style));
+        let of = |name| {
+            substitutes(&METRIC_COMPATIBLE, name).map(|(families, weight, style)| (families[0], weight.0, style))
+        };
         assert_eq!(of("Arial"), Some(("Liberation Sans", 400, fontdb::Style::Normal)));
         assert_eq!(of("Helvetica-BoldOblique"), Some(("Nimbus Sans", 700, fontdb::Style::Italic)));
         assert_eq!(of("TimesNewRomanPS-ItalicMT"), Some(("Liberation Serif", 400, fontdb::Style::Italic)));

@@ -1,4 +1,4 @@
-//! Finds fonts for letters that the fonts of a text lack, as fontconfig and Chromium order them.
+//! Finds fonts for letters that the fonts of a text lack, in the order of fontconfig and Chromium.
 
 use super::faces::{BUNDLED, DISPLAY, Look};
 use pathwarp_text::Writing;
@@ -19,19 +19,19 @@ pub(super) struct Wanted<'a> {
     pub(super) look: Look,
 }
 
-/// Finds the font to set letters in, none of `used`: one of the families for everything, then one for the writing, then any, and within a
-/// family the face that looks most like the text.
+/// Finds a font for letters that is not used yet: of a general family, or else of a family for the writing, or else of any; and of a
+/// family, the face that looks most like the text.
 pub(super) fn fallback(wanted: &Wanted<'_>, used: &[ID], db: &Database) -> Option<ID> {
     let look = wanted.look;
     let off = |f: &FaceInfo| {
         (f.style != look.style, f.stretch != look.stretch, f.weight.0.abs_diff(look.weight.0), f.weight.0)
     };
     let (script, region) = (wanted.writing.name(), region(wanted.language));
-    let own = [format!("Noto Sans {script}"), format!("Noto Sans CJK {region}"), format!("Noto Sans {region}")];
+    let specific = [format!("Noto Sans {script}"), format!("Noto Sans CJK {region}"), format!("Noto Sans {region}")];
     let emoji = wanted.writing == Writing::Emoji;
-    let ranked = |f: &FaceInfo| if is_bundled(f) { LAST } else { rank(family(f), &own, emoji) };
+    let ranked = |f: &FaceInfo| if is_bundled(f) { LAST } else { rank(family(f), &specific, emoji) };
     let mut all: Vec<&FaceInfo> = db.faces().filter(|f| !used.contains(&f.id)).collect();
-    // The sort is stable, so the first of several equals wins.
+    // The sort is stable, so the first of several equal faces wins.
     all.sort_by(|a, b| (ranked(a), family(a), off(a)).cmp(&(ranked(b), family(b), off(b))));
     all.into_iter().map(|f| f.id).find(|id| wanted.letters.chars().all(|c| has_letter(*id, c, db)))
 }
@@ -43,26 +43,26 @@ fn family(face: &FaceInfo) -> &str {
 /// The rank of the bundled fonts, after all others.
 const LAST: usize = 100;
 
-/// The place of a family among those for a writing, which has `own` families (fontconfig's `60-latin.conf`; names of the Noto families).
-fn rank(family: &str, own: &[String; 3], emoji: bool) -> usize {
+/// The rank of a family for a writing with `specific` families (fontconfig's `60-latin.conf`; names of the Noto families).
+fn rank(family: &str, specific: &[String; 3], emoji: bool) -> usize {
     const GENERAL: [&str; 7] =
         ["Noto Sans", "DejaVu Sans", "Verdana", "Arial", "Liberation Sans", "Helvetica", "Tahoma"];
     let is_kind = |words: &[&str]| words.iter().any(|w| family.contains(w));
     if emoji && family.contains("Emoji") {
         return 0;
     }
-    let known = GENERAL.into_iter().chain(own.iter().map(String::as_str)).position(|f| f == family);
+    let known = GENERAL.into_iter().chain(specific.iter().map(String::as_str)).position(|f| f == family);
     known.map_or_else(
         || match () {
             () if is_kind(&["Mono", "Math", "Symbols", "Serif", "UI"]) => 60,
             () if family.starts_with("Noto Sans") => 40,
             () => 50,
         },
-        |place| 1 + place,
+        |position| 1 + position,
     )
 }
 
-/// The suffix of Noto's families for the Chinese characters of a language. Without a language, fontconfig takes the Japanese ones.
+/// The suffix of Noto's families for the Chinese characters of a language; without a language, Japanese, as in fontconfig.
 fn region(language: &str) -> &'static str {
     let language = language.to_ascii_lowercase();
     let has = |part: &str| language.split('-').any(|p| p == part);
@@ -98,7 +98,7 @@ fn has_letter(face: ID, letter: char, db: &Database) -> bool {
     }
 }
 
-/// Caches the letters that `read` finds in a font file. A drawing may look for thousands of letters in all fonts, and opening a file
+/// The letters that `read` finds in a font file, cached. A drawing may look for thousands of letters in all fonts, and opening a file
 /// takes longer than the search.
 fn letters_of(path: &Path, index: u32, read: impl FnOnce() -> Letters) -> Arc<Letters> {
     static KNOWN: Mutex<BTreeMap<(PathBuf, u32), Arc<Letters>>> = Mutex::new(BTreeMap::new());

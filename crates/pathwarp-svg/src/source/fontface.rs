@@ -21,10 +21,10 @@ struct Face {
     data: Vec<u8>,
 }
 
-/// Adds a drawing's embedded fonts. They replace other fonts of the same name.
+/// Adds a drawing's embedded fonts. They replace other fonts with their names.
 ///
 /// # Errors
-/// The fonts exceed the budget, unpacked or with the letters of the text.
+/// [`Exceeded`] if the fonts exceed the budget, unpacked or with the letters of the text.
 pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) -> Result<Arc<Database>, Exceeded> {
     let faces = faces(xml.input_text(), budget)?;
     if faces.is_empty() {
@@ -86,15 +86,15 @@ fn faces(text: &str, budget: &Budget) -> Result<Vec<Face>, Exceeded> {
 /// Reads the font of a rule. Returns `None` if it has none in a supported format.
 fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
     let declarations: Vec<_> = declarations(block).collect();
-    let of = |name: &str| declarations.iter().rfind(|d| d.0.eq_ignore_ascii_case(name)).map(|d| d.1);
-    let (Some(family), Some(src)) = (of("font-family"), of("src")) else { return Ok(None) };
+    let value = |name: &str| declarations.iter().rfind(|d| d.0.eq_ignore_ascii_case(name)).map(|d| d.1);
+    let (Some(family), Some(src)) = (value("font-family"), value("src")) else { return Ok(None) };
     let family = family.trim_matches(['"', '\'']).to_owned();
-    let style = of("font-style").and_then(|v| match v {
+    let style = value("font-style").and_then(|v| match v {
         "normal" => Some(Style::Normal),
         "italic" => Some(Style::Italic),
         v => v.starts_with("oblique").then_some(Style::Oblique),
     });
-    let weight = of("font-weight").and_then(|v| match v {
+    let weight = value("font-weight").and_then(|v| match v {
         "normal" => Some(Weight::NORMAL),
         "bold" => Some(Weight::BOLD),
         v => v.parse().ok().map(Weight),
@@ -108,7 +108,7 @@ fn face(block: &str, budget: &Budget) -> Result<Option<Face>, Exceeded> {
     Ok(None)
 }
 
-/// Decodes the font in a `data:` URL, given from after the colon, to an sfnt file.
+/// Decodes the font in a `data:` URL, given without the scheme, to an sfnt file.
 fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
     let Some(data) = decoded(url) else { return Ok(None) };
     match data.get(..4) {
@@ -138,8 +138,9 @@ fn decoded(url: &str) -> Option<Vec<u8>> {
     base64::engine::general_purpose::STANDARD.decode(encoded).ok()
 }
 
-/// Sizes in bytes of a WOFF's header and of an entry in its table directory.
+/// Size in bytes of a WOFF's header.
 const HEADER: usize = 44;
+/// Size in bytes of an entry in a WOFF's table directory.
 const ENTRY: usize = 20;
 
 /// Reads a 32-bit number of a WOFF.
@@ -147,12 +148,11 @@ fn long(woff: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(woff.get(at..at.checked_add(4)?)?.try_into().ok()?))
 }
 
-/// The number of tables of a WOFF.
 fn table_count(woff: &[u8]) -> Option<u16> {
     Some(u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?))
 }
 
-/// The unpacked size of all tables, as the directory states it.
+/// The unpacked size of all tables, according to the directory.
 fn unpacked_size(woff: &[u8]) -> Option<u64> {
     let count = usize::from(table_count(woff)?);
     (0..count).map(|i| long(woff, HEADER + i * ENTRY + 12).map(u64::from)).sum()

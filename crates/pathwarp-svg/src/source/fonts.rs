@@ -1,4 +1,4 @@
-//! Fonts for text: installed ones on request, given files, and a bundled fallback.
+//! Finds fonts for text: among installed ones on request, given files, and a bundled fallback.
 
 use super::faces::{BUNDLED, BUNDLED_FAMILY, DISPLAY, DISPLAY_FAMILY, GenericFamilies, Look, asked_for, of_interface};
 use super::fallback::{Wanted, fallback};
@@ -38,8 +38,8 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
         return base.clone();
     }
     let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((of_system, of, db)) = &*last
-        && (*of_system, of.as_slice()) == (system, paths)
+    if let Some((known_system, known_paths, db)) = &*last
+        && (*known_system, known_paths.as_slice()) == (system, paths)
     {
         return db.clone();
     }
@@ -59,7 +59,7 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
 
 /// Loads a font file.
 pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
-    /// Far more than the collections of any maker.
+    /// Limit on the memory for listing a collection, far above that of real ones.
     const MAX: u64 = 32_000_000;
     let unreadable = |e: std::io::Error| format!("cannot be read: {e}");
     let is_collection = |file: &Path| -> std::io::Result<bool> {
@@ -111,14 +111,14 @@ pub(super) struct Chooser {
     missing: Missing,
     guard: FontGuard,
     held: Held,
-    /// The letters that no font has but those used, since there may be hundreds of fonts to search.
+    /// Letters that are in no other font than the ones used so far, since a search may take hundreds of fonts.
     absent: Mutex<HashSet<(String, Vec<ID>)>>,
 }
 
-/// The start of the names by which pieces of text name their fonts, before the number of the piece.
+/// The start of the family names of pieces of text, before the number of the piece.
 pub(super) const PIECE: &str = "pathwarp-piece-";
 
-/// The fonts of a piece of text: the one whose heights count, and the one that its letters come from.
+/// The fonts of a piece of text: first for the heights, then for the letters.
 pub(super) type PieceFonts = (ID, ID);
 
 impl Chooser {
@@ -126,11 +126,11 @@ impl Chooser {
         Arc::new(Self { generic, missing, guard, held: Held::default(), absent: Mutex::default() })
     }
 
-    /// Finds fonts as usvg's own resolver does, but always returns one, and records missing families. `pieces` are the fonts that texts
-    /// name by [`PIECE`].
+    /// A font resolver that, unlike usvg's, always finds a font, and records missing families. `pieces` are the fonts for the families that
+    /// begin with [`PIECE`].
     pub(super) fn resolver(self: &Arc<Self>, pieces: Vec<PieceFonts>) -> FontResolver<'static> {
         let (chooser, other) = (self.clone(), self.clone());
-        let of_piece: HashMap<ID, ID> = pieces.iter().copied().collect();
+        let piece_fonts: HashMap<ID, ID> = pieces.iter().copied().collect();
         FontResolver {
             select_font: Box::new(move |font, db| {
                 let named = match font.families() {
@@ -140,7 +140,7 @@ impl Chooser {
                 named.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
             }),
             select_fallback: Box::new(move |c, used, db| {
-                if let Some(face) = used.first().and_then(|first| of_piece.get(first)) {
+                if let Some(face) = used.first().and_then(|first| piece_fonts.get(first)) {
                     return (!used.contains(face)).then_some(*face);
                 }
                 let letter = c.to_string();
@@ -157,8 +157,8 @@ impl Chooser {
         self.admitted(face, db)
     }
 
-    /// The fonts that a text names, in its order, or the one that stands in for them; then the one that Chromium takes without a name.
-    pub(super) fn named(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Vec<ID> {
+    /// The fonts for a text: its first font, the others that it names, in order, and Chromium's standard font.
+    pub(super) fn candidates(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Vec<ID> {
         let look = Look::of_text(font);
         let found = font.families().iter().filter_map(|f| face_of_family(f, look, &self.generic, db));
         let found: Vec<ID> = found.chain(look.standard_face(&self.generic, db)).collect();
@@ -169,7 +169,7 @@ impl Chooser {
         all
     }
 
-    /// The font for letters that the fonts `used` so far lack.
+    /// The font for letters that the fonts used so far lack.
     pub(super) fn fallback(&self, wanted: &Wanted<'_>, used: &[ID], db: &mut Arc<Database>) -> Option<ID> {
         let key = (wanted.letters.to_owned(), used.to_vec());
         let mut absent = self.absent.lock().unwrap_or_else(PoisonError::into_inner);
@@ -191,11 +191,10 @@ impl Chooser {
     }
 }
 
-/// Bytes of a font.
 pub(super) type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
-/// Font files held in memory, since usvg would read the file up to four times for each letter. Each has its faces in the database
-/// used last; pictures have databases besides the drawing's.
+/// Font files held in memory, since usvg would read a file up to four times for each letter. Each has its faces in the database
+/// used last, as pictures have other databases than the drawing.
 #[derive(Default)]
 struct Held(Mutex<HashMap<PathBuf, (Bytes, Vec<ID>)>>);
 
@@ -210,18 +209,18 @@ impl Held {
             files.insert(path.clone(), (Arc::new(data), Vec::new()));
         }
         let Some((data, faces)) = files.get_mut(&path) else { return id };
-        let of_data = |db: &Database, id: ID| match db.face(id) {
+        let is_held = |db: &Database, id: ID| match db.face(id) {
             Some(f) if f.index == index => matches!(&f.source, Source::Binary(d) if Arc::ptr_eq(d, data)),
             _ => false,
         };
-        if !faces.iter().any(|f| of_data(db, *f)) {
+        if !faces.iter().any(|f| is_held(db, *f)) {
             *faces = Arc::make_mut(db).load_font_source(Source::Binary(data.clone())).to_vec();
         }
-        faces.iter().copied().find(|f| of_data(db, *f)).unwrap_or(id)
+        faces.iter().copied().find(|f| is_held(db, *f)).unwrap_or(id)
     }
 }
 
-/// Placeholder for the family of text that specifies none.
+/// Family of text that specifies none.
 pub(super) const NO_FAMILY: &str = "a family";
 
 /// Finds the face for a font of the drawing.
@@ -248,7 +247,7 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
     last.or_else(|| look.face_of(BUNDLED_FAMILY, db)).or_else(|| db.faces().next().map(|f| f.id))
 }
 
-/// The face of a family, by any of its names, or of a generic family.
+/// The face of a family, given by any of its names or as a generic family.
 fn face_of_family(family: &FontFamily, look: Look, generic: &GenericFamilies, db: &Database) -> Option<ID> {
     match family {
         FontFamily::Named(name) => match of_interface(name) {
@@ -272,7 +271,7 @@ pub struct FontFile {
 /// a generic family of CSS. `read` determines the available fonts.
 ///
 /// # Errors
-/// Returns [`Error::Usage`] if there is no such family, with suggestions of similar names.
+/// [`Error::Usage`] with similar names if there is no such family.
 pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) -> Result<FontFile, Error> {
     let db = database(read.system_fonts, &read.fonts);
     let look = Look::new(weight, italic);
@@ -294,7 +293,7 @@ pub fn find_font(family: &str, weight: u16, italic: bool, read: &ReadOptions) ->
     })
 }
 
-/// The families of the fonts there are, in alphabetical order.
+/// The families of the available fonts, in alphabetical order.
 #[must_use]
 pub fn families(read: &ReadOptions) -> Vec<String> {
     let db = database(read.system_fonts, &read.fonts);
@@ -302,7 +301,7 @@ pub fn families(read: &ReadOptions) -> Vec<String> {
     names.filter(|name| !name.starts_with('.')).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-/// The fonts of a family: weight, and `true` for italic and oblique ones; sorted, without repetitions.
+/// The fonts of a family: their weight, and `true` for italic and oblique fonts; sorted, without repetitions.
 #[must_use]
 pub fn family_styles(family: &str, read: &ReadOptions) -> Vec<(u16, bool)> {
     let db = database(read.system_fonts, &read.fonts);
@@ -314,7 +313,7 @@ pub fn family_styles(family: &str, read: &ReadOptions) -> Vec<(u16, bool)> {
 /// Checks that every file is a font, and that every folder holds one.
 ///
 /// # Errors
-/// Returns [`Error::Input`] with the name of the first that does not.
+/// [`Error::Input`] with the name of the first file that is none, or folder that holds none.
 pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
     for path in paths {
         let name = path.display().to_string();
@@ -333,7 +332,7 @@ pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
 
 /// Lists families with names similar to `family`: each word of `family` resembles a word of the name.
 fn similar(family: &str, db: &Database) -> String {
-    /// Jaro–Winkler similarity (1 is equal) of words that differ by a letter or two; unrelated words rarely reach it.
+    /// Least Jaro–Winkler similarity (1 is equal) of similar words, which differ by a letter or two. Unrelated words rarely reach it.
     const ALIKE: f64 = 0.85;
     const MAX_SUGGESTIONS: usize = 6;
     let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
@@ -391,12 +390,12 @@ impl FontGuard {
         Self { options: options.clone(), rejected: rejected.clone(), known: Mutex::default() }
     }
 
-    /// Marks a face as good that was checked under another id.
+    /// Marks a face that was checked under another id as good.
     fn trust(&self, face: ID) {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).insert(face, true);
     }
 
-    /// Whether a face may be used. If not, records why as the drawing's error.
+    /// Returns `true` if a face may be used; otherwise records the reason as the drawing's error.
     fn admits(&self, face: ID, db: &Database) -> bool {
         if let Some(known) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(&face) {
             return *known;
@@ -455,11 +454,11 @@ const THROUGH: f64 = 1.0 / 3.0;
 /// Shift of subscripts and superscripts, as a fraction of the line's height.
 const SHIFT: f64 = 0.5;
 
-/// Sets these metrics in a font file to those of browsers, for the face at `index`.
+/// Sets the metrics of lines, subscripts and superscripts in a font file to the ones of browsers, for the face at `index`.
 pub(super) fn adjust(data: &mut [u8], index: u32) {
     for (at, value) in changes(data, index).unwrap_or_default() {
-        if let Some(place) = data.get_mut(at..at + 2) {
-            place.copy_from_slice(&value.to_be_bytes());
+        if let Some(bytes) = data.get_mut(at..at + 2) {
+            bytes.copy_from_slice(&value.to_be_bytes());
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Loads images of a drawing: embedded and linked ones, bitmaps and drawings. All share the budget of the drawing, and links are
-//! followed only where the user allows it.
+//! Loads the images of a drawing: bitmaps and drawings, embedded and linked. All share the budget of the drawing, and links are followed
+//! only if the user allows it.
 
 use super::check;
-use super::links::{Place, allowed, linked};
+use super::links::{Target, read_linked, target};
 use super::read::{self, ReadOptions};
 use super::text::plain;
 use base64::Engine as _;
@@ -15,11 +15,10 @@ use std::collections::BTreeSet;
 use std::io::{self, Read as _};
 use std::sync::{Arc, Mutex};
 
-/// Scheme of embedded data.
 const DATA: &str = "data:";
 const BASE64: &str = ";base64,";
 
-/// Bytes of a decoded pixel. Only the part of a file that exceeds its pixels is charged as bytes.
+/// Bytes of a decoded pixel. A file is charged only for its bytes in excess of its decoded pixels.
 const PIXEL: f64 = 4.0;
 
 /// Names that were requested and not found.
@@ -35,16 +34,16 @@ pub(super) struct Unread {
 
 /// Media type of data whose format is detected from its content.
 pub(super) const ANY: &str = "text/plain";
-/// The same for embedded data, which has to declare its type if it is a drawing.
+/// Media type of embedded data whose format is detected. It is no drawing, which would have to declare its type.
 const EMBEDDED: &str = "";
 
-/// A transparent pixel in place of a picture that was not read, so that the element itself is still warped.
+/// A transparent pixel in place of a picture that was not read, so that its element is still warped.
 const NOTHING: &[u8] =
     b"\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00\x00\x01\x08\x06\x00\x00\
     \x00\x1f\x15\xc4\x89\x00\x00\x00\x0b\x49\x44\x41\x54\x78\xda\x63\x60\x00\x02\x00\x00\x05\x00\x01\xe9\xfa\xdc\xd8\
     \x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82";
 
-/// Whether an image is the placeholder for one that was not read.
+/// Returns `true` if an image is the placeholder for one that was not read.
 pub(crate) fn is_unread(image: &usvg::ImageKind) -> bool {
     matches!(image, usvg::ImageKind::PNG(data) if data.as_slice() == NOTHING)
 }
@@ -56,7 +55,7 @@ fn nothing() -> usvg::ImageKind {
 /// The error of the first image that exceeds the limits.
 pub(super) type Rejected = Arc<Mutex<Option<Error>>>;
 
-/// Resolves images, within the limits of the drawing itself.
+/// A resolver of images within the limits of the drawing.
 pub(super) fn resolver<'a>(
     name: &'a str,
     options: &'a ReadOptions,
@@ -73,7 +72,7 @@ pub(super) fn resolver<'a>(
     let decode = usvg::ImageHrefResolver::default_data_resolver();
     let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
         match checked(mime, data, &format!("{name}: {what}"), options) {
-            // As in browsers, the content decides about the format.
+            // As in browsers, the content determines the format.
             Ok(data) if mime == SVG => decode(mime, data?, usvg),
             Ok(data) => {
                 let data = data?;
@@ -101,11 +100,11 @@ pub(super) fn resolver<'a>(
             })
         }),
         resolve_string: Box::new(move |link, usvg| {
-            let found = allowed(link, options);
-            if matches!(found, Place::Outside) {
+            let found = target(link, options);
+            if matches!(found, Target::Outside) {
                 record(&unread_files.outside, link.to_owned());
             }
-            let data = if let Place::Inside(file) = found { linked(&file, options) } else { None };
+            let data = if let Target::File(file) = found { read_linked(&file, options) } else { None };
             let image = data.and_then(|data| load_file(ANY, Arc::new(data), link, usvg));
             image.or_else(|| {
                 record(&unread_files.images, link.to_owned());
@@ -118,7 +117,7 @@ pub(super) fn resolver<'a>(
 /// Media type of drawings.
 pub(super) const SVG: &str = "image/svg+xml";
 
-/// Charges an image to the budget, and returns it. A drawing is resolved for usvg first. Returns `None` for damaged images.
+/// Charges an image to the budget, and returns it; a drawing is resolved into plain SVG for usvg. Returns `None` for damaged images.
 pub(super) fn checked(
     mime: &str,
     data: Arc<Vec<u8>>,
@@ -152,7 +151,7 @@ pub(super) fn checked(
         Err(_) => return Ok(None),
     };
     let checked = plain(text, place, budget, None, &|_| None, |_, doc, _| {
-        Ok(check::drawing(doc, place, budget).map(|_| Arc::new(doc.input_text().as_bytes().to_vec())))
+        Ok(check::check_drawing(doc, place, budget).map(|_| Arc::new(doc.input_text().as_bytes().to_vec())))
     });
     match checked {
         Ok(checked) => checked.map(Some),
@@ -161,47 +160,47 @@ pub(super) fn checked(
     }
 }
 
-/// Whether a PNG does not begin with its header, so that a size would be read from other bytes.
+/// Returns `true` if a PNG does not begin with its header, so that a size would be read from other bytes.
 fn is_png_without_header(data: &[u8]) -> bool {
     data.starts_with(b"\x89PNG") && data.get(12..16) != Some(b"IHDR")
 }
 
-/// Reads the drawing that an image links to. As a file it has no type, so its name decides. None of its own links are followed.
+/// Reads the drawing to which an image links. As a file has no type, its name decides. Links in it are not followed.
 pub(crate) fn linked_drawing(link: &str, options: &ReadOptions) -> Option<String> {
-    let Place::Inside(file) = allowed(link, options) else { return None };
+    let Target::File(file) = target(link, options) else { return None };
     file.extension().filter(|extension| extension.eq_ignore_ascii_case("svg"))?;
-    read::decoded(linked(&file, options)?.into()).ok()
+    read::decoded(read_linked(&file, options)?.into()).ok()
 }
 
-/// Embeds data in a link.
+/// A link that embeds data.
 pub(super) fn embedded(mime: &str, data: &[u8]) -> String {
     format!("{DATA}{mime}{BASE64}{}", STANDARD.encode(data))
 }
 
-/// Whether a link of the source is the one that was recorded. Embedded data may contain spaces.
-pub(crate) fn is_same_link(own: &str, recorded: &str) -> bool {
-    if own == recorded {
+/// Returns `true` if a link of the source is the one that was recorded. Embedded data may contain spaces.
+pub(crate) fn is_same_link(link: &str, recorded: &str) -> bool {
+    if link == recorded {
         return true;
     }
     let Some((head, _)) = recorded.split_once(BASE64).filter(|_| recorded.starts_with(DATA)) else { return false };
-    match own.contains(BASE64) {
-        true => own.split_ascii_whitespace().collect::<String>() == recorded,
-        // Other encodings have many forms, so compare only the type.
-        false => own.starts_with(head) && !head.ends_with(SVG),
+    match link.contains(BASE64) {
+        true => link.split_ascii_whitespace().collect::<String>() == recorded,
+        // Other encodings have many forms, so only the type is compared.
+        false => link.starts_with(head) && !head.ends_with(SVG),
     }
 }
 
-/// Shortens a link for messages: embedded data to its type.
+/// A link shortened for messages: embedded data to its type.
 pub(crate) fn shown(link: &str) -> &str {
     link.split_once(BASE64).filter(|_| link.starts_with(DATA)).map_or(link, |(head, _)| head)
 }
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
-/// Bytes of a chunk's length and name, and of its checksum.
+/// Bytes of a chunk's length and name.
 const HEAD: usize = 8;
+/// Bytes of a chunk's checksum.
 const CHECKSUM: usize = 4;
 
-/// A chunk of a PNG.
 struct Chunk<'a> {
     name: [u8; 4],
     content: &'a [u8],
@@ -243,16 +242,16 @@ pub(super) fn unpacked_profile(png: &[u8], max: u64) -> u64 {
     counted.0
 }
 
-/// Whether a PNG is damaged or lacks pixels, or the first frame of a GIF is larger than its page. The renderer silently shows
+/// Returns `true` if a PNG is damaged or lacks pixels, or the first frame of a GIF is larger than its page. The renderer silently shows
 /// nothing of these. Takes time in proportion to the number of pixels that the header states.
 pub(super) fn is_unreadable(data: &[u8]) -> bool {
     let is_damaged = || chunks(data).any(|c| matches!(&c.name, b"IHDR" | b"PLTE" | b"IDAT") && !c.is_intact());
     let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_pixels(data, needed) < needed);
-    data.starts_with(SIGNATURE) && (is_damaged() || cuts_colors(data) || lacks_pixels())
+    (data.starts_with(SIGNATURE) && (is_damaged() || cuts_colors(data) || lacks_pixels()))
         || is_beyond_page(data).unwrap_or(false)
 }
 
-/// Whether the palette that the pixels refer to ends within a colour, which makes the decoder (png 0.18) panic.
+/// Returns `true` if the palette of an indexed PNG ends within a colour, which makes the decoder (png 0.18) panic.
 fn cuts_colors(png: &[u8]) -> bool {
     let find = |name: &[u8; 4]| chunks(png).find(|c| &c.name == name).map(|c| c.content);
     let is_indexed = find(b"IHDR").is_some_and(|header| header.get(9) == Some(&3));
@@ -284,7 +283,7 @@ fn unpacked_pixels(png: &[u8], max: u64) -> u64 {
     counted.0
 }
 
-/// Whether the first frame of a GIF is larger than its page. `None` for other files, and if there is no frame.
+/// Returns `true` if the first frame of a GIF is larger than its page; `None` for other files, and if there is no frame.
 fn is_beyond_page(gif: &[u8]) -> Option<bool> {
     let size = |at: &[u8]| Some([0, 2].map(|i| u16::from_le_bytes([at[i], at[i + 1]]))).filter(|_| at.len() >= 4);
     let (head, mut rest) = gif.strip_prefix(b"GIF8")?.get(2..)?.split_at_checked(7)?;

@@ -1,4 +1,4 @@
-//! Links of a drawing to files: which are followed and where they lead, and how they are rewritten for another place.
+//! Follows the links of a drawing to files, as far as the user allows it, and rewrites them for drawings in another folder.
 
 use super::images::{self, ANY, SVG, embedded};
 use super::read::{self, GZIP, ReadOptions};
@@ -14,50 +14,51 @@ use std::sync::Arc;
 use usvg::roxmltree;
 
 /// Target of a link.
-pub(super) enum Place {
-    Inside(PathBuf),
+pub(super) enum Target {
+    /// A file that may be read.
+    File(PathBuf),
     /// A file that must not be read.
     Outside,
     Nowhere,
 }
 
-/// Finds the file that a link names: as browsers read it, or else a file of just this name. Without a base folder, links are not followed at
-/// all.
-pub(super) fn allowed(link: &str, options: &ReadOptions) -> Place {
-    let Some(base) = &options.base_dir else { return Place::Nowhere };
-    let plain = file_of(link);
-    match found(base, Path::new(&plain), options.external) {
-        Place::Nowhere if plain != link => found(base, Path::new(link), options.external),
-        place => place,
+/// The file that a link names: decoded as in browsers, or else literally. Without a base folder, links are not followed at all.
+pub(super) fn target(link: &str, options: &ReadOptions) -> Target {
+    let Some(base) = &options.base_dir else { return Target::Nowhere };
+    let plain = path_in_link(link);
+    match find_file(base, Path::new(&plain), options.external) {
+        Target::Nowhere if plain != link => find_file(base, Path::new(link), options.external),
+        target => target,
     }
 }
 
-/// After symbolic links are resolved, a file must be in the base folder or below.
-fn found(base: &Path, link: &Path, external: bool) -> Place {
+/// The file at a path in a link. Unless `external` files are allowed, it must be in the base folder or below after symbolic links are
+/// resolved.
+fn find_file(base: &Path, link: &Path, external: bool) -> Target {
     let file = base.join(link);
     if external {
-        return if file.exists() { Place::Inside(file) } else { Place::Nowhere };
+        return if file.exists() { Target::File(file) } else { Target::Nowhere };
     }
-    // Refuse a path that leads elsewhere without touching the file system.
+    // A path that leads elsewhere is refused without touching the file system.
     if link.has_root() || link.is_absolute() || leaves(link) {
-        return Place::Outside;
+        return Target::Outside;
     }
     match (file.canonicalize(), base.canonicalize()) {
-        (Ok(file), Ok(base)) if file.starts_with(&base) => Place::Inside(file),
-        (Ok(_), Ok(_)) => Place::Outside,
-        // Do not reveal whether the target of a symbolic link exists.
-        _ if is_through_symlink(base, link) => Place::Outside,
-        _ => Place::Nowhere,
+        (Ok(file), Ok(base)) if file.starts_with(&base) => Target::File(file),
+        (Ok(_), Ok(_)) => Target::Outside,
+        // It is not revealed whether the target of a symbolic link exists.
+        _ if is_through_symlink(base, link) => Target::Outside,
+        _ => Target::Nowhere,
     }
 }
 
 /// Returns `true` if a relative link passes through a symbolic link.
 fn is_through_symlink(base: &Path, link: &Path) -> bool {
-    let mut places = link.components().scan(base.to_owned(), |at, c| {
-        at.push(c);
-        Some(at.symlink_metadata())
+    let mut steps = link.components().scan(base.to_owned(), |path, c| {
+        path.push(c);
+        Some(path.symlink_metadata())
     });
-    places.any(|m| m.is_ok_and(|m| m.is_symlink()))
+    steps.any(|m| m.is_ok_and(|m| m.is_symlink()))
 }
 
 /// Returns `true` if a relative link goes above the folder where it starts.
@@ -74,7 +75,7 @@ fn leaves(link: &Path) -> bool {
 }
 
 /// The path in a link: without query and fragment, without the scheme `file`, and with `%20` as a space (RFC 3986, 2.1 and 3.4).
-fn file_of(link: &str) -> String {
+fn path_in_link(link: &str) -> String {
     let link = link.trim();
     let path = link.split(['?', '#']).next().unwrap_or_default();
     let is_file = path.get(..7).is_some_and(|scheme| scheme.eq_ignore_ascii_case("file://"));
@@ -82,8 +83,8 @@ fn file_of(link: &str) -> String {
     percent_decoded(path).into_owned()
 }
 
-/// Reads a linked image. A link may name anything in the file system, so only plain files up to a limit are read.
-pub(super) fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
+/// Reads a linked image. A link may name any object in the file system, so only plain files up to a limit are read.
+pub(super) fn read_linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     let size = std::fs::metadata(file).ok().filter(Metadata::is_file)?.len();
     // Larger files are recorded as unread.
     options.budget.check(Limit::Memory, size as f64).ok()?;
@@ -92,21 +93,21 @@ pub(super) fn linked(file: &Path, options: &ReadOptions) -> Option<Vec<u8>> {
     Some(data)
 }
 
-/// How a drawing's links to files are rewritten for another place.
+/// Changes to a drawing's links to files for a drawing in another folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Relinking {
-    /// The beginning that relative links get, such as `../art/`.
+    /// The path put before relative links, such as `../art/`.
     pub way: String,
-    /// Put pictures into the drawing, as far as they may be read and can be.
+    /// `true` if pictures that may and can be read are embedded in the drawing.
     pub embed: bool,
 }
 
 impl Relinking {
-    /// The text of a drawing with its links rewritten: those of elements, and `url()` in attributes and style sheets. `options` say where
-    /// they lead now, and which files may be read. `None` if nothing changes.
+    /// The text of a drawing with its links rewritten: links of elements, and `url()` in attributes and style sheets. `options` determine
+    /// the current targets, and the files that may be read. Returns `None` if nothing changes.
     ///
     /// # Errors
-    /// The pictures exceed the limits.
+    /// [`Error::Input`] if the pictures exceed the limits.
     pub fn of(&self, svg: &str, options: &ReadOptions) -> Result<Option<String>, Error> {
         let is_still = self.way.is_empty() && !self.embed;
         if is_still || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
@@ -130,8 +131,8 @@ impl Relinking {
         Ok(Some(out + &svg[done..]))
     }
 
-    /// Adds the new links of a node, by where they begin: to where what they replace ends, and their text. An entity's are found wherever it is
-    /// used.
+    /// Adds the new links of a node, by the start of the text that they replace, with its end and the new text. The map keeps links of an
+    /// entity once, which are found at each of its uses.
     fn rewrite(
         &self,
         node: roxmltree::Node<'_, '_>,
@@ -141,14 +142,14 @@ impl Relinking {
     ) -> Result<(), Error> {
         let mut starts = Vec::new();
         if node.is_pi() || node.is_text() && node.parent().is_some_and(|p| p.tag_name().name() == "style") {
-            starts.extend(places(svg, node.range(), if node.is_pi() { "href=" } else { "url(" }));
+            starts.extend(link_starts(svg, node.range(), if node.is_pi() { "href=" } else { "url(" }));
         }
         let is_picture = matches!(node.tag_name().name(), "image" | "feImage" | "img");
         for a in node.attributes() {
             let range = a.range_value();
             if !matches!(a.name(), "href" | "src") {
-                starts.extend(places(svg, range, "url("));
-            } else if let Some(data) = picture(a.value(), is_picture && self.embed, options)? {
+                starts.extend(link_starts(svg, range, "url("));
+            } else if let Some(data) = embedded_picture(a.value(), is_picture && self.embed, options)? {
                 new.insert(range.start, (range.end, data));
             } else {
                 starts.push(range.end - svg[range].trim_start().len());
@@ -161,8 +162,8 @@ impl Relinking {
     }
 }
 
-/// The positions in a range where links begin, each behind a word and perhaps a quotation mark.
-fn places<'a>(text: &'a str, range: Range<usize>, word: &'a str) -> impl Iterator<Item = usize> + 'a {
+/// The positions in a range at which links begin, each after a word and perhaps a quotation mark.
+fn link_starts<'a>(text: &'a str, range: Range<usize>, word: &'a str) -> impl Iterator<Item = usize> + 'a {
     text[range.clone()].match_indices(word).map(move |(at, _)| {
         let inside = text[range.start + at + word.len()..range.end].trim_start();
         let quotes = ["&quot;", "&apos;", "\"", "'"];
@@ -171,7 +172,7 @@ fn places<'a>(text: &'a str, range: Range<usize>, word: &'a str) -> impl Iterato
     })
 }
 
-/// Whether a link, which text may follow, leads from the folder of its drawing.
+/// Returns `true` if a link, which text may follow, is relative to the folder of its drawing.
 fn is_relative(text: &str) -> bool {
     let end = text.find(|c: char| c.is_whitespace() || "\"'()<>&".contains(c)).unwrap_or(text.len());
     let link = &text[..end];
@@ -179,16 +180,16 @@ fn is_relative(text: &str) -> bool {
     !link.is_empty() && !link.starts_with(['#', '/', '?', '\\']) && !scheme
 }
 
-/// The picture that a link leads to as data in a link, if it is `wanted` and can be read.
-fn picture(link: &str, wanted: bool, options: &ReadOptions) -> Result<Option<String>, Error> {
+/// A link that embeds the picture to which a link leads, if that is `wanted` and can be read.
+fn embedded_picture(link: &str, wanted: bool, options: &ReadOptions) -> Result<Option<String>, Error> {
     let link = link.trim();
     let is_inside =
         link.is_empty() || link.starts_with('#') || link.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
     if !wanted || is_inside {
         return Ok(None);
     }
-    let Place::Inside(file) = allowed(link, options) else { return Ok(None) };
-    let Some(data) = linked(&file, options).map(Arc::new) else { return Ok(None) };
+    let Target::File(file) = target(link, options) else { return Ok(None) };
+    let Some(data) = read_linked(&file, options).map(Arc::new) else { return Ok(None) };
     if images::checked(ANY, Arc::clone(&data), link, options)?.is_none() {
         return Ok(None);
     }
@@ -241,7 +242,7 @@ mod tests {
             ("file://localhost/a", "/a"),
             ("%zz%4", "%zz%4"),
         ] {
-            assert_eq!(file_of(link), file, "{link}");
+            assert_eq!(path_in_link(link), file, "{link}");
         }
     }
 }

@@ -1,12 +1,11 @@
-//! Mesh gradients as Inkscape writes them: grids of Coons patches with a colour at each corner (SVG 2, drafts up to 2016,
-//! “Mesh Gradients”).
+//! Reads Inkscape's mesh gradients: grids of Coons patches with a colour at each corner (SVG 2, drafts up to 2016, “Mesh Gradients”).
 //!
 //! Between the cubics T(u) above, B(u) below, L(v) on the left and R(v) on the right, the patch over [0, 1]² is
 //!
 //! S(u, v) = (1 − v) T(u) + v B(u) + (1 − u) L(v) + u R(v) − Q(u, v)
 //!
-//! where Q interpolates the four corners bilinearly. Any rectangle of it, cut along lines of constant u and v, is the Coons patch of its
-//! own four sides.
+//! where Q interpolates the four corners bilinearly. Any rectangle cut out of a patch along lines of constant u and v is the Coons patch
+//! over its four sides.
 
 use super::elements::{XLINK, declared};
 use pathwarp::kurbo::{Affine, CubicBez, ParamCurve as _, ParamCurveDeriv as _, Point, Rect, Vec2};
@@ -18,7 +17,7 @@ use usvg::roxmltree::{Document, Node};
 /// Red, green, blue and opacity, 0 to 1, not premultiplied.
 pub(crate) type Rgba = [f64; 4];
 
-/// A Coons patch: the control points of its sides, which lead around it from corner to corner, and the colours of the corners in the same
+/// A Coons patch: the control points of its sides, which lead around it from corner to corner, and the colours of the corners in this
 /// order: red, green, blue and opacity, 0 to 1, bilinear between them.
 #[cfg(feature = "usvg")]
 pub type CoonsPatch = ([Point; 12], [[f64; 4]; 4]);
@@ -31,9 +30,9 @@ pub(crate) struct MeshGradient {
     pub(crate) down: Vec<Vec<CubicBez>>,
     /// Colours of the corners, by rows.
     pub(crate) colors: Vec<Vec<Rgba>>,
-    /// Whether colours change smoothly from patch to patch (`type="bicubic"`).
+    /// `true` if colours change smoothly from patch to patch (`type="bicubic"`).
     pub(crate) smooth: bool,
-    /// Whether coordinates are shares of the painted shape's box.
+    /// `true` if coordinates are fractions of the painted shape's box.
     pub(crate) in_box: bool,
 }
 
@@ -54,37 +53,37 @@ impl MeshGradient {
         self.across[0].len()
     }
 
-    /// The mesh with all its points moved.
-    pub(crate) fn moved(&self, by: Affine) -> Self {
+    /// The image of the mesh under an affine map.
+    pub(crate) fn transformed(&self, by: Affine) -> Self {
         let moved = |edges: &[Vec<CubicBez>]| edges.iter().map(|row| row.iter().map(|e| by * *e).collect()).collect();
         Self { across: moved(&self.across), down: moved(&self.down), colors: self.colors.clone(), ..*self }
     }
 
-    /// The mesh in the user space of a shape with this box.
+    /// The mesh in the user space of a shape with the box `bounds`.
     pub(crate) fn on(&self, bounds: Rect) -> Self {
         if !self.in_box {
             return self.clone();
         }
         let size = Affine::scale_non_uniform(bounds.width(), bounds.height());
-        Self { in_box: false, ..self.moved(Affine::translate(bounds.origin().to_vec2()) * size) }
+        Self { in_box: false, ..self.transformed(Affine::translate(bounds.origin().to_vec2()) * size) }
     }
 
-    /// The point with the parameters `u` and `v` in the patch of a row and column. Beyond [0, 1] it is that of the same polynomial.
-    pub(crate) fn at(&self, row: usize, column: usize, u: f64, v: f64) -> PatchPoint {
+    /// The point with the parameters `u` and `v` in the patch of a row and column, extrapolated beyond [0, 1].
+    fn point_in_patch(&self, row: usize, column: usize, u: f64, v: f64) -> PatchPoint {
         let (top, bottom) = (self.across[row][column], self.across[row + 1][column]);
         let (left, right) = (self.down[row][column], self.down[row][column + 1]);
         coons([top, right, bottom, left], u, v)
     }
 
-    /// The point with the parameters `u` and `v` of the whole mesh, which count patches. It is taken from the column and row in which the
-    /// other two lie, as neighbours meet in a crease.
+    /// The point with the parameters `u` and `v` of the whole mesh, in which each patch has length 1. The patch is the one that contains
+    /// the parameters `column` and `row`, as neighbours meet in a crease.
     pub(crate) fn point(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
         let within = |t: f64, count: usize| (t as usize).min(count - 1);
         let (column, row) = (within(column, self.columns()), within(row, self.rows()));
-        self.at(row, column, u - column as f64, v - row as f64)
+        self.point_in_patch(row, column, u - column as f64, v - row as f64)
     }
 
-    /// The mesh cut at these parameters, with bilinear colours. `image` says where points are moved, and vectors at them.
+    /// The mesh cut at these parameters, with bilinear colours. `image` maps points with vectors at them.
     pub(crate) fn cut(&self, u: &[f64], v: &[f64], image: impl Fn(&[(Point, Vec2)]) -> Vec<(Point, Vec2)>) -> Self {
         let mut ends: Vec<(Point, Vec2)> = Vec::new();
         for v in v {
@@ -114,10 +113,10 @@ impl MeshGradient {
         Self { across, down: down.collect(), colors, smooth: false, in_box: false }
     }
 
-    /// The patches. Those with smooth colours are cut until bilinear ones look so.
+    /// The patches. Patches with smooth colours are cut until bilinear colours look smooth.
     #[cfg(feature = "usvg")]
     pub(crate) fn patches(&self) -> Vec<CoonsPatch> {
-        /// Parts of a patch with smooth colours, along each side; Inkscape draws as many.
+        /// Parts of a patch with smooth colours along each side, as in Inkscape.
         const PARTS: usize = 8;
         if self.smooth {
             let cuts = |n: usize| (0..=n * PARTS).map(|k| k as f64 / PARTS as f64).collect::<Vec<f64>>();
@@ -132,8 +131,8 @@ impl MeshGradient {
         (0..self.rows()).flat_map(|r| (0..self.columns()).map(move |c| (r, c))).map(|(r, c)| patch(r, c)).collect()
     }
 
-    /// The colour at the parameters `u` and `v` of the whole mesh, which count patches: bilinear between the corners of a patch, or bicubic
-    /// as in Inkscape, with derivatives along the sides and none across (Hermite's form). Opacity is bilinear in both.
+    /// The colour at the parameters `u` and `v` of the whole mesh, in which each patch has length 1: bilinear between the corners of a
+    /// patch, or bicubic as in Inkscape, in Hermite form with derivatives along the sides and none across. Opacity is always bilinear.
     pub(crate) fn color(&self, u: f64, v: f64) -> Rgba {
         let within = |t: f64, count: usize| (t as usize).min(count - 1);
         let (row, column) = (within(v, self.rows()), within(u, self.columns()));
@@ -158,7 +157,7 @@ impl MeshGradient {
     }
 }
 
-/// The weights of the values at 0 and 1, and of the derivatives there, in a cubic at `t`.
+/// The weights of a cubic's values at 0 and 1, and of its derivatives there, in its value at `t`.
 fn hermite(t: f64) -> [f64; 4] {
     let rest = 1.0 - t;
     [rest * rest * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t), t * rest * rest, -t * t * rest]
@@ -169,8 +168,8 @@ fn length(side: CubicBez) -> f64 {
     side.p0.distance(side.p3)
 }
 
-/// How fast colours change at corner `i` of `last` + 1, by unit of length, as Inkscape has it: within a row the mean of the steps before
-/// and after, at most three times either, and 0 at an extremum; at the ends such that the mean with the neighbour's is the step between.
+/// The change of colours per unit of length at corner `i` of `last` + 1, as in Inkscape: inside a row, the mean of the steps before and
+/// after, at most three times either, and 0 at an extremum; at an end, the value whose mean with the neighbour's is the step between them.
 fn slope(last: usize, i: usize, color: impl Fn(usize) -> Rgba, length: impl Fn(usize) -> f64) -> Rgba {
     std::array::from_fn(|n| {
         let step = |k: usize| {
@@ -211,14 +210,13 @@ fn monotone(before: f64, after: f64) -> f64 {
     (0.5 * (before + after)).clamp(-most, most)
 }
 
-/// Whether a tag is that of a mesh gradient.
 pub(crate) fn is_mesh(tag: &str) -> bool {
     matches!(tag, "meshgradient" | "meshGradient" | "mesh")
 }
 
-/// Reads the mesh gradients of a drawing that are whole, by their ids.
+/// Reads the complete mesh gradients of a drawing, by their ids.
 pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
-    /// Limit on the patches of those that refer to others, which copy them.
+    /// Limit on the patches of gradients that copy them from others.
     const MAX_COPIED: usize = 100_000;
     let mut out = HashMap::new();
     if !doc.input_text().contains("mesh") {
@@ -245,17 +243,17 @@ pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
     out
 }
 
-/// The id that an element refers to.
+/// The id to which an element refers.
 fn link<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attribute("href").or_else(|| node.attribute((XLINK, "href")))?.trim().strip_prefix('#')
 }
 
-/// Reads a gradient with those that it refers to.
+/// Reads a gradient from the chain of elements that begins with it and follows its references.
 fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
-    let own = *chain.first()?;
-    // In Inkscape, patches and units are those of the gradient that this one refers to, and nothing else is.
-    let length = |name: &str| own.attribute(name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
-    let transform = match own.attribute("gradientTransform") {
+    let first = *chain.first()?;
+    // As in Inkscape, only patches and units come from elements to which the first one refers.
+    let length = |name: &str| first.attribute(name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
+    let transform = match first.attribute("gradientTransform") {
         None => Affine::IDENTITY,
         Some(t) => {
             let t = svgtypes::Transform::from_str(t).ok()?;
@@ -268,7 +266,7 @@ fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
         across: Vec::new(),
         down: Vec::new(),
         colors: Vec::new(),
-        smooth: own.attribute("type").is_some_and(|t| t.trim() == "bicubic"),
+        smooth: first.attribute("type").is_some_and(|t| t.trim() == "bicubic"),
         in_box: units.is_none_or(|u| u.trim() != "userSpaceOnUse"),
     };
     let mut start = Point::new(length("x")?, length("y")?);
@@ -278,7 +276,7 @@ fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
     let columns = mesh.columns();
     let whole = columns > 0 && mesh.across.iter().all(|row| row.len() == columns);
     let whole = whole && mesh.across.iter().chain(&mesh.down).flatten().all(CubicBez::is_finite);
-    whole.then(|| mesh.moved(transform))
+    whole.then(|| mesh.transformed(transform))
 }
 
 /// The children with a tag, whose letters may be of either case.
@@ -286,8 +284,8 @@ fn children<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Vec<Node<'a, 'i>> {
     node.children().filter(|c| c.tag_name().name().eq_ignore_ascii_case(tag)).collect()
 }
 
-/// Reads a row of patches. Each lists those of its sides that no patch before it has, clockwise from the top; a corner's colour stands with
-/// the side that begins there. `start` is where the first row begins. Returns where the next one does.
+/// Reads a row of patches. Each patch lists the sides that no earlier patch has, clockwise from the top, with the colour of the corner at
+/// which a side begins. `start` is the start of the first row. Returns the start of the next row.
 fn push_row(mesh: &mut MeshGradient, patches: &[Node<'_, '_>], start: Point) -> Option<Point> {
     let first_row = mesh.across.is_empty();
     if first_row {
@@ -337,7 +335,7 @@ pub(crate) fn reversed(c: CubicBez) -> CubicBez {
     CubicBez::new(c.p3, c.p2, c.p1, c.p0)
 }
 
-/// Reads the side that a stop describes: a line or a cubic from `from`. If it is known where the side ends, `end`, the path need not say.
+/// Reads the side that a stop describes: a line or a cubic from `from`. The path may omit its end if that is known (`end`).
 fn side(stop: Node<'_, '_>, from: Point, end: Option<Point>) -> Option<CubicBez> {
     /// Numbers of a cubic.
     const LONGEST: usize = 6;
@@ -361,7 +359,7 @@ fn color(stop: Node<'_, '_>) -> Option<Rgba> {
     let inherited = || stop.ancestors().find_map(|a| property(a, "color"));
     let text = match property(stop, "stop-color") {
         Some("currentColor") => inherited(),
-        own => own,
+        other => other,
     };
     let c = svgtypes::Color::from_str(text.unwrap_or("black")).ok()?;
     let opacity = match property(stop, "stop-opacity") {
@@ -375,13 +373,13 @@ fn color(stop: Node<'_, '_>) -> Option<Rgba> {
     Some([level(c.red), level(c.green), level(c.blue), level(c.alpha) * opacity.clamp(0.0, 1.0)])
 }
 
-/// The value of a property that an element itself declares.
 fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let style = node.attribute("style").and_then(|s| declared(s, name));
     style.or_else(|| node.attribute(name)).map(str::trim)
 }
 
-/// What usvg, which knows no mesh gradients, is given in the place of one: a gradient with its id that shows nothing, as browsers do.
+/// The markup for usvg in place of a mesh gradient, which it does not know: a gradient with the mesh's id that shows nothing, as in
+/// browsers.
 pub(super) fn stand_in(prefix: &str, id: &str) -> String {
     let stops = ["", " offset=\"1\""].map(|at| format!("<{prefix}stop{at} stop-opacity=\"0\"/>")).concat();
     let head = format!("id=\"{}\" gradientUnits=\"userSpaceOnUse\" x2=\"1\"", pathwarp_reader::xml::escape(id));
@@ -415,7 +413,7 @@ mod tests {
         assert_eq!((m.rows(), m.columns()), (2, 2));
         // The sides are straight, so each patch is a square of 3 units, run through evenly.
         for (row, column, u, v) in [(0, 0, 0.3, 0.7), (0, 1, 0.5, 0.25), (1, 0, 0.0, 1.0), (1, 1, 0.9, 0.1)] {
-            let at = m.at(row, column, u, v);
+            let at = m.point_in_patch(row, column, u, v);
             let wanted = Point::new(3.0 * (column as f64 + u), 3.0 * (row as f64 + v));
             assert!(at.at.distance(wanted) < 1e-12, "{row} {column}: {at:?}");
             assert!((at.du - Vec2::new(3.0, 0.0)).hypot() + (at.dv - Vec2::new(0.0, 3.0)).hypot() < 1e-12);
@@ -473,7 +471,7 @@ mod tests {
         }
     }
 
-    /// Opacity that it draws at u, v: it is bilinear even so.
+    /// Opacity that Inkscape draws, which is bilinear even between smooth colours.
     #[test]
     fn opacity_is_not_smooth() {
         let stop =

@@ -6,7 +6,7 @@ use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 
-/// Beyond this many decimals, digits of an f64 carry no information.
+/// Number of decimals beyond which digits of an f64 carry no information.
 pub(crate) const MAX_DECIMALS: u8 = 14;
 
 /// Appends `v` rounded to `decimals`, without trailing zeros and never as `-0`.
@@ -19,7 +19,7 @@ pub(crate) fn push(out: &mut String, v: f64, decimals: u8) {
     }
 }
 
-/// As [`push`], for bytes whose encoding is checked once at the end.
+/// Appends `v` rounded to `decimals` as ASCII bytes, without trailing zeros and never as `-0`.
 fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
     let decimals = usize::from(decimals.min(MAX_DECIMALS));
     match Digits::new().write(v, decimals) {
@@ -40,15 +40,14 @@ impl Digits {
         Self([b'0'; 32])
     }
 
-    /// Writes `v` rounded to `decimals`, by way of an integer, which is much faster than decimals. Returns `None` if the integer
-    /// would not be exact in f64.
+    /// Writes `v` rounded to `decimals`, by way of an integer, for speed. Returns `None` if the integer would not be exact in f64.
     fn write(&mut self, v: f64, decimals: usize) -> Option<&[u8]> {
         const MAX_EXACT: f64 = 9e15;
         let scaled = (v * POWERS[decimals]).abs();
         if scaled.is_nan() || scaled >= MAX_EXACT - 1.0 {
             return None;
         }
-        // Round half away from zero; the difference is exact.
+        // Rounds half away from zero; the difference is exact.
         let whole = scaled as u64;
         let n = whole + u64::from(scaled - whole as f64 >= 0.5);
         if n == 0 {
@@ -128,8 +127,9 @@ const UNITS: [u64; MAX_DECIMALS as usize + 1] = {
 const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
-/// Significant digits of lengths and offsets, and those that single precision has.
+/// Significant digits of lengths and offsets.
 const SHORT: i32 = 9;
+/// Significant digits of single precision.
 const SINGLE: i32 = 7;
 
 /// Formats `v` with nine significant digits, for lengths and offsets.
@@ -137,7 +137,7 @@ pub(crate) fn short(v: f64) -> String {
     significant(v, SHORT)
 }
 
-/// Formats `v` with as many significant digits as single precision has.
+/// Formats `v` with the significant digits of single precision.
 pub(crate) fn single(v: f64) -> String {
     significant(v, SINGLE)
 }
@@ -153,31 +153,30 @@ fn push_significant(out: &mut String, v: f64, digits: i32) {
     if v == 0.0 || !v.is_finite() {
         return out.push('0');
     }
-    // Fast path for small integers, the common case: no logarithm.
+    // Small integers, the common case, need no logarithm.
     if v.fract() == 0.0 && v.abs() < 1e6 {
         return push(out, v, 0);
     }
     let size = v.abs().log10().floor() as i32 + 1;
     match u8::try_from((digits - size).max(0)) {
         Ok(d) if d <= MAX_DECIMALS => push(out, v, d),
-        // Thirty decimals resolve everything that can occur in a drawing.
+        // Thirty decimals resolve all numbers that can occur in a drawing.
         _ => push_trimmed(out, v, (digits - size).clamp(0, 30) as usize),
     }
 }
 
-/// Formats numbers that belong together, with nine significant digits.
+/// Formats numbers with the decimals of the largest, which gets nine significant digits.
 pub(crate) fn shorts(values: &[f64]) -> impl Iterator<Item = String> {
     together(values, SHORT, 3)
 }
 
-/// Formats numbers of single precision that belong together.
+/// Formats numbers of single precision with the decimals of the largest.
 pub(crate) fn singles(values: &[f32]) -> Vec<String> {
     let values: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
-    // The last digit of the largest is rounded already.
+    // The last digit of the largest is already rounded.
     together(&values, SINGLE, 1).collect()
 }
 
-/// The attributes of a rectangle.
 pub(crate) fn rectangle(r: Rect) -> [(&'static str, String); 4] {
     let values = [r.x0, r.y0, r.width(), r.height()];
     let mut sides = shorts(&values);
@@ -189,10 +188,10 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
     path_data_by(path, |_| None, |_| [decimals; 2])
 }
 
-/// As [`path_data`], with the numbers of decimals for the handles and the end of each element, given by its index. If `coarsest` gives the
-/// largest unit of the last decimal that paths of this tolerance are written with, whatever their transforms, then handles so short that
-/// rounding would turn them get more decimals, so that smooth joints stay smooth, and what is written as a quadratic depends on that unit,
-/// so that neighbours under different transforms write a shared edge alike.
+/// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
+/// element, by its index, and `coarsest` the largest unit of the last decimal under any transform, if decimals are free. Then handles so
+/// short that rounding would turn them get more decimals, so that smooth joints stay smooth, and the choice of quadratics depends on that
+/// unit alone, so that neighbours under different transforms write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,
@@ -227,19 +226,19 @@ pub(crate) fn path_data_by(
                 point(&mut out, p, node);
             }
             PathEl::CurveTo(a, b, p) => {
-                // Write a quadratic if it differs by less than the rounding and has the same directions.
+                // A quadratic is written if it differs by less than the rounding and its handles keep their directions.
                 let coarsest = coarsest(i);
-                let own = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
+                let written = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
                 let quad = quadratic(at, a, b, p).filter(|(q, off)| match coarsest {
-                    // Units are usually between a tenth of the coarsest and that.
+                    // Written units are usually between a tenth of the coarsest and the coarsest.
                     Some(unit) => {
-                        let long = LASTING * unit.max(own);
+                        let long = LASTING * unit.max(written);
                         let lasts = |exact, v: Vec2| exact == Vec2::ZERO || is_kept(exact, v) && v.hypot() >= long;
-                        *off < NEAR * own.min(0.1 * unit) && lasts(a - at, *q - at) && lasts(b - p, *q - p)
+                        *off < NEAR * written.min(0.1 * unit) && lasts(a - at, *q - at) && lasts(b - p, *q - p)
                     }
                     None => {
                         let q = rounded(*q, handle);
-                        *off < NEAR * own && is_kept(a - at, q - from) && is_kept(b - p, q - to)
+                        *off < NEAR * written && is_kept(a - at, q - from) && is_kept(b - p, q - to)
                     }
                 });
                 let quad = quad.map(|(q, _)| q);
@@ -247,7 +246,7 @@ pub(crate) fn path_data_by(
                 let handles = match quad {
                     Some(q) => [Some((q, handle)), None],
                     None if coarsest.is_none() => [Some((a, handle)), Some((b, handle))],
-                    None => [Some(kept(a, (at, from), handle)), Some(kept(b, (p, to), handle))],
+                    None => [Some(keep_direction(a, (at, from), handle)), Some(keep_direction(b, (p, to), handle))],
                 };
                 for (q, decimals) in handles.into_iter().flatten() {
                     point(&mut out, q, decimals);
@@ -263,11 +262,11 @@ pub(crate) fn path_data_by(
     String::from_utf8(out).unwrap_or_default()
 }
 
-/// Distance allowed between a quadratic's handles seen from its two ends, in units of the last decimal. The curves differ by a tenth
-/// of it.
+/// Largest distance between the two handles that a cubic's ends give for a quadratic, in units of the last decimal. The curves differ by
+/// a tenth of it.
 const NEAR: f64 = 3.0;
 
-/// Length of a handle, in units of the last decimal, from which on rounding both its ends turns it by less than [`is_kept`] allows.
+/// Length of a handle, in units of the last decimal, from which on rounding turns it by less than [`is_kept`] allows.
 const LASTING: f64 = 600.0;
 
 /// The point that will be read from a point's text.
@@ -276,16 +275,16 @@ fn rounded(p: Point, decimals: u8) -> Point {
     Point::new((p.x * unit).round() / unit, (p.y * unit).round() / unit)
 }
 
-/// Whether `v` has the direction of `exact` within 0.2°, so that two handles at a joint turn by less than half a degree.
+/// Returns `true` if `v` has the direction of `exact` within 0.2°, so that two handles at a joint turn by less than half a degree.
 fn is_kept(exact: Vec2, v: Vec2) -> bool {
     const TURN: f64 = 0.0035;
     let along = exact.dot(v);
-    exact == Vec2::ZERO || along > 0.0 && exact.cross(v).abs() <= TURN * along
+    exact == Vec2::ZERO || (along > 0.0 && exact.cross(v).abs() <= TURN * along)
 }
 
-/// Chooses enough decimals to keep the direction of a handle at a node. `written` is the node as it is written.
-fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
-    /// Handles that would need more are a million times shorter than what is visible.
+/// A handle with enough decimals to keep its direction from `node`, which is written as `written`.
+fn keep_direction(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
+    /// Most additional decimals. Handles that would need more are far too short to be visible.
     const MAX_MORE: u8 = 6;
     let v = handle - node;
     if is_kept(v, rounded(handle, decimals) - written) {
@@ -299,7 +298,7 @@ fn kept(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point,
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
 fn push_exact(out: &mut String, v: f64) {
     let single = v as f32;
-    // A number with few digits is its own shortest form; avoid the general algorithm.
+    // A number with few digits needs no search for the shortest form.
     const DECIMALS: u8 = 3;
     const MAX: f64 = 1e6;
     let scale = POWERS[usize::from(DECIMALS)];
@@ -368,9 +367,9 @@ fn commands(
     }
 }
 
-/// Formats an outline with arcs as a `d` attribute, as accurately as [`path_data`] does with the number of decimals that `decimals`
-/// gives for each subpath. The centre of an arc follows from its ends and radii, which takes more decimals: one more, or, for flat
-/// ellipses, up to `more`. Where that is not enough, an arc is written as cubics.
+/// Formats an outline with arcs as a `d` attribute, with the accuracy of the decimals that `decimals` gives for each subpath. The centre
+/// of an arc follows from its ends and radii, which takes more decimals: one more or, for flat ellipses, up to `more`. If these do not
+/// suffice, an arc is written as cubics.
 pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
     for (i, s) in outline.subpaths.iter().enumerate() {
@@ -384,6 +383,7 @@ pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) ->
     out
 }
 
+/// Writes a subpath with `decimals`, and as cubics within a tenth of `nominal` the arcs for which that does not suffice (`holds`).
 fn subpath_with_arcs(
     out: &mut String,
     s: &Subpath,
@@ -392,7 +392,7 @@ fn subpath_with_arcs(
     holds: impl Fn(&EllipticArc, Point, u8) -> bool,
 ) {
     // The numbers of an arc are its radii and turn, two flags, and its end.
-    let of_arc = |i: usize| match i {
+    let arc_decimals = |i: usize| match i {
         0..3 => finer(decimals),
         3..5 => 0,
         _ => decimals,
@@ -406,7 +406,7 @@ fn subpath_with_arcs(
             if i > 0 {
                 out.push(if i % 2 == 1 && command != 'A' { ',' } else { ' ' });
             }
-            push(out, *v, if command == 'A' { of_arc(i) } else { decimals });
+            push(out, *v, if command == 'A' { arc_decimals(i) } else { decimals });
         }
     };
     let arc = |a: &EllipticArc| {
@@ -425,7 +425,7 @@ fn finer(decimals: u8) -> u8 {
 /// The numbers to write for an arc.
 struct ArcText {
     radii: [f64; 2],
-    /// In degrees.
+    /// Rotation of the ellipse, in degrees.
     turn: f64,
     large: bool,
     sweep: bool,
@@ -442,7 +442,7 @@ impl ArcText {
         Self { radii, turn, large, sweep, to: rounded(a.p1, decimals), finer }
     }
 
-    /// Estimates the distance between the arc and the one that will be read if it starts at `from`.
+    /// Estimates the distance between the arc and the arc that will be read if it starts at `from`.
     fn error(&self, a: &EllipticArc, from: Point) -> f64 {
         const SAMPLES: u32 = 16;
         let round = |v: f64| rounded(Point::new(v, 0.0), self.finer).x;
@@ -456,7 +456,7 @@ impl ArcText {
     }
 }
 
-/// The semi-axes of an arc's ellipse, which are the singular values of (a b), and the direction of the first in degrees.
+/// The semi-axes of an arc's ellipse, which are the singular values of the matrix (a b), and the direction of the first in degrees.
 fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
     let (u, v) = (a.a, a.b);
     let sum = Vec2::new(0.5 * (u.x + v.y), 0.5 * (u.y - v.x));
@@ -471,19 +471,19 @@ fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
     ([q + r, (q - r).abs()], turn.to_degrees())
 }
 
-/// Tolerance of the cubics that replace an arc without principal axes, relative to its major semi-axis; far below a pixel.
+/// Tolerance of the cubics that replace an arc whose vectors are no principal axes, relative to its major semi-axis; far below a pixel.
 const FINE: f64 = 1e-5;
 
-/// The radii of an arc and the rotation of its ellipse in degrees, as the `A` command takes them. `None` for a sheared or mirrored
-/// arc, and for one that ends at its start.
+/// The radii of an arc and the rotation of its ellipse in degrees, for the `A` command. Returns `None` for a sheared or mirrored arc, and
+/// for an arc that ends at its start.
 fn radii(a: &EllipticArc) -> Option<[f64; 3]> {
     let (rx, ry) = (a.a.hypot(), a.b.hypot());
     let right = a.a.dot(a.b).abs() <= 1e-12 * rx * ry && a.a.cross(a.b) > 0.0;
     (right && a.p0 != a.p1).then(|| [rx, ry, a.a.y.atan2(a.a.x).to_degrees()])
 }
 
-/// Finds the quadratic nearest to a cubic, with the distance between its two candidate handles. Returns `None` if the
-/// handle is not finite.
+/// The handle of the quadratic nearest to a cubic, with the distance between the two handles that the cubic's ends give. Returns `None` if
+/// it is not finite.
 fn quadratic(p0: Point, p1: Point, p2: Point, p3: Point) -> Option<(Point, f64)> {
     let from_start = p0 + (p1 - p0) * 1.5;
     let from_end = p3 + (p2 - p3) * 1.5;

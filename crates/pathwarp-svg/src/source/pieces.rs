@@ -1,13 +1,13 @@
 //! Divides texts into pieces of one font and one script before they are drawn.
 //!
-//! Where the font of a line lacks a letter, usvg shapes the whole line with another one, and gives up if that has another number of
-//! glyphs. All letters of one direction are shaped as those of the script of the first one. So each text that needs several fonts or
-//! scripts is written anew: every piece is a `tspan` at its own place, with a name for its font that [`Chooser`] knows.
+//! If the font of a line lacks a letter, usvg shapes the whole line with another font, and gives up if that yields another number of
+//! glyphs. It shapes all letters of one direction by the script of the first letter. Therefore, each text that needs several fonts or
+//! scripts is rewritten: every piece is a `tspan` with a position, and with a name for its font that [`Chooser`] knows.
 
 use super::elements::{SVG, tag_end};
 use super::faces::Look;
 use super::fonts::{Chooser, PIECE, PieceFonts};
-use super::shaping::{ShapingStyle, TextFont, shaped};
+use super::shaping::{ShapingStyle, TextFont, shape_with_fallback};
 use pathwarp_reader::xml::escape;
 use pathwarp_text::{Run, Writing, runs};
 use std::collections::{BTreeSet, HashMap};
@@ -29,7 +29,7 @@ pub(super) struct Divided {
     pub(super) missing: BTreeSet<(String, String)>,
 }
 
-/// Letters that stand together, in their place in a chunk.
+/// A cluster of letters in a chunk.
 struct Letter {
     /// Bytes of the chunk.
     bytes: Range<usize>,
@@ -45,26 +45,26 @@ struct Letter {
 struct Part {
     span: usize,
     run: Run,
-    /// The face, unless it is that of the span.
+    /// The face, unless it is the span's.
     face: Option<ID>,
-    /// Whether its letters are small forms of their capitals.
+    /// `true` if its letters are drawn as small capitals.
     small: bool,
     missing: bool,
 }
 
 /// Letters that are set together.
 struct Piece {
-    /// Characters among all of the text.
+    /// Indices among the characters of the text.
     chars: Range<usize>,
     /// Attributes of its `tspan`.
     attributes: String,
-    /// Whether its letters are written as capitals.
+    /// `true` if its letters are written as capitals.
     small: bool,
-    /// Characters before its text, for the order of its letters, and after it. They show nothing.
+    /// Invisible characters before and after its text, which determine the order of its letters.
     around: [&'static str; 2],
 }
 
-/// Divides the texts of a drawing that usvg has resolved.
+/// Divides the texts of a drawing into pieces, given usvg's tree of it.
 pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) -> Divided {
     let mut out = Divided { text: None, fonts: Vec::new(), db: tree.fontdb().clone(), missing: BTreeSet::new() };
     let texts = xml.descendants().filter(|n| n.has_tag_name((SVG, "text")));
@@ -101,17 +101,12 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
     out
 }
 
-/// The language of an element.
 fn language(node: Node<'_, '_>) -> String {
-    let of = |n: &Node<'_, '_>| {
-        let attributes = n.attributes();
-        let mut named = attributes.filter(|a| a.name() == "lang").map(|a| a.value().to_owned());
-        named.next()
-    };
-    node.ancestors().find_map(|n| of(&n)).unwrap_or_default()
+    let declared = |n: Node<'_, '_>| n.attributes().find(|a| a.name() == "lang").map(|a| a.value().to_owned());
+    node.ancestors().find_map(declared).unwrap_or_default()
 }
 
-/// Visits all texts but those of images, which are drawings by themselves.
+/// Visits all texts except the ones in images, which are separate drawings.
 fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
     for node in group.children() {
         match node {
@@ -125,7 +120,7 @@ fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
     }
 }
 
-/// The drawing with an id for each text, by which [`divided`] finds it. `None` if all have one.
+/// The drawing with an id for each text, by which [`divided`] finds it. Returns `None` if all texts have one.
 pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     let source = xml.input_text();
     let (mut out, mut at) = (String::new(), 0);
@@ -140,21 +135,19 @@ pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     (at > 0).then(|| out + &source[at..])
 }
 
-/// Divides one text.
 struct Divider<'a> {
     text: &'a Text,
     chooser: &'a Chooser,
     language: String,
-    /// The fonts of texts by what they name, and language.
+    /// The fonts of texts, by their requested font and language.
     named: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
     out: &'a mut Divided,
 }
 
-/// Where the letters of a chunk are.
 struct Layout {
-    /// The place of each letter along the line, and its shift across.
-    places: Vec<(f64, f64)>,
-    /// Where the next chunk goes on, along the line and across.
+    /// The position of each letter along the line and across it.
+    positions: Vec<(f64, f64)>,
+    /// The start of the next chunk, along the line and across it.
     end: (f64, f64),
 }
 
@@ -202,7 +195,7 @@ impl Divider<'_> {
                 &parts,
                 &letters,
                 &layout,
-                &|place| if on_path { (start.0 + place.0, place.1) } else { along(place) },
+                &|position| if on_path { (start.0 + position.0, position.1) } else { along(position) },
                 offset,
                 &mut out,
             );
@@ -237,6 +230,7 @@ impl Divider<'_> {
         (parts, letters)
     }
 
+    /// Adds the parts and letters of a run in one span.
     fn shape(&mut self, chunk: &TextChunk, index: usize, run: &Run, parts: &mut Vec<Part>, letters: &mut Vec<Letter>) {
         let span = &chunk.spans()[index];
         let size = span.font_size().get();
@@ -252,8 +246,8 @@ impl Divider<'_> {
         let mut style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
         let db = &mut self.out.db;
         let fonts = self.named.entry((span.font().clone(), language)).or_insert_with(|| {
-            let named = self.chooser.named(span.font(), db);
-            named.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
+            let faces = self.chooser.candidates(span.font(), db);
+            faces.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
         });
         let look = Look::of_text(span.font());
         let is_small = span.small_caps() && fonts.first().is_some_and(|f| !f.has_small_capitals());
@@ -274,16 +268,16 @@ impl Divider<'_> {
         }
         for (small, range) in stretches {
             style.size = f64::from(size) * if small { SMALL } else { 1.0 };
-            let own = Run { range, ..run.clone() };
+            let run = Run { range, ..run.clone() };
             // Capitals may have another number of bytes.
-            let (line, origins) = if small { capitals(chunk.text(), &own.range) } else { Default::default() };
+            let (line, origins) = if small { capitals(chunk.text(), &run.range) } else { Default::default() };
             let (line, set) = if small {
-                (line.as_str(), Run { range: 0..line.len(), ..own.clone() })
+                (line.as_str(), Run { range: 0..line.len(), ..run.clone() })
             } else {
-                (chunk.text(), own.clone())
+                (chunk.text(), run.clone())
             };
             let origin = |b: usize| if small { origins[b] } else { b };
-            for found in shaped(line, &set, fonts, (&style, look), (self.chooser, db)) {
+            for found in shape_with_fallback(line, &set, fonts, (&style, look), (self.chooser, db)) {
                 let face = fonts[found.font].face.filter(|_| found.font > 0);
                 let part = parts.len();
                 letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
@@ -292,7 +286,7 @@ impl Divider<'_> {
                     advance,
                     part,
                 }));
-                parts.push(Part { span: index, run: own.clone(), face, small, missing: found.missing });
+                parts.push(Part { span: index, run: run.clone(), face, small, missing: found.missing });
             }
         }
     }
@@ -304,18 +298,18 @@ impl Divider<'_> {
         let (mut shifts, mut sum) = (vec![(0.0, 0.0); letters.len()], (0.0, 0.0));
         for &i in &order {
             let at = offset + chunk.text()[..letters[i].bytes.start].chars().count();
-            let of = |list: &[f32]| list.get(at).copied().map_or(0.0, f64::from);
-            sum = (sum.0 + of(self.text.dx()), sum.1 + of(self.text.dy()));
+            let shift = |list: &[f32]| list.get(at).copied().map_or(0.0, f64::from);
+            sum = (sum.0 + shift(self.text.dx()), sum.1 + shift(self.text.dy()));
             shifts[i] = if vertical { (sum.1, -sum.0) } else { sum };
         }
         let (first, last) = (*order.first()?, *order.last()?);
         let (mut left, mut right, mut advance) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for (letter, shift) in letters.iter().zip(&shifts) {
             let start = advance + shift.0;
             left = left.min(start.min(start + letter.advance));
             right = right.max(start.max(start + letter.advance));
-            places.push((start, shift.1));
+            positions.push((start, shift.1));
             advance += letter.advance;
         }
         let anchored = |width: f64| match chunk.anchor() {
@@ -327,12 +321,12 @@ impl Divider<'_> {
             TextFlow::Linear => shifts[first].0 - left + anchored(right - left),
             TextFlow::Path(_) => anchored(advance),
         };
-        places.iter_mut().for_each(|p| p.0 += before);
-        Some(Layout { places, end: (before + advance + shifts[last].0, shifts[last].1) })
+        positions.iter_mut().for_each(|p| p.0 += before);
+        Some(Layout { positions, end: (before + advance + shifts[last].0, shifts[last].1) })
     }
 
     /// Cuts a chunk into pieces.
-    #[expect(clippy::too_many_arguments, reason = "what is known of one chunk")]
+    #[expect(clippy::too_many_arguments, reason = "the properties of one chunk")]
     fn cut(
         &mut self,
         chunk: &TextChunk,
@@ -345,7 +339,7 @@ impl Divider<'_> {
     ) {
         let shift = |i: usize| {
             let before: f64 = letters[..i].iter().map(|l| l.advance).sum();
-            (layout.places[i].0 - before, layout.places[i].1)
+            (layout.positions[i].0 - before, layout.positions[i].1)
         };
         let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() < 1e-6 && (a.1 - b.1).abs() < 1e-6;
         let mut start = 0;
@@ -362,16 +356,16 @@ impl Divider<'_> {
             let bytes = group.iter().map(|l| l.bytes.start).min().unwrap_or(0)
                 ..group.iter().map(|l| l.bytes.end).max().unwrap_or(0);
             let chars = |b: usize| offset + chunk.text()[..b].chars().count();
-            let (x, y) = placed(layout.places[start]);
+            let (x, y) = placed(layout.positions[start]);
             let mut attributes = match chunk.text_flow() {
                 TextFlow::Linear => format!(" x=\"{x}\" y=\"{y}\""),
                 TextFlow::Path(_) if y == 0.0 => format!(" x=\"{x}\""),
                 TextFlow::Path(_) => format!(" x=\"{x}\" dy=\"{y}\""),
             };
             attributes += &self.style(span, part, group, spaced);
-            // usvg spaces all letters but the last one, whose space would be missing beneath an underline.
+            // usvg adds no space after the last letter, where an underline would lack it, so an invisible character follows.
             let around = match part.run.rtl {
-                // White space at the end of a line would go with the line.
+                // The mark at the end keeps white space in the direction of the line.
                 true if !turned.is_empty() => [turned, "\u{200f}"],
                 _ if span.letter_spacing() == 0.0 || spaced => [turned, ""],
                 true => ["\u{200f}", ""],
@@ -382,7 +376,7 @@ impl Divider<'_> {
         }
     }
 
-    /// The attributes of a piece beside its place.
+    /// The attributes of a piece except its position.
     fn style(&mut self, span: &TextSpan, part: &Part, letters: &[Letter], spaced: bool) -> String {
         let mut style = " style=\"text-anchor:start".to_owned();
         if let Some(face) = part.face
@@ -414,10 +408,11 @@ impl Divider<'_> {
         style
     }
 
-    /// The number of the fonts of a piece. The face of its text is in the database once more for each font that stands in for it.
+    /// The index in [`Divided::fonts`] of a piece's fonts. For each font that replaces the text's face, that face is in the database once
+    /// more.
     fn font(&mut self, span: &TextSpan, face: ID, writing: Writing) -> Option<usize> {
         let first = self.named.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
-        // A font without colours may have letters that stand for emoji, so usvg must not ask it.
+        // A font without colours may have letters for emoji, so usvg must not look into it.
         let of_text = if writing == Writing::Emoji { face } else { first };
         let db = Arc::make_mut(&mut self.out.db);
         let info = db.face(of_text)?.clone();
@@ -432,10 +427,10 @@ impl Divider<'_> {
     }
 }
 
-/// The size of small capitals that a font lacks, as a share of its size (CSS Fonts 4, section 6.6, leaves it open; browsers).
+/// The size of synthetic small capitals as a fraction of the font size, as in browsers (CSS Fonts 4, section 6.6, leaves it open).
 const SMALL: f64 = 0.7;
 
-/// Letters of a text as capitals, and the place in the text of each of their bytes and of the end.
+/// Letters of a text as capitals, and the position in the text of each of their bytes and of the end.
 fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
     let (mut out, mut origins) = (String::new(), Vec::new());
     for (i, c) in text[range.clone()].char_indices() {
@@ -448,12 +443,12 @@ fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
 
 /// Returns `true` if two spans are shaped together.
 fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
-    let of = |s: &TextSpan| (s.font_size(), s.small_caps(), s.apply_kerning(), s.font_optical_sizing());
+    let font = |s: &TextSpan| (s.font_size(), s.small_caps(), s.apply_kerning(), s.font_optical_sizing());
     let spacing = |s: &TextSpan| [Some(s.letter_spacing()), Some(s.word_spacing()), s.text_length()];
-    of(a) == of(b) && spacing(a) == spacing(b) && a.font() == b.font()
+    font(a) == font(b) && spacing(a) == spacing(b) && a.font() == b.font()
 }
 
-/// Returns `true` if usvg would shape a chunk unlike its parts.
+/// Returns `true` if usvg would shape a chunk differently from its parts.
 fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
     let spaced = |p: &Part| hangs(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
     let mixed = |a: &Part, b: &Part| {
@@ -493,7 +488,7 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
     }
 }
 
-/// Returns `true` if letters of a script may be set apart: not if they are joined, as in browsers.
+/// Returns `true` if letter spacing applies to a script. As in browsers, it does not apply to scripts with joined letters.
 fn takes_spacing(script: Script) -> bool {
     use Script as S;
     let joined =
@@ -501,14 +496,14 @@ fn takes_spacing(script: Script) -> bool {
     !joined.contains(&script)
 }
 
-/// Returns `true` if usvg sets no letters of a script apart although browsers do.
+/// Returns `true` if usvg ignores letter spacing for a script, unlike browsers.
 fn hangs(writing: Writing) -> bool {
     use Script as S;
     let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
     matches!(writing, Writing::Script(script) if hung.contains(&script))
 }
 
-/// The direction mark before a piece whose letters would not go in one direction by themselves.
+/// The direction mark before a piece whose letters would not run in one direction by themselves.
 fn before_letters(text: &str, rtl: bool) -> &'static str {
     let goes_left = |c: char| matches!(c, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}');
     match rtl {
@@ -518,22 +513,21 @@ fn before_letters(text: &str, rtl: bool) -> &'static str {
     }
 }
 
-/// Writes a text in pieces.
 struct Writer<'a> {
     source: &'a str,
     /// The characters that usvg shows.
     shown: &'a [char],
-    /// The next of them.
+    /// Index of the next character.
     next: usize,
     pieces: &'a [Piece],
     rotate: &'a [f32],
-    /// Start and end tags of the elements from a `textPath` inwards. usvg has only the first piece in one on the path, so each piece
-    /// gets one.
+    /// Start and end tags of the elements from a `textPath` inwards. usvg puts only the first piece in a `textPath` on the path, so each
+    /// piece gets a new one.
     on_path: Vec<(String, String)>,
 }
 
 impl Writer<'_> {
-    /// Writes an element with its places left out. Returns `None` if its characters are not those shown.
+    /// Writes an element without its positions. Returns `None` if usvg shows other characters.
     fn element(&mut self, node: Node<'_, '_>) -> Option<String> {
         let whole = &self.source[node.range()];
         let tag = &whole[..tag_end(whole, 0, whole.len())?];
@@ -573,7 +567,7 @@ impl Writer<'_> {
         Some(out + &end)
     }
 
-    /// Writes characters in the pieces that they belong to.
+    /// Writes characters in the pieces to which they belong. Returns `None` if usvg shows other characters.
     fn letters(&mut self, text: &str) -> Option<String> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for c in text.chars() {
@@ -594,7 +588,7 @@ impl Writer<'_> {
             }
             let Some(stretch) = stretches.last_mut() else { continue };
             stretch.chars.end = at + 1;
-            // The place of a piece stands for the order of its letters among others.
+            // Marks of direction are dropped, since the positions of pieces determine their order.
             if !matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') {
                 stretch.letters.push(if is_space(c) { ' ' } else { c });
                 stretch.turns.push(self.rotate.get(at).copied().unwrap_or(0.0));
@@ -607,14 +601,14 @@ impl Writer<'_> {
 
     fn stretch(&self, stretch: Stretch) -> String {
         let Piece { chars, attributes, small, around: [before, after] } = &self.pieces[stretch.piece];
-        let Stretch { chars: own, letters, mut turns, .. } = stretch;
-        let starts = own.start == chars.start;
+        let Stretch { chars: written, letters, mut turns, .. } = stretch;
+        let starts = written.start == chars.start;
         let mut out = String::new();
         if starts {
             self.on_path.iter().rev().for_each(|(_, end)| out += end);
             self.on_path.iter().for_each(|(start, _)| out += start);
         }
-        // A piece goes on in the next element without a place of its own.
+        // A piece that continues in the next element gets no position there.
         let style = attributes.find(" style=").unwrap_or(0);
         let _ = write!(out, "<tspan{}", if starts { attributes } else { &attributes[style..] });
         let before = if starts { before } else { "" };
@@ -622,7 +616,7 @@ impl Writer<'_> {
             turns.splice(..0, before.chars().map(|_| 0.0));
             let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
         }
-        let after = if own.end == chars.end { after } else { "" };
+        let after = if written.end == chars.end { after } else { "" };
         let letters = if *small { letters.to_uppercase() } else { letters };
         let _ = write!(out, ">{before}{}{after}</tspan>", escape(&letters));
         out
@@ -632,7 +626,7 @@ impl Writer<'_> {
 /// A part of a piece within one element.
 struct Stretch {
     piece: usize,
-    /// Characters among all of the text.
+    /// Indices among the characters of the text.
     chars: Range<usize>,
     letters: String,
     /// Rotation of each letter, in degrees.

@@ -27,7 +27,7 @@ options! {
     #[derive(Debug, Clone)]
     #[non_exhaustive]
     pub struct ReadOptions() {
-        /// Folder that relative links to images start from. Without it, links are not followed.
+        /// Folder of relative links to images. Without it, links are not followed.
         pub base_dir: Option<PathBuf> = None, with_base_dir;
         /// Use the fonts installed on the machine for text. They are read only if there is text.
         pub system_fonts: bool = true, with_system_fonts;
@@ -41,16 +41,15 @@ options! {
         pub limits: Limits = Limits::default(), with_limits;
         /// Follow links out of [`base_dir`](Self::base_dir): absolute ones, `..`, and symbolic links.
         pub external: bool = false, with_external;
-        /// Gives images whose metadata ask for it with their pixels turned, as browsers show them; without it, they are taken as they are
-        /// stored.
+        /// Turns the pixels of images as their metadata request, as browsers do. Without it, images are taken as stored.
         pub turned: Option<Turned> = None, with_turned;
         /// The budget of the file being read.
         pub(crate) budget: Arc<Budget> = Arc::default();
     }
 }
 
-/// An image with its pixels turned, within limits; `None` where they stay. Where an image is written as it was read, this is done once more:
-/// one that only prepares images to be turned when they are bent undoes itself.
+/// A function that returns an image with its pixels turned, within limits; `None` if they stay. It is applied again to images that are
+/// written unchanged, so a function that only prepares images for turning them when they are bent has to undo this.
 pub type Turned = fn(&[u8], &Limits) -> Option<Vec<u8>>;
 
 impl Default for ReadOptions {
@@ -65,7 +64,7 @@ impl ReadOptions {
         Self { budget: Arc::new(Budget::new(self.limits.for_input(bytes))), ..self.clone() }
     }
 
-    /// The same options with a new budget.
+    /// The options with a new budget of the current limits.
     pub(crate) fn begin_again(&self) -> Self {
         Self { budget: Arc::new(Budget::new(self.budget.limits())), ..self.clone() }
     }
@@ -127,7 +126,7 @@ pub(crate) fn unpacked_text(packed: &str, name: &str, budget: &Budget) -> Result
 /// Compresses an SVG file to an svgz file. The header of the gzip data has no time or name, so that equal texts give equal files.
 ///
 /// # Errors
-/// Passes on errors of the compressor, which writes to memory.
+/// The errors of the compressor, which writes to memory.
 pub fn compressed(text: &str) -> std::io::Result<Vec<u8>> {
     gzipped(text.as_bytes())
 }
@@ -138,10 +137,10 @@ fn gzipped(data: &[u8]) -> std::io::Result<Vec<u8>> {
     out.finish()
 }
 
-/// The XML declaration must end within this many bytes.
+/// Number of bytes within which the XML declaration must end.
 const DECLARATION: usize = 256;
 
-/// Decodes `bytes`. If they are not UTF-8, the declaration in the text is changed to say UTF-8.
+/// Decodes `bytes`. If they are not UTF-8, the declaration in the text is changed to UTF-8.
 ///
 /// # Errors
 /// Returns the position of the first malformed byte, and a message.
@@ -178,7 +177,7 @@ fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, S
     let encoding = Encoding::for_label(label).ok_or_else(|| {
         (range.start, format!("the encoding `{}` is unknown; save the file as UTF-8", String::from_utf8_lossy(label)))
     })?;
-    // A declaration in single bytes cannot be UTF-16, even if it says so, as some drawing programs write.
+    // A declaration in single bytes is not UTF-16, although some drawing programs declare that.
     Ok(Some(encoding).filter(|e| ![UTF_8, UTF_16LE, UTF_16BE].contains(e)))
 }
 
@@ -197,7 +196,6 @@ fn declared(bytes: &[u8]) -> Option<Range<usize>> {
     Some(key + open + 1..key + open + 1 + length)
 }
 
-/// The position of the first malformed byte.
 fn malformed_at(encoding: &'static Encoding, bytes: &[u8]) -> usize {
     let mut decoder = encoding.new_decoder_with_bom_removal();
     let mut out = String::with_capacity(decoder.max_utf8_buffer_length(bytes.len()).unwrap_or_default());

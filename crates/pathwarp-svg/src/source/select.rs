@@ -8,14 +8,14 @@ use std::sync::Arc;
 /// The part of a document to warp. By default, everything.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
-    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name (id, Inkscape label or title, or the place of an
-    /// element without an id, as in reports: `path at 12:5`); `[id=ID]` matches the id alone. If empty, everything is selected.
+    /// Elements to warp with all they contain, each as `#id`, `.class`, `tag` or a name: id, Inkscape label, title, or the position of an
+    /// element without an id as in reports, such as `path at 12:5`. `[id=ID]` matches the id alone. If empty, everything is selected.
     pub select: Vec<String>,
     /// Elements to leave unchanged with all they contain, in the same form.
     pub exclude: Vec<String>,
     /// Names of cages, bases and targets. They are left unchanged and do not count as artwork.
     pub guides: Vec<String>,
-    /// A set of elements, as [`Document::divide`](crate::Document::divide) returns, which replaces `select` and `exclude`.
+    /// A set of elements from [`Document::divide`](crate::Document::divide), which replaces `select` and `exclude`.
     pub part: Option<Elements>,
 }
 
@@ -23,10 +23,10 @@ pub struct Selection {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Elements(Arc<[bool]>);
 
-/// A part of a document that belongs to the same subset of several selections.
+/// A part of a document whose elements belong to an equal subset of several selections.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Division {
-    /// The indices of those selections.
+    /// The indices of the selections in that subset.
     pub among: Vec<usize>,
     /// The part.
     pub selection: Selection,
@@ -53,13 +53,12 @@ pub(crate) fn divide(source: &SourceText, selections: &[Selection]) -> Vec<Divis
 }
 
 impl Selection {
-    /// Whether everything is selected.
+    /// Returns `true` if everything is selected.
     #[must_use]
     pub fn is_everything(&self) -> bool {
         self.part.is_none() && self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
     }
 
-    /// The union of several selections.
     pub(crate) fn union<'a>(source: &SourceText, all: impl Iterator<Item = &'a Self>) -> Self {
         let mut sum = Self { part: Some(Elements(vec![false; source.elements.len()].into())), ..Self::default() };
         for one in all {
@@ -69,7 +68,7 @@ impl Selection {
         sum
     }
 
-    /// Determines for every element whether it is selected.
+    /// For every element, `true` if it is selected.
     pub(crate) fn resolve(&self, source: &SourceText) -> Vec<bool> {
         if let Some(Elements(part)) = &self.part {
             return part.to_vec();
@@ -88,12 +87,11 @@ impl Selection {
     }
 }
 
-/// Whether a selector matches any element.
 pub(crate) fn matches_any(source: &SourceText, selector: &str) -> bool {
     (0..source.elements.len()).any(|e| matches(source, e, selector))
 }
 
-/// Lists the names that a selector of the same kind can match, in document order: classes for `.class`, else ids, labels and titles.
+/// The names that selectors of this kind can match, in document order: classes for `.class`, otherwise ids, labels and titles.
 pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for e in 0..source.elements.len() {
@@ -120,13 +118,13 @@ fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
         Some(("#", name)) => is_named(source, e, name),
         Some((".", class)) => source.attr(e, "class").is_some_and(|c| c.split_ascii_whitespace().any(|c| c == class)),
         _ => {
-            let by_place = || selector.contains(" at ") && source.display_name(e) == selector;
-            source.elements[e].tag == selector || is_named(source, e, selector) || by_place()
+            let by_position = || selector.contains(" at ") && source.display_name(e) == selector;
+            source.elements[e].tag == selector || is_named(source, e, selector) || by_position()
         }
     }
 }
 
-/// Whether an element's id, Inkscape label or title is `name`.
+/// Returns `true` if an element's id, Inkscape label or title is `name`.
 pub(crate) fn is_named(source: &SourceText, e: ElementId, name: &str) -> bool {
     let name = name.strip_prefix('#').unwrap_or(name);
     source.attr(e, "id").is_some_and(|v| v == name)

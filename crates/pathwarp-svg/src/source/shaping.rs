@@ -1,4 +1,4 @@
-//! Shapes runs of text with the fonts that a text names, and with others for the letters that these lack.
+//! Shapes runs of text with the fonts that a text names, and with other fonts for the letters that these lack.
 
 use super::faces::Look;
 use super::fallback::Wanted;
@@ -12,13 +12,12 @@ use skrifa::{FontRef, Tag};
 use std::sync::Arc;
 use usvg::fontdb::{Database, ID, Source};
 
-/// A font that a text may use.
 pub(super) struct TextFont {
     /// The face in the database; `None` for a file that a user gave.
     pub(super) face: Option<ID>,
     pub(super) data: Bytes,
     pub(super) index: u32,
-    /// The writing that it was found for; `None` if the text names it.
+    /// The writing for which it was found; `None` if the text names it.
     pub(super) only: Option<Writing>,
 }
 
@@ -32,7 +31,6 @@ impl TextFont {
         Some(Self { face: Some(face), data, index: info.index, only })
     }
 
-    /// Whether it has small capitals of its own.
     pub(super) fn has_small_capitals(&self) -> bool {
         let font = FontRef::from_index((*self.data).as_ref(), self.index).ok();
         let features = font.and_then(|f| f.gsub().ok()?.feature_list().ok());
@@ -54,27 +52,27 @@ impl TextFont {
     }
 }
 
-/// What the shape of letters depends on beside their font.
+/// The properties on which the shape of letters depends beside their font.
 #[derive(Default)]
 pub(super) struct ShapingStyle {
     pub(super) size: f64,
-    /// OpenType features as [`features`] reads them.
+    /// OpenType features in the form that [`features`] reads.
     pub(super) features: String,
-    /// Positions on axes; those that a font lacks have no effect.
+    /// Positions on axes. Axes that a font lacks have no effect.
     pub(super) variations: Vec<(String, f32)>,
     pub(super) language: String,
 }
 
-/// Shapes a run of a line, from left to right. Adds fonts for what `fonts` lack, in the order in which letters need them. Empty if the
-/// fonts are damaged.
-pub(super) fn shaped(
+/// Shapes a run of a line, from left to right. Adds fonts for letters that `fonts` lack, in the order of these letters. Returns nothing if
+/// the fonts are damaged.
+pub(super) fn shape_with_fallback(
     line: &str,
     run: &Run,
     fonts: &mut Vec<TextFont>,
     (style, look): (&ShapingStyle, Look),
     (chooser, db): (&Chooser, &mut Arc<Database>),
 ) -> Vec<FontRun> {
-    /// Fonts for the letters of one run. Real texts need one or two.
+    /// Limit on rounds that add a font for a run. Real texts need one or two.
     const MOST: usize = 8;
     let features = features(&style.features).unwrap_or_default();
     let mut add = |letters: &str, fonts: &mut Vec<TextFont>| {
@@ -94,9 +92,9 @@ pub(super) fn shaped(
     }
     let mut absent: Vec<std::ops::Range<usize>> = Vec::new();
     for _ in 0..MOST {
-        // An unreadable font must keep its place.
+        // Unreadable fonts are skipped, but keep their indices.
         let read: Vec<Option<Font<'_>>> = fonts.iter().map(|f| f.font(style)).collect();
-        let places: Vec<usize> = (0..read.len()).filter(|i| read[*i].is_some()).collect();
+        let indices: Vec<usize> = (0..read.len()).filter(|i| read[*i].is_some()).collect();
         let usable: Vec<Font<'_>> = read.into_iter().flatten().collect();
         let mut parts = match shape_run(line, run, &usable, style.size, &features) {
             Ok(parts) => parts,
@@ -110,7 +108,7 @@ pub(super) fn shaped(
             }
             Err(_) => return Vec::new(),
         };
-        parts.iter_mut().for_each(|p| p.font = places[p.font]);
+        parts.iter_mut().for_each(|p| p.font = indices[p.font]);
         let lacking = parts.iter().filter(|p| p.missing).flat_map(|p| &p.clusters).map(|c| &c.0);
         let Some(cluster) = lacking.filter(|c| !absent.contains(c)).min_by_key(|c| c.start).cloned() else {
             return parts;
@@ -123,8 +121,8 @@ pub(super) fn shaped(
     Vec::new()
 }
 
-/// Finds installed or given fonts for the letters of a text that `fonts` lack, each with the writing that it is for. `weight` is 100 to
-/// 900; `language` is a BCP 47 tag, or empty.
+/// Finds installed or given fonts for the letters of a text that `fonts` lack, each with its writing. `weight` is 100 to 900; `language` is
+/// a BCP 47 tag, or empty.
 #[must_use]
 pub fn fallback_fonts(
     text: &str,
@@ -146,7 +144,7 @@ pub fn fallback_fonts(
                 let start = clusters.iter().map(|c| c.0.start).min().unwrap_or_default();
                 let end = clusters.iter().map(|c| c.0.end).max().unwrap_or_default();
                 let run = Run { range: start..end, ..run.clone() };
-                shaped(line, &run, &mut found, (&style, look), (&chooser, &mut db));
+                shape_with_fallback(line, &run, &mut found, (&style, look), (&chooser, &mut db));
             }
         }
     }

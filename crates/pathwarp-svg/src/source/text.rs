@@ -28,7 +28,6 @@ pub(crate) struct SourceText {
     pub(crate) css: String,
     /// The properties that the style sheets declare.
     declared: BTreeSet<String>,
-    /// `true` if there are animations.
     pub(crate) animated: bool,
     /// Reason why the text cannot be patched in place.
     pub(crate) unpatchable: Option<Unpatchable>,
@@ -40,9 +39,9 @@ pub(crate) struct SourceText {
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
-    /// What the file says about the paint of each element.
+    /// Declarations of paint in the file, by element.
     pub(crate) words: Vec<Arc<Words>>,
-    /// Small differences from what browsers show: a sentence, and the element or name it is about.
+    /// Small differences from browsers' rendering: a sentence, and the element or name that it concerns.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
     /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
     pub(crate) foreign: Vec<(ElementId, ElementId)>,
@@ -51,7 +50,7 @@ pub(crate) struct SourceText {
     marks: Marks,
     /// Outlines of `path` elements, read ahead for large drawings.
     pub(crate) ahead: Ahead,
-    // The rest is computed on first use.
+    // The following fields are computed on first use.
     by_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     by_tree_id: OnceLock<HashMap<String, Vec<ElementId>>>,
     line_starts: OnceLock<Vec<usize>>,
@@ -71,7 +70,7 @@ impl SourceText {
     ) -> Result<(Self, T), Error> {
         let mut undeclared = Vec::new();
         let (source, result) = plain(text, name, budget, Some(&mut undeclared), linked, |plain, doc, expanded| {
-            let mut source = Self::of(doc, plain, name)?;
+            let mut source = Self::from_plain(doc, plain, name)?;
             if expanded {
                 source.unpatchable.get_or_insert(Unpatchable::Entities);
             }
@@ -88,10 +87,10 @@ impl SourceText {
         Ok((Self { undeclared, ..source }, result))
     }
 
-    /// The elements of a drawing that was resolved into plain SVG, from its tree. `name` identifies it in errors.
-    pub(crate) fn of(doc: &roxmltree::Document<'_>, plain: Plain, name: &str) -> Result<Self, Error> {
+    /// The text and elements of a drawing that was resolved into plain SVG. `name` identifies it in errors.
+    pub(crate) fn from_plain(doc: &roxmltree::Document<'_>, plain: Plain, name: &str) -> Result<Self, Error> {
         let root = doc.root_element();
-        let Some(Table { elements, css, unpatchable }) = Table::of(doc) else {
+        let Some(Table { elements, css, unpatchable }) = Table::read(doc) else {
             let at = doc.text_pos_at(root.range().start);
             return Err(Error::input(
                 format!("{name}:{}:{}", at.row, at.col),
@@ -116,8 +115,8 @@ impl SourceText {
         })
     }
 
-    /// Whether any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply the
-    /// depth, as their targets may hold further references.
+    /// Returns `true` if any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply
+    /// the depth, as their targets may hold further references.
     pub(crate) fn is_shallow(&self) -> bool {
         /// Limit on depth times references. A level takes a few kilobytes of stack.
         const MAX_LEVELS: usize = 80;
@@ -142,7 +141,7 @@ impl SourceText {
         }
         let read = || {
             // Don't read inside `get_or_init`: a thread waiting for others may run a task that needs the outlines, too.
-            let outlines = read(&self.text, &self.elements);
+            let outlines = read_outlines(&self.text, &self.elements);
             let _ = self.ahead.set(outlines);
         };
         both(f, read).0
@@ -151,33 +150,32 @@ impl SourceText {
     /// The style attribute that results get if nothing changes it.
     pub(crate) fn written_style(&self, e: ElementId) -> String {
         let first = self.originals.partition_point(|o| o.element < e);
-        let own = self.originals[first..].iter().take_while(|o| o.element == e).find(|o| o.name == "style");
-        let value = own.map_or_else(|| self.attr(e, "style").map(Cow::into_owned), |o| o.value.clone());
+        let original = self.originals[first..].iter().take_while(|o| o.element == e).find(|o| o.name == "style");
+        let value = original.map_or_else(|| self.attr(e, "style").map(Cow::into_owned), |o| o.value.clone());
         value.unwrap_or_default()
     }
 
-    /// Whether the file holds an element, which may be one that the reader added.
+    /// Returns `false` for an element that the reader added.
     pub(crate) fn is_in_file(&self, e: &Element) -> bool {
         let next = self.originals.partition_point(|o| o.range.end <= e.range.start);
         self.originals.get(next).is_none_or(|o| e.range.start < o.range.start)
     }
 
-    /// The text as it is in the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         self.part_in_file(0..self.text.len())
     }
 
-    /// Places in the file of places in the text, which are in order.
-    pub(crate) fn places_in_file(&self, places: impl Iterator<Item = usize>) -> Vec<usize> {
+    /// Positions in the file of ascending positions in the text.
+    pub(crate) fn positions_in_file(&self, positions: impl Iterator<Item = usize>) -> Vec<usize> {
         let mut originals = self.originals.iter().peekable();
-        let (mut gone, mut added) = (0, 0);
-        let place = |at: usize| {
+        let (mut removed, mut added) = (0, 0);
+        let in_file = |at: usize| {
             while let Some(o) = originals.next_if(|o| o.range.end <= at) {
-                (gone, added) = (gone + o.text.len(), added + o.range.len());
+                (removed, added) = (removed + o.text.len(), added + o.range.len());
             }
-            at + gone - added
+            at + removed - added
         };
-        places.map(place).collect()
+        positions.map(in_file).collect()
     }
 
     /// A part of the text as it is in the file.
@@ -208,14 +206,13 @@ impl SourceText {
         })
     }
 
-    /// The element that `fill` or `stroke` of an element refers to, its own or inherited.
+    /// The paint server of an element's `fill` or `stroke`, declared on it or inherited.
     pub(crate) fn paint_server(&self, e: ElementId, property: &str) -> Option<ElementId> {
         let value = self.ancestors(e).find_map(|a| self.property(a, property).filter(|v| v != "inherit"))?;
         let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
         self.by_id().get(id)?.first().copied()
     }
 
-    /// The mesh gradient that an element defines.
     pub(crate) fn mesh(&self, e: ElementId) -> Option<&MeshGradient> {
         self.meshes.get(&*self.attr(e, "id")?).filter(|_| mesh::is_mesh(&self.elements[e].tag))
     }
@@ -248,11 +245,11 @@ impl SourceText {
         (line, self.characters(at) - self.characters(start) + 1)
     }
 
-    /// Number of characters before `at`. Checkpoints avoid counting from the start of a text that is a single line.
+    /// Number of characters before the byte `at`, counted from the nearest checkpoint, as a text may be a single line.
     fn characters(&self, at: usize) -> usize {
         /// Bytes between checkpoints.
         const STEP: usize = 1 << 8;
-        // Count the bytes that begin a character.
+        // Counts the bytes that begin a character.
         let count = |from: usize, to: usize| {
             self.text.as_bytes()[from.min(to)..to].iter().filter(|b| (**b as i8) >= -0x40).count()
         };
@@ -274,7 +271,7 @@ impl SourceText {
         self.elements.get(e)?.attr(&self.text, name)
     }
 
-    /// The value of a property that an element itself declares.
+    /// The value of a property declared on an element.
     pub(crate) fn property(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
         let style = self.attr(e, "style");
         let declared = style.as_deref().and_then(|s| declared(s, name)).map(|v| v.to_owned().into());
@@ -292,13 +289,13 @@ impl SourceText {
         self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
-    /// The element that `href` or `xlink:href` refers to. The last of several with the same id wins.
+    /// The element to which `href` or `xlink:href` refers: the last one with the id.
     pub(crate) fn target(&self, e: ElementId) -> Option<ElementId> {
         self.by_id().get(&self.href(e)?)?.last().copied()
     }
 
-    /// Whether an attribute such as `filterUnits`, on the element or on one that it refers to, specifies user space. `None` if it is
-    /// not given.
+    /// Returns `true` if an attribute such as `filterUnits`, on the element or the chain of its references, specifies user space; `None` if
+    /// it is not given.
     pub(crate) fn in_user_space(&self, e: ElementId, units: &str) -> Option<bool> {
         const MAX_LINKS: usize = 16;
         let mut chain = std::iter::successors(Some(e), |&e| self.target(e)).take(MAX_LINKS);
@@ -315,7 +312,6 @@ impl SourceText {
         std::iter::successors(Some(e), |&e| self.elements.get(e).and_then(|e| e.parent))
     }
 
-    /// The descendants of an element, in document order.
     pub(crate) fn descendants(&self, e: ElementId) -> impl Iterator<Item = ElementId> + '_ {
         let end = self.elements[e].range.end;
         (e + 1..self.elements.len()).take_while(move |&d| self.elements[d].range.start < end)
@@ -326,7 +322,6 @@ impl SourceText {
         self.ancestors(e).skip(1).find(|&a| self.elements[a].tag == "svg")
     }
 
-    /// The label that Inkscape shows.
     pub(crate) fn label(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::Inkscape, "label")
     }
@@ -374,7 +369,6 @@ impl SourceText {
         !self.css.trim().is_empty()
     }
 
-    /// Whether the style sheets declare a property.
     pub(crate) fn css_declares(&self, property: &str) -> bool {
         self.declared.contains(property)
     }
@@ -386,8 +380,8 @@ impl SourceText {
         name.find(':').map_or("", |i| &name[..=i])
     }
 
-    /// Gives every element that usvg tracks and that has no unique id a temporary one. Also appends `styles` to style attributes.
-    /// Returns `None` for the text if that changes nothing.
+    /// The text with a temporary id for every element that usvg tracks and that has no unique id, and with `styles` appended to style
+    /// attributes; `None` if that changes nothing. Also returns the temporary ids.
     pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (Option<String>, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
         let links = links(&self.text);
@@ -396,14 +390,14 @@ impl SourceText {
             if !is_tracked(&e.tag) {
                 continue;
             }
-            let own: Option<&Attr> = e.id_attr(&self.text);
-            let value = own.map(|a| a.value(&self.text));
+            let id: Option<&Attr> = e.id_attr(&self.text);
+            let value = id.map(|a| a.value(&self.text));
             let shared = |id: &str| self.by_id().get(id).is_some_and(|v| v.len() > 1);
             if value.is_none_or(|id| id.is_empty() || shared(&id) && !links.contains(&*id)) {
-                let id = format!("{}{i}", marks.stem);
-                patches.push(match own {
-                    Some(a) => (a.value_range.clone(), id),
-                    None => (e.qname.end..e.qname.end, format!(" id=\"{id}\"")),
+                let temporary = format!("{}{i}", marks.stem);
+                patches.push(match id {
+                    Some(a) => (a.value_range.clone(), temporary),
+                    None => (e.qname.end..e.qname.end, format!(" id=\"{temporary}\"")),
                 });
                 marks.elements.push(i);
             }
@@ -415,7 +409,7 @@ impl SourceText {
                 None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
             })
         }));
-        // A mesh gradient gets a stand-in, which usvg takes for it.
+        // usvg finds the stand-in of a mesh gradient first.
         patches.extend(self.elements.iter().filter(|e| mesh::is_mesh(&e.tag)).filter_map(|e| {
             let id = e.attr(&self.text, "id").filter(|id| self.meshes.contains_key(&**id))?;
             Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))
@@ -439,8 +433,8 @@ impl SourceText {
     }
 }
 
-/// Parses a drawing, resolves it into plain SVG, and calls `then` with that, its tree, and whether elements were written out in place of
-/// the entities that hold them. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an error.
+/// Parses a drawing, resolves it into plain SVG, and calls `then` with the result, its tree, and `true` if entities that hold elements were
+/// expanded. Undeclared prefixes are declared and added to `undeclared`; if that is `None`, they are an error.
 pub(super) fn plain<T>(
     mut text: String,
     name: &str,
@@ -491,7 +485,7 @@ fn stem(text: &str) -> String {
     stem
 }
 
-/// Collects everything that looks like a reference. False positives do no harm.
+/// Collects all that looks like a reference. False positives do no harm.
 pub(crate) fn links(text: &str) -> HashSet<&str> {
     text.match_indices('#')
         .map(|(i, _)| {
@@ -552,11 +546,11 @@ fn doctype_end(text: &str) -> Option<usize> {
 /// Outlines by element, once they have been read.
 type Ahead = Arc<OnceLock<HashMap<ElementId, Arc<Outline>>>>;
 
-/// For shorter texts, starting threads takes longer than reading the outlines. In bytes.
+/// Length of a text in bytes from which reading outlines takes longer than starting threads.
 pub(crate) const WORTH_THREADS: usize = 200_000;
 
 /// Reads the outlines of all `path` elements.
-pub(super) fn read(text: &str, elements: &[Element]) -> HashMap<ElementId, Arc<Outline>> {
+fn read_outlines(text: &str, elements: &[Element]) -> HashMap<ElementId, Arc<Outline>> {
     let paths: Vec<ElementId> = (0..elements.len()).filter(|e| elements[*e].tag == "path").collect();
     let outline = |i: usize| {
         let d = elements[paths[i]].attr(text, "d")?;
@@ -570,11 +564,11 @@ mod tests {
     use super::*;
 
     fn parsed(text: &str) -> SourceText {
-        SourceText::of(&xml::document(text).unwrap(), Plain::default(), "t").unwrap()
+        SourceText::from_plain(&xml::document(text).unwrap(), Plain::default(), "t").unwrap()
     }
 
     #[test]
-    fn places_are_found() {
+    fn positions_are_found() {
         let s = parsed("<svg xmlns='http://www.w3.org/2000/svg'>\n <rect  x = '1' id='a'/><g a='>'>t</g></svg>");
         let r = &s.elements[1];
         assert_eq!(&s.text[r.range.clone()], "<rect  x = '1' id='a'/>");

@@ -27,8 +27,7 @@ pub(crate) fn both<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B)
     (a(), b())
 }
 
-/// Runs `f` with a stack for the deepest nesting that the parsers accept (1024 elements). A panic inside, which no known file
-/// causes, becomes an error.
+/// Runs `f` with a stack for the deepest nesting that the parsers accept (1024 elements).
 pub(crate) fn with_stack<T: Send>(name: &str, f: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     const STACK: usize = 128 << 20;
     let failed = |why: &str| Error::input(name, format!("this drawing cannot be read: {why}"));

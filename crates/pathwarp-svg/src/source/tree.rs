@@ -19,7 +19,6 @@ use usvg::roxmltree;
 /// Missing fonts and images of a drawing, and other gaps.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Missed {
-    /// Missing font families.
     pub(crate) fonts: Vec<String>,
     /// Letters that no font has, each with the text around it.
     pub(crate) letters: BTreeSet<(String, String)>,
@@ -27,16 +26,16 @@ pub(crate) struct Missed {
     pub(crate) images: Vec<String>,
     /// The links among `images` that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
-    /// Content and style that are not drawn, worded for people. Only [`lacking`](Self::lacking) fills this in.
+    /// Sentences about content and style that are not drawn. Only [`lacking`](Self::lacking) adds them.
     #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) undrawn: Vec<String>,
-    /// Small differences from what browsers show, as the reader notes them. Only [`lacking`](Self::lacking) fills this in.
+    /// The reader's notes on small differences from browsers. Only [`lacking`](Self::lacking) adds them.
     #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
 
 impl Missed {
-    /// Names the letters that no font has.
+    /// Sentences about letters that no font has.
     pub(crate) fn without_font(&self) -> Vec<String> {
         let shortened = |text: &str| match text.char_indices().nth(40) {
             Some((end, _)) => format!("{}…", &text[..end]),
@@ -49,9 +48,9 @@ impl Missed {
         self.letters.iter().map(name).collect()
     }
 
-    /// Adds what else a picture of the drawing lacks.
+    /// Adds the content and style that a picture of the drawing lacks, and the reader's notes.
     pub(crate) fn lacking(self, source: &SourceText) -> Self {
-        let undrawn = undrawn(source).into_iter().chain(meshes(source)).chain(self.without_font()).collect();
+        let undrawn = undrawn(source).into_iter().chain(undrawn_meshes(source)).chain(self.without_font()).collect();
         Self { undrawn, notes: source.notes.clone(), ..self }
     }
 }
@@ -65,9 +64,9 @@ pub(crate) fn tree(
     name: &str,
     options: &ReadOptions,
 ) -> Result<(usvg::Tree, Missed), Error> {
-    let features = check::drawing(xml, name, &options.budget)?;
+    let features = check::check_drawing(xml, name, &options.budget)?;
     let (missing, unread, rejected) = (Missing::default(), Unread::default(), Rejected::default());
-    // Reading the installed fonts takes longer than most drawings, so do it only for text.
+    // The installed fonts are read only for text, as this takes longer than reading most drawings.
     let mut usvg = usvg::Options { resources_dir: options.base_dir.clone(), dpi: options.dpi, ..Default::default() };
     if features.images {
         usvg.image_href_resolver = images::resolver(name, options, &rejected, &unread);
@@ -85,7 +84,7 @@ pub(crate) fn tree(
         letters = without;
         tree
     } else {
-        resolved(xml, name, &usvg)?
+        usvg_tree(xml, name, &usvg)?
     };
     if let Some(e) = rejected.lock().ok().and_then(|mut r| r.take()) {
         return Err(e);
@@ -95,8 +94,8 @@ pub(crate) fn tree(
     Ok((tree, Missed { fonts, images, outside, letters, ..Missed::default() }))
 }
 
-/// Resolves a drawing with texts, in pieces where usvg would shape them otherwise than browsers. Also returns the letters that no font
-/// has, each with the text around it.
+/// Resolves a drawing with texts, which are divided into pieces where usvg would shape them differently from browsers. Also returns the
+/// letters that no font has, each with the text around it.
 fn with_letters(
     xml: &roxmltree::Document<'_>,
     name: &str,
@@ -107,16 +106,15 @@ fn with_letters(
     let marked = pieces::with_ids(xml);
     let marked = marked.as_deref().map(|text| xml::parse_checked(text, name)).transpose()?;
     let xml = marked.as_ref().unwrap_or(xml);
-    let whole = resolved(xml, name, usvg)?;
+    let whole = usvg_tree(xml, name, usvg)?;
     let Divided { text, fonts, db, missing } = pieces::divided(xml, &whole, chooser);
     let Some(text) = text else { return Ok((whole, missing)) };
     usvg.fontdb = db;
     usvg.font_resolver = chooser.resolver(fonts);
-    Ok((resolved(&xml::parse_checked(&text, name)?, name, usvg)?, missing))
+    Ok((usvg_tree(&xml::parse_checked(&text, name)?, name, usvg)?, missing))
 }
 
-/// Has usvg resolve a drawing.
-fn resolved(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree, Error> {
+fn usvg_tree(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree, Error> {
     let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, options)));
     let failed = |_| Error::input(name, "the library that reads SVG fails on it; please report it");
     resolved.map_err(failed)?.map_err(|e| {
@@ -134,12 +132,12 @@ fn resolved(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'
     })
 }
 
-/// Reads SVG or svgz data into usvg's tree. The list of what is missed is complete.
+/// Reads SVG or svgz data into usvg's tree, with the list of all that it lacks and a new budget.
 pub(crate) fn parse(data: &[u8], name: &str, options: &ReadOptions) -> Result<(Arc<usvg::Tree>, Missed), Error> {
     parse_counted(data, name, &options.begin(data.len()))
 }
 
-/// As [`parse`], with what is left of the options' budget.
+/// Reads SVG or svgz data into usvg's tree, with the list of all that it lacks, within the rest of the options' budget.
 pub(crate) fn parse_counted(
     data: &[u8],
     name: &str,
@@ -149,7 +147,7 @@ pub(crate) fn parse_counted(
     let linked = |link: &str| images::linked_drawing(link, options);
     plain(text, name, &options.budget, None, &linked, |plain, doc, _| {
         let (tree, missed) = with_stack(name, || tree(doc, name, options))?;
-        Ok((Arc::new(tree), missed.lacking(&SourceText::of(doc, plain, name)?)))
+        Ok((Arc::new(tree), missed.lacking(&SourceText::from_plain(doc, plain, name)?)))
     })
 }
 
@@ -179,19 +177,19 @@ pub(crate) fn unknown(source: &SourceText, e: ElementId) -> Option<Unknown> {
     }
 }
 
-/// Whether an element is in `<defs>`, so that it is only drawn where it is referenced.
+/// Returns `true` if an element is in `<defs>`, so that it is only drawn by reference.
 pub(crate) fn is_definition(source: &SourceText, e: ElementId) -> bool {
     source.ancestors(e).any(|a| source.elements[a].tag == "defs")
 }
 
-/// Whether a link leads to another file.
+/// Returns `true` if a link leads to another file.
 fn is_elsewhere(link: &str) -> bool {
     let link = link.trim_start();
     !link.is_empty() && !link.starts_with('#')
 }
 
-/// Names the elements whose mesh gradients a picture lacks.
-fn meshes(source: &SourceText) -> impl Iterator<Item = String> {
+/// Sentences about elements whose mesh gradients a picture lacks.
+fn undrawn_meshes(source: &SourceText) -> impl Iterator<Item = String> {
     let all = if source.meshes.is_empty() { 0..0 } else { 0..source.elements.len() };
     let painted = |&e: &ElementId| {
         (is_shape(&source.elements[e].tag) || source.elements[e].tag == "text") && !is_definition(source, e)
@@ -203,16 +201,16 @@ fn meshes(source: &SourceText) -> impl Iterator<Item = String> {
     })
 }
 
-/// Lists the content and style that a picture of the drawing lacks, worded for people.
+/// Sentences about content and style that a picture of the drawing lacks.
 pub(crate) fn undrawn(source: &SourceText) -> Vec<String> {
     let shown = |e: &ElementId| !is_definition(source, *e);
     let content = (0..source.elements.len()).filter(shown).filter_map(|e| {
-        let what = match unknown(source, e)? {
+        let problem = match unknown(source, e)? {
             Unknown::FlowedText => "text that flows in a frame (flowRoot), which only Inkscape lays out",
             Unknown::Foreign => "foreign content (HTML in a foreignObject)",
             Unknown::Elsewhere => "what it refers to is in another file",
         };
-        Some(format!("{} is not drawn: {what}", source.display_name(e)))
+        Some(format!("{} is not drawn: {problem}", source.display_name(e)))
     });
     let style = source.unsupported_style.iter().filter(|(e, _)| e.as_ref().is_none_or(shown)).map(|(e, why)| match e {
         Some(e) => {

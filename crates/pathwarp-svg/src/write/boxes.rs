@@ -1,4 +1,4 @@
-//! Bounding boxes of parts as they are written.
+//! Measures the boxes of parts as written, and the regions of filters and masks.
 
 use super::input::WriteInput;
 use super::markup::{part_box, stroke_scale};
@@ -17,7 +17,7 @@ use usvg::filter::Filter;
 /// Relative tolerance of outlines that are measured.
 const FINE: f64 = 1e-4;
 
-/// Approximates the path that is written for a part.
+/// An approximation of the path written for a part.
 pub(super) fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
     if let Some(d) = warped {
         return Cow::Borrowed(&d.path);
@@ -26,7 +26,7 @@ pub(super) fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezP
     Cow::Owned(p.local.to_bez_path((size * FINE).max(1e-12)))
 }
 
-/// Bounding box of a path; empty if it draws nothing.
+/// Bounding box of a path; empty if it has no segments.
 fn extent(path: &BezPath) -> Rect {
     let segs = || path.segments().map(Seg::from);
     let ends = segs().map(|s| Rect::from_points(s.start(), s.end())).reduce(|a, b| a.union(b));
@@ -38,7 +38,7 @@ pub(super) fn box_under(frame: Affine, path: &BezPath) -> Rect {
     if frame == Affine::IDENTITY { extent(path) } else { extent(&(frame * path)) }
 }
 
-/// A cheap bounding box of everything a part paints; it may be too large.
+/// A quickly computed box that contains all that a part paints.
 pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = match warped {
         Some(d) => d.path.control_box(),
@@ -94,11 +94,11 @@ pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, ar
     }
 }
 
-/// Growth of a side that is kept, as a fraction of the content's size. Less comes from rounding and is not seen.
+/// Least growth of a side that counts, as a fraction of the content's size. Rounding causes less.
 const SEEN: f64 = 1e-4;
 
-/// The growth of the regions of a group's filters: on each side, as much as its bent content reaches further than the source's. Both
-/// are measured in the filters' user space, which has taken the affine part of the map.
+/// The growth of the regions of a group's filters: on each side, the distance by which the bent content extends past the source's. Both
+/// are measured in the filters' user space, which follows the affine fit of the map.
 pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
     let slot = g.slot.filter(|_| !g.filters.is_empty()).map(|i| &input.scene.slots[i]);
     let Some(slot) = slot.filter(|s| !s.before && input.changes(s.parts.clone())) else { return Insets::ZERO };
@@ -126,10 +126,9 @@ pub(super) fn grown(f: &Filter, growth: Insets) -> Rect {
     rect(f.rect().to_rect()) + growth
 }
 
-/// Decimals of a region's warped border.
 const DECIMALS: u8 = 9;
 
-/// Points on each side of a region whose images are looked at.
+/// Intervals on each side of a region, at whose ends the map is evaluated.
 const SAMPLES: usize = 16;
 
 /// Attributes for the region of a mask, which covers all of its content after the warp.

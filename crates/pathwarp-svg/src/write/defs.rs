@@ -17,7 +17,7 @@ type ServerKey = (usize, [u64; 6]);
 /// Key of a filter: its address and its region.
 type FilterKey = (usize, [u64; 4]);
 
-/// Definitions written so far. Each is written once, when it is first referred to.
+/// Definitions written so far. Each one is written once, for the first reference to it.
 pub(super) struct Definitions {
     /// Text of the definitions.
     pub(super) text: String,
@@ -25,8 +25,9 @@ pub(super) struct Definitions {
     pub(super) taken: HashSet<String>,
     /// The last numbers appended to ids, by id.
     numbers: HashMap<String, usize>,
-    /// Ids of clip paths and masks by index, once they have one.
+    /// Ids of the clip paths that have one so far, by index.
     pub(super) clip_ids: Vec<Option<String>>,
+    /// Ids of the masks that have one so far, by index.
     pub(super) mask_ids: Vec<Option<String>>,
     /// Ids of gradients and patterns.
     pub(super) servers: HashMap<ServerKey, String>,
@@ -34,9 +35,9 @@ pub(super) struct Definitions {
     pub(super) meshes: HashMap<String, String>,
     /// Ids of filters.
     pub(super) filters: HashMap<FilterKey, String>,
-    /// Regions of the source's filters, by their ids, that are to grow.
+    /// New regions of the source's filters, by their ids.
     pub(super) regions: BTreeMap<String, Rect>,
-    /// Definitions are added to the source.
+    /// `true` if definitions are added to the source.
     in_source: bool,
     /// The element of the source that is being replaced.
     pub(super) replaced: Option<Replaced>,
@@ -72,12 +73,12 @@ impl Definitions {
         }
     }
 
-    /// Returns `id` if it is free, else with a number appended.
+    /// Returns `id` if it is free, or else with a number appended.
     pub(super) fn new_id(&mut self, id: &str) -> String {
         if self.taken.insert(id.to_owned()) {
             return id.to_owned();
         }
-        // An id is never free again, so the search goes on where the last one ended.
+        // Used ids stay in use, so the search starts where the last one ended.
         let n = self.numbers.entry(id.to_owned()).or_insert(1);
         loop {
             *n += 1;
@@ -88,7 +89,7 @@ impl Definitions {
         }
     }
 
-    /// The id of a source element as an attribute, for the element that takes its place; empty if the id is not free.
+    /// The id of a source element as an attribute, for the element that replaces it; empty if the id is not free.
     pub(super) fn id_attribute(&mut self, source: &SourceText, e: ElementId) -> String {
         let Some(id) = source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
         let free = match &mut self.replaced {
@@ -98,11 +99,11 @@ impl Definitions {
         if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
     }
 
-    /// Lets the region of a filter of the source grow to hold `region`.
+    /// Enlarges the region of a filter of the source to contain `region`.
     pub(super) fn grow(&mut self, f: &Filter, region: Rect) {
-        let own = rect(f.rect().to_rect());
-        if region != own {
-            let all = self.regions.entry(f.id().to_owned()).or_insert(own);
+        let before = rect(f.rect().to_rect());
+        if region != before {
+            let all = self.regions.entry(f.id().to_owned()).or_insert(before);
             *all = all.union(region);
         }
     }
@@ -121,18 +122,18 @@ pub(super) fn server_key(address: usize, fit: Affine) -> ServerKey {
     (address, fit.as_coeffs().map(f64::to_bits))
 }
 
-/// Returns `true` if another gradient can take its `stops` from the source's gradient `id`: the id is unique, the chain of links ends, and
-/// the last of them has as many. One in linear light is drawn by more than the source has, which the reader puts before it.
+/// Returns `true` if another gradient can take its `stops` from the source's gradient `id`: the id is unique, its chain of links ends, and
+/// the chain's last gradient with stops has as many. The reader adds stops to gradients in linear light, which the source lacks.
 pub(super) fn has_usable_stops(source: &SourceText, id: &str, stops: usize) -> bool {
     /// Longest chain of links followed.
     const LONGEST: usize = 16;
-    let own = |e| source.descendants(e).filter(|s| *source.elements[*s].tag == *"stop").count();
+    let count = |e| source.descendants(e).filter(|s| *source.elements[*s].tag == *"stop").count();
     let (mut next, mut given) = (Some(id.to_owned()), 0);
     for _ in 0..LONGEST {
         let Some(id) = next else { return given >= stops };
         match source.by_id().get(&id).map(Vec::as_slice) {
             Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => {
-                given = Some(own(e)).filter(|n| *n > 0).unwrap_or(given);
+                given = Some(count(e)).filter(|n| *n > 0).unwrap_or(given);
                 next = source.href(e);
             }
             _ => return false,

@@ -1,4 +1,4 @@
-//! Writes a warped document: patched in place, or flattened.
+//! Writes a warped document: patches the source in place, or flattens it.
 
 use super::fragment::Writer;
 use super::input::WriteInput;
@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// Writes the document to `out`, with warnings and everything skipped.
+/// Writes the document to `out`, with warnings and skipped elements.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
     let unread = unread_images(input.drawing, input.options).chain(elements(input));
@@ -50,7 +50,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
                 out.warnings.push(Warning::Flattened(why.to_string()));
             }
             out.skipped.extend(unread.map(|s| Skipped { why: s.why + "; it is left out", ..s }));
-            flattened(input, written, &mut out.skipped, &mut notes)
+            flatten(input, written, &mut out.skipped, &mut notes)
         }
     };
     out.skipped.extend(styles(input));
@@ -77,8 +77,8 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     let is_image = move |e: ElementId| matches!(source.elements[e].tag.as_ref(), "image" | "feImage");
     let images = selected.into_iter().enumerate().filter(move |(e, s)| *s && is_image(*e));
     images.filter_map(|(e, _)| {
-        let own = source.link(e)?;
-        let link = missed.iter().find(|link| is_same_link(&own, link))?;
+        let written = source.link(e)?;
+        let link = missed.iter().find(|link| is_same_link(&written, link))?;
         let reason = if drawing.missed.outside.contains(link) {
             "lies outside of the drawing's folder, and was not read"
         } else if link.contains("://") {
@@ -90,8 +90,8 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     })
 }
 
-/// Writes the file; `change` is the visible area before and after, if that changes.
-fn flattened(
+/// Writes a new file. `change` is the visible area before and after, if it changes.
+fn flatten(
     input: &WriteInput<'_>,
     change: Option<(Rect, Rect)>,
     skipped: &mut Vec<Skipped>,
@@ -132,16 +132,16 @@ fn flattened(
     out
 }
 
-/// A paint server that the renderer does not know, in words.
-fn paint(tag: &str) -> Option<&'static str> {
+/// A phrase for a paint server that the renderer does not know.
+fn unknown_paint(tag: &str) -> Option<&'static str> {
     match tag {
         "hatch" => Some("a hatch"),
         _ => is_mesh(tag).then_some("a mesh gradient"),
     }
 }
 
-/// Why content that the renderer does not know is not warped.
-fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
+/// The reason why content that the renderer does not know is not warped.
+fn unknown_content(source: &SourceText, e: ElementId) -> Option<&'static str> {
     Some(match unknown(source, e)? {
         Unknown::FlowedText => {
             "text that flows in a frame (flowRoot) cannot be warped, as only Inkscape lays it out; convert it to ordinary text or to \
@@ -152,7 +152,7 @@ fn content(source: &SourceText, e: ElementId) -> Option<&'static str> {
     })
 }
 
-/// Notes private data from which its editor would restore the artwork as it was.
+/// Notes private data from which Illustrator would restore the unwarped artwork.
 fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
     let is_illustrator = |e: ElementId| {
         input.source.elements[e].tag == "foreignObject"
@@ -168,7 +168,7 @@ fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
     }
 }
 
-/// Notes what is not supported of the style sheets.
+/// Notes unsupported rules of the style sheets.
 fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
     if !input.outcomes.iter().any(|o| o.warped().is_some()) {
         return;
@@ -176,12 +176,12 @@ fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
     for (_, why) in input.source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
         notes.add("the style sheets ask for more than is supported", why);
     }
-    for (what, name) in &input.source.notes {
-        notes.add(what, name);
+    for (text, name) in &input.source.notes {
+        notes.add(text, name);
     }
 }
 
-/// Lists the selected elements whose style asks for what is not supported.
+/// Lists the selected elements with an unsupported style.
 pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
     let unsupported = || source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
@@ -196,7 +196,7 @@ pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
 /// Lists the selected elements that are not warped because the renderer does not know them or their paint.
 pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
-    let known = |e: ElementId| content(source, e).is_none() && paint(&source.elements[e].tag).is_none();
+    let known = |e: ElementId| unknown_content(source, e).is_none() && unknown_paint(&source.elements[e].tag).is_none();
     let all = 0..source.elements.len();
     if all.clone().all(known) {
         return Vec::new();
@@ -207,10 +207,10 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
         parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
     let unknown = |e: ElementId, property: &str| {
         let server = source.paint_server(e, property)?;
-        paint(&source.elements[server].tag).filter(|_| source.mesh(server).is_none())
+        unknown_paint(&source.elements[server].tag).filter(|_| source.mesh(server).is_none())
     };
     let why = |e: ElementId| {
-        if let Some(why) = content(source, e) {
+        if let Some(why) = unknown_content(source, e) {
             return Some(why.to_owned());
         }
         let tag = source.elements[e].tag.as_ref();

@@ -1,4 +1,4 @@
-//! Filters: all seventeen primitives, in their resolved form and in user space.
+//! Writes filters: all seventeen primitives, in their resolved form and in user space.
 
 use super::layers::{Layer, Need};
 use super::markup::{self, Markup};
@@ -11,8 +11,8 @@ use usvg::filter::{
     Input, Kind, LightSource, MorphologyOperator, Primitive, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. A `layer`
-/// takes only what it needs.
+/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. For a `layer`, only the
+/// primitives that it needs are written.
 pub(super) fn element(
     markup: &Markup<'_>,
     f: &Filter,
@@ -28,7 +28,7 @@ pub(super) fn element(
             ColorInterpolation::LinearRGB => "linearRGB",
         };
         let begin = |tag: &str| {
-            let tag = markup.element(tag).with_all(rectangle(areas::part(f, p, all)));
+            let tag = markup.element(tag).with_all(rectangle(areas::primitive_region(f, p, all)));
             tag.with("color-interpolation-filters", space)
         };
         let (tag, content) = primitive(markup, &begin, p, &mut pictures);
@@ -49,7 +49,7 @@ pub(super) fn element(
     filter.with_all(rectangle(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
 }
 
-/// A primitive with its content; `begin` begins its element. A picture is the next of `pictures`.
+/// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`.
 fn primitive(
     markup: &Markup<'_>,
     begin: &dyn Fn(&str) -> Tag,

@@ -1,7 +1,7 @@
 //! Writes resolved geometry: groups, parts, and the definitions that they refer to.
 //!
-//! Group transforms are kept, and the geometry inside is written in its own user space, so that strokes, filters and paint
-//! servers keep their frames. Groups refer to definitions, which hold groups in turn; this is the one file of that recursion.
+//! Group transforms are kept, and the geometry inside is written in the groups' user space, so that strokes, filters and paint
+//! servers keep their frames. Groups refer to definitions, which hold groups in turn; the whole recursion is in this file.
 
 use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
@@ -9,7 +9,7 @@ use super::layers::Layer;
 use super::markup::{
     self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
 };
-use super::place::Place;
+use super::surroundings::Surroundings;
 use super::{boxes, filter, mesh};
 use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::gradients::NewGradient;
@@ -32,11 +32,8 @@ use usvg::filter::Filter;
 use usvg::{BaseGradient, SpreadMethod};
 use usvg::{BlendMode, FillRule, ImageKind, ImageRendering, Paint, PaintOrder};
 
-/// Note on filters.
 pub(super) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
-/// Note on patterns.
 const PATTERNS: &str = "patterns follow the warp as a whole: their tiles are not bent";
-/// Note on nested clip paths.
 const CLIPPED_TWICE: &str = "a shape in a clip path has two clip paths of its own; one is left out";
 
 /// Content of a clipped group, with its opacity.
@@ -45,12 +42,13 @@ struct Clipped {
     opacity: f32,
 }
 
+/// Writes elements, and the definitions to which they refer.
 pub(super) struct Writer<'a> {
     pub(super) input: WriteInput<'a>,
     pub(super) markup: Markup<'a>,
     pub(super) defs: Definitions,
-    /// Where new elements go that keep their authors' words about paint.
-    pub(super) place: Option<Place<'a>>,
+    /// The surroundings of new elements, if these keep the declarations of paint in the source.
+    pub(super) surroundings: Option<Surroundings<'a>>,
     pub(super) skipped: &'a mut Vec<Skipped>,
     pub(super) notes: &'a mut Notes,
 }
@@ -65,7 +63,7 @@ impl<'a> Writer<'a> {
     ) -> Self {
         let markup = Markup::new(input.source, in_source);
         let defs = Definitions::new(input.source, input.scene, in_source);
-        Self { input, markup, defs, place: None, skipped, notes }
+        Self { input, markup, defs, surroundings: None, skipped, notes }
     }
 
     fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
@@ -85,11 +83,11 @@ impl<'a> Writer<'a> {
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
-                let place = self.place.map(|p| p.of_text(self.input.source, *element));
-                let around = std::mem::replace(&mut self.place, place);
+                let inside = self.surroundings.map(|s| s.for_text(self.input.source, *element));
+                let around = std::mem::replace(&mut self.surroundings, inside);
                 let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
-                self.place = around;
+                self.surroundings = around;
                 self.markup.named_group(&id, inner)
             }
         }
@@ -109,15 +107,15 @@ impl<'a> Writer<'a> {
         self.wrapped(g, &head, lead.to_owned() + &inner)
     }
 
-    /// The content of a group between the pictures of what its filters draw, or the picture of all.
+    /// The content of a group between the pictures of its filters, or the picture that replaces it.
     pub(super) fn with_pictures(&self, g: &Group, content: String) -> String {
         let Some(outcome) = self.input.filter_outcome(g) else { return content };
-        let [beneath, above] = outcome.pictures().map(|p| p.map(|p| bent(&self.markup, p, Affine::IDENTITY)));
+        let [beneath, above] = outcome.pictures().map(|p| p.map(|p| bent_image(&self.markup, p, Affine::IDENTITY)));
         let content = if matches!(outcome, FilterOutcome::Whole(_)) { String::new() } else { content };
         beneath.unwrap_or_default() + &content + &above.unwrap_or_default()
     }
 
-    /// Writes a group around content that has been written.
+    /// Writes a group around written content.
     pub(super) fn group_around(&mut self, g: &Group, content: &str) -> String {
         let head = self.head(g, "");
         let content = self.with_pictures(g, content.to_owned());
@@ -132,7 +130,6 @@ impl<'a> Writer<'a> {
         self.markup.element(tag).raw(head).around(&content)
     }
 
-    /// Writes a group's attributes.
     fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
@@ -155,8 +152,8 @@ impl<'a> Writer<'a> {
         if g.isolate {
             properties.push(("isolation", "isolate".into()));
         }
-        let own = g.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
-        let mut head = format!("{own}{extra}");
+        let mut head = g.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
+        head.push_str(extra);
         let transform = match g.slot.map(|s| (self.input.slots[s].fit, self.input.scene.slots[s].before)) {
             Some((fit, true)) => fit * g.transform,
             Some((fit, false)) => g.transform * fit,
@@ -218,19 +215,18 @@ impl<'a> Writer<'a> {
         self.markup.named_group(&id, both)
     }
 
-    /// Writes a part's fill and stroke one after the other: patterns as geometry and gradients as pictures, clipped to the
-    /// shape.
+    /// Writes a part's fill and stroke one after the other: patterns as geometry and gradients as pictures, clipped to the shape.
     fn pieces(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
         let fill = self.fill_piece(i, warped, d);
         let stroke = self.stroke_piece(i, warped, d);
         if self.input.part(i).paint_order == PaintOrder::StrokeAndFill { stroke + &fill } else { fill + &stroke }
     }
 
-    /// Tiles or else a picture in the place of a paint.
+    /// The tiles that replace a paint, or else its picture.
     fn piece(&mut self, tiles: Option<&Tiles>, picture: Option<&BentImage>, opacity: f32) -> Option<Clipped> {
         match tiles {
             Some(t) => Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity }),
-            None => picture.map(|b| Clipped { content: bent(&self.markup, b, Affine::IDENTITY), opacity }),
+            None => picture.map(|b| Clipped { content: bent_image(&self.markup, b, Affine::IDENTITY), opacity }),
         }
     }
 
@@ -238,7 +234,7 @@ impl<'a> Writer<'a> {
         let p = self.input.part(i);
         let opacity = p.fill.as_ref().map_or(1.0, |f| f.opacity().get());
         let content = self.piece(self.input.fill_tiles(i), warped.fill_image.as_ref(), opacity);
-        // The fill may have an outline of its own, or be empty.
+        // The fill may have another outline than the stroke, or be empty.
         let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| warped.text(a));
         match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
             (None, _) => String::new(),
@@ -313,29 +309,30 @@ impl<'a> Writer<'a> {
         Some(self.css_paint(i, [Fill, FillOpacity], (fill.paint(), fill.opacity()), false))
     }
 
-    /// The paint of a stroke, which may be that of an outline's interior.
+    /// The paint of a stroke; `as_fill` for the interior of an expanded one.
     fn stroke(&mut self, i: usize, as_fill: bool) -> Option<CssPaint> {
         let stroke = self.input.part(i).stroke.as_ref()?;
         Some(self.css_paint(i, [Stroke, StrokeOpacity], (stroke.paint(), stroke.opacity()), as_fill))
     }
 
-    /// A paint in the author's words if they mean the same in the place of the new element, else as it is resolved. It is that of
-    /// another property if it `moves`.
+    /// A paint as declared in the source, if that means the same for the new element, or else as resolved. `moves` if it is written to
+    /// another property.
     fn css_paint(
         &mut self,
         i: usize,
-        [of, its]: [PaintProperty; 2],
+        [paint_property, opacity_property]: [PaintProperty; 2],
         (paint, opacity): (&Paint, usvg::Opacity),
         moves: bool,
     ) -> CssPaint {
         let p = self.input.part(i);
-        let said = self.place.filter(|_| matches!(paint, Paint::Color(_)));
-        if let Some((place, words)) = said.and_then(|place| Some((place, place.words_of(self.input.source, p)?))) {
-            let inherits = |of| place.is_parent && !moves && words.inherits(of, place.words);
+        let around = self.surroundings.filter(|_| matches!(paint, Paint::Color(_)));
+        if let Some((around, words)) = around.and_then(|a| Some((a, a.words_of(self.input.source, p)?))) {
+            let inherits = |p| around.is_parent && !moves && words.inherits(p, around.words);
             let value =
-                |of| if inherits(of) { Some(None) } else { Some(Some(words.taken_over(of, place.words)?.to_owned())) };
-            let opacity = if words.says(its) || inherits(its) { value(its) } else { Some(Some("1".to_owned())) };
-            if let Some((paint, opacity)) = value(of).zip(opacity) {
+                |p| if inherits(p) { Some(None) } else { Some(Some(words.taken_over(p, around.words)?.to_owned())) };
+            let has_opacity = words.says(opacity_property) || inherits(opacity_property);
+            let opacity = if has_opacity { value(opacity_property) } else { Some(Some("1".to_owned())) };
+            if let Some((paint, opacity)) = value(paint_property).zip(opacity) {
                 return CssPaint { paint, opacity };
             }
         }
@@ -356,7 +353,11 @@ impl<'a> Writer<'a> {
             if self.markup.in_source && fit == Affine::IDENTITY {
                 return format!("url(#{})", server_id(paint));
             }
-            return self.mesh(paint, &mesh.on(p.local.bounding_box().unwrap_or_default()).moved(fit), MAX_DECIMALS);
+            return self.mesh(
+                paint,
+                &mesh.on(p.local.bounding_box().unwrap_or_default()).transformed(fit),
+                MAX_DECIMALS,
+            );
         }
         match paint {
             Paint::Color(c) => color(*c),
@@ -407,11 +408,11 @@ impl<'a> Writer<'a> {
     }
 
     fn stop(&self, s: &usvg::Stop) -> String {
-        self.stop_at(s.offset().get().into(), s.color(), s.opacity().get().into())
+        self.stop_with(s.offset().get().into(), s.color(), s.opacity().get().into())
     }
 
-    fn stop_at(&self, offset: f64, of: usvg::Color, opacity: f64) -> String {
-        let mut properties = vec![("stop-color", color(of))];
+    fn stop_with(&self, offset: f64, stop_color: usvg::Color, opacity: f64) -> String {
+        let mut properties = vec![("stop-color", color(stop_color))];
         if opacity < 1.0 || self.markup.styled {
             properties.push(("stop-opacity", short(opacity)));
         }
@@ -419,7 +420,7 @@ impl<'a> Writer<'a> {
         tag.raw(&self.markup.attributes(&properties)).empty()
     }
 
-    /// Writes a gradient with stops of its own in the place of another.
+    /// Writes a gradient that replaces another, and refers to it.
     fn bent_gradient(&mut self, paint: &Paint, bent: &Shading) -> String {
         let id = self.defs.new_id(server_id(paint));
         let (tag, geometry) = bent.geometry();
@@ -432,14 +433,14 @@ impl<'a> Writer<'a> {
         let stop = |s: &Stop| {
             let [r, g, b] = [0, 1, 2].map(|k| (s.color[k] * 255.0).round() as u8);
             let fine = |v: f64| (v * 1e6).round() / 1e6;
-            self.stop_at(fine(s.offset), usvg::Color::new_rgb(r, g, b), fine(s.color[3]))
+            self.stop_with(fine(s.offset), usvg::Color::new_rgb(r, g, b), fine(s.color[3]))
         };
         let stops: String = bent.stops.iter().map(stop).collect();
         self.defs.push(&tag.around(&stops));
         format!("url(#{id})")
     }
 
-    /// Writes a mesh gradient in the place of one.
+    /// Writes a mesh gradient that replaces another, and refers to it.
     fn mesh(&mut self, paint: &Paint, mesh: &MeshGradient, decimals: u8) -> String {
         let content = mesh::content(&self.markup, mesh, decimals);
         // A stroke that becomes an outline has its paint written twice.
@@ -472,9 +473,9 @@ impl<'a> Writer<'a> {
         if t != Affine::IDENTITY {
             head = head.with("patternTransform", &matrix(t));
         }
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let inner = self.group(&tile.root, "");
-        self.place = around;
+        self.surroundings = around;
         self.defs.push(&head.around(&inner));
         format!("url(#{id})")
     }
@@ -507,7 +508,8 @@ impl<'a> Writer<'a> {
         tag.around(&paths)
     }
 
-    /// `clip` is a clip path of a group around, with the transform that leads out of that group.
+    /// Writes the parts of a group in a clip path. `clip` is a clip path of an enclosing group, with the transform that leads out of that
+    /// group.
     fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<(usize, Affine)>, out: &mut String) {
         if clip.is_some() && g.clip.is_some() {
             self.notes.add(CLIPPED_TWICE, "");
@@ -526,7 +528,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes a part of a clip path. Its own clip path refers to the coordinates in which the path is written.
+    /// Writes a part of a clip path. A clip path on it refers to the coordinates in which its path is written.
     fn clip_part(&mut self, i: usize, t: Affine, clip: Option<(usize, Affine)>) -> String {
         let p = self.input.part(i);
         let mut properties = Properties::new();
@@ -578,9 +580,9 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(next);
             properties.push(("mask", format!("url(#{id})")));
         }
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let mut inner = self.group(&m.root, "");
-        self.place = around;
+        self.surroundings = around;
         if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
@@ -592,7 +594,7 @@ impl<'a> Writer<'a> {
         tag.raw(&self.markup.attributes(&properties)).around(&inner)
     }
 
-    /// Refers to the filters of a group: the source's, or ones that are written if necessary.
+    /// Refers to the filters of a group: the source's, or new ones, which are written if necessary.
     pub(super) fn filters(&mut self, g: &Group) -> String {
         self.note_filters(g);
         let growth = boxes::growth(&self.input, g);
@@ -615,12 +617,12 @@ impl<'a> Writer<'a> {
         format!("url(#{})", self.filter_id(f, region))
     }
 
-    /// Returns `true` if a filter is one of the source and stays there.
+    /// Returns `true` if a filter of the source remains in use.
     pub(super) fn keeps_filter(&self, f: &Arc<Filter>) -> bool {
         let source = self.input.source;
-        let own = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
+        let has_id = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
         let foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
-        self.markup.in_source && own && !foreign && !self.input.shows_warped(f)
+        self.markup.in_source && has_id && !foreign && !self.input.shows_warped(f)
     }
 
     /// The id of a filter in user space with the given region, which is written if necessary.
@@ -634,7 +636,7 @@ impl<'a> Writer<'a> {
         id
     }
 
-    /// Writes a filter, or what a layer needs of it.
+    /// Writes a filter, or the primitives of it that a layer needs. Returns its id.
     fn new_filter(&mut self, f: &Arc<Filter>, region: Rect, layer: Option<&Layer>) -> String {
         let id = self.defs.new_id(f.id());
         let pictures = f.primitives().iter().filter_map(|p| match p.kind() {
@@ -647,8 +649,8 @@ impl<'a> Writer<'a> {
         id
     }
 
-    /// A drawing of the area `view` of what the filters of a group draw, or of a layer of the only one.
-    pub(super) fn layer(&mut self, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
+    /// An SVG drawing of the area `view` of a group with its filters, or of a layer of its only filter.
+    pub(super) fn layer_drawing(&mut self, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
         let mut inner = String::new();
         self.push_nodes(&g.children, &mut inner);
         let growth = boxes::growth(&self.input, g);
@@ -656,10 +658,10 @@ impl<'a> Writer<'a> {
         let urls: Vec<String> = urls.collect();
         let content = Tag::new("g").with("filter", &urls.join(" ")).around(&inner);
         let [x, y, width, height] = rectangle(view);
-        let place = [&x, &y, &width, &height].map(|side| side.1.as_str()).join(" ");
+        let view_box = [&x, &y, &width, &height].map(|side| side.1.as_str()).join(" ");
         let size = [width, height];
         let svg = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
-        let svg = svg.with("xmlns:xlink", "http://www.w3.org/1999/xlink").with_all(size).with("viewBox", &place);
+        let svg = svg.with("xmlns:xlink", "http://www.w3.org/1999/xlink").with_all(size).with("viewBox", &view_box);
         svg.around(&format!("<defs>{}</defs>{content}", self.defs.text))
     }
 
@@ -671,19 +673,19 @@ impl<'a> Writer<'a> {
             return String::new();
         }
         match &input.images[i] {
-            EmbeddedImage::Placed => self.placed(&bitmap.image),
+            EmbeddedImage::Placed => self.placed_image(&bitmap.image),
             EmbeddedImage::Approximate(why) => {
                 let id = input.source.image_name(bitmap.owner);
                 self.skipped.push(Skipped { id, why: why.clone() });
-                self.placed(&bitmap.image)
+                self.placed_image(&bitmap.image)
             }
-            // Back to the group's coordinates, the bitmap's pixels. The placing has no rotation.
-            EmbeddedImage::Bent { image, clip } => self.clipped(image, clip.as_deref(), bitmap.placing.inverse()),
+            // The inverse placing leads back to the group's coordinates, the bitmap's pixels. It has no rotation.
+            EmbeddedImage::Bent { image, clip } => self.clipped_image(image, clip.as_deref(), bitmap.placing.inverse()),
         }
     }
 
     /// Writes a bitmap that is not bent.
-    fn placed(&self, image: &usvg::Image) -> String {
+    fn placed_image(&self, image: &usvg::Image) -> String {
         let drawing = self.input.drawing;
         let file = |media_type: &str, data: &[u8]| {
             let stored = drawing.turned.and_then(|turned| turned(data, &drawing.budget.limits()));
@@ -710,17 +712,17 @@ impl<'a> Writer<'a> {
         tag.with_all(style).raw(&format!(" {}=\"{url}\"", self.markup.link())).empty()
     }
 
-    /// Writes a bent bitmap, and the outline that clips it as a definition.
-    pub(super) fn clipped(&mut self, image: &BentImage, clip: Option<&str>, to: Affine) -> String {
-        let Some(data) = clip else { return bent(&self.markup, image, to) };
-        let id = self.outline(data, to);
+    /// Writes a bent bitmap, and as a definition the outline that clips it.
+    pub(super) fn clipped_image(&mut self, image: &BentImage, clip: Option<&str>, to: Affine) -> String {
+        let Some(data) = clip else { return bent_image(&self.markup, image, to) };
+        let id = self.outline_id(data, to);
         let clip = self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]);
-        let text = bent(&self.markup, image, to);
+        let text = bent_image(&self.markup, image, to);
         self.markup.element("g").raw(&clip).around(&text)
     }
 
-    /// Writes an outline in user space as a clip path, and returns its id.
-    pub(super) fn outline(&mut self, data: &str, to: Affine) -> String {
+    /// Writes an outline in user space as a clip path. Returns its id.
+    pub(super) fn outline_id(&mut self, data: &str, to: Affine) -> String {
         let id = self.defs.new_id("outline");
         let mut path = self.markup.element("path").with("d", data);
         if to != Affine::IDENTITY {
@@ -731,27 +733,25 @@ impl<'a> Writer<'a> {
         id
     }
 
-    /// Writes the content of an `feImage` as a definition; returns the link to it.
+    /// Writes the content of an `feImage` as a definition. Returns the attribute that links to it.
     fn picture(&mut self, root: &usvg::Group) -> String {
         let Some(picture) = self.input.scene.pictures.get(&(std::ptr::from_ref(root) as usize)) else {
             return String::new();
         };
         let id = self.defs.new_id("picture");
-        let around = self.place.take();
+        let around = self.surroundings.take();
         let text = self.group(picture, &format!(" id=\"{id}\""));
-        self.place = around;
+        self.surroundings = around;
         self.defs.push(&text);
         format!(" {}=\"#{id}\"", self.markup.link())
     }
 }
 
-/// Writes a bent bitmap.
-pub(super) fn bent(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
+pub(super) fn bent_image(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
     let tag = markup.element("image").with_all(bent_attributes(bent, to));
     tag.raw(&format!(" {}=\"{}\"", markup.link(), bent_url(bent))).empty()
 }
 
-/// The id of a paint server.
 fn server_id(paint: &Paint) -> &str {
     match paint {
         Paint::LinearGradient(g) => g.id(),

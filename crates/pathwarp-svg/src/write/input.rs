@@ -1,8 +1,8 @@
-//! Everything that is to be written.
+//! The drawing to write, with its image.
 
 use crate::bend::bends::{Bend, Bends};
 use crate::bend::drawing::BentDrawing;
-use crate::bend::fits::{EmbeddedImage, FilterOutcome, PaintFit, PlacedSlot, written};
+use crate::bend::fits::{EmbeddedImage, FilterOutcome, PaintFit, PlacedSlot, frame_in_result};
 use crate::bend::gradients::NewGradient;
 use crate::bend::line::Line;
 use crate::bend::options::WarpOptions;
@@ -27,11 +27,10 @@ pub(crate) struct WriteInput<'a> {
     pub(super) images: &'a [EmbeddedImage],
     pub(super) slots: &'a [PlacedSlot],
     pub(super) bends: &'a Bends<'a>,
-    pub(super) of: &'a [Option<usize>],
+    pub(super) part_bends: &'a [Option<usize>],
     pub(super) filters: &'a BTreeMap<usize, FilterOutcome>,
     pub(super) united: &'a United,
     pub(super) line: Option<&'a Line>,
-    /// For the document.
     pub(super) options: &'a WarpOptions,
 }
 
@@ -45,7 +44,7 @@ impl<'a> WriteInput<'a> {
             images: &bent.images,
             slots: &bent.slots,
             bends,
-            of: &bent.of,
+            part_bends: &bent.part_bends,
             filters: &bent.filters,
             united: &bent.united,
             line: bent.line.as_ref(),
@@ -57,7 +56,7 @@ impl<'a> WriteInput<'a> {
         &self.scene.parts[i]
     }
 
-    /// What became of the filters of a group; `None` if they follow the fit and look different.
+    /// The result for the filters of a group; `None` if they follow the fit and look different.
     pub(super) fn filter_outcome(&self, g: &Group) -> Option<&'a FilterOutcome> {
         self.filters.get(&g.slot.filter(|_| !g.filters.is_empty())?)
     }
@@ -67,9 +66,9 @@ impl<'a> WriteInput<'a> {
         !g.filters.is_empty() && matches!(self.filter_outcome(g), None | Some(FilterOutcome::Fits))
     }
 
-    /// What bends the first of these parts that is bent.
+    /// The bend of the first of these parts that is bent.
     pub(super) fn bend(&self, parts: Range<usize>) -> Option<&'a Bend<'a>> {
-        self.of[parts].iter().find_map(|k| k.map(|k| &self.bends.each[k]))
+        self.part_bends[parts].iter().find_map(|k| k.map(|k| &self.bends.each[k]))
     }
 
     /// The image of a part; `None` if it is unchanged.
@@ -88,23 +87,22 @@ impl<'a> WriteInput<'a> {
         }
     }
 
-    /// Returns `true` if any of the parts is warped.
     pub(super) fn changes(&self, parts: Range<usize>) -> bool {
         self.outcomes[parts].iter().any(|o| o.warped().is_some())
     }
 
-    /// Maps a frame to the result.
+    /// The frame in the result of an object that moves along with its slot.
     pub(super) fn written(&self, slot: Option<usize>, frame: Affine) -> Affine {
-        written(self.scene, self.slots, slot, frame)
+        frame_in_result(self.scene, self.slots, slot, frame)
     }
 
-    /// The fit to apply to a paint server, unless it stays as it is.
+    /// The fit to apply to a paint server; `None` if it is unchanged.
     pub(super) fn paint_fit(&self, paint: &Paint, p: &Part, warped: Option<&WarpedPart>) -> Option<PaintFit> {
         let fit = warped.and_then(|w| w.fit).filter(|_| self.options.moves(paint));
         fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
     }
 
-    /// The gradient in the place of a paint of the part, if there is one.
+    /// The gradient that replaces a paint of the part, if there is one.
     pub(super) fn bent_gradient<'w>(&self, paint: &Paint, p: &Part, warped: &'w WarpedPart) -> Option<&'w NewGradient> {
         match &p.fill {
             Some(f) if std::ptr::eq(f.paint(), paint) => warped.fill_gradient.as_ref(),
@@ -147,15 +145,15 @@ impl<'a> WriteInput<'a> {
         })
     }
 
-    /// Returns `true` if a filter of the source shows, by `feImage`, an element that is warped. The filter moves with the group
-    /// it is applied to, and would move that element a second time.
+    /// Returns `true` if a filter of the source shows, by `feImage`, an element that is warped. The filter moves with its group, and
+    /// would move that element a second time.
     pub(super) fn shows_warped(&self, f: &Filter) -> bool {
         if !f.primitives().iter().any(|p| matches!(p.kind(), Kind::Image(_))) {
             return false;
         }
         let source = self.source;
-        let own = source.by_id().get(f.id()).into_iter().flatten();
-        let images = own.flat_map(|&e| source.descendants(e));
+        let filters = source.by_id().get(f.id()).into_iter().flatten();
+        let images = filters.flat_map(|&e| source.descendants(e));
         let shown = images.filter_map(|e| source.by_id().get(&source.href(e)?)).flatten();
         shown.map(|&e| &source.elements[e].range).any(|range| {
             let inside = |p: &Part| p.element().is_some_and(|e| range.contains(&source.elements[e].range.start));

@@ -1,4 +1,4 @@
-//! What a filter draws beneath and above its graphic, as filters of their own.
+//! Divides a filter that draws beneath and above its graphic, such as a shadow, into a filter for either layer.
 
 use super::markup::shadow_color;
 use crate::scene::areas::overlap;
@@ -10,25 +10,26 @@ use usvg::filter::{
     ColorInterpolation, ColorMatrix, ColorMatrixKind, CompositeOperator, DropShadow, Filter, Input, Kind, Primitive,
 };
 
-/// A layer of what a filter draws.
+/// A layer of a filter's drawing.
 pub(super) struct Layer {
-    /// What becomes of each primitive.
+    /// The need for each primitive.
     needs: Vec<Need>,
-    /// Primitives that follow, the last of which draws the layer.
+    /// Further primitives, the last of which draws the layer.
     pub(super) more: String,
-    /// Nothing shines through the graphic where it paints.
+    /// `true` if nothing shines through the graphic where it paints.
     opaque: bool,
 }
 
-/// What a layer needs of a primitive. Later ones need more.
+/// The need of a layer for a primitive, in increasing order.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Need {
     #[default]
     Nothing,
-    /// Its input, since the graphic hides where it would be cut out.
+    /// The input alone, since the graphic hides the area that the primitive would cut out.
     Uncut,
-    /// Its result, except where the graphic hides it.
+    /// The result outside the graphic, which hides it elsewhere.
     Visible,
+    /// The result everywhere.
     Result,
 }
 
@@ -37,7 +38,7 @@ impl Layer {
         self.needs[at]
     }
 
-    /// The matrix that keeps the edges of an opaque graphic smooth, if one draws all of it in full: in Figma's idiom.
+    /// The matrix that keeps the edges of an opaque graphic smooth in place of one that makes its alpha full, as in Figma's shadows.
     pub(super) fn smooth(&self, m: &ColorMatrix) -> Option<ColorMatrixKind> {
         let (ColorMatrixKind::Matrix(v), Input::SourceAlpha) = (m.kind(), m.input()) else { return None };
         let is_full = matches!(v[15..], [0.0, 0.0, 0.0, factor, 0.0] if factor > 1.0);
@@ -45,7 +46,6 @@ impl Layer {
     }
 }
 
-/// Something in a stack of layers.
 enum Stacked<'a> {
     Nothing,
     Source,
@@ -53,9 +53,9 @@ enum Stacked<'a> {
     Shadow(&'a DropShadow, ColorInterpolation),
 }
 
-/// The layers that a filter draws beneath and above its graphic, if there are any. `None` if it changes the graphic itself, or cuts it.
-pub(super) fn around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<Layer>; 2]> {
-    /// Most primitives, which are looked through for each other.
+/// The layers that a filter draws beneath and above its graphic, as far as there are any. Returns `None` if it changes or cuts the graphic.
+pub(super) fn layers_around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<Layer>; 2]> {
+    /// Limit on primitives, as the time grows with their number squared.
     const MOST: usize = 1000;
     let all = f.primitives();
     if all.len() > MOST {
@@ -74,24 +74,24 @@ pub(super) fn around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<
     let layers = [layer(f, &stack[..at], opaque, opaque), layer(f, &stack[at + 1..], false, opaque)];
     // Results are composited in sRGB.
     let linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
-    (!linear || opaque && layers[1].is_none()).then_some(layers)
+    (!linear || (opaque && layers[1].is_none())).then_some(layers)
 }
 
-/// Adds what a primitive stacks, from the bottom to the top.
+/// Adds the stack of a primitive, from the bottom to the top. Returns `None` if it is not a stack on the graphic.
 fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> {
     /// Most layers; references can ask for any number.
     const MAX_LAYERS: usize = 64;
     let p = &f.primitives()[at];
-    // Counts the call.
+    // Makes the limit count each call.
     out.push(Stacked::Nothing);
     let layer = |input: &'a Input| match input {
         Input::SourceGraphic => {
             out.push(Stacked::Source);
             Some(())
         }
-        // The silhouette is not beside the graphic.
+        // A silhouette covers the graphic.
         Input::SourceAlpha => None,
-        Input::Reference(name) => push(f, named(f, name, at)?, out),
+        Input::Reference(name) => push(f, last_named(f, name, at)?, out),
     };
     match p.kind() {
         Kind::Merge(_) | Kind::Blend(_) | Kind::Composite(_) if is_stack(p) => {
@@ -104,7 +104,7 @@ fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> 
         // An empty background.
         Kind::Flood(flood) if flood.opacity().get() == 0.0 => {}
         _ => {
-            (named(f, p.result(), f.primitives().len()) == Some(at)).then_some(())?;
+            (last_named(f, p.result(), f.primitives().len()) == Some(at)).then_some(())?;
             out.push(Stacked::Result(at));
         }
     }
@@ -117,8 +117,8 @@ fn is_stack(p: &Primitive) -> bool {
         || matches!(p.kind(), Kind::Composite(c) if c.operator() == CompositeOperator::Over)
 }
 
-/// The last primitive of this name among the first ones.
-fn named(f: &Filter, name: &str, before: usize) -> Option<usize> {
+/// The last primitive with this name among the first `before` ones.
+fn last_named(f: &Filter, name: &str, before: usize) -> Option<usize> {
     f.primitives()[..before].iter().rposition(|p| p.result() == name)
 }
 
@@ -143,7 +143,7 @@ fn inputs(kind: &Kind) -> Vec<&Input> {
     }
 }
 
-/// The layer that a part of a stack draws; `hidden` by the graphic, where that is.
+/// The layer of a part of a stack; `hidden` if the graphic covers it. Returns `None` if it draws nothing.
 fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Option<Layer> {
     let mut needs = vec![Need::Nothing; f.primitives().len()];
     let (mut more, mut nodes) = (String::new(), String::new());
@@ -172,9 +172,9 @@ fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Optio
     }
     for at in (0..needs.len()).rev() {
         let kind = f.primitives()[at].kind();
-        let own = needs[at];
+        let current = needs[at];
         let (mut all, mut need) = (inputs(kind), Need::Result);
-        if own == Need::Visible {
+        if current == Need::Visible {
             if cuts_out(f, at) {
                 all.truncate(1);
                 needs[at] = Need::Uncut;
@@ -183,9 +183,9 @@ fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Optio
                 need = Need::Visible;
             }
         }
-        for input in all.into_iter().filter(|_| own != Need::Nothing) {
+        for input in all.into_iter().filter(|_| current != Need::Nothing) {
             if let Input::Reference(name) = input
-                && let Some(i) = named(f, name, at)
+                && let Some(i) = last_named(f, name, at)
             {
                 needs[i] = needs[i].max(need);
             }
@@ -200,12 +200,11 @@ pub(super) fn is_local(kind: &Kind) -> bool {
     matches!(kind, Blend(_) | ColorMatrix(_) | ComponentTransfer(_) | Composite(_) | Merge(_))
 }
 
-/// Returns `true` if a primitive cuts out the graphic.
 fn cuts_out(f: &Filter, at: usize) -> bool {
     let Kind::Composite(c) = f.primitives()[at].kind() else { return false };
     let is_graphic = match c.input2() {
         Input::SourceGraphic | Input::SourceAlpha => true,
-        Input::Reference(name) => named(f, name, at).is_some_and(|i| {
+        Input::Reference(name) => last_named(f, name, at).is_some_and(|i| {
             let p = &f.primitives()[i];
             // The last value of the fourth row is the alpha of transparent pixels.
             matches!(p.kind(), Kind::ColorMatrix(m) if !matches!(m.input(), Input::Reference(_))

@@ -1,4 +1,4 @@
-//! Lettering as an SVG drawing with data attributes for baselines, heights and letters.
+//! Writes lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
 use crate::bend::path::WarpedPath;
 use crate::source::number::{path_data, push};
@@ -17,10 +17,9 @@ pub struct LetteringOptions {
     pub fill: Option<String>,
     /// Margin around ink and lines, in user units, at least 0.
     pub margin: f64,
-    /// The page is around the ink alone, unless there is none.
+    /// `true` if the page is around the ink alone, unless there is none.
     pub around_ink: bool,
-    /// The unit of the lettering's coordinates, which becomes that of the page: `Mm`, `Cm`, `In`, `Pt` or `Pc`; anything else
-    /// is px.
+    /// The unit of the lettering's coordinates and of the page: `Mm`, `Cm`, `In`, `Pt` or `Pc`. Other values mean px.
     pub unit: Option<LengthUnit>,
 }
 
@@ -41,10 +40,10 @@ const DIGITS: i32 = 10;
 
 /// Writes lettering as a drawing, as large as its ink, its lines and the margin around them.
 ///
-/// The text is a group with an `aria-label` and the font's heights in user units: `data-ascent` and `data-descent` (both
-/// measured from the baseline, both positive), `data-cap-height`, `data-x-height`. It contains a group for every line with
-/// `data-baseline="x0 y0 x1 y1"`, from the line's left end to its right end, and with heights of its own if it is scaled. That contains a path for every cluster with an
-/// outline: its text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
+/// The text is a group with an `aria-label` and the font's heights in user units: `data-ascent` and `data-descent` (both measured from the
+/// baseline, both positive), `data-cap-height`, `data-x-height`. It contains a group for every line with `data-baseline="x0 y0 x1 y1"`,
+/// from the line's left end to its right end, and with the line's heights if it is scaled. The group contains a path for every cluster with
+/// an outline, with the cluster's text as `aria-label`, and its origin on the baseline and its advance width as `data-glyph="x y advance"`.
 ///
 /// ```
 /// use pathwarp_svg::engine::{LetteringOptions, bundled_font, write_lettering};
@@ -81,35 +80,35 @@ pub fn lettering_group(lettering: &OutlinedText, id: &str, fill: &str, by: Vec2)
     Ok(sheet.out)
 }
 
-/// A path in its last place.
+/// A path in its final position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetPath {
-    /// What it is: of a letter, its characters.
+    /// Its label, such as the characters of a letter.
     pub label: String,
     /// The path.
     pub path: WarpedPath,
-    /// The width of the line that it is drawn as; it is filled without one.
+    /// The width of its stroke; `None` if it is filled.
     pub line: Option<f64>,
 }
 
-/// Paths in their last place, where letters have no level baseline any more, or a drawing.
+/// Paths in their final position, such as letters without a level baseline, and a drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SetGroup {
     /// Its id, if it has one.
     pub id: Option<&'static str>,
-    /// What it is: of lettering, the text.
+    /// Its label, such as the text of lettering.
     pub label: String,
     /// The paths.
     pub paths: Vec<SetPath>,
-    /// SVG elements with a colour of their own, after the paths.
+    /// SVG elements with their colours, after the paths.
     pub drawing: String,
 }
 
-/// Writes groups as a drawing with a title, as large as their paths and the margin around it: a group with an `aria-label` for each,
-/// in it an element for every path.
+/// Writes groups as a drawing with a title, as large as their paths and the margin around them. Each becomes a group with an `aria-label`
+/// that holds its paths.
 ///
 /// # Errors
-/// As for [`write_lettering`].
+/// [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
 pub fn write_set_groups(title: &str, groups: &[SetGroup], options: &LetteringOptions) -> Result<String, Error> {
     let drawn = groups.iter().flat_map(|g| &g.paths).filter(|p| !p.path.path.is_empty());
     let bounds = drawn.map(|p| {

@@ -1,4 +1,4 @@
-//! Writes the line around artwork as a layer of its own, with what printers and cutters need beside it.
+//! Writes the line around artwork as a new layer, with the bleed and the marks that printers and cutters need.
 
 use super::fragment::Writer;
 use super::input::WriteInput;
@@ -11,16 +11,19 @@ use pathwarp::deform::SightMark;
 use pathwarp::kurbo::{Point, Rect, Shape};
 use std::fmt::Write as _;
 
-/// A millimetre and a quarter of a point in px.
+/// A millimetre in px.
 const MM: f64 = 96.0 / 25.4;
+/// Width of a hairline in px: a quarter of a point.
 const HAIRLINE: f64 = 0.25 * 96.0 / 72.0;
 
-/// Lengths of marks in millimetres: the gap beyond the bleed, the arms, and the radius of register marks.
+/// Distance of the marks from the bleed, in millimetres.
 const GAP: f64 = 2.0;
+/// Length of the marks, in millimetres.
 const ARM: f64 = 5.0;
+/// Radius of register marks, in millimetres.
 const RADIUS: f64 = 1.5;
 
-/// The box of the line with all that belongs to it.
+/// The box of the line with its bleed and marks.
 pub(super) fn bounds(input: &WriteInput<'_>, line: &Line) -> Rect {
     let bounds = line.bled.as_ref().map_or(line.bounds, |b| b.1);
     let by = if input.options.line.marks { (GAP + ARM) * MM * unit(input) } else { 0.0 };
@@ -33,7 +36,7 @@ fn unit(input: &WriteInput<'_>) -> f64 {
     1.0 / stretch(input.scene.to_px)
 }
 
-/// What lies beneath all artwork, and the layers above it.
+/// The layers beneath and above the artwork.
 pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
     let sight = w.input.options.sight.clone().map_or(String::new(), |s| sight(w, &s));
     let Some(line) = w.input.line else { return [String::new(), sight] };
@@ -49,9 +52,9 @@ pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
     [beneath, above]
 }
 
-/// The box of the marks that say where to look from, with some room around them.
+/// The box of the marks for the viewer's position, with some room around them.
 pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
-    /// The width of a letter, as a share of its height.
+    /// The width of a letter, as a fraction of its height.
     const LETTER: f64 = 0.6;
     let ((at, text), size) = (&sight.label, sight.size);
     let half = 0.5 * LETTER * size * text.chars().count() as f64;
@@ -59,7 +62,7 @@ pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
     sight.path.bounding_box().union(text).inflate(size, size)
 }
 
-/// The layer of the marks that say where to look from.
+/// The layer of the marks for the viewer's position.
 fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     let path = w.markup.element("path").with("d", &path_data(&sight.path, 4));
     let path = path.with("style", &format!("fill:none;stroke:#000;stroke-width:{}", single(0.04 * sight.size)));
@@ -73,7 +76,6 @@ fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     group.around(&(path.empty() + &label.around(text))) + "\n"
 }
 
-/// A layer with one hairline.
 fn layer(w: &mut Writer<'_>, name: &str, (color, data): (&str, &str), spot: Option<&str>) -> String {
     let id: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let group = w.defs.new_id(&id);
@@ -122,7 +124,7 @@ fn marks(line: Rect, bled: Rect, mm: f64) -> String {
     out.trim_end().to_owned()
 }
 
-/// The artwork's colours, as they go on beyond its edge.
+/// A picture of the artwork's colours, continued beyond its edge.
 fn bleed(w: &mut Writer<'_>, line: &Line) -> Option<String> {
     let (input, (data, area)) = (w.input, line.bled.as_ref()?);
     let (mut skipped, mut notes) = (Vec::new(), Notes::default());

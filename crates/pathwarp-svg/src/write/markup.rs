@@ -1,4 +1,4 @@
-//! Markup: prefixes, attributes and styles as they must be written in the surrounding file.
+//! Writes elements, attributes and styles by the conventions of the surrounding file.
 
 use crate::bend::outcome::WarpedPart;
 use crate::bend::pictures::BentImage;
@@ -19,14 +19,14 @@ use usvg::{FillRule, LineCap, LineJoin, PaintOrder, ShapeRendering};
 /// Presentation properties in order.
 pub(super) type Properties = Vec<(&'static str, String)>;
 
-/// Conventions of the file that elements are written to.
+/// Conventions of the file to which elements are written.
 pub(super) struct Markup<'a> {
     source: &'a SourceText,
     /// Namespace prefix of elements with its colon; usually empty.
     pub(super) prefix: String,
-    /// `true` if the result is part of the source, whose definitions can be referred to.
+    /// `true` if elements are written into the source, whose definitions they can refer to.
     pub(super) in_source: bool,
-    /// Write properties to style attributes, which style sheets cannot override.
+    /// `true` if properties are written to style attributes, which style sheets cannot override.
     pub(super) styled: bool,
     /// Cache: properties that occur in the source.
     mentioned: RefCell<HashMap<&'static str, bool>>,
@@ -49,7 +49,6 @@ impl<'a> Markup<'a> {
         self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(is_mentioned)
     }
 
-    /// Begins an element.
     pub(super) fn element(&self, name: &str) -> Tag {
         Tag::new(format!("{}{name}", self.prefix))
     }
@@ -61,7 +60,6 @@ impl<'a> Markup<'a> {
         if self.in_source && !declared { "href" } else { "xlink:href" }
     }
 
-    /// Writes a `<title>`.
     pub(super) fn title(&self, text: &str) -> String {
         self.element("title").around(&escape(text))
     }
@@ -113,7 +111,7 @@ pub(super) fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
     }
 }
 
-/// A paint and its opacity as CSS values; `None` for what is inherited.
+/// A paint and its opacity as CSS values; `None` for inherited values.
 pub(super) struct CssPaint {
     pub(super) paint: Option<String>,
     pub(super) opacity: Option<String>,
@@ -156,7 +154,7 @@ pub(super) fn outlined(markup: &Markup<'_>, p: &Part, stroke: CssPaint) -> Prope
     out.extend(stroke.opacity.map(|v| ("fill-opacity", v)));
     out.push(("fill-rule", "nonzero".into()));
     out.push(("stroke", "none".into()));
-    out.retain(|(n, v)| !(*n == "fill-opacity" && v == "1" || *n == "fill-rule") || markup.may_inherit(n));
+    out.retain(|(n, v)| !((*n == "fill-opacity" && v == "1") || *n == "fill-rule") || markup.may_inherit(n));
     out
 }
 
@@ -253,8 +251,8 @@ pub(super) fn part_box(p: &Part, warped: Option<&WarpedPart>) -> Rect {
 
 /// Path data of a part. If it is unchanged, its original text is used where possible.
 pub(super) fn part_data(p: &Part, warped: Option<&WarpedPart>, source: &SourceText) -> String {
-    let own = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
-    match (warped, p.drawn.and_then(own)) {
+    let original = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
+    match (warped, p.drawn.and_then(original)) {
         (Some(w), _) => w.data.clone().unwrap_or_else(|| w.text(&w.path)),
         (None, Some(d)) => escape(&d),
         (None, None) => outline_data(&p.local),
@@ -266,7 +264,6 @@ pub(super) fn stroke_scale(warped: Option<&WarpedPart>) -> f64 {
     warped.map_or(1.0, |w| w.stroke.scale())
 }
 
-/// Value of `stroke-dasharray`.
 pub(super) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
     s.dasharray()
         .map_or("none".into(), |list| list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
@@ -277,7 +274,7 @@ pub(super) fn color(c: usvg::Color) -> String {
     format!("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue)
 }
 
-/// The colour of a drop shadow as browsers paint it. For resvg, the reader gives those in sRGB as if in linear light.
+/// The colour of a drop shadow as browsers paint it. The reader has changed sRGB colours to linear light, which resvg expects.
 pub(super) fn shadow_color(s: &DropShadow, space: ColorInterpolation) -> String {
     // The transfer function of sRGB (CSS Color 4, section 10.2).
     let encoded = |c: u8| {

@@ -1,4 +1,4 @@
-//! Writes mesh gradients as Inkscape reads them.
+//! Writes mesh gradients in the form that Inkscape reads.
 
 use super::markup::{Markup, color};
 use crate::source::markup::Tag;
@@ -23,8 +23,8 @@ pub(super) fn content(markup: &Markup<'_>, mesh: &MeshGradient, decimals: u8) ->
     (0..mesh.rows()).map(row).collect()
 }
 
-/// Writes the sides of a patch that no patch before it has, clockwise from the top, each with the colour of the corner where it begins if
-/// that is new.
+/// Writes the sides of a patch that no earlier patch has, clockwise from the top. Each has the colour of the corner at which it begins,
+/// unless an earlier patch has that.
 fn patch(markup: &Markup<'_>, mesh: &MeshGradient, [r, c]: [usize; 2], decimals: u8) -> String {
     let stop = |side: CubicBez, corner: Option<Rgba>| stop(markup, side, corner, decimals);
     let new = |row: usize, column: usize, is_new: bool| is_new.then(|| mesh.colors[row][column]);

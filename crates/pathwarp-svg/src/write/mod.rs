@@ -13,5 +13,5 @@ mod line;
 mod markup;
 mod mesh;
 mod page;
-mod place;
 pub(crate) mod shadows;
+mod surroundings;

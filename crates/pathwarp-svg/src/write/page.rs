@@ -1,4 +1,4 @@
-//! The page and the warped artwork: overhang, and the root's viewBox, width and height to fit it.
+//! Fits the page to the warped artwork, and measures how far the artwork extends past it.
 
 use super::boxes::{self, bound, box_under, painted_box, paints_in, path};
 use super::input::WriteInput;
@@ -19,7 +19,7 @@ use svgtypes::LengthUnit;
 
 /// Smallest visible overhang as a fraction of the page: one pixel in a thousand.
 const VISIBLE: f64 = 1e-3;
-/// Less than this fraction of the page beyond its edge, as icons have it for rounding, makes no visible difference.
+/// Overhang as a fraction of the page that is ignored, since rounding makes it in icons.
 const SLIVER: f64 = 0.1 * VISIBLE;
 
 /// Rules for measuring the artwork's bounding box.
@@ -29,17 +29,17 @@ struct Measure<'a> {
     counts: &'a [bool],
     /// Parts certain to be inside this area need no exact measurement.
     room: Option<Rect>,
-    /// The visible area before the warp, if only what comes from there counts.
+    /// The visible area before the warp, if only artwork from there counts.
     page: Option<Rect>,
 }
 
 /// The visible area of the result, if the page is to be adapted and changes.
-fn adapted(input: &WriteInput<'_>) -> Option<Rect> {
+fn adapted_page(input: &WriteInput<'_>) -> Option<Rect> {
     let page = input.drawing.visible_area();
     let shown = match input.options.page {
         PageFit::None | PageFit::Shrink => return None,
         PageFit::Origin => Rect::from_origin_size(Point::ORIGIN, page.size()),
-        PageFit::Auto => held(input, page)?,
+        PageFit::Auto => auto_page(input, page)?,
         PageFit::Grow => page.union(artwork(input, Some(page))?),
         PageFit::Page => artwork(input, None)?,
         PageFit::PageWithMargin => {
@@ -59,9 +59,9 @@ fn sheet(input: &WriteInput<'_>, [a, b]: [f64; 2]) -> Option<Rect> {
     Some(Rect::from_center_size(all.center(), Size::from(sides) * input.drawing.units_per_mm()))
 }
 
-/// The page of [`PageFit::Auto`]. `None` if it stays.
-fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
-    if !moved(input) || input.drawing.specified_area().is_none() {
+/// The page of [`PageFit::Auto`]. Returns `None` if it does not change.
+fn auto_page(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
+    if !has_moved(input) || input.drawing.specified_area().is_none() {
         return None;
     }
     let all = artwork(input, Some(page))?;
@@ -90,15 +90,15 @@ fn held(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
     (out.origin() != page.origin() || !input.drawing.shares_window()).then_some(out)
 }
 
-/// The area that the artwork of a page may cover: the page, and around it a sliver and as much as curves are off.
+/// The area that the artwork of a page may cover: the page with a sliver and the curves' tolerance around it.
 fn tolerated(input: &WriteInput<'_>, page: Rect) -> Rect {
     let by = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
     page.inflate(by, by)
 }
 
-/// What takes the artwork back onto its page, if it leaves it.
+/// The transform that takes the artwork back onto its page, if it leaves it.
 pub(super) fn back(input: &WriteInput<'_>) -> Option<Affine> {
-    let page = input.drawing.specified_area().filter(|_| input.options.page == PageFit::Shrink && moved(input))?;
+    let page = input.drawing.specified_area().filter(|_| input.options.page == PageFit::Shrink && has_moved(input))?;
     let all = artwork(input, Some(page))?;
     if holds(tolerated(input, page), all) {
         return None;
@@ -113,7 +113,7 @@ pub(super) fn back(input: &WriteInput<'_>) -> Option<Affine> {
     (by > 0.0 && to.is_finite()).then_some(to)
 }
 
-/// The part of a page in which something has to lie to be seen.
+/// The page without a border in which artwork is too small to be seen.
 fn seen_part(page: Rect) -> Rect {
     let edge = VISIBLE * page.width().min(page.height());
     page.inflate(-edge, -edge)
@@ -124,8 +124,7 @@ pub(super) fn is_blank(input: &WriteInput<'_>, shown: Rect) -> bool {
     input.drawing.specified_area().is_some() && !shows(input, &input.scene.root, seen_part(shown))
 }
 
-/// Returns `true` if anything of the result has moved.
-fn moved(input: &WriteInput<'_>) -> bool {
+fn has_moved(input: &WriteInput<'_>) -> bool {
     input.options.grown.is_some()
         || input.line.is_some()
         || input.outcomes.iter().any(|o| o.warped().is_some())
@@ -149,7 +148,7 @@ pub(super) fn attributes(input: &WriteInput<'_>, (page, shown): (Rect, Rect)) ->
         if l.unit != LengthUnit::Percent {
             out.push((name, format!("{}{}", short(l.number * after / before), unit(l.unit))));
         } else if source.attr(0, "viewBox").is_none() {
-            // Beside a viewBox, a share of the window would be a scale.
+            // With a viewBox, a fraction of the window would be a scale.
             out.push((name, short(after)));
         }
     }
@@ -158,7 +157,7 @@ pub(super) fn attributes(input: &WriteInput<'_>, (page, shown): (Rect, Rect)) ->
 
 /// The visible area before and after, if the page changes. Measures the artwork.
 pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
-    Some((input.drawing.visible_area(), adapted(input)?))
+    Some((input.drawing.visible_area(), adapted_page(input)?))
 }
 
 /// Measures the overhang over a sheet of paper, or over a page that is not adapted, compared to the original.
@@ -170,7 +169,7 @@ pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
         return (share > VISIBLE).then_some(Overhang { by: [x, y, x, y], share });
     }
     // Measuring needs every outline, so skip it if nothing has moved.
-    if input.options.page != PageFit::None || !moved(input) || input.drawing.specified_area().is_none() {
+    if input.options.page != PageFit::None || !has_moved(input) || input.drawing.specified_area().is_none() {
         return None;
     }
     let page = input.drawing.visible_area();
@@ -224,9 +223,9 @@ fn guideless(input: &WriteInput<'_>) -> Vec<bool> {
     Selection { guides: input.options.selection.guides.clone(), ..Selection::default() }.resolve(input.source)
 }
 
-/// Bounds the image of what the page showed of a part, `frame` being its frame in the result; unbounded if it showed all that can be seen.
-/// `None` if it showed nothing.
-fn from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Option<Rect> {
+/// A bound on the image of the area of a part that the page showed, unbounded if it showed all of it. `frame` is the part's frame in the
+/// result. Returns `None` if the page showed nothing.
+fn part_from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Option<Rect> {
     let p = input.part(i);
     let nearly = nearly(page);
     let cheap = bound(p, None, p.frame);
@@ -237,8 +236,8 @@ fn from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Opt
     image_from_page(bend, painted, whole, page, frame * p.frame.inverse())
 }
 
-/// Does the same for anything whose box before the warp is `painted` and that the page shows as a `whole` or not. It goes through the
-/// map of `bend`, or else by `fit`.
+/// A bound on the image of the area of an object that the page showed, unbounded if it showed the `whole` object. `painted` is the
+/// object's box before the warp. The map of `bend` moves it or, without one, `fit`.
 fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, whole: bool, page: Rect, fit: Affine) -> Option<Rect> {
     let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
     let shown = overlap(painted, page)?;
@@ -249,7 +248,7 @@ fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, whole: bool, page: Re
     }
 }
 
-/// The page with the slivers around it that make no difference.
+/// The page with the slivers around it that are ignored.
 fn nearly(page: Rect) -> Rect {
     page.inflate(SLIVER * page.width(), SLIVER * page.height())
 }
@@ -260,15 +259,15 @@ fn holds(outer: Rect, inner: Rect) -> bool {
 
 /// Bounding box of the image of an area of root user space.
 fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
-    /// Samples along a side. Between them, the image bulges by less than is noticed.
+    /// Steps between samples along a side. The image hardly bulges between them.
     const N: u32 = 64;
-    /// Steps between samples inside, which can be extreme only where the map folds.
+    /// Steps between samples inside, whose images can be extreme only where the map folds.
     const INSIDE: u32 = 4;
     let at = |k: u32| f64::from(k) / f64::from(N);
     let point = |(i, j): (u32, u32)| Point::new(area.x0 + at(i) * area.width(), area.y0 + at(j) * area.height());
     let is_sampled = |(i, j): &(u32, u32)| {
         let is_edge = |k: u32| k == 0 || k == N;
-        is_edge(*i) || is_edge(*j) || i % INSIDE == 0 && j % INSIDE == 0
+        is_edge(*i) || is_edge(*j) || (i % INSIDE == 0 && j % INSIDE == 0)
     };
     let copies = |q: Point| {
         let all = &bend.options.copies;
@@ -276,9 +275,9 @@ fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
         all.iter().copied().chain(first).map(move |c| c * q)
     };
     let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).filter(is_sampled);
-    let places: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
-    let mut images = places.clone();
-    bend.map.points(&places, &mut images);
+    let points: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
+    let mut images = points.clone();
+    bend.map.points(&points, &mut images);
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
 }
 
@@ -286,13 +285,13 @@ fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
 fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
     let b = &input.scene.bitmaps[i];
     let pixels = b.image.size();
-    let own = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
+    let area = Rect::new(0.0, 0.0, pixels.width().into(), pixels.height().into());
     let frame = input.written(b.slot, b.frame);
     let after = match &input.images[i] {
         EmbeddedImage::Bent { image, .. } => (frame * b.placing.inverse()).transform_rect_bbox(image.area),
-        _ => frame.transform_rect_bbox(own),
+        _ => frame.transform_rect_bbox(area),
     };
-    b.image.is_visible().then(|| (b.frame.transform_rect_bbox(own), after))
+    b.image.is_visible().then(|| (b.frame.transform_rect_bbox(area), after))
 }
 
 /// Returns `true` if anything of a group is seen in an area.
@@ -322,7 +321,6 @@ fn shows_within(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) 
     })
 }
 
-/// Bounding box of a clip path in the result.
 fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
     clip_box(input.scene, clip, &|i| {
         let p = input.part(i);
@@ -346,14 +344,14 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             let seen = seen && warped.is_none_or(WarpedPart::draws);
             let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
             let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
-            m.page.map_or(Some(all), |page| overlap(all, from_page(input, *i, frame, page)?))
+            m.page.map_or(Some(all), |page| overlap(all, part_from_page(input, *i, frame, page)?))
         }
         Node::Image(i) => {
             let (before, after) = image_boxes(input, *i)?;
             let Some(page) = m.page else { return Some(after) };
             let is_bent = matches!(input.images[*i], EmbeddedImage::Bent { .. });
             let b = &scene.bitmaps[*i];
-            let bend = input.bends.of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
+            let bend = input.bends.bend_of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
             let fit = input.written(b.slot, b.frame) * b.frame.inverse();
             overlap(after, image_from_page(bend, before, holds(nearly(page), before), page, fit)?)
         }
@@ -377,7 +375,7 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         if let Some(s) = g.slot {
             let frame = input.written(g.slot, scene.slots[s].frame);
             let region = boxes::grown(f, growth);
-            all = frame.transform_rect_bbox(areas::painted(f, region, frame.inverse().transform_rect_bbox(all))?);
+            all = frame.transform_rect_bbox(areas::filter_box(f, region, frame.inverse().transform_rect_bbox(all))?);
         }
     }
     if let Some(i) = g.clip {
@@ -415,16 +413,16 @@ fn unit(unit: LengthUnit) -> &'static str {
     }
 }
 
-/// The names of the elements that have come onto the page `shown` of the result.
+/// The names of the elements that have moved onto the page `shown` of the result.
 pub(super) fn arrivals(input: &WriteInput<'_>, shown: Rect) -> Vec<String> {
     let Some(page) = input.drawing.specified_area() else { return Vec::new() };
     let mut found = BTreeSet::new();
-    in_group(input, &input.scene.root, (page, shown), &mut found);
+    add_arrivals(input, &input.scene.root, (page, shown), &mut found);
     found.into_iter().map(|e| input.source.display_name(e)).collect()
 }
 
-/// Finds the elements of a group that lay off the page and now show in an area.
-fn in_group(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
+/// Adds the elements of a group that lay off the page and now show in an area.
+fn add_arrivals(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), found: &mut BTreeSet<ElementId>) {
     if g.opacity <= 0.0 || g.mask.is_some() {
         return;
     }
@@ -433,8 +431,8 @@ fn in_group(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), foun
     let shows = |after| overlap(after, room).is_some_and(|o| o.width().max(o.height()) > deep);
     for n in &g.children {
         match n {
-            Node::Group(g) => in_group(input, g, (page, room), found),
-            Node::Text { content, .. } => in_group(input, content, (page, room), found),
+            Node::Group(g) => add_arrivals(input, g, (page, room), found),
+            Node::Text { content, .. } => add_arrivals(input, content, (page, room), found),
             Node::Image(i) => {
                 let came = image_boxes(input, *i).is_some_and(|(b, after)| overlap(b, page).is_none() && shows(after));
                 found.extend(input.scene.bitmaps[*i].owner.filter(|_| came));

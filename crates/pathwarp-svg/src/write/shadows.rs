@@ -1,9 +1,9 @@
-//! Filters that cannot follow a map: what they draw beneath and above their graphic becomes a picture, or all of it does.
+//! Replaces filters that cannot follow a map by pictures: of the filter's drawing beneath and above the graphic, or of both together.
 
 use super::boxes;
 use super::fragment::Writer;
 use super::input::WriteInput;
-use super::layers::{Layer, around, is_local};
+use super::layers::{Layer, is_local, layers_around};
 use crate::bend::drawing::BentDrawing;
 use crate::bend::fits::{self, FilterOutcome};
 use crate::bend::options::Filters;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 use usvg::filter::{Filter, Kind, Primitive};
 use usvg::{BlendMode, Paint, Stop};
 
-/// Decides about every filter of a drawing, by the index of its slot. Those that are missing follow the fit and look different.
+/// The results for the filters of a drawing, by the index of their slot. Filters without one follow the fit and look different.
 pub(crate) fn outcomes(input: &WriteInput<'_>) -> BTreeMap<usize, FilterOutcome> {
     let mut groups = Vec::new();
     let asks = input.bends.each.iter().any(|b| b.options.filters != Filters::Affine);
@@ -45,10 +45,10 @@ fn filtered<'a>(g: &'a Group, out: &mut Vec<(usize, &'a Group)>) {
     }
 }
 
-/// A drawing of what the filters of a group draw, or of a layer of it.
+/// An SVG drawing of a group with its filters, or of a layer of its only filter.
 fn drawing(input: &WriteInput<'_>, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
     let (mut skipped, mut notes) = (Vec::new(), Notes::default());
-    Writer::new(*input, false, &mut skipped, &mut notes).layer(g, layer, view)
+    Writer::new(*input, false, &mut skipped, &mut notes).layer_drawing(g, layer, view)
 }
 
 fn outcome(
@@ -58,7 +58,7 @@ fn outcome(
     among: usize,
 ) -> Option<FilterOutcome> {
     let s = &input.scene.slots[slot];
-    let bend = &input.bends.each[fits::bend_of(s, input.scene, input.bends, input.of)?];
+    let bend = &input.bends.each[fits::slot_bend(s, input.scene, input.bends, input.part_bends)?];
     let painter = bend.options.painter.as_ref().filter(|_| bend.options.filters != Filters::Affine)?;
     let always = bend.options.filters == Filters::Picture;
     let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
@@ -67,20 +67,20 @@ fn outcome(
         return None;
     }
     let content = content(original, group, s.frame.inverse())?;
-    let painted = |area: Option<Rect>, f: &Arc<Filter>| areas::painted(f, rect(f.rect().to_rect()), area?);
+    let painted = |area: Option<Rect>, f: &Arc<Filter>| areas::filter_box(f, rect(f.rect().to_rect()), area?);
     let area = group.filters.iter().fold(Some(content), painted)?;
     let write = input.written(Some(slot), s.frame);
     if !always
         && moves_little(
             group,
             (content, area),
-            fits::bends_by(area, s.frame, write, bend.map) * stretch(input.scene.to_px * write),
+            fits::distance_from_translation(area, s.frame, write, bend.map) * stretch(input.scene.to_px * write),
         )
     {
         return Some(FilterOutcome::Fits);
     }
     let layers = match group.filters.as_slice() {
-        [f] => around(f, content, is_opaque(original, group)),
+        [f] => layers_around(f, content, is_opaque(original, group)),
         _ => None,
     };
     let whole = |view| drawing(original, group, None, view);
@@ -111,12 +111,12 @@ fn outcome(
     next().map(FilterOutcome::Whole)
 }
 
-/// Returns `true` if what filters draw lies where their fit puts it, to less than anyone sees: if they only move and blur what they draw,
-/// and the map bends little so far. `bends` is the change of a unit in px.
+/// Returns `true` if the fit moves the drawing of filters by less than is visible from where the map takes it: if they only move and blur,
+/// and the map hardly bends over that distance. `bends` is the change of a unit in px.
 fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
-    /// In px.
+    /// Largest invisible distance, in px.
     const UNSEEN: f64 = 0.5;
-    /// What a change of the deviation moves, for each unit that a blur reaches.
+    /// Ratio of a blur's deviation to its reach.
     const BLUR: f64 = 1.0 / 3.0;
     let [x, y] = [(content.x0 - area.x0).max(area.x1 - content.x1), (content.y0 - area.y0).max(area.y1 - content.y1)];
     let moves = |k: &Kind| matches!(k, Kind::DropShadow(_) | Kind::Flood(_) | Kind::GaussianBlur(_) | Kind::Offset(_));
@@ -131,7 +131,7 @@ fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
     primitives().all(|k| is_local(k) || moves(k)) && bends * (offset + BLUR * (reach - offset)) < UNSEEN
 }
 
-/// Returns `true` if pictures can stand in the place of the filters of a slot.
+/// Returns `true` if pictures can replace the filters of a slot.
 fn takes_pictures(input: &WriteInput<'_>, slot: usize) -> bool {
     let s = &input.scene.slots[slot];
     let has =
@@ -142,7 +142,7 @@ fn takes_pictures(input: &WriteInput<'_>, slot: usize) -> bool {
     s.owner.is_some() || s.element.is_some_and(|e| takes(e) && (has(e, "filter") || has(e, "style")))
 }
 
-/// The box of what a group paints, in the user space of its filters.
+/// The box that a group paints, in the user space of its filters.
 fn content(original: &WriteInput<'_>, g: &Group, from_root: pathwarp::kurbo::Affine) -> Option<Rect> {
     let one = |n: &Node| match n {
         Node::Group(c) | Node::Text { content: c, .. } => content(original, c, from_root),
@@ -163,7 +163,7 @@ fn displaces(g: &Group) -> bool {
     g.filters.iter().flat_map(|f| f.primitives()).any(|p| matches!(p.kind(), Kind::DisplacementMap(_)))
 }
 
-/// Returns `true` if anything in a group has filters of its own.
+/// Returns `true` if anything inside a group has filters.
 fn nests(g: &Group) -> bool {
     g.children.iter().any(|n| match n {
         Node::Group(c) => !c.filters.is_empty() || nests(c),

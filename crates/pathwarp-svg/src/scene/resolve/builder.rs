@@ -25,7 +25,7 @@ pub(super) struct SceneBuilder<'a> {
     division: &'a [Option<usize>],
     /// Source elements by their id in usvg's tree.
     ids: &'a HashMap<String, Vec<ElementId>>,
-    /// Transforms in the source by their f32 value; `None` where two different ones round to the same value.
+    /// Transforms in the source by their f32 values; `None` for a value to which two different transforms round.
     exact: HashMap<[u32; 6], Option<Affine>>,
     /// Shapes in the source by their approximate start, to find the originals of copies, which have no id. Filled on first use.
     pub(super) starts: Option<HashMap<[i64; 2], Vec<ElementId>>>,
@@ -37,13 +37,13 @@ pub(super) struct SceneBuilder<'a> {
     pub(super) taken: HashSet<ElementId>,
     /// `true` if the source may set a page background.
     pub(super) may_have_background: bool,
-    /// The group whose content is in root user space; its own transform leads from there to px.
+    /// The group whose content is in root user space, and whose transform leads from there to px.
     pub(super) top: Option<*const usvg::Group>,
     /// Nesting depth in drawings shown as images, whose ids are not the source's.
     pub(super) foreign_depth: usize,
-    /// Transforms of markers by the addresses of their groups; `None` for those that are not shown.
+    /// Transforms of markers by the addresses of their groups; `None` for hidden markers.
     pub(super) markers: HashMap<usize, Option<Affine>>,
-    /// Shapes whose markers have other places than in usvg's tree.
+    /// Shapes whose markers have other transforms than in usvg's tree.
     pub(super) marked: HashSet<ElementId>,
     /// Elements with `vector-effect: non-scaling-stroke`.
     pub(super) fixed_widths: HashSet<ElementId>,
@@ -100,7 +100,7 @@ impl<'a> SceneBuilder<'a> {
         }
     }
 
-    /// The index of the bend that applies to a referrer: its element's, or within a definition, that of the definition's referrers.
+    /// The index of the bend that applies to a referrer: its element's, or within a definition, the one of the definition's referrers.
     pub(super) fn bend_of(&self, referrer: Referrer, context: Context) -> Option<usize> {
         if matches!(context.role, PartRole::Clip | PartRole::Mask) {
             return context.bend;
@@ -131,33 +131,33 @@ impl<'a> SceneBuilder<'a> {
         &self.reader.source.elements[e].tag
     }
 
-    /// Whether anything inside a group has an id of the source.
+    /// Returns `true` if anything inside a group has an id of the source.
     pub(super) fn has_ids(&self, g: &usvg::Group) -> bool {
         g.children().iter().any(|c| {
             self.ids.contains_key(c.id()) && !c.id().is_empty() || matches!(c, usvg::Node::Group(g) if self.has_ids(g))
         })
     }
 
-    /// Whether a group is the one whose content is in root user space.
+    /// Returns `true` for the group whose content is in root user space.
     pub(super) fn is_top(&self, g: &usvg::Group) -> bool {
         self.top.is_some_and(|t| std::ptr::eq(t, g))
     }
 
-    /// A group's transform in f64: that of its element, or else the only one in the source with the same value in f32.
+    /// A group's transform in f64: its element's if that agrees, or else the only one in the source with an equal value in f32.
     pub(super) fn exact_transform(&self, t: usvg::Transform, element: Option<ElementId>) -> Affine {
         let rounded = affine(t);
         if t.is_identity() {
             return rounded;
         }
-        if let Some(own) = element.and_then(|e| self.reader.own_transform(e))
-            && is_near(own, rounded)
+        if let Some(exact) = element.and_then(|e| self.reader.own_transform(e))
+            && is_near(exact, rounded)
         {
-            return own;
+            return exact;
         }
         self.exact.get(&f32_bits(rounded)).copied().flatten().unwrap_or(rounded)
     }
 
-    /// Records that the source cannot be patched in place. The first reason wins.
+    /// Records the reason why the source cannot be patched in place, unless there is one already.
     pub(super) fn unpatchable(&mut self, why: Unpatchable) {
         self.scene.unpatchable.get_or_insert(why);
     }
@@ -168,7 +168,6 @@ impl<'a> SceneBuilder<'a> {
     }
 }
 
-/// Elements with `vector-effect: non-scaling-stroke`.
 fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
     const FIXED: &str = "non-scaling-stroke";
     if !source.text.contains(FIXED) {
@@ -177,6 +176,7 @@ fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
     (0..source.elements.len()).filter(|&e| source.property(e, "vector-effect").as_deref() == Some(FIXED)).collect()
 }
 
+/// Transforms in the source by their f32 values; `None` for a value to which two different transforms round.
 fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Affine>> {
     let mut out: HashMap<[u32; 6], Option<Affine>> = HashMap::new();
     for e in 0..reader.source.elements.len() {
@@ -189,7 +189,7 @@ fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Aff
     out
 }
 
-/// Limit on the segments in all tiles of a drawing. More would make the result slow to open.
+/// Limit on the segments in all tiles of a drawing, since more would make the result slow to open.
 const MAX_SEGMENTS: usize = 250_000;
 
 /// Decides which patterns to lay out as geometry, within a limit on its size.
@@ -197,7 +197,7 @@ pub(crate) struct Tiling<'a> {
     /// Returns `true` if the pattern over an area must be laid out. The arguments are the element that is painted, the area in its
     /// user space, and the transform from there to root user space.
     pub(super) needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync),
-    /// Lay out patterns on strokes, too.
+    /// `true` if patterns on strokes are laid out, too.
     pub(super) strokes: bool,
     /// Remaining number of segments.
     pub(super) budget: usize,
@@ -225,7 +225,7 @@ pub(super) struct Traced {
     pub(super) source: Option<ElementId>,
     /// The original of a copy.
     pub(super) copied: Option<ElementId>,
-    /// The element that `outline` was read from; `None` if it was converted from usvg's path.
+    /// The element from which `outline` was read; `None` if it was converted from usvg's path.
     pub(super) drawn: Option<ElementId>,
     pub(super) outline: LazyOutline,
 }
@@ -252,7 +252,7 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
             return Traced { source: Some(e), copied: None, drawn, outline };
         }
     }
-    let (copied, outline) = copy_of(b, p.data()).unzip();
+    let (copied, outline) = original(b, p.data()).unzip();
     let outline = outline.unwrap_or_else(|| from_usvg(p.data())).into();
     Traced { source: None, copied, drawn: copied, outline }
 }
@@ -269,13 +269,16 @@ fn path_outline(b: &SceneBuilder<'_>, e: ElementId) -> Option<LazyOutline> {
 
 /// A path's outline, read from the source if possible.
 pub(super) fn known_outline(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Outline {
-    let own = b.element(p.id()).filter(|&e| is_shape(b.tag(e))).and_then(|e| b.reader.outline(e));
-    own.or_else(|| copy_of(b, p.data()).map(|c| c.1)).unwrap_or_else(|| from_usvg(p.data()))
+    let source = b.element(p.id()).filter(|&e| is_shape(b.tag(e)));
+    source
+        .and_then(|e| b.reader.outline(e))
+        .or_else(|| original(b, p.data()).map(|c| c.1))
+        .unwrap_or_else(|| from_usvg(p.data()))
 }
 
 /// Finds the original of a copied path (in a `use`, in a marker), with its outline.
-fn copy_of(b: &mut SceneBuilder<'_>, path: &ts::Path) -> Option<(ElementId, Outline)> {
-    /// Maps a point to a grid cell, coarse against f32 rounding; the eight neighbours are searched, too.
+fn original(b: &mut SceneBuilder<'_>, path: &ts::Path) -> Option<(ElementId, Outline)> {
+    /// The cell of a point in a grid that is coarse against f32 rounding. The eight neighbouring cells are searched, too.
     fn cell(p: Point) -> [i64; 2] {
         [p.x, p.y].map(|v| (v * 16.0).floor() as i64)
     }
@@ -312,7 +315,7 @@ pub(super) struct GroupAt<'g> {
     pub(super) group: &'g usvg::Group,
     /// The element with the group's id.
     pub(super) source: Option<ElementId>,
-    /// That element, or else the only shape or text that the group was made for.
+    /// The element with the group's id, or else the only shape, text or image for which usvg made the group.
     pub(super) element: Option<ElementId>,
     /// From outside the group to root user space.
     pub(super) parent: Affine,
@@ -321,24 +324,24 @@ pub(super) struct GroupAt<'g> {
 }
 
 /// Adds a slot if the group holds content that cannot be bent, and there is a transform to take the fit.
-pub(super) fn slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context) -> Option<usize> {
+pub(super) fn add_slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context) -> Option<usize> {
     let g = at.group;
     let image = at.element.filter(|&e| b.tag(e) == "image");
     let vector = holds_drawing(g);
     let raster = !vector && g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
-    // The root has no transform to take the fit; a single image in it has.
+    // The root has no transform that could take the fit, but a single image in it has.
     if g.filters().is_empty() && (b.is_top(g) || vector || image.is_none() && !raster)
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
         || context.slot.is_some_and(|s| image.is_some() && b.scene.slots[s].element == at.element)
     {
         return None;
     }
-    // In a fragment, the group's own transform is written; elsewhere, an element's.
+    // In a fragment, the group's transform is written; elsewhere, an element's.
     if context.owner.is_none() && b.scene.unpatchable.is_none() && !takes_fit(b, at, image.is_some()) {
         return None;
     }
     // The group of an image holds its placing, which is not the element's transform.
-    let before = image.is_some() && at.source == image || image.is_none() && raster;
+    let before = (image.is_some() && at.source == image) || (image.is_none() && raster);
     let corners = rect(g.bounding_box());
     let (frame, area) =
         if before { (at.parent, affine(g.transform()).transform_rect_bbox(corners)) } else { (at.frame, corners) };
@@ -355,7 +358,7 @@ pub(super) fn slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context)
     Some(b.scene.slots.len() - 1)
 }
 
-/// Whether the fit can be written to the `transform` of the group's element.
+/// Returns `true` if the fit can be written to the `transform` of the group's element.
 fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
     let source = b.reader.source;
     let only_transform_attribute = |e: ElementId| {
@@ -371,7 +374,7 @@ fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
     })
 }
 
-/// Whether a group's only content is a drawing shown as an image.
+/// Returns `true` if a group's only content is a drawing shown as an image.
 pub(super) fn holds_drawing(g: &usvg::Group) -> bool {
     match g.children() {
         [usvg::Node::Image(i)] => matches!(i.kind(), usvg::ImageKind::SVG(_)),

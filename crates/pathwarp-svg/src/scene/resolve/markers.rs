@@ -45,8 +45,8 @@ pub(super) fn marked_children(
     out
 }
 
-/// Places the markers of shapes as browsers do. usvg orients those where a closed subpath starts and ends as if it were open, and
-/// adds markers within arcs. `user` is as for [`marked_children`].
+/// Places the markers of shapes as browsers do. usvg orients markers at the ends of a closed subpath as if it were open, and adds markers
+/// within arcs. `user` is the `use` element that the group belongs to.
 pub(super) fn place_markers(
     b: &mut SceneBuilder<'_>,
     g: &usvg::Group,
@@ -60,13 +60,12 @@ pub(super) fn place_markers(
             _ => None,
         });
         let instances: Vec<&usvg::Group> = instances.children().iter().filter_map(group_of).collect();
-        if let Some(places) = shape.and_then(|p| places(b, e, p.data(), &instances)) {
-            let same =
-                |(m, at): (&&usvg::Group, &Option<Affine>)| at.is_some_and(|at| is_near(at, affine(m.transform())));
-            if !instances.iter().zip(&places).all(same) {
+        if let Some(placed) = shape.and_then(|p| marker_transforms(b, e, p.data(), &instances)) {
+            let same = |(m, t): (&&usvg::Group, &Option<Affine>)| t.is_some_and(|t| is_near(t, affine(m.transform())));
+            if !instances.iter().zip(&placed).all(same) {
                 b.marked.insert(user.unwrap_or(e));
             }
-            b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(places));
+            b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(placed));
         }
     }
 }
@@ -78,16 +77,20 @@ fn group_of(n: &usvg::Node) -> Option<&usvg::Group> {
     }
 }
 
-/// Computes the transform of each marker, with `None` for those that browsers don't show. Returns `None` if the markers are not the
-/// expected ones.
-fn places(b: &SceneBuilder<'_>, e: ElementId, data: &Path, instances: &[&usvg::Group]) -> Option<Vec<Option<Affine>>> {
+/// The transform of each marker, `None` for markers that browsers do not show. Returns `None` if the markers are not the expected ones.
+fn marker_transforms(
+    b: &SceneBuilder<'_>,
+    e: ElementId,
+    data: &Path,
+    instances: &[&usvg::Group],
+) -> Option<Vec<Option<Affine>>> {
     let outline = b.reader.outline(e)?;
     let steps = steps(&outline, data);
     let (angles, vertices) = (directions(&steps), vertices(&steps, data)?);
     let source = b.reader.source;
     let marker = |name: &str| {
-        let own = source.ancestors(e).filter_map(|a| source.property(a, name)).find(|v| v.trim() != "inherit")?;
-        let id = own.trim().strip_prefix("url(#")?.split(')').next()?.to_owned();
+        let value = source.ancestors(e).filter_map(|a| source.property(a, name)).find(|v| v.trim() != "inherit")?;
+        let id = value.trim().strip_prefix("url(#")?.split(')').next()?.to_owned();
         b.definition(&id, "marker")
     };
     let (last, is_node) = (vertices.len() - 1, |k: &usize| !matches!(vertices[*k].0, Element::Close));
@@ -98,7 +101,7 @@ fn places(b: &SceneBuilder<'_>, e: ElementId, data: &Path, instances: &[&usvg::G
     if expected.len() != instances.len() {
         return None;
     }
-    let place = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
+    let transform = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
         let (_, at, number) = vertices[k];
         let placed = affine(instance.transform());
         let orient = source.attr(marker, "orient");
@@ -116,7 +119,7 @@ fn places(b: &SceneBuilder<'_>, e: ElementId, data: &Path, instances: &[&usvg::G
         let [x, y, ..] = placed.as_coeffs();
         Some(Affine::rotate_about(angles[number?] + turned - y.atan2(x), at) * placed)
     };
-    Some(expected.iter().zip(instances).map(place).collect())
+    Some(expected.iter().zip(instances).map(transform).collect())
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -126,7 +129,8 @@ enum Element {
     Close,
 }
 
-/// The elements of usvg's path with their ends and the index of the step that ends there, which is `None` within an arc.
+/// The elements of usvg's path with their end points and the index of the step that ends there, which is `None` within an arc. Returns
+/// `None` if the path has other steps.
 fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point, Option<usize>)>> {
     let mut expected = steps.iter().flatten().enumerate().peekable();
     let (mut out, mut start) = (Vec::new(), Point::ZERO);
@@ -143,7 +147,7 @@ fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point,
         }
         let (number, step) = expected.peek()?;
         let reached = step.1.is_none_or(|seg| seg.eval(1.0).distance(at) <= NEAR * (1.0 + at.to_vec2().hypot()));
-        if step.0 != kind || !reached && !matches!(step.1, Some(Seg::Arc(_))) {
+        if step.0 != kind || (!reached && !matches!(step.1, Some(Seg::Arc(_)))) {
             return None;
         }
         out.push((kind, at, reached.then_some(*number)));
@@ -154,7 +158,7 @@ fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point,
     (expected.next().is_none() && !out.is_empty()).then_some(out)
 }
 
-/// Relative difference of numbers that are equal up to single precision.
+/// Largest relative difference of numbers that are equal up to single precision.
 const NEAR: f64 = 1e-5;
 
 fn point(p: usvg::tiny_skia_path::Point) -> Point {
@@ -164,7 +168,7 @@ fn point(p: usvg::tiny_skia_path::Point) -> Point {
 /// An element of path data, and the segment that it draws.
 type Step<'a> = (Element, Option<&'a Seg>);
 
-/// The elements of path data by subpath. An outline lacks closing lines without length, so these come from `data`.
+/// The elements of path data by subpath. An outline lacks closing lines without length, which are taken from `data`.
 fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
     let (mut explicit, mut start, mut last) = (Vec::new(), None, None);
     for segment in data.segments() {
@@ -191,7 +195,7 @@ fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
     all.collect()
 }
 
-/// The direction of a marker at the end of every step (SVG 2, section 13.7.4): that of the path at open ends, and the bisector of the
+/// The direction of a marker at the end of every step (SVG 2, section 13.7.4): the path's direction at open ends, and the bisector of its
 /// two directions elsewhere, also where a subpath closes.
 fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
     /// Parameter distance over which to measure the direction at an end, since handles may coincide with their nodes.
@@ -214,7 +218,7 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
             continue;
         };
         let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
-        // A closing line without length has the direction in which the subpath begins.
+        // A closing line without length takes the direction in which the subpath begins.
         let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
         let at_start = if closed { between(out_of(last[1]), first[0]) } else { angle(first[0]) };
         out.push(at_start);

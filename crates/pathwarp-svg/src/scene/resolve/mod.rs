@@ -1,5 +1,4 @@
-//! Resolves a drawing: walks usvg's tree and finds the source element, the exact outline and the exact transform of
-//! everything in it.
+//! Resolves a drawing: walks usvg's tree and finds the source element, the exact outline and the exact transform of everything in it.
 
 mod builder;
 mod markers;
@@ -8,9 +7,9 @@ mod tiles;
 use super::geometry::{GeometryReader, affine, bits, f32_bits, is_near, linear_part, rect};
 use super::lettering::Owners;
 use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
-use super::resolve::builder::{Context, GroupAt, SceneBuilder, holds_drawing, slot, trace};
+use super::resolve::builder::{Context, GroupAt, SceneBuilder, add_slot, holds_drawing, trace};
 use super::resolve::markers::{marked_children, place_markers};
-use super::resolve::tiles::{PaintOf, blends, tile_context, tiles};
+use super::resolve::tiles::{PaintOf, blends, lay_out_tiles, tile_context};
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::text::SourceText;
 use pathwarp::Outline;
@@ -21,8 +20,8 @@ use usvg::{Fill, Stroke};
 
 pub(crate) use builder::{Painted, Tiling};
 
-/// Resolves the drawing. Patterns become geometry where `tiling` requests it. Clip paths and masks are resolved once for each bend in
-/// `division` that their referrers have.
+/// Resolves the drawing. Patterns become geometry where `tiling` requests it. Clip paths and masks are resolved once for each bend that
+/// their referrers have in `division`.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &SourceText,
@@ -36,7 +35,7 @@ pub(crate) fn build(
     let mut b = SceneBuilder::new(reader, letters, tiling, division);
     let (top, to_px) = root_group(&b, tree, page);
     b.top = Some(std::ptr::from_ref(top));
-    let root = group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));
+    let root = resolve_group(&mut b, top, Affine::IDENTITY, Context::top(PartRole::Paint));
     let SceneBuilder { mut scene, tiling, .. } = b;
     scene.root = root;
     scene.to_px = to_px;
@@ -67,7 +66,7 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
     }
     let t = affine(g.transform());
     let (u, v) = (by_source.as_coeffs(), t.as_coeffs());
-    // usvg centres the drawing in f32, where numbers of the page's size cancel, and shifts it by any distance.
+    // usvg centres the drawing in f32, where differences of numbers as large as the page are rounded, and shifts it by any distance.
     let slack = 1e-6 * (page.width + page.height + 1.0) + 3e-7 * u[4].abs().max(u[5].abs());
     let agree =
         is_near(linear_part(by_source), linear_part(t)) && (u[4] - v[4]).abs() <= slack && (u[5] - v[5]).abs() <= slack;
@@ -81,7 +80,7 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
 }
 
 /// Resolves a group. `parent` maps the space around it to root user space.
-fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
+fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context: Context) -> Group {
     let source = b.element(g.id());
     let element = source.or_else(|| only_child(b, g));
     let transform = match b.markers.get(&address(g)) {
@@ -91,20 +90,20 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
     };
     let frame = parent * transform;
     let vector = holds_drawing(g);
-    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || vector && b.tag(e) == "image"));
+    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || (vector && b.tag(e) == "image")));
     let at = GroupAt { group: g, source, element, parent, frame };
-    let slot = slot(b, &at, Context { owner, ..context });
+    let slot = add_slot(b, &at, Context { owner, ..context });
     context.slot = slot.or(context.slot);
     let referrer = Referrer { element, owner: context.owner };
     let bent = Context { bend: b.bend_of(referrer, context), ..context };
     let clip = g.clip_path().map(|c| clip(b, c, frame, referrer, bent));
-    let mask = g.mask().map(|m| mask(b, m, frame, referrer, bent));
+    let mask = g.mask().map(|m| add_mask(b, m, frame, referrer, bent));
     context.owner = owner;
     context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
     context.viewport = sliced_viewport(g).or(context.viewport);
     for p in g.filters().iter().flat_map(|f| f.primitives()) {
         if let usvg::filter::Kind::Image(image) = p.kind() {
-            picture(b, image.root());
+            resolve_filter_image(b, image.root());
         }
     }
     let user = context.owner.filter(|&e| b.tag(e) == "use");
@@ -118,8 +117,8 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
         let shape = marked.iter().find(|m| m.0 == i).map(|m| m.1);
         let context = Context { owner: context.owner.or(shape), ..context };
         children.push(match c {
-            usvg::Node::Group(c) => Node::Group(Box::new(group(b, c, frame, context))),
-            usvg::Node::Path(p) => Node::Part(part(b, p, frame, context)),
+            usvg::Node::Group(c) => Node::Group(Box::new(resolve_group(b, c, frame, context))),
+            usvg::Node::Path(p) => Node::Part(add_part(b, p, frame, context)),
             usvg::Node::Image(i) => image(b, i, element, Placing { transform, frame }, context),
             usvg::Node::Text(t) => text(b, t, frame, context),
         });
@@ -127,7 +126,7 @@ fn group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut context:
     if let Some(s) = slot {
         b.scene.slots[s].parts.end = b.scene.parts.len();
     }
-    // Chain the element's own clip path to that of its viewport's edge: the element can refer to only one.
+    // Chain the element's clip path to the clip path of its viewport's edge, since the element can refer to only one.
     if let ([usvg::Node::Group(c)], [Node::Group(edge)]) = (g.children(), children.as_slice())
         && let (Some(_), Some(edge)) = (sliced_viewport(c), edge.clip)
         && b.scene.clips[edge].clip.is_none()
@@ -186,7 +185,7 @@ fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Contex
     }
     let context = Context { owner: context.owner.or(element), ..context };
     let first = b.scene.parts.len();
-    let content = group(b, t.flattened(), frame, context);
+    let content = resolve_group(b, t.flattened(), frame, context);
     if context.role == PartRole::Paint {
         let text = std::ptr::from_ref(t) as usize;
         b.scene.texts.push(PlacedText { text, owner: context.owner, frame, first });
@@ -195,7 +194,8 @@ fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Contex
     Node::Text { element, content: Box::new(content), owners }
 }
 
-fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Context) -> usize {
+/// Adds the part of a path. Returns its index.
+fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Context) -> usize {
     let traced = trace(b, p);
     if traced.source.is_none() {
         // The first path may be the page's background, which is not artwork.
@@ -206,13 +206,13 @@ fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Contex
     }
     for paint in [p.fill().map(Fill::paint), p.stroke().map(Stroke::paint)] {
         if let Some(usvg::Paint::Pattern(pattern)) = paint {
-            tile(b, pattern);
+            resolve_tile(b, pattern);
         }
     }
     let fixed_width = traced.source.or(traced.copied).is_some_and(|e| b.fixed_widths.contains(&e));
     let tile_context = tile_context(context, traced.source);
-    let fill_tiles = tiles(b, p, PaintOf::Fill, frame, tile_context);
-    let stroke_tiles = if fixed_width { None } else { tiles(b, p, PaintOf::Stroke, frame, tile_context) };
+    let fill_tiles = lay_out_tiles(b, p, PaintOf::Fill, frame, tile_context);
+    let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintOf::Stroke, frame, tile_context) };
     b.scene.parts.push(Part {
         source: traced.source,
         drawn: traced.drawn,
@@ -222,7 +222,7 @@ fn part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Contex
         rendering: p.rendering_mode(),
         visible: p.is_visible(),
         fixed_width,
-        is_own: fixed_width && p.stroke().is_some() || context.owner.is_some_and(|e| b.marked.contains(&e)),
+        differs_from_usvg: fixed_width && p.stroke().is_some() || context.owner.is_some_and(|e| b.marked.contains(&e)),
         slot: context.slot,
         path: std::ptr::from_ref(p) as usize,
         fill_tiles,
@@ -249,26 +249,25 @@ fn image(
     placing: Placing,
     context: Context,
 ) -> Node {
-    let own = element.filter(|&e| b.tag(e) == "image");
+    let source = element.filter(|&e| b.tag(e) == "image");
     if let usvg::ImageKind::SVG(tree) = image.kind() {
-        let context = Context { owner: context.owner.or(own), viewport: None, ..context };
+        let context = Context { owner: context.owner.or(source), viewport: None, ..context };
         return Node::Group(Box::new(drawing(b, image, tree, placing.frame, context)));
     }
-    let own = own.or(context.image);
     b.scene.bitmaps.push(Bitmap {
         image: Box::new(image.clone()),
         frame: placing.frame,
         placing: placing.transform,
         slot: context.slot,
-        owner: context.owner.or(own),
+        owner: context.owner.or(source).or(context.image),
         bends: context.role != PartRole::Pattern,
         crop: context.viewport.map(|v| placing.transform.inverse().transform_rect_bbox(v)),
     });
     Node::Image(b.scene.bitmaps.len() - 1)
 }
 
-/// Resolves a drawing shown as an image: its content is warped like everything else, and clipped to the image. `frame` leads
-/// from its px to root user space.
+/// Resolves a drawing shown as an image: its content can be warped, and is clipped to the image. `frame` leads from the drawing's px to
+/// root user space.
 fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, frame: Affine, context: Context) -> Group {
     if context.owner.is_none() {
         b.unpatchable(Unpatchable::AmbiguousImage);
@@ -287,21 +286,21 @@ fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, fra
     let size = tree.size();
     let (w, h) = (f64::from(size.width()), f64::from(size.height()));
     let r = tree.root().abs_layer_bounding_box();
-    // Ignore overflow from rounding.
+    // Content within this distance of the edge overflows by rounding only.
     let slack = 1e-4 * (w + h) as f32;
     let overflows =
         r.left() < -slack || r.top() < -slack || r.right() > w as f32 + slack || r.bottom() > h as f32 + slack;
     if overflows && !matches!(context.role, PartRole::Pattern) {
-        out.clip = Some(image_edge(b, w, h, frame, context));
+        out.clip = Some(add_image_edge(b, w, h, frame, context));
     }
-    let inner = group(b, tree.root(), frame, context);
+    let inner = resolve_group(b, tree.root(), frame, context);
     b.foreign_depth -= 1;
     out.children.push(Node::Group(Box::new(inner)));
     out
 }
 
 /// Adds the edge of an image as a clip path.
-fn image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: Context) -> usize {
+fn add_image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: Context) -> usize {
     let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(Point::from);
     let outline = Outline::from_points(&corners, true).into();
     let first = b.scene.parts.len();
@@ -311,6 +310,7 @@ fn image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: 
     b.push_clip(Clip::foreign("image-edge", root, context.owner, first..first + 1))
 }
 
+/// Resolves a clip path in the frame of its referrer, once for each frame, slot and bend. Returns its index.
 fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, outside: Context) -> usize {
     let Context { slot, bend, .. } = outside;
     let key = (std::ptr::from_ref(c) as usize, bits(frame), slot, bend);
@@ -323,7 +323,8 @@ fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: R
     let transform = b.exact_transform(c.transform(), def);
     let chained = Referrer { element: def, owner: None };
     let clip = c.clip_path().map(|c| clip(b, c, frame, chained, outside));
-    let root = definition(b, c.root(), frame * transform, Context { slot, bend, ..Context::top(PartRole::Clip) });
+    let root =
+        resolve_definition(b, c.root(), frame * transform, Context { slot, bend, ..Context::top(PartRole::Clip) });
     let i = b.push_clip(Clip {
         id: c.id().to_owned(),
         transform,
@@ -338,7 +339,8 @@ fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: R
     i
 }
 
-fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+/// Resolves a mask in the frame of its referrer, once for each frame, slot and bend. Returns its index.
+fn add_mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Referrer, outside: Context) -> usize {
     let Context { slot, bend, .. } = outside;
     let key = (std::ptr::from_ref(m) as usize, bits(frame), slot, bend);
     if let Some(&i) = b.mask_index.get(&key) {
@@ -347,8 +349,8 @@ fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Refer
     }
     let first = b.scene.parts.len();
     let chained = Referrer { element: b.definition(m.id(), "mask"), owner: None };
-    let mask = m.mask().map(|m| mask(b, m, frame, chained, outside));
-    let root = definition(b, m.root(), frame, Context { slot, bend, ..Context::top(PartRole::Mask) });
+    let mask = m.mask().map(|m| add_mask(b, m, frame, chained, outside));
+    let root = resolve_definition(b, m.root(), frame, Context { slot, bend, ..Context::top(PartRole::Mask) });
     b.scene.masks.push(Mask {
         id: m.id().to_owned(),
         rect: rect(m.rect().to_rect()),
@@ -369,28 +371,28 @@ fn mask(b: &mut SceneBuilder<'_>, m: &usvg::Mask, frame: Affine, referrer: Refer
 }
 
 /// Resolves a pattern's tile, once.
-fn tile(b: &mut SceneBuilder<'_>, pattern: &Arc<usvg::Pattern>) {
+fn resolve_tile(b: &mut SceneBuilder<'_>, pattern: &Arc<usvg::Pattern>) {
     if b.scene.tiles.iter().any(|t| Arc::ptr_eq(&t.pattern, pattern)) {
         return;
     }
-    let root = definition(b, pattern.root(), Affine::IDENTITY, Context::top(PartRole::Pattern));
+    let root = resolve_definition(b, pattern.root(), Affine::IDENTITY, Context::top(PartRole::Pattern));
     b.scene.tiles.push(PatternTile { pattern: pattern.clone(), root });
 }
 
 /// Resolves the content of an `feImage`, once.
-fn picture(b: &mut SceneBuilder<'_>, root: &usvg::Group) {
+fn resolve_filter_image(b: &mut SceneBuilder<'_>, root: &usvg::Group) {
     let key = std::ptr::from_ref(root) as usize;
     if !b.scene.pictures.contains_key(&key) {
-        let group = definition(b, root, Affine::IDENTITY, Context::top(PartRole::Pattern));
+        let group = resolve_definition(b, root, Affine::IDENTITY, Context::top(PartRole::Pattern));
         b.scene.pictures.insert(key, group);
     }
 }
 
-/// Resolves the content of a definition. It replaces nothing in the drawing's own tree, so parts in it that cannot be traced
-/// do not prevent patching.
-fn definition(b: &mut SceneBuilder<'_>, g: &usvg::Group, frame: Affine, context: Context) -> Group {
+/// Resolves the content of a definition. Parts in it that cannot be traced do not prevent patching, since they replace no element of the
+/// drawing.
+fn resolve_definition(b: &mut SceneBuilder<'_>, g: &usvg::Group, frame: Affine, context: Context) -> Group {
     let before = b.scene.unpatchable.take();
-    let root = group(b, g, frame, context);
+    let root = resolve_group(b, g, frame, context);
     b.scene.unpatchable = before;
     root
 }

@@ -1,6 +1,6 @@
-//! Lays out patterns as geometry: repeats the content of a tile over a shape so that it can be warped like anything else.
+//! Lays out patterns as geometry: repeats the content of a tile over a shape, so that it can be warped.
 //!
-//! A tile shows nothing outside its cell. A path in a plain colour can therefore become one path over all cells: adjacent cells
+//! A tile shows nothing outside its cell. A path in a plain colour, clipped to the cell, becomes one path over all cells: adjacent cells
 //! leave no seam, and the file stays small. Paths with a gradient or a pattern are repeated cell by cell.
 
 use super::builder::{Context, Painted, SceneBuilder, known_outline};
@@ -15,7 +15,7 @@ use pathwarp::outline::{Seg, Subpath};
 use std::sync::Arc;
 use usvg::{BlendMode, Paint, PaintOrder};
 
-/// Limit on the cells over one shape. More make a texture in which single tiles cannot be told apart.
+/// Limit on the cells over one shape. More cells make a texture in which single tiles cannot be told apart.
 const MAX_CELLS: f64 = 5_000.0;
 /// Tolerance for clipped arcs and expanded strokes, as a fraction of a tile's side.
 const FINE: f64 = 1e-6;
@@ -37,26 +37,28 @@ pub(super) enum PaintOf {
 struct Layout<'l> {
     /// Corner of each cell in the pattern's space.
     cells: &'l [Vec2],
-    /// From the pattern's space to the shape's user space.
-    place: Affine,
+    /// Leads from the pattern's space to the shape's user space.
+    to_shape: Affine,
     /// A cell relative to its corner.
     cell: Rect,
     /// Area to cover, in the shape's user space.
     area: Rect,
-    /// From the shape's user space to root user space.
+    /// Leads from the shape's user space to root user space.
     frame: Affine,
     context: Context,
 }
 
 impl Layout<'_> {
-    /// Repeats an outline over all cells, as one outline in the shape's user space. This order of operations keeps coincident
-    /// corners coincident to the last bit.
-    fn everywhere(&self, outline: &Outline) -> Outline {
-        let inside = within(outline, self.cell, FINE * self.cell.width());
-        let all =
-            self.cells.iter().flat_map(|c| inside.transformed(Affine::translate(*c)).transformed(self.place).subpaths);
+    /// Repeats an outline over all cells, as one outline in the shape's user space. It is clipped first, so that coincident corners stay
+    /// coincident to the last bit.
+    fn repeat(&self, outline: &Outline) -> Outline {
+        let inside = clip_to_box(outline, self.cell, FINE * self.cell.width());
+        let all = self
+            .cells
+            .iter()
+            .flat_map(|c| inside.transformed(Affine::translate(*c)).transformed(self.to_shape).subpaths);
         let all = Outline { subpaths: all.collect() };
-        within(&all, self.area, FINE * self.area.width().max(self.area.height()))
+        clip_to_box(&all, self.area, FINE * self.area.width().max(self.area.height()))
     }
 
     fn group(&self, transform: Affine, children: Vec<Node>) -> Group {
@@ -64,22 +66,22 @@ impl Layout<'_> {
     }
 }
 
-/// Lays out the pattern of a path's fill or stroke. Returns `None` if there is no pattern, or it follows as a whole.
-pub(super) fn tiles(
+/// Lays out the pattern of a path's fill or stroke. Returns `None` if there is no pattern, or it is transformed as a whole.
+pub(super) fn lay_out_tiles(
     b: &mut SceneBuilder<'_>,
     p: &usvg::Path,
-    of: PaintOf,
+    paint_of: PaintOf,
     frame: Affine,
     context: Context,
 ) -> Option<Tiles> {
-    let (paint, opacity, r) = match of {
+    let (paint, opacity, r) = match paint_of {
         PaintOf::Stroke => p.stroke().map(|s| (s.paint(), s.opacity(), p.stroke_bounding_box()))?,
         PaintOf::Fill => p.fill().map(|f| (f.paint(), f.opacity(), p.bounding_box()))?,
     };
     let Paint::Pattern(pattern) = paint else { return None };
     let tiling = b.tiling.as_ref()?;
     if !p.is_visible()
-        || of == PaintOf::Stroke && !tiling.strokes
+        || (paint_of == PaintOf::Stroke && !tiling.strokes)
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
     {
         return None;
@@ -103,6 +105,7 @@ pub(super) fn tiles(
     }
 }
 
+/// Lays out a pattern over an area. Returns the note for the user if it cannot be laid out.
 fn tiles_over(
     b: &mut SceneBuilder<'_>,
     pattern: &Arc<usvg::Pattern>,
@@ -110,13 +113,13 @@ fn tiles_over(
     frame: Affine,
     context: Context,
 ) -> Result<Group, &'static str> {
-    let place = affine(pattern.transform());
-    if !is_invertible(place) {
+    let to_shape = affine(pattern.transform());
+    if !is_invertible(to_shape) {
         return Err(TOO_MANY);
     }
     let r = pattern.rect();
-    let cells = cells(r, place, area)?;
-    let work = weight(pattern.root())?.saturating_mul(cells.len());
+    let cells = cells(r, to_shape, area)?;
+    let work = count_segments(pattern.root())?.saturating_mul(cells.len());
     let budget = b.tiling.as_ref().map_or(0, |t| t.budget);
     if cells.len() as f64 > MAX_CELLS || work > budget {
         return Err(TOO_MANY);
@@ -125,21 +128,21 @@ fn tiles_over(
         t.budget -= work;
     }
     let cell = Rect::new(0.0, 0.0, f64::from(r.width()), f64::from(r.height()));
-    let layout = Layout { cells: &cells, place, cell, area, frame, context };
+    let layout = Layout { cells: &cells, to_shape, cell, area, frame, context };
     let to_cell = affine(pattern.root().transform());
     let mut out = tile_group(b, pattern.root(), to_cell, &layout);
-    // A tile is an image of its own and does not blend with the backdrop.
+    // A tile is an isolated image, which does not blend with the backdrop.
     out.isolate |= blends(pattern.root());
     Ok(out)
 }
 
 /// Corners of the cells that touch `area`.
-fn cells(r: usvg::NonZeroRect, place: Affine, area: Rect) -> Result<Vec<Vec2>, &'static str> {
-    /// The box of a rotated shape covers more cells than the shape; the exact count is checked afterwards.
+fn cells(r: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Vec2>, &'static str> {
+    /// Factor on the limit for cells in the box of a rotated shape, of which the shape touches fewer. The exact number is checked later.
     const SPARE: f64 = 4.0;
     let (x, y) = (f64::from(r.x()), f64::from(r.y()));
     let (w, h) = (f64::from(r.width()), f64::from(r.height()));
-    let needed = place.inverse().transform_rect_bbox(area);
+    let needed = to_shape.inverse().transform_rect_bbox(area);
     let columns = (((needed.x0 - x) / w).floor(), ((needed.x1 - x) / w).ceil());
     let rows = (((needed.y0 - y) / h).floor(), ((needed.y1 - y) / h).ceil());
     let count = (columns.1 - columns.0) * (rows.1 - rows.0);
@@ -151,7 +154,7 @@ fn cells(r: usvg::NonZeroRect, place: Affine, area: Rect) -> Result<Vec<Vec2>, &
     for j in 0..(rows.1 - rows.0) as u32 {
         for i in 0..(columns.1 - columns.0) as u32 {
             let corner = Vec2::new(x + (columns.0 + f64::from(i)) * w, y + (rows.0 + f64::from(j)) * h);
-            let seen = place.transform_rect_bbox(cell + corner).intersect(area);
+            let seen = to_shape.transform_rect_bbox(cell + corner).intersect(area);
             if seen.width() > 0.0 && seen.height() > 0.0 {
                 cells.push(corner);
             }
@@ -224,7 +227,7 @@ fn tile_path(b: &mut SceneBuilder<'_>, p: &usvg::Path, to_cell: Affine, layout: 
 struct TilePaint<'p> {
     path: &'p usvg::Path,
     of: PaintOf,
-    /// Whether it is a single colour, so that one path serves all cells.
+    /// `true` for a single colour, so that one path serves all cells.
     plain: bool,
 }
 
@@ -240,29 +243,29 @@ impl TilePaint<'_> {
     ) {
         let in_cell = outline.transformed(to_cell);
         if self.plain {
-            let all = layout.everywhere(&in_cell);
+            let all = layout.repeat(&in_cell);
             if !all.is_empty() {
                 b.scene.parts.push(self.part(all.into(), layout.frame, layout.context));
                 out.push(Node::Part(b.scene.parts.len() - 1));
             }
             return;
         }
-        let inside = within(&in_cell, layout.cell, FINE * layout.cell.width()).transformed(to_cell.inverse());
+        let inside = clip_to_box(&in_cell, layout.cell, FINE * layout.cell.width()).transformed(to_cell.inverse());
         if inside.is_empty() {
             return;
         }
         for c in layout.cells {
-            let place = layout.place * Affine::translate(*c) * to_cell;
-            let frame = layout.frame * place;
+            let transform = layout.to_shape * Affine::translate(*c) * to_cell;
+            let frame = layout.frame * transform;
             // The paint may be a pattern in turn.
-            let tiles = tiles(b, self.path, self.of, frame, layout.context);
+            let tiles = lay_out_tiles(b, self.path, self.of, frame, layout.context);
             let mut part = self.part(inside.clone().into(), frame, layout.context);
             match self.of {
                 PaintOf::Stroke => part.stroke_tiles = tiles,
                 PaintOf::Fill => part.fill_tiles = tiles,
             }
             b.scene.parts.push(part);
-            out.push(Node::Group(Box::new(layout.group(place, vec![Node::Part(b.scene.parts.len() - 1)]))));
+            out.push(Node::Group(Box::new(layout.group(transform, vec![Node::Part(b.scene.parts.len() - 1)]))));
         }
     }
 
@@ -278,16 +281,16 @@ impl TilePaint<'_> {
     }
 }
 
-/// Estimates the number of segments in a tile. Fails if the tile cannot be laid out as geometry.
-fn weight(g: &usvg::Group) -> Result<usize, &'static str> {
+/// Estimates the number of segments in a tile. Returns the note for the user if the tile cannot be laid out as geometry.
+fn count_segments(g: &usvg::Group) -> Result<usize, &'static str> {
     if g.mask().is_some() || !g.filters().is_empty() {
         return Err(NOT_BENT);
     }
-    let mut sum = g.clip_path().map_or(Ok(0), |c| weight(c.root()))?;
+    let mut sum = g.clip_path().map_or(Ok(0), |c| count_segments(c.root()))?;
     for c in g.children() {
         sum += match c {
-            usvg::Node::Group(g) => weight(g)?,
-            usvg::Node::Text(t) => weight(t.flattened())?,
+            usvg::Node::Group(g) => count_segments(g)?,
+            usvg::Node::Text(t) => count_segments(t.flattened())?,
             // An expanded stroke has about four times as many segments.
             usvg::Node::Path(p) => p.data().len() * if p.stroke().is_some() { 4 } else { 1 },
             usvg::Node::Image(_) => return Err(NOT_BENT),
@@ -296,18 +299,18 @@ fn weight(g: &usvg::Group) -> Result<usize, &'static str> {
     Ok(sum)
 }
 
-/// Whether anything in a group blends with its backdrop.
+/// Returns `true` if anything in a group blends with its backdrop.
 pub(super) fn blends(g: &usvg::Group) -> bool {
     g.children().iter().any(|c| matches!(c, usvg::Node::Group(g) if g.blend_mode() != BlendMode::Normal || blends(g)))
 }
 
-/// The context of a shape's tiles. Their owner is the enclosing one, or else the shape's own element.
+/// The context of a shape's tiles. Their owner is the enclosing owner, or else the shape's element.
 pub(super) fn tile_context(context: Context, element: Option<ElementId>) -> Context {
     Context { owner: context.owner.or(element), ..context }
 }
 
 /// Clips a filled outline to a box. Arcs across its border become cubics within `tolerance`.
-pub(super) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
+fn clip_to_box(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     if outline.bounding_box().is_none_or(|b| area.union(b) == area) {
         return outline.clone();
     }
@@ -319,7 +322,7 @@ pub(super) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     ];
     let loops = outline.subpaths.iter().map(|s| {
         let mut segs = s.segs.clone();
-        join(&mut segs, s.start);
+        close(&mut segs, s.start);
         borders.iter().fold(segs, |segs, b| b.cut(segs, tolerance))
     });
     let subpath = |segs: Vec<Seg>| Some(Subpath { start: segs.first()?.start(), segs, closed: true });
@@ -327,7 +330,7 @@ pub(super) fn within(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
 }
 
 /// Closes a run of segments with a line.
-fn join(segs: &mut Vec<Seg>, start: Point) {
+fn close(segs: &mut Vec<Seg>, start: Point) {
     if let Some(end) = segs.last().map(Seg::end).filter(|e| *e != start) {
         segs.push(Seg::Line(Line::new(end, start)));
     }
@@ -348,21 +351,22 @@ impl Border {
         if self.across == 0 { p.x } else { p.y }
     }
 
-    /// Distance of a point from the border, positive inside.
-    fn inside(self, p: Point) -> f64 {
+    /// Signed distance of a point from the border, positive inside.
+    fn distance(self, p: Point) -> f64 {
         (self.coordinate(p) - self.at) * self.side
     }
 
-    /// Projects a point onto the border.
-    fn onto(self, p: Point) -> Point {
+    /// The projection of a point onto the border.
+    fn project(self, p: Point) -> Point {
         if self.across == 0 { Point::new(self.at, p.y) } else { Point::new(p.x, self.at) }
     }
 
+    /// Clips a closed run of segments to the inside.
     fn cut(self, segs: Vec<Seg>, tolerance: f64) -> Vec<Seg> {
         let extent = |s: &Seg| {
             let b = s.bounding_box();
             let (p, q) = (Point::new(b.x0, b.y0), Point::new(b.x1, b.y1));
-            (self.inside(p).min(self.inside(q)), self.inside(p).max(self.inside(q)))
+            (self.distance(p).min(self.distance(q)), self.distance(p).max(self.distance(q)))
         };
         let mut kept: Vec<Seg> = Vec::with_capacity(segs.len());
         for s in segs {
@@ -377,7 +381,7 @@ impl Border {
                 (_, s) => self.split(s, &mut kept),
             }
         }
-        // Replace the parts outside by lines along the border.
+        // Lines along the border replace the parts outside.
         let mut out: Vec<Seg> = Vec::with_capacity(kept.len() + 2);
         for s in kept {
             if let Some(end) = out.last().map(Seg::end).filter(|e| *e != s.start()) {
@@ -386,17 +390,17 @@ impl Border {
             out.push(s);
         }
         if let Some(start) = out.first().map(Seg::start) {
-            join(&mut out, start);
+            close(&mut out, start);
         }
         out
     }
 
     /// Parameters at which a segment, extended past its ends, crosses the border.
     fn crossings(self, s: &Seg) -> Vec<f64> {
-        /// Treat the cubic coefficient as zero below this fraction of the others; its rounding errors would spoil the roots.
+        /// Fraction of the other coefficients below which the cubic one counts as zero, since rounding errors in it would spoil the roots.
         const NEGLIGIBLE: f64 = 1e-11;
         let c = s.to_cubic();
-        let [a, b, c, d] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.inside(p));
+        let [a, b, c, d] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.distance(p));
         let [linear, square, cubic] = [3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
         match s {
             // Exact for lines.
@@ -408,25 +412,25 @@ impl Border {
         }
     }
 
-    /// Splits a segment at the border and keeps the parts inside.
+    /// Splits a segment at the border and adds the parts inside to `kept`.
     fn split(self, s: Seg, kept: &mut Vec<Seg>) {
-        /// Crossings closer than this to an end parameter are ignored.
+        /// Distance from an end parameter within which crossings are ignored.
         const END: f64 = 1e-12;
-        let mut at = self.crossings(&s);
-        at.retain(|t| *t > END && *t < 1.0 - END);
-        at.sort_by(f64::total_cmp);
-        at.push(1.0);
+        let mut ends = self.crossings(&s);
+        ends.retain(|t| *t > END && *t < 1.0 - END);
+        ends.sort_by(f64::total_cmp);
+        ends.push(1.0);
         let mut from = 0.0;
-        for to in at {
-            if self.inside(s.eval(0.5 * (from + to))) >= 0.0
+        for to in ends {
+            if self.distance(s.eval(0.5 * (from + to))) >= 0.0
                 && let Some(mut piece) = s.part(from, to)
             {
                 if from > 0.0 {
-                    let p = self.onto(piece.start());
+                    let p = self.project(piece.start());
                     move_end(&mut piece, true, p);
                 }
                 if to < 1.0 {
-                    let p = self.onto(piece.end());
+                    let p = self.project(piece.end());
                     move_end(&mut piece, false, p);
                 }
                 kept.push(piece);
@@ -464,7 +468,7 @@ mod tests {
             "M20,20 L30,20 L30,30 Z",
         ] {
             let outline = Outline::from_svg(d).unwrap();
-            let cut = within(&outline, area, 1e-9).to_bez_path(1e-9);
+            let cut = clip_to_box(&outline, area, 1e-9).to_bez_path(1e-9);
             let mut whole = outline.to_bez_path(1e-9);
             if !d.ends_with('Z') {
                 whole.close_path();
@@ -490,6 +494,6 @@ mod tests {
     #[test]
     fn nothing_to_cut() {
         let o = Outline::from_svg("M4,4 a2,2 0 1 1 4,0 Z").unwrap();
-        assert_eq!(within(&o, Rect::new(0.0, 0.0, 10.0, 10.0), 1e-9), o);
+        assert_eq!(clip_to_box(&o, Rect::new(0.0, 0.0, 10.0, 10.0), 1e-9), o);
     }
 }

@@ -6,7 +6,7 @@ fn count(body: &str) -> Result<(u64, usize), String> {
         format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'>{body}</svg>");
     let doc = roxmltree::Document::parse(&svg).unwrap();
     let budget = Budget::new(Limits::none().with(Limit::Elements, 1e6));
-    let counted = Unfolding::of(&doc).count(&budget).map(|(size, depth)| (size.elements, depth));
+    let counted = Unfolding::new(&doc).count(&budget).map(|(size, depth)| (size.elements, depth));
     counted.map_err(|(node, _)| node.attribute("id").unwrap_or("").to_owned())
 }
 

@@ -1,4 +1,4 @@
-//! The walk over the scene that patches each element.
+//! Walks over the scene and patches each element.
 
 use super::keeper::{self, Keeper};
 use super::text;
@@ -10,19 +10,18 @@ use crate::scene::model::{Clip, Group, Mask, Node, Part, Referrer};
 use crate::source::elements::{ElementId, Namespace, Unpatchable, is_live, is_shape};
 use crate::source::number::single;
 use crate::write::boxes;
-use crate::write::fragment::bent;
+use crate::write::fragment::bent_image;
 use crate::write::input::WriteInput;
 use crate::write::markup::{bent_attributes, bent_url, dashes, part_data};
-use crate::write::place::Place;
+use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use pathwarp_reader::xml::escape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use usvg::{Fill, Stroke};
 
-/// Patches everything in a group.
-pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
-    filters(k, g);
+pub(super) fn patch_group(k: &mut Keeper<'_, '_>, g: &Group) {
+    patch_filters(k, g);
     if matches!(k.input.filter_outcome(g), Some(FilterOutcome::Whole(_))) {
         return;
     }
@@ -32,38 +31,37 @@ pub(super) fn group(k: &mut Keeper<'_, '_>, g: &Group) {
         match n {
             Node::Group(c) => match c.owner {
                 Some(e) if k.tag(e) == "use" && k.input.is_absorbed(n) => k.edits.replace(e, String::new()),
-                Some(e) if k.tag(e) == "use" => copy(k, e, c),
-                Some(e) if k.tag(e) == "image" => drawing(k, e, n, c),
+                Some(e) if k.tag(e) == "use" => patch_copy(k, e, c),
+                Some(e) if k.tag(e) == "image" => patch_drawing(k, e, n, c),
                 Some(e) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
-                _ => group(k, c),
+                _ => patch_group(k, c),
             },
             Node::Text { element: Some(e), .. } if k.input.is_absorbed(n) => k.edits.replace(*e, String::new()),
-            Node::Text { element: Some(e), content, owners } => text::text(k, *e, content, owners),
+            Node::Text { element: Some(e), content, owners } => text::patch_text(k, *e, content, owners),
             Node::Text { element: None, .. } => {}
-            Node::Image(i) => bitmap(k, g, *i),
+            Node::Image(i) => patch_bitmap(k, g, *i),
             Node::Part(i) => {
                 let p = k.input.part(*i);
                 match (p.owner, p.source) {
                     (Some(e), _) if is_shape(k.tag(e)) => marked.entry(e).or_default().push(n),
                     (None, Some(e)) if k.input.is_absorbed(n) => k.edits.replace(e, String::new()),
-                    (None, Some(e)) if k.input.warped(*i).is_some() => shape(k, e, *i),
+                    (None, Some(e)) if k.input.warped(*i).is_some() => patch_shape(k, e, *i),
                     _ => {}
                 }
             }
         }
     }
     for (e, nodes) in marked {
-        marked_shape(k, e, &nodes);
+        patch_marked_shape(k, e, &nodes);
     }
 }
 
-/// Patches the filters of a group.
-fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
+fn patch_filters(k: &mut Keeper<'_, '_>, g: &Group) {
     if g.filters.is_empty() {
         return;
     }
     if !k.input.has_filters(g) {
-        return pictures(k, g);
+        return replace_filters(k, g);
     }
     let growth = boxes::growth(&k.input, g);
     let slot = g.slot.map(|s| &k.input.scene.slots[s]);
@@ -89,8 +87,8 @@ fn filters(k: &mut Keeper<'_, '_>, g: &Group) {
     k.writer.note_filters(g);
 }
 
-/// Replaces the filters of a group by pictures of what they draw.
-fn pictures(k: &mut Keeper<'_, '_>, g: &Group) {
+/// Replaces the filters of a group by pictures.
+fn replace_filters(k: &mut Keeper<'_, '_>, g: &Group) {
     let Some(outcome) = k.input.filter_outcome(g) else { return };
     let Some(e) = g.slot.and_then(|s| k.input.scene.slots[s].element) else { return };
     k.edits.set_property(e, "filter", "none".into());
@@ -104,7 +102,7 @@ fn pictures(k: &mut Keeper<'_, '_>, g: &Group) {
         return;
     }
     let [beneath, above] =
-        outcome.pictures().map(|p| p.map_or(String::new(), |p| bent(&k.writer.markup, p, Affine::IDENTITY)));
+        outcome.pictures().map(|p| p.map_or(String::new(), |p| bent_image(&k.writer.markup, p, Affine::IDENTITY)));
     if matches!(k.tag(e), "g" | "a") {
         k.edits.wrap_content(e, beneath, above);
     } else {
@@ -115,7 +113,7 @@ fn pictures(k: &mut Keeper<'_, '_>, g: &Group) {
 const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
 /// Patches a shape element with the image of part `i`.
-pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
+fn patch_shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let p = k.input.part(i);
     let Some(warped) = k.input.warped(i) else { return };
     let outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
@@ -130,7 +128,7 @@ pub(super) fn shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     if tag != "path" {
         k.edits.rename(e, "path");
         k.remove_geometry(e);
-        // Only what was a line or a polygon before has markers.
+        // Unlike a path, these shapes have no markers.
         if matches!(tag, "rect" | "circle" | "ellipse")
             && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
         {
@@ -176,7 +174,7 @@ fn patch_stroke(k: &mut Keeper<'_, '_>, e: ElementId, p: &Part, warped: &WarpedP
     let scale = warped.stroke.scale();
     let Some(s) = p.stroke.as_ref().filter(|_| (scale - 1.0).abs() > 1e-9) else { return };
     k.edits.set_property(e, "stroke-width", single(f64::from(s.width().get()) * scale));
-    // In units of `pathLength`, dashes are the same on the new path.
+    // In units of `pathLength`, dashes need no change on the new path.
     if s.dasharray().is_some() && k.source.attr(e, "pathLength").is_none() {
         k.edits.set_property(e, "stroke-dasharray", dashes(s, scale));
         if s.dashoffset() != 0.0 {
@@ -186,7 +184,7 @@ fn patch_stroke(k: &mut Keeper<'_, '_>, e: ElementId, p: &Part, warped: &WarpedP
 }
 
 /// Replaces a shape with markers by a group of the shape and its markers (`nodes`, in painting order).
-fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
+fn patch_marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
     if !nodes.iter().any(|n| k.changed(n)) {
         return;
     }
@@ -202,16 +200,16 @@ fn marked_shape(k: &mut Keeper<'_, '_>, e: ElementId, nodes: &[&Node]) {
 }
 
 /// Patches the element of bitmap `i`, in group `g`.
-pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
+fn patch_bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
     let bitmap = &k.input.scene.bitmaps[i];
     let e = g.source.or(bitmap.owner).filter(|&e| k.tag(e) == "image");
     let why = match (&k.input.images[i], e) {
         (EmbeddedImage::Placed, _) => return,
         (EmbeddedImage::Bent { image, clip }, Some(e)) => {
-            // A clip path and filters of its own work on what the outline clips.
+            // The element's clip path and filters apply to the clipped image, which therefore goes into a group.
             let has = |name: &str| k.source.property(e, name).is_some_and(|v| v.trim() != "none");
             if clip.is_some() && (has("clip-path") || has("filter")) {
-                let content = k.writer.clipped(image, clip.as_deref(), Affine::IDENTITY);
+                let content = k.writer.clipped_image(image, clip.as_deref(), Affine::IDENTITY);
                 for name in ["href", "preserveAspectRatio"] {
                     k.edits.remove_attr(e, name);
                 }
@@ -222,7 +220,7 @@ pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
                 }
                 k.edits.set_attr(e, "href", bent_url(image));
                 if let Some(data) = clip {
-                    let id = k.writer.outline(data, Affine::IDENTITY);
+                    let id = k.writer.outline_id(data, Affine::IDENTITY);
                     k.edits.set_property(e, "clip-path", format!("url(#{id})"));
                 }
             }
@@ -241,7 +239,7 @@ pub(super) fn bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
 }
 
 /// Replaces an image that is a drawing by a group with the drawing's content.
-pub(super) fn drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group) {
+fn patch_drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group) {
     if k.changed(n) {
         let content = k.writer.group(g, "");
         for name in ["href", "preserveAspectRatio"] {
@@ -259,7 +257,7 @@ fn is_original_unchanged(k: &Keeper<'_, '_>, e: ElementId) -> bool {
     }
     let originals: Vec<ElementId> =
         source.href(e).and_then(|id| source.by_id().get(&id)).into_iter().flatten().copied().collect();
-    // One that shows others is taken to have changed with anything.
+    // An original that shows others counts as changed if anything is.
     let shows_others = |o: &ElementId| k.tag(*o) == "use" || source.descendants(*o).any(|d| k.tag(d) == "use");
     let ranges: Vec<_> = originals.iter().map(|&o| &source.elements[o].range).collect();
     let inside = |o: ElementId| ranges.iter().any(|r| r.contains(&source.elements[o].range.start));
@@ -268,8 +266,8 @@ fn is_original_unchanged(k: &Keeper<'_, '_>, e: ElementId) -> bool {
     !warped.map(|(p, _)| p.element()).any(|o| anywhere || o.is_none_or(inside))
 }
 
-/// Replaces a `use` by a group with the resolved content, if that is no longer a copy of the original.
-pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
+/// Replaces a `use` by a group with its resolved content, if that is no longer a copy of the original.
+fn patch_copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     if !g.children.iter().any(|n| k.changed(n))
         && (k.input.options.clones == Clones::Follow || is_original_unchanged(k, e))
     {
@@ -291,17 +289,18 @@ pub(super) fn copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let head = united.fold(head, |head, (name, value)| format!("{head} {name}=\"{}\"", escape(&value)));
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
     k.fragments.insert(e);
-    let lead = title + &keeper::kept(source, e);
-    k.writer.place = Place::of_copy(source, e);
+    let lead = title + &keeper::kept_animations(source, e);
+    k.writer.surroundings = Surroundings::of_copy(source, e);
     let text = k.writer.group_with(g, &head, &lead);
-    k.writer.place = None;
+    k.writer.surroundings = None;
     k.edits.replace(e, text);
 }
 
-/// Names what went in on the shapes that it has become: by ids in `data-united`, by classes, and if they have no title, by the titles.
-pub(super) fn united(k: &mut Keeper<'_, '_>) {
+/// Names the united elements on the shapes that they have become: by ids in `data-united`, by classes and, on shapes without a title, by
+/// titles.
+pub(super) fn name_united(k: &mut Keeper<'_, '_>) {
     let (source, input) = (k.source, k.input);
-    for (&e, all) in input.united.of.iter().filter(|(e, _)| source.elements[**e].tag != "use") {
+    for (&e, all) in input.united.merged.iter().filter(|(e, _)| source.elements[**e].tag != "use") {
         for (name, value) in united_attributes(input, e) {
             k.edits.set_attr(e, name, value);
         }
@@ -314,9 +313,10 @@ pub(super) fn united(k: &mut Keeper<'_, '_>) {
     }
 }
 
-/// The attributes of a shape that name what went in. Classes of others could change what style sheets say.
+/// The attributes of a shape that name the elements united to it. Classes are left out if the drawing has style sheets, whose rules could
+/// then apply to the shape.
 fn united_attributes(input: WriteInput<'_>, e: ElementId) -> Vec<(&'static str, String)> {
-    let Some(all) = input.united.of.get(&e) else { return Vec::new() };
+    let Some(all) = input.united.merged.get(&e) else { return Vec::new() };
     let values = |name: &'static str| all.iter().filter_map(move |e| input.source.attr(*e, name));
     let joined = |name: &'static str| {
         let mut seen = BTreeSet::new();
@@ -332,11 +332,10 @@ fn united_attributes(input: WriteInput<'_>, e: ElementId) -> Vec<(&'static str, 
     all.filter(|(_, words)| !words.is_empty()).collect()
 }
 
-/// Patches the clip paths. For a clip path used in several frames, the first stays in its place and the others get
-/// definitions of their own.
-pub(super) fn clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
+/// Patches the clip paths. Of a clip path used in several frames, the first one keeps the definition and the others get new ones.
+pub(super) fn patch_clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     let clips = || k.input.scene.clips.iter().filter(|c| !c.foreign);
-    // What is not bent keeps its definition.
+    // A clip path that is not bent keeps its definition.
     let kept = clips().filter(|c| !k.input.changes(c.parts.clone()));
     let mut patched: BTreeSet<ElementId> = kept.filter_map(|c| k.definition(&c.id, "clipPath")).collect();
     for (i, c) in k.input.scene.clips.iter().enumerate().filter(|c| !c.1.foreign) {
@@ -348,8 +347,8 @@ pub(super) fn clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
         }
         let is_viewport = c.referrers.iter().any(|r| r.owner.is_none() && r.element.is_some_and(|e| k.tag(e) == "svg"));
         match def {
-            None if is_viewport => viewport(k, i)?,
-            Some(def) if patched.insert(def) => clip(k, i, c, def),
+            None if is_viewport => patch_viewport(k, i)?,
+            Some(def) if patched.insert(def) => patch_clip(k, i, c, def),
             _ => {
                 let id = k.writer.clip_id(i);
                 redirect(k, &c.referrers, "clip-path", &id)?;
@@ -359,12 +358,11 @@ pub(super) fn clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     Ok(())
 }
 
-/// Patches the definition of a clip path.
-fn clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
+fn patch_clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
     k.writer.defs.clip_ids[i] = Some(c.id.clone());
     let units = k.source.attr(def, "clipPathUnits");
     if units.is_none_or(|u| u != "objectBoundingBox") && has_plain_shapes(k, &c.root) {
-        group(k, &c.root);
+        patch_group(k, &c.root);
     } else {
         let head = k.attributes_without(def, &["clipPathUnits", "transform", "clip-path"]);
         let text = k.replacement(def, |w| w.clip(i, &head));
@@ -372,8 +370,8 @@ fn clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
     }
 }
 
-/// Patches the masks, in the same way.
-pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
+/// Patches the masks. Of a mask used in several frames, the first one keeps the definition and the others get new ones.
+pub(super) fn patch_masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     let kept = k.input.scene.masks.iter().filter(|m| !m.foreign && !k.input.changes(m.parts.clone()));
     let mut patched: BTreeSet<ElementId> = kept.filter_map(|m| k.definition(&m.id, "mask")).collect();
     for (i, m) in k.input.scene.masks.iter().enumerate().filter(|m| !m.1.foreign) {
@@ -390,7 +388,7 @@ pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
             continue;
         }
         match def {
-            Some(def) if patched.insert(def) => mask(k, i, m, def),
+            Some(def) if patched.insert(def) => patch_mask(k, i, m, def),
             _ => {
                 let id = k.writer.mask_id(i);
                 redirect(k, &m.referrers, "mask", &id)?;
@@ -400,8 +398,7 @@ pub(super) fn masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     Ok(())
 }
 
-/// Patches the definition of a mask.
-fn mask(k: &mut Keeper<'_, '_>, i: usize, m: &Mask, def: ElementId) {
+fn patch_mask(k: &mut Keeper<'_, '_>, i: usize, m: &Mask, def: ElementId) {
     k.writer.defs.mask_ids[i] = Some(m.id.clone());
     let units = k.source.attr(def, "maskContentUnits");
     let plain = units.is_none_or(|u| u != "objectBoundingBox") && boxes::edge(&k.input, i).is_none();
@@ -409,7 +406,7 @@ fn mask(k: &mut Keeper<'_, '_>, i: usize, m: &Mask, def: ElementId) {
         for (name, value) in boxes::region(&k.input, i) {
             k.edits.set_attr(def, name, value);
         }
-        group(k, &m.root);
+        patch_group(k, &m.root);
     } else {
         let omitted = ["maskUnits", "maskContentUnits", "x", "y", "width", "height", "mask", "mask-type"];
         let head = k.attributes_without(def, &omitted);
@@ -427,7 +424,7 @@ fn redirect(
 ) -> Result<(), Unpatchable> {
     for r in referrers {
         match (r.owner, r.element) {
-            // Replaced as a whole, with the right reference.
+            // An owner is replaced as a whole, with the right reference.
             (Some(_), _) => {}
             (None, Some(e)) if k.tag(e) == "use" => {}
             (None, Some(e)) => k.edits.set_property(e, property, format!("url(#{id})")),
@@ -449,15 +446,15 @@ fn has_plain_shapes(k: &Keeper<'_, '_>, g: &Group) -> bool {
     })
 }
 
-/// Patches a nested viewport, which clips its content to a rectangle. Warped content must not be clipped like that, so the
-/// viewport becomes `overflow: visible`. If it did clip anything, its warped edge becomes a clip path around it.
-fn viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
+/// Patches a nested viewport, which clips its content to a rectangle. Warped content must not be clipped to it, so the viewport becomes
+/// `overflow: visible`. If it did clip anything, its warped edge becomes a clip path around it.
+fn patch_viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
     let c = &k.input.scene.clips[i];
     let svgs: BTreeSet<ElementId> =
         c.referrers.iter().filter_map(|r| r.element).filter(|&e| k.tag(e) == "svg").collect();
     for e in svgs {
         k.edits.set_property(e, "overflow", "visible".into());
-        if !fits(k, e, c.parts.clone()) {
+        if !fits_edge(k, e, c.parts.clone()) {
             if k.source.attr(e, "transform").is_some() {
                 return Err(Unpatchable::ClippingViewport);
             }
@@ -471,7 +468,7 @@ fn viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
 }
 
 /// Returns `true` if the content of `e` is inside the box of the part `edge`.
-fn fits(k: &Keeper<'_, '_>, e: ElementId, edge: Range<usize>) -> bool {
+fn fits_edge(k: &Keeper<'_, '_>, e: ElementId, edge: Range<usize>) -> bool {
     let scene = k.input.scene;
     let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
     let inside = k.source.elements[e].range.clone();

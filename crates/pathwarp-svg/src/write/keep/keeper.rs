@@ -8,7 +8,7 @@ use crate::source::text::SourceText;
 use crate::write::defs::Replaced;
 use crate::write::fragment::Writer;
 use crate::write::input::WriteInput;
-use crate::write::place::Place;
+use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
@@ -20,6 +20,7 @@ const GEOMETRY: [&str; 15] =
 const LETTERING: [&str; 6] =
     ["data-glyph", "data-baseline", "data-ascent", "data-descent", "data-cap-height", "data-x-height"];
 
+/// A source being patched.
 pub(super) struct Keeper<'a, 'w> {
     pub(super) input: WriteInput<'a>,
     pub(super) source: &'a SourceText,
@@ -65,7 +66,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
         text
     }
 
-    /// The definition with the given id and tag; the last one counts.
+    /// The last definition with the given id and tag.
     pub(super) fn definition(&self, id: &str, tag: &str) -> Option<ElementId> {
         self.source.by_id().get(id)?.iter().copied().rfind(|&e| self.tag(e) == tag)
     }
@@ -86,11 +87,11 @@ impl<'a, 'w> Keeper<'a, 'w> {
         }
     }
 
-    /// What is written to an element that becomes the group around it.
+    /// The content that `write` writes for an element that becomes the group around it.
     pub(super) fn written_inside(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
-        self.writer.place = Place::inside(self.source, e);
+        self.writer.surroundings = Surroundings::inside(self.source, e);
         let text = write(self.writer);
-        self.writer.place = None;
+        self.writer.surroundings = None;
         text
     }
 
@@ -100,7 +101,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
         }
     }
 
-    /// Removes the data attributes of a letter that is no longer where they say, and those of its line and text.
+    /// Removes the data attributes of a letter that has moved, and of its line and text.
     pub(super) fn remove_lettering(&mut self, e: ElementId) {
         if self.source.attr(e, "data-glyph").is_none() {
             return;
@@ -127,7 +128,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
 /// Flags for every element of the source.
 pub(super) struct Warped {
     /// `true` if the element is warped.
-    pub(super) own: Vec<bool>,
+    pub(super) itself: Vec<bool>,
     /// `true` if it is warped or contains anything warped.
     pub(super) within: Vec<bool>,
 }
@@ -136,13 +137,13 @@ impl Warped {
     pub(super) fn new(input: &WriteInput<'_>) -> Self {
         let (scene, source) = (input.scene, input.source);
         let count = source.elements.len();
-        let mut out = Self { own: vec![false; count], within: vec![false; count] };
+        let mut out = Self { itself: vec![false; count], within: vec![false; count] };
         let parts = scene.parts.iter().zip(input.outcomes);
         let parts = parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element());
         let bitmaps = scene.bitmaps.iter().zip(input.images);
         let bitmaps = bitmaps.filter(|b| matches!(b.1, EmbeddedImage::Bent { .. })).filter_map(|b| b.0.owner);
         for e in parts.chain(bitmaps) {
-            out.own[e] = true;
+            out.itself[e] = true;
             for a in source.ancestors(e) {
                 if std::mem::replace(&mut out.within[a], true) {
                     break;
@@ -153,9 +154,9 @@ impl Warped {
     }
 }
 
-/// Removes live attributes from everything that is warped or contains anything warped. The rest of a live group that is
-/// warped in part loses those that mean nothing without the group.
-pub(super) fn let_go(k: &mut Keeper<'_, '_>, warped: &Warped) {
+/// Removes live attributes from all elements that are warped or contain warped ones. The other elements of a live group lose the
+/// attributes that mean nothing without the group.
+pub(super) fn remove_live_attributes(k: &mut Keeper<'_, '_>, warped: &Warped) {
     let source = k.source;
     // No element is live without a declared namespace, and most drawings have none.
     if !source.elements.iter().any(|e| e.attrs.iter().any(|a| is_live(a, &source.text))) {
@@ -169,12 +170,12 @@ pub(super) fn let_go(k: &mut Keeper<'_, '_>, warped: &Warped) {
             }
         }
         k.edits.remove_attrs(e, |a| is_live(a, &source.text));
-        orphans(k, e, warped);
+        release_orphans(k, e, warped);
     }
 }
 
-/// Releases the shapes of a 3D box, and those under a group's path effect, that are not warped themselves.
-fn orphans(k: &mut Keeper<'_, '_>, group: ElementId, warped: &Warped) {
+/// Releases the unwarped shapes of a 3D box, or of a group with a path effect.
+fn release_orphans(k: &mut Keeper<'_, '_>, group: ElementId, warped: &Warped) {
     let source = k.source;
     let is_box = source.attr_in(group, Namespace::Sodipodi, "type").is_some_and(|t| t == "inkscape:box3d");
     let has_effect = |e: ElementId| source.attr_in(e, Namespace::Inkscape, "path-effect").is_some();
@@ -217,7 +218,7 @@ pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
         };
         let Some(target) = target else { continue };
         let why = match animated(source, a) {
-            Animated::Geometry if warped.own[target] => OF_GEOMETRY,
+            Animated::Geometry if warped.itself[target] => OF_GEOMETRY,
             Animated::Position if warped.within[target] => OF_POSITION,
             Animated::Paint if k.fragments.contains(&target) => OF_PAINT,
             _ => continue,
@@ -227,8 +228,8 @@ pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
     }
 }
 
-/// The animations among the children of an element whose content is replaced, except those that no longer fit.
-pub(super) fn kept(source: &SourceText, e: ElementId) -> String {
+/// The animations among the children of an element whose content is replaced, except the ones that no longer fit.
+pub(super) fn kept_animations(source: &SourceText, e: ElementId) -> String {
     let children = source
         .descendants(e)
         .filter(|&c| source.elements[c].parent == Some(e) && is_animation(&source.elements[c].tag));

@@ -1,4 +1,4 @@
-//! Patches the source text in place: elements stay elements wherever possible, with everything else their author gave them.
+//! Patches the source text in place: elements, their order and all else in the file stay wherever possible.
 
 mod elements;
 mod keeper;
@@ -18,7 +18,7 @@ use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_reader::guarded;
 
-/// Patches the text; `change` is the visible area before and after, if that changes.
+/// Patches the text. `change` is the visible area before and after, if it changes.
 pub(super) fn write(
     input: &WriteInput<'_>,
     change: Option<(Rect, Rect)>,
@@ -30,10 +30,10 @@ pub(super) fn write(
     if let Some((_, after)) = change {
         pages::hold(&mut k, after.size());
     }
-    elements::clips(&mut k)?;
-    elements::masks(&mut k)?;
-    elements::group(&mut k, &input.scene.root);
-    elements::united(&mut k);
+    elements::patch_clips(&mut k)?;
+    elements::patch_masks(&mut k)?;
+    elements::patch_group(&mut k, &input.scene.root);
+    elements::name_united(&mut k);
     let [beneath, above] = line::layers(k.writer);
     if !above.is_empty() {
         let first = (1..input.source.elements.len()).find(|&e| {
@@ -49,7 +49,7 @@ pub(super) fn write(
     slots(&mut k);
     regions(&mut k);
     let warped = Warped::new(input);
-    keeper::let_go(&mut k, &warped);
+    keeper::remove_live_attributes(&mut k, &warped);
     keeper::remove_unfit(&mut k, &warped);
     if let Some(change) = change {
         for (name, value) in page::attributes(input, change) {
@@ -66,13 +66,13 @@ pub(super) fn write(
     if edits.is_empty() && defs.is_empty() {
         return Ok(input.source.as_in_file().into_owned());
     }
-    let (text, places) = finish(input.source, edits, &defs, &writer.markup.prefix)?;
+    let (text, starts) = finish(input.source, edits, &defs, &writer.markup.prefix)?;
     if !input.source.has_css() {
         return Ok(text);
     }
-    let starts = input.source.places_in_file(places.iter().map(|(e, _)| input.source.elements[*e].range.start));
-    let places: Vec<_> = starts.into_iter().zip(places.iter().map(|p| p.1)).collect();
-    let guarded = guarded(&input.source.as_in_file(), &text, &places, &input.drawing.budget);
+    let before = input.source.positions_in_file(starts.iter().map(|(e, _)| input.source.elements[*e].range.start));
+    let starts: Vec<_> = before.into_iter().zip(starts.iter().map(|s| s.1)).collect();
+    let guarded = guarded(&input.source.as_in_file(), &text, &starts, &input.drawing.budget);
     let Ok(guarded) = guarded else {
         notes.add("the style sheets are too long to see whether their rules now apply to other elements (--limit comparisons=…)", "");
         return Ok(text);
@@ -86,14 +86,13 @@ fn slots(k: &mut Keeper<'_, '_>) {
         if let (None, Some(e)) = (s.owner, s.element)
             && placed.fit != Affine::IDENTITY
         {
-            let own = k.input.drawing.own_transform(e);
-            k.edits.set_attr(e, "transform", matrix(own * placed.fit));
+            k.edits.set_attr(e, "transform", matrix(k.input.drawing.own_transform(e) * placed.fit));
             k.edits.remove_attrs(e, |a| is_live(a, &k.source.text));
         }
     }
 }
 
-/// Lets the regions of filters grow. Those in box units follow the boxes of what they filter.
+/// Enlarges the regions of filters in user space. Regions in box units follow the boxes of the filtered elements.
 fn regions(k: &mut Keeper<'_, '_>) {
     for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
         if let Some(e) = k.definition(&id, "filter").filter(|&e| k.source.in_user_space(e, "filterUnits") == Some(true))
@@ -115,7 +114,7 @@ fn finish(
     if defs.is_empty() {
         return Ok(edits.apply());
     }
-    // Only the file's own elements stay.
+    // Elements that the reader added are not in the file.
     let is_home = |e: &Element| e.tag == "defs" && e.parent == Some(0) && e.close.is_some() && source.is_in_file(e);
     let home = source.elements.iter().position(is_home);
     match home {

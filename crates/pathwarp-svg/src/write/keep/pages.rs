@@ -1,4 +1,4 @@
-//! Lengths in percent of the page, which keep their size when the page changes: they become numbers.
+//! Keeps the size of lengths in percent of the page when the page changes: they become numbers. Inkscape's pages and guide lines move.
 
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
@@ -32,15 +32,15 @@ const LENGTHS: &[(&str, Dimension)] = &[
     ("markerHeight", Height),
 ];
 
-/// Properties of the same kind.
+/// Properties that may be percentages of the viewport's diagonal.
 const PROPERTIES: [&str; 3] = ["stroke-width", "stroke-dasharray", "stroke-dashoffset"];
 
-/// Lengths that are percentages unless they are given: of gradients in user space.
+/// Default percentages of gradients in user space.
 const OF_GRADIENTS: [(&str, &[(&str, &str)]); 2] =
     [("linearGradient", &[("x2", "100%")]), ("radialGradient", &[("cx", "50%"), ("cy", "50%"), ("r", "50%")])];
 
-/// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which go on from
-/// lengths that usvg has resolved.
+/// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which start from lengths that
+/// usvg has resolved.
 pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
     let before = k.input.drawing.reader().root_size();
     if after == before {
@@ -48,13 +48,13 @@ pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
     }
     for e in 1..k.source.elements.len() {
         if has_percentages(k.source, e) && refers_to_root(k.source, e) && is_in_user_space(k.source, e) {
-            lengths(k, e, before);
-            defaults(k, e, before);
+            hold_lengths(k, e, before);
+            hold_defaults(k, e, before);
         }
     }
     if k.source.text.contains('%') {
         for name in PROPERTIES {
-            property(k, name, Diagonal.of(before));
+            hold_property(k, name, Diagonal.in_view(before));
         }
     }
 }
@@ -96,7 +96,7 @@ fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
     source.in_user_space(owner, name).unwrap_or(default)
 }
 
-/// The numbers in the place of percentages. `None` if there are none.
+/// The text with its percentages replaced by numbers. Returns `None` if it has none.
 fn numbers(text: &str, full: f64) -> Option<String> {
     let number = |part: &str| Some(short(part.strip_suffix('%')?.trim_end().parse::<f64>().ok()? / 100.0 * full));
     let parts = || text.split([' ', ',', '\t', '\n', '\r']).filter(|p| !p.is_empty());
@@ -106,23 +106,23 @@ fn numbers(text: &str, full: f64) -> Option<String> {
     })
 }
 
-fn lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
-    for &(name, of) in LENGTHS {
-        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, of.of(view))) {
+fn hold_lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+    for &(name, dimension) in LENGTHS {
+        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, dimension.in_view(view))) {
             k.edits.set_attr(e, name, new);
         }
     }
 }
 
-/// A property wherever it is declared: in attributes and styles, and by style sheets, whose rule is overridden.
-fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
+/// Replaces percentages of a property in attributes and styles, and overrides those of style sheets.
+fn hold_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     if !k.source.text.contains(name) {
         return;
     }
     for e in 0..k.source.elements.len() {
         let Some(new) = k.source.property(e, name).and_then(|v| numbers(&v, diagonal)) else { continue };
-        // What the root declares, it hands down.
-        if k.tag(e).is_empty() || e > 0 && !refers_to_root(k.source, e) {
+        // The root's declarations are inherited, so they count, too.
+        if k.tag(e).is_empty() || (e > 0 && !refers_to_root(k.source, e)) {
             continue;
         }
         let style = k.source.attr(e, "style");
@@ -134,27 +134,27 @@ fn property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     }
 }
 
-/// Writes out the lengths that are percentages if they are not given.
-fn defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+/// Writes numbers for lengths that are not given and whose default is a percentage.
+fn hold_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
     let target = || k.source.target(e);
     let missing: &[(&str, &str)] = match k.tag(e) {
         "svg" => &[("width", "100%"), ("height", "100%")],
         "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
-        // A template may give them.
+        // Another gradient that it refers to may give them.
         gradient if target().is_none() => OF_GRADIENTS.iter().find(|g| g.0 == gradient).map_or(&[], |g| g.1),
         _ => &[],
     };
-    for &(name, of) in LENGTHS {
+    for &(name, dimension) in LENGTHS {
         if let Some((_, default)) = missing.iter().find(|m| m.0 == name)
             && k.source.attr(e, name).is_none()
-            && let Some(new) = numbers(default, of.of(view))
+            && let Some(new) = numbers(default, dimension.in_view(view))
         {
             k.edits.set_attr(e, name, new);
         }
     }
 }
 
-/// Sides that differ by less than this share are the same: Inkscape writes eight digits.
+/// Largest relative difference of equal sides, as Inkscape writes eight digits.
 const SAME: f64 = 1e-6;
 
 /// Moves pages and guide lines with the page.
@@ -163,8 +163,8 @@ pub(super) fn follow(k: &mut Keeper<'_, '_>, (before, after): (Rect, Rect)) {
     let found: Vec<ElementId> = (0..k.source.elements.len()).filter(|&e| namedview(e)).collect();
     for e in found {
         match name(k, e) {
-            "inkscape:page" => one_page(k, e, before, after),
-            "sodipodi:guide" => guide_line(k, e, before, after),
+            "inkscape:page" => move_page(k, e, before, after),
+            "sodipodi:guide" => move_guide_line(k, e, before, after),
             _ => {}
         }
     }
@@ -179,7 +179,7 @@ fn number(k: &Keeper<'_, '_>, e: ElementId, name: &str) -> Option<f64> {
     k.source.attr(e, name)?.trim().parse().ok()
 }
 
-fn one_page(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
+fn move_page(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
     let values = ["x", "y", "width", "height"].map(|n| number(k, e, n));
     let [Some(x), Some(y), Some(w), Some(h)] = values else { return };
     let old = Rect::new(x, y, x + w, y + h);
@@ -196,8 +196,8 @@ fn one_page(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
     }
 }
 
-/// Guide lines count from the lower left corner, upwards.
-fn guide_line(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
+/// Moves a guide line, whose coordinates count from the lower left corner, upwards.
+fn move_guide_line(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
     let position = k.source.attr(e, "position").unwrap_or_default().into_owned();
     let Some((x, y)) = position.split_once(',') else { return };
     if let (Ok(x), Ok(y)) = (x.trim().parse::<f64>(), y.trim().parse::<f64>()) {

@@ -2,7 +2,7 @@
 
 use super::keeper::{self, Keeper};
 use crate::scene::geometry::is_invertible;
-use crate::scene::lettering::{inside, is_named, is_naming};
+use crate::scene::lettering::{is_named, is_naming, text_content};
 use crate::scene::model::Group;
 use crate::source::elements::{ElementId, Namespace, is_live};
 use crate::source::text::SourceText;
@@ -32,9 +32,9 @@ impl SpanTree {
         Self(vec![TextSpan { element: text, content: Vec::new() }])
     }
 
-    /// Finds or adds the innermost span of a chain of elements, `path`, outermost first. With `reopen`, a span that is no
-    /// longer the last is added again.
-    fn at(&mut self, path: &[ElementId], reopen: bool) -> usize {
+    /// The index of the innermost span of a chain of elements, `path`, outermost first. Adds missing spans and, with `reopen`, spans that
+    /// are no longer the last.
+    fn find_or_add(&mut self, path: &[ElementId], reopen: bool) -> usize {
         let mut here = 0;
         for &e in path {
             let inside = &self.0[here].content;
@@ -57,7 +57,7 @@ impl SpanTree {
 }
 
 /// Replaces a text by a group of outlines, if it has changed. `owners` lists the source element of each outline.
-pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners: &[ElementId]) {
+pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners: &[ElementId]) {
     if !content.children.iter().any(|n| k.changed(n)) {
         return;
     }
@@ -69,7 +69,7 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
         k.writer.group_around(content, &written)
     } else {
         k.written_inside(e, |w| {
-            w.place = w.place.map(|p| p.of_text(source, Some(e)));
+            w.surroundings = w.surroundings.map(|s| s.for_text(source, Some(e)));
             w.group(content, "")
         })
     };
@@ -84,18 +84,18 @@ pub(super) fn text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners
         k.edits.set_attr(e, "aria-label", words);
     }
     k.fragments.insert(e);
-    let animations = keeper::kept(source, e);
+    let animations = keeper::kept_animations(source, e);
     k.edits.set_content(e, format!("{title}{inner}{animations}"));
-    foreign(k, e);
+    move_html(k, e);
 }
 
-/// Moves the HTML that a text stands for. Only affine maps can: under others, the text takes its place.
-fn foreign(k: &mut Keeper<'_, '_>, text: ElementId) {
+/// Moves the HTML that a text stands for under an affine map; under other maps, the text replaces it.
+fn move_html(k: &mut Keeper<'_, '_>, text: ElementId) {
     let Ok(found) = k.source.foreign.binary_search_by_key(&text, |f| f.1) else { return };
     let html = k.source.foreign[found].0;
     let reader = k.input.drawing.reader();
     let frame = k.source.elements[html].parent.and_then(|p| reader.transform_to_root(p)).filter(|f| is_invertible(*f));
-    let map = k.input.bends.of(Some(text)).map(|i| k.input.bends.each[i].map.class());
+    let map = k.input.bends.bend_of(Some(text)).map(|i| k.input.bends.each[i].map.class());
     match (frame, map) {
         (Some(frame), Some(Class::Affine(map))) => {
             let moved = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
@@ -108,23 +108,22 @@ fn foreign(k: &mut Keeper<'_, '_>, text: ElementId) {
 /// Sorts the outlines of a text into spans.
 fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> SpanTree {
     let mut spans = SpanTree::new(text);
-    let path = |of: ElementId| {
-        let up = source.ancestors(of).take_while(|&a| a != text);
+    let path = |element: ElementId| {
+        let up = source.ancestors(element).take_while(|&a| a != text);
         let mut path: Vec<ElementId> = up.filter(|&a| is_named(source, a)).collect();
         path.reverse();
         path
     };
     for (i, &owner) in owners.iter().enumerate() {
-        let span = spans.at(&path(owner), true);
+        let span = spans.find_or_add(&path(owner), true);
         spans.0[span].content.push(SpanItem::Outline(i));
     }
-    for named in inside(source, text).filter(|&n| is_named(source, n)) {
-        spans.at(&path(named), false);
+    for named in text_content(source, text).filter(|&n| is_named(source, n)) {
+        spans.find_or_add(&path(named), false);
     }
     spans
 }
 
-/// Writes the spans of a text.
 struct SpanWriter<'s, 'k, 'a, 'w> {
     k: &'k mut Keeper<'a, 'w>,
     spans: &'s SpanTree,
@@ -143,7 +142,7 @@ impl SpanWriter<'_, '_, '_, '_> {
                 SpanItem::Outline(i) => {
                     let (node, owner) = (&self.content.children[i], self.owners[i]);
                     out.push_str(&self.k.written_inside(spans.0[0].element, |w| {
-                        w.place = w.place.map(|p| p.spoken_by(owner));
+                        w.surroundings = w.surroundings.map(|s| s.for_text_element(owner));
                         w.node(node)
                     }));
                 }
@@ -157,7 +156,7 @@ impl SpanWriter<'_, '_, '_, '_> {
         let source = self.k.source;
         let element = self.spans.0[span].element;
         let el = &source.elements[element];
-        // An element that occurs again has its id and title only once.
+        // An element with several spans has its id and title on the first.
         let again = self.seen.contains(&element);
         self.seen.push(element);
         let text = &source.text;
@@ -176,12 +175,12 @@ impl SpanWriter<'_, '_, '_, '_> {
 fn line_starts(source: &SourceText, text: ElementId) -> Vec<usize> {
     let mut last = source.attr(text, "y");
     let mut out = Vec::new();
-    for e in inside(source, text) {
+    for e in text_content(source, text) {
         let is_line = source.attr_in(e, Namespace::Sodipodi, "role").is_some_and(|r| r == "line");
         let (y, dy) = (source.attr(e, "y"), source.attr(e, "dy"));
         let moves_down = dy.is_some_and(|dy| dy.contains(|c: char| matches!(c, '1'..='9')))
             || y.as_ref().is_some_and(|y| last.as_ref().is_some_and(|last| last != y));
-        if is_line || moves_down && source.attr(e, "x").is_some() {
+        if is_line || (moves_down && source.attr(e, "x").is_some()) {
             out.push(source.elements[e].range.start);
         }
         last = y.or(last);
