@@ -10,7 +10,8 @@ use crate::weights::{WEIGHTS, Wanted, with_variations};
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::param::{Frame, Settings};
 use pathwarp::recipe::Step;
-use pathwarp_svg::{Document, ReadOptions, Selection, lettering_group};
+use pathwarp_svg::engine::lettering_group;
+use pathwarp_svg::{Document, ReadOptions, Selection};
 use pathwarp_text::{Align, Font, OutlinedText, TextStyle};
 
 /// Returns `true` if a step sets a caption.

@@ -284,7 +284,7 @@ impl Document {
         let root = &source.elements[0];
         let name = &source.text[root.qname.clone()];
         let (at, skipped) = root.close.as_ref().map_or((root.open_end - 2, 2), |close| (close.start, 0));
-        let at = source.places_in_file(std::iter::once(at))[0];
+        let at = source.positions_in_file(std::iter::once(at))[0];
         let file = source.as_in_file();
         let [start, end] = if skipped > 0 { [">", &format!("</{name}>")] } else { ["", ""] };
         // Where a prefix stands for SVG, names without one mean something else.
