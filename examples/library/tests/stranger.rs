@@ -36,12 +36,12 @@ fn closures_are_maps_with_and_without_derivatives() {
 }
 
 /// A function of a caller's own, for any map.
-#[expect(clippy::needless_pass_by_value, reason = "as callers do who keep a map")]
 fn moved(map: impl Map, p: Point) -> Point {
     map.point(p)
 }
 
 #[test]
+#[expect(clippy::needless_borrows_for_generic_args, reason = "references to maps are what is tested")]
 fn pointers_to_maps_are_maps() {
     let p = Point::new(3.0, 4.0);
     let (map, shared, boxed) = (from_fn(wave), Arc::new(from_fn(wave)), Box::new(from_fn(wave)) as Box<dyn Map>);

@@ -1,6 +1,7 @@
 //! Help that people read: a screen of it for `-h`, a page of a few screens for `--help` and `help NAME`, and one page, `help options`,
 //! for the options that most commands share. Manual pages and completions have everything.
 
+use clap::builder::PossibleValue;
 use clap::{Arg, ArgAction, Command};
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -157,7 +158,7 @@ fn row(arg: &Arg, is_whole: bool) -> String {
     }
     let values = arg.get_possible_values();
     if !values.is_empty() && !arg.is_hide_possible_values_set() && arg.get_action().takes_values() {
-        let names: Vec<&str> = values.iter().filter(|v| !v.is_hide_set()).map(|v| v.get_name()).collect();
+        let names: Vec<&str> = values.iter().filter(|v| !v.is_hide_set()).map(PossibleValue::get_name).collect();
         let _ = write!(text, " [possible values: {}]", names.join(", "));
     }
     let defaults: Vec<_> = arg.get_default_values().iter().map(|v| v.to_string_lossy()).collect();

@@ -210,7 +210,7 @@ impl Wanted {
             Some(named) => named,
             None => Document::read(source.source(), name, read)?,
         };
-        self.steps.iter().try_for_each(|s| document.check_selection(s))?;
+        self.steps.iter().chain([&self.whole]).try_for_each(|s| document.check_selection(s))?;
         for step in &edits {
             let selection = self.concerned(&document, step);
             let bounds = document.seen_box(&selection).unwrap_or_else(|| document.view_box());

@@ -79,9 +79,7 @@ impl SvgArtwork {
         }
         let doc = Document::read(bytes, &name, &bending(&read)).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
         meter::count_pixels(doc.budget().taken(Limit::Pixels));
-        let selection = selection(options);
-        doc.check_selection(&selection)?;
-        Ok(Self::of(doc, name, read, selection, format, None))
+        Ok(Self::of(doc, name, read, selection(options), format, None))
     }
 
     /// The drawing of GIMP's paths.
@@ -477,7 +475,7 @@ impl Artwork for SvgArtwork {
             if let Some(original) = self.original.take() {
                 self.doc = original.document;
             }
-            return Ok(());
+            return Ok(self.doc.check_selection(&self.selection)?);
         }
         let steps = if steps.iter().any(Step::is_selective) { self.selections(steps) } else { Vec::new() };
         if self.paths.is_some() && edits.iter().any(is_caption) {

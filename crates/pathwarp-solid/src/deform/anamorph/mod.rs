@@ -585,7 +585,7 @@ printed result, as a negative volume of the slicer, it leaves a hole through whi
             Example {
                 what: "Stretch a model away from the eye: a perspective collineation, with the rod of a sighting hole",
                 command: "solid anamorph samples/solid/teapot.obj --eye 50%,60%,600% --reference '0%,0%,100% 100%,0%,100% 0%,100%,100% 50%,50%,-50%' \
---push 0,0,0,1:160% --sight-hole out-hole.obj -o out.obj",
+--push 0,0,0,1:160% --sight-hole out.hole.obj -o out.obj",
             },
             Example {
                 what: "Bend a model to and fro along its rays",

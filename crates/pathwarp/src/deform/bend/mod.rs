@@ -58,13 +58,13 @@ parameters! {
         param = path("along");
         /// Lengths: keep them, scale the artwork evenly to the skeleton's length, fit its width only, or repeat it all along.
         stretch: Stretch = new("stretch", Kind::Choice(Stretch::WORDS)).default("keep");
-        /// The part of the artwork that comes to the same part of the skeleton.
+        /// Part of the artwork that comes to this part of the skeleton.
         align: Align = new("align", Kind::Choice(Align::WORDS)).default("middle");
-        /// Shift along the skeleton, user units or % of the artwork's width.
+        /// Shift along the skeleton, in units or % of the artwork's width.
         offset: f64 = length("offset", Axis::X).default("0");
-        /// Set so many copies of the artwork side by side, or as many as fit (fill, as --stretch repeat), spread evenly.
+        /// Set copies side by side, or as many as fit (fill), spread evenly.
         param = new("copies", Kind::Text("N|fill"));
-        /// The least space between copies, user units or % of the artwork's width.
+        /// Least space between copies, in units or % of the width.
         gap: f64 = length("gap", Axis::X).default("0");
         /// The height of the artwork, from its bottom, that lies on the skeleton. Default for lettering: the lettering's baseline.
         param = length("baseline", Axis::Y).default("50%");
@@ -76,7 +76,7 @@ parameters! {
         param = new("handles", Kind::File);
         /// Take the skeleton's anchors as control points of a uniform B-spline of this degree; the curves between them are ignored.
         spline: Option<usize> = new("spline", Kind::Count).within(1.0, MAX_DEGREE as f64).slider(1.0, 5.0);
-        /// Lay a smooth skeleton through the anchors; the curves between them are ignored.
+        /// Lay a smooth skeleton through the anchors; curves are ignored.
         interpolate: bool = flag("interpolate");
         /// Stretch the artwork lengthwise, let it swell in the middle, or taper it to its right, instead of bending it.
         param = new("preset", Kind::Choice(PRESETS));
@@ -133,7 +133,7 @@ choice! {
 }
 
 choice! {
-    /// The part of the artwork that comes to the same part of the skeleton.
+    /// Part of the artwork that comes to this part of the skeleton.
     pub enum Align {
         /// Left edge to start.
         Start = "start",
