@@ -5,9 +5,9 @@
 //! point of C has one on g. With a polynomial φ that follows the foot points of the fit, D = g − C∘φ is a polynomial of known
 //! degree, and a bound for it follows from finitely many values.
 //!
-//! [`piece()`] tries proofs in the order of their cost: first from the samples that the fit has taken anyway, or sixteen more (`sampled`),
-//! then from D at 24 to 48 Chebyshev nodes, as follows. The nodes also serve merged pieces, whose ends are not on the image ([`stretch`]).
-//! Lines have a proof by themselves ([`line`]).
+//! [`piece()`] tries proofs in the order of their cost: first from the samples that the fit has taken, or sixteen more (`sampled`),
+//! then from D at 24 to 48 Chebyshev nodes, as follows. Nodes also serve merged pieces, whose ends are not on the image ([`stretch()`]).
+//! Lines have a proof by themselves ([`line()`]).
 //!
 //! **φ** is a polynomial through the foot points of the fit, φ(τ) = τ + τ(1−τ)·p(2τ−1) with P coefficients in p. Since
 //! φ = τ·(1 + (1−τ)p) and 1−φ = (1−τ)·(1 − τp), it stays in [0, 1] if the two brackets, polynomials of degree P, are not
@@ -401,7 +401,7 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     }
 
     /// Bound for the length of the vector polynomial with these values at the nodes, the longest of which is `most`: the least
-    /// over d of the bound in the module's text.
+    /// over d of the bound in the text above.
     pub(crate) fn supremum(&self, x: &[f64; N], y: &[f64; N], most: f64, degree: usize) -> f64 {
         // Even and odd coefficients of x and y. The values at a node and at its mirror image contribute equally to the even
         // ones and oppositely to the odd ones.

@@ -545,7 +545,7 @@ pub(crate) struct SampleExpansion<const H: usize> {
     /// (1, 3, 5…).
     pub(crate) even: [[f64; H]; H],
     pub(crate) odd: [[f64; H]; H],
-    /// Entry [k][odd] bounds the summed change of the coefficients up to number 2k + odd if no sample changes by more than one.
+    /// `noise[k][odd]` bounds the summed change of the coefficients up to number 2k + odd if no sample changes by more than one.
     pub(crate) noise: [[f64; 2]; H],
 }
 
