@@ -254,10 +254,10 @@ pub(crate) const COARSE_CHECK: f64 = 0.065;
 /// thousand random runs; 8: +1 % work.
 pub(crate) const SHORT_PART: usize = 4;
 
-/// Takes the place of [`PEAK_FACTOR`] in short parts. 12: +0.3 % work.
+/// Replaces [`PEAK_FACTOR`] in short parts. 12: +0.3 % work.
 pub(crate) const SHORT_FACTOR: f64 = 6.0;
 
-/// Where the cubic's direction differs by more than this (as a tangent) between two samples, its distance from the image is measured
+/// If the cubic's direction differs by more than this (as a tangent) between two samples, its distance from the image is measured
 /// in between; elsewhere the two run side by side. 0.12: +3.4 % work; 0.5: −0.5 %; without: bulges of the cubic are missed.
 pub(crate) const SHARP_TURN: f64 = 0.25;
 

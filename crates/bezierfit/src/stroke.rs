@@ -667,7 +667,7 @@ fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
     }
 }
 
-/// Parameters up to which a cubic turns away from the directions of its short handles.
+/// Parameters at which the swift turns of a cubic beside its short handles end and begin.
 fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
     let [d0, d1, d2] = [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(Vec2::hypot);
     let turn = |short: f64, other: f64| 4.0 * (0.5 * short / d1).min((short / other).sqrt());
