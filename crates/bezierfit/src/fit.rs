@@ -1,4 +1,4 @@
-//! Fits the two handle lengths of a cubic to samples of the image.
+//! Fits the two handle lengths of a cubic to samples of the *image*, the curve that the cubic is to replace.
 //!
 //! **The unknowns.** A cubic that shares its ends P₀, P₃ and its unit end tangents T₀, T₁ with the image has two unknowns left, its
 //! handle lengths a and b. With the Bernstein polynomials Bₖ,
@@ -29,8 +29,8 @@
 //!
 //! > λᵢ = (aⱼ, bⱼ) × (aₖ, bₖ), and so on in turn; h = Σλᵢnᵢ / Σ|λᵢ|; nᵢ + δa·aᵢ + δb·bᵢ = h·sgn λᵢ
 //!
-//! |h| is the least error that three residuals allow, and all sixteen allow no less than the largest |h| of any three. So the sample with
-//! the largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
+//! |h| is the least error that three residuals allow, and the least error of all sixteen is the largest |h| of any three. So the sample
+//! with the largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
 //!
 //! In the code `z` is a state (a, b, s), `n` a normal residual with the derivatives `na`, `nb` by the handles, and `ds` the Newton step of
 //! a foot point with the derivatives `sa`, `sb`.
@@ -100,7 +100,7 @@ pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitStat
             best = 1 - best;
             trust *= 2.0;
         } else if k == 1 {
-            // NaN.
+            // The sum is NaN.
             break;
         } else {
             trust = 0.25 * length;
@@ -638,6 +638,7 @@ struct Level {
 }
 
 impl Level {
+    /// Makes the level of three rows, each a residual with its derivatives by the handles.
     fn of([p, q, r]: &[[f64; 3]; 3]) -> Self {
         let cross = |u: &[f64; 3], v: &[f64; 3]| u[1] * v[2] - u[2] * v[1];
         let weights = [cross(q, r), cross(r, p), cross(p, q)];
@@ -692,6 +693,7 @@ pub(crate) struct BestFit<M> {
 }
 
 impl<M: Default> BestFit<M> {
+    /// Judges a fit, unless it is predicted to miss the tolerance.
     #[inline(always)]
     pub(crate) fn of(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self, NotFinite> {
         let (error, mark) = if fit.reach <= tolerance { on.judge(&fit)? } else { (fit.reach, M::default()) };

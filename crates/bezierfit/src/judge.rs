@@ -113,9 +113,9 @@ impl<S: Source> StretchFitter<'_, S> {
 
 /// Verdict on sixteen samples.
 pub(crate) struct Resolution {
-    /// The samples resolve image and cubic.
+    /// Set if the samples resolve image and cubic.
     pub(crate) resolved: bool,
-    /// They do, and the image's speed is even.
+    /// Set if they do and the image's speed is even.
     pub(crate) even: bool,
 }
 

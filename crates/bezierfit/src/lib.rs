@@ -1,6 +1,6 @@
 //! Fits any curve with few Bézier curves, within a Hausdorff distance that is checked or proven.
 //!
-//! Let g(t) be the curve, a [`Source`]. A fit goes through these stages, each with its modules:
+//! Let g(t) be the curve, a [`Source`], whose points the modules call images. A fit goes through these stages, each with its modules:
 //!
 //! 1. **Samples** (`sample`). g is evaluated at eight parameters in one batch, at eight more in between when needed, and with its
 //!    derivative at the break points.

@@ -215,7 +215,7 @@ pub const MERGE_GRID: usize = 8;
 /// work; without: circles of eight cubics under strong maps have up to a sixth more pieces.
 pub(crate) const EVEN_CURVATURE: f64 = 0.05;
 
-/// The end of a cubic is found up to its length in grid points divided by this, so that short ones end exactly as late as possible.
+/// The end of a cubic is searched up to its length in grid points divided by this, so that short cubics end as late as possible.
 /// Without: 100,000 cubics round a circle take more than linear time.
 pub(crate) const FINEST_STEP: usize = 128;
 
@@ -223,8 +223,8 @@ pub(crate) const FINEST_STEP: usize = 128;
 /// calls of the map, twice the work of the fitter.
 pub(crate) const RATIONAL_SAMPLES: usize = 16;
 
-/// Intervals under any other map, whose error may swing several times within a segment. 16: errors between the samples in one of 16,000
-/// random cases.
+/// Intervals under any other map, whose error may swing several times within a segment. 16: errors between the samples in
+/// rare random cases.
 pub(crate) const OPAQUE_SAMPLES: usize = 32;
 
 /// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: for the function that is x²/2 right
@@ -232,8 +232,8 @@ pub(crate) const OPAQUE_SAMPLES: usize = 32;
 /// 0: −0.1 % pieces, +27 % trials; 0.014: +0.2 % pieces, −1.3 % work.
 pub(crate) const JUMP_ERROR: f64 = 0.0069;
 
-/// Error ÷ tolerance that the next guess of a cubic's reach aims at, by the sixth-order law: a little too far, because a miss on
-/// either side allows interpolation. 2.5: +0.4 % work; 10: +0.1 %.
+/// Error ÷ tolerance that the next guess of a cubic's reach aims at, by the sixth-order law: a little too far, because
+/// interpolation between a fit and a miss is faster than galloping. 2.5: +0.4 % work; 10: +0.1 %.
 pub(crate) const REACH_TARGET: f64 = 5.0;
 
 /// Error ÷ tolerance aimed at once a fit and a miss are known. Between these, log(error) is taken as linear in log(length).
@@ -250,8 +250,8 @@ pub(crate) const COARSE: f64 = 0.6;
 pub(crate) const COARSE_CHECK: f64 = 0.065;
 
 /// Parts of a segment with fewer intervals than this have too few samples to show the shape of their error, which starts with zero slope
-/// at a cubic's ends and may peak close beside a joint. 2: −0.2 % work, and errors of up to 1.2 % above the tolerance in one of a
-/// thousand random runs; 8: +1 % work.
+/// at a cubic's ends and may peak close beside a joint. 2: −0.2 % work, and errors above the tolerance in rare random runs;
+/// 8: +1 % work.
 pub(crate) const SHORT_PART: usize = 4;
 
 /// Replaces [`PEAK_FACTOR`] in short parts. 12: +0.3 % work.

@@ -4,8 +4,8 @@
 //! So the search keeps one grid point for each number of pieces, extends it as far as one cubic reaches, and compares with
 //! the separate pieces of the segments, which lead from joint to joint.
 //!
-//! Grid points are numbered along the run; joints are the multiples of the grid points per segment. A *leg* leads from one grid point to
-//! a later one.
+//! Grid points are numbered along the run (`k`, `m` in the code); joints are the multiples of the grid points per segment. A *leg* leads
+//! from one grid point to a later one.
 
 use crate::distances::{Distances, MarkedCubic, proven};
 use crate::limits::{ACCEPTED, BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, JUMP_ERROR, MERGE_GRID, REACH_TARGET};
@@ -49,7 +49,7 @@ pub struct ReachMemory {
     ends: Vec<Option<(usize, BreakPoint)>>,
     /// For each joint, the greatest length of the shorter side of a cubic that crosses it.
     crossing: Vec<f64>,
-    /// For each block of joints, the last point on the run (as a length) from which a cubic need not be short beyond one of the joints.
+    /// For each block of joints, the length along the run from which on a cubic may cross all of them.
     blocks: Vec<f64>,
     tried: Vec<Tried>,
     /// The last entry of `tried` from each grid point.
@@ -399,7 +399,7 @@ pub struct Leg {
     pub merged: bool,
 }
 
-/// Fits a segment, given its index in the run, and appends its pieces.
+/// Function that fits a segment, given its index in the run, and appends its pieces.
 pub trait FitOwn: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {}
 
 impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite>> FitOwn for F {}

@@ -19,7 +19,7 @@ pub struct Offset {
     shift: [Vec2; 2],
 }
 
-/// Number of samples for cusps. Between two, there is at most one cusp, or a pair that is searched for.
+/// Number of intervals that are searched for cusps. Each may have one cusp or a pair.
 const SAMPLES: usize = 32;
 
 /// Cusps nearer to each other or to an end are ignored.

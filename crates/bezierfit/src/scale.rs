@@ -326,7 +326,7 @@ fn tangent(segment: &Segment, t: f64) -> Vec2 {
 }
 
 /// Divides a subpath into smooth parts. Joints that turn by more than the corner angle stay; without a corner angle, those that are corners
-/// when seen from a tolerance away. All segments must have a length.
+/// when seen from a tolerance away. Callers leave out segments without length.
 pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Options) -> Vec<SmoothPart> {
     let n = segments.len();
     let smooth = options.path_joint().min(SMOOTH_JOINT);

@@ -3,7 +3,8 @@
 //! A spline of n pieces has n control points; the first and the last lie on the end tangents, so 2n − 2 numbers are free. They minimise the
 //! residuals along the normals at the foot points of samples, by banded normal equations, in turn with the foot points. Weights that
 //! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
-//! freedom: its control point is the crossing of the end tangents.
+//! freedom: its control point is the crossing of the end tangents. In the code `c` are the control points, and the spline's parameter `u`
+//! runs from 0 to n.
 //!
 //! A quadratic that touches an arc of radius R and angle θ at both ends is R·θ⁴/128 off in its middle. From the turns between samples,
 //! this law gives the number of pieces at which the search for n begins, and the layout of the foot points.

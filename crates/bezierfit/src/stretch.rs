@@ -15,7 +15,7 @@ use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images, 
 use kurbo::{Line, Point, Vec2};
 use std::cell::Cell;
 
-/// Evaluations that count for a thorough check, with those that its search is worth.
+/// Evaluations counted for a thorough check, including an allowance for its search.
 pub(crate) const THOROUGH_WORK: usize = 800;
 
 /// Factor from the error at eight samples to the reported error.
