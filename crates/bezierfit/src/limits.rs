@@ -150,10 +150,10 @@ pub(crate) const THOROUGH_SAMPLES: usize = 160;
 
 // Break points
 
-/// Most evaluations of a smooth part that may be in vain, to limit the work on noise and at undeclared jumps …
+/// Most evaluations of a smooth part that may be in vain, to limit the work on noise and at undeclared jumps.
 pub(crate) const FUTILE_EVALUATIONS: usize = 2_000_000;
 
-/// … and additional ones for each piece found. Most pieces take some hundreds.
+/// Evaluations that are allowed in addition for each piece found. Most pieces take some hundreds.
 pub(crate) const EVALUATIONS_PER_PIECE: usize = 10_000;
 
 /// Shorter stretches of the parameter are not split. Bounds the attempts at a jump: 27 halvings.

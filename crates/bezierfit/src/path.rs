@@ -147,8 +147,8 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
     limited(options, &|options| Ok(simplified(path, options)?))
 }
 
-/// Fits the curve on which points lie, in their order: as [`simplify`] does the lines from one to the next, so that only corners of the
-/// curve stay. It is closed if the last point is the first.
+/// Fits the curve on which points lie, in their order: applies [`simplify`] to the lines from one to the next, so that only corners of
+/// the curve stay. It is closed if the last point is the first.
 ///
 /// # Errors
 /// [`Error::NotFinite`] if a point is not finite, and the other errors of [`simplify`].

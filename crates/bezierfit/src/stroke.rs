@@ -70,7 +70,7 @@ pub(crate) fn beside_area(
     fit_contours(&edges_beside_area(path, style, distance, options).into_iter().map(whole).collect::<Vec<_>>(), options)
 }
 
-/// The edges of [`beside_area`] for each subpath, before parts of them are joined.
+/// For each closed subpath, the edges on one side of its stroke, with the parameters between which they are kept.
 #[cfg(feature = "area")]
 pub(crate) fn edges_beside_area(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Vec<Vec<Kept>> {
     let gap = GAPS * options.tolerance;
