@@ -1,10 +1,10 @@
-//! Curves of kurbo's fitter as sources, and sources as such curves.
+//! Conversions between the curves of kurbo's fitter and sources.
 
 use crate::source::{ONE_SIDED_STEP, Source};
 use kurbo::{CurveFitSample, ParamCurveFit, Point, Vec2};
 use std::ops::Range;
 
-/// Takes a [`ParamCurveFit`] for a [`Source`], and a source for a `ParamCurveFit`.
+/// Makes a [`Source`] of a [`ParamCurveFit`], and a `ParamCurveFit` of a source.
 ///
 /// ```
 /// use bezierfit::{Kurbo, Options, fit};

@@ -1,4 +1,4 @@
-//! Banded systems of equations.
+//! Banded systems of linear equations.
 
 use std::ops::{Add, Div, Mul, Sub, SubAssign};
 
@@ -11,7 +11,7 @@ pub(crate) trait Right:
 impl Right for f64 {}
 impl Right for kurbo::Vec2 {}
 
-/// Solves a symmetric system, given the upper half of its band, by L·D·Lᵀ.
+/// Solves a symmetric positive definite system, given the upper half of its band, by L·D·Lᵀ. `None` if it is not definite.
 pub(crate) fn solve_banded<const BAND: usize, V: Right>(mut band: Vec<[f64; BAND]>, mut x: Vec<V>) -> Option<Vec<V>> {
     let n = x.len();
     let most = band.iter().map(|b| b[0]).fold(0.0, f64::max);

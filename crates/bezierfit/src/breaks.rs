@@ -1,13 +1,12 @@
-//! Chooses the break points: as few pieces as the tolerance allows, of equal difficulty.
+//! Chooses the break points, so that as few pieces as possible, of equal difficulty, meet the tolerance.
 //!
-//! The error of a piece goes with the sixth power of its length. A piece with error e therefore uses the share
-//! (e/tolerance)^(1/6) of what one piece can do: its difficulty. Difficulties add up along the curve. One attempt on the whole
-//! stretch predicts the number of pieces; the break points then go to the quantiles of the difficulty measured so far, until
+//! To leading order, the error of a piece goes with the sixth power of its length. The *difficulty* of a stretch is therefore
+//! (e/tolerance)^(1/6), where e is its error with a single piece: it adds up along the curve, and one piece fits up to 1. One attempt
+//! on the whole stretch predicts the number of pieces; the break points then go to the quantiles of the difficulty measured so far, until
 //! every piece fits.
 //!
-//! The sixth power is that of the leading term. Its coefficient changes sign along many curves, and a piece across such a place
-//! has a much smaller error. So fewer pieces than the difficulty predicts are tried first, and near the limit single break
-//! points are moved by bisection.
+//! Along many curves the coefficient of the leading term changes sign, and a piece across such a point has a much smaller error. So
+//! fewer pieces than the difficulty predicts are tried first, and near the limit single break points are moved by bisection.
 
 use crate::fit::{Candidate, ChordFrame};
 use crate::judge::thorough;
@@ -19,10 +18,10 @@ use crate::source::{BreakPoint, NotFinite, Source};
 use crate::stretch::{FitOutcome, StretchFitter};
 use kurbo::Line;
 
-/// Stretches still to be covered, the first one on top, with the outcome of a single piece if it is known.
+/// Stretches that are still to be covered, the first on top, each with the outcome of a single piece if it is known.
 type Stack = Vec<(BreakPoint, BreakPoint, Option<FitOutcome>)>;
 
-/// A division of a stretch into `n` parts.
+/// A division of a stretch into `n` parts, with the outcomes that are known.
 struct Plan {
     n: usize,
     ends: [BreakPoint; MAX_PLANNED + 1],
@@ -30,7 +29,7 @@ struct Plan {
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Appends pieces for the stretch between two break points. `Err`: a place at which the curve is not finite.
+    /// Appends pieces for the stretch between two break points. An error if the curve is not finite somewhere.
     #[inline(always)]
     pub fn cover(
         &mut self,
@@ -71,7 +70,7 @@ impl<S: Source> StretchFitter<'_, S> {
             let h = to.t - from.t;
             if self.is_spent() || h < MIN_STRETCH {
                 report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
-                // Where the curve swings too fast for its derivatives to mean anything, a line is nearer.
+                // Where the curve swings too fast for its derivatives to be of use, a line is nearer.
                 let line = Piece::Line(Line::new(from.p, to.p));
                 let [own, straight] = [outcome.piece, line].map(|piece| self.measured(&from, &to, piece));
                 let (own, straight) = (larger(outcome.error, own?), straight?);
@@ -91,12 +90,12 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
-    /// The distance between a stretch and a piece that misses it, both ways.
+    /// Hausdorff distance between a stretch and a piece that misses it.
     #[cold]
     fn measured(&self, from: &BreakPoint, to: &BreakPoint, piece: Piece) -> Result<f64, NotFinite> {
         let c = Segment::from(piece).segment().to_cubic();
         let [t0, t1, q] = [c.p1 - c.p0, c.p3 - c.p2, c.p3 - c.p0];
-        // With handles of length one, the tangents need no direction where a handle has none.
+        // Handles of length one along unnormalised tangents serve also where a handle vanishes.
         let frame = ChordFrame { q, t0, t1, floor: [0.0; 2], size: q.hypot(), home: [1.0; 2], pull: 0.0 };
         let candidate = Candidate { t0: from.t, t1: to.t, p0: c.p0, frame, a: 1.0, b: 1.0 };
         thorough(self.source, &candidate, self.slow, self.tolerance)
@@ -115,8 +114,7 @@ impl<S: Source> StretchFitter<'_, S> {
         out.push(outcome.piece);
     }
 
-    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Not all of
-    /// them need fit.
+    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Some may not fit.
     fn plan(
         &mut self,
         from: BreakPoint,
@@ -125,7 +123,7 @@ impl<S: Source> StretchFitter<'_, S> {
         stack: &mut Stack,
     ) -> Result<(), NotFinite> {
         let tol = self.tolerance;
-        // Fewer parts than their difficulty predicts, of equal length to begin with.
+        // Begin with fewer parts than the difficulty predicts, of equal length.
         let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
         let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
         plan.ends[n] = to;
@@ -174,7 +172,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
-    /// Moves the break points to the quantiles of the difficulty, whose sums are given, for `next` parts.
+    /// Moves the break points to the quantiles of the difficulty for `next` parts. `sums` are sums of the difficulty up to the old ones.
     fn replace(
         &self,
         plan: &mut Plan,
@@ -204,7 +202,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
-    /// Announces the break points `places` of the stretch from `first` to `last`, and the samples of each part.
+    /// Announces the break points at the parameters `places` in the stretch from `first` to `last`, and the samples of each part.
     fn announce(&self, first: f64, places: &(impl Iterator<Item = f64> + Clone), last: f64) {
         let starts = std::iter::once(first).chain(places.clone());
         let parts = starts.zip(places.clone().chain([last]));
@@ -212,8 +210,8 @@ impl<S: Source> StretchFitter<'_, S> {
         S::announce(&mut lanes.map(|t| (self.source, t)), &mut places.clone().map(|t| (self.source, t)));
     }
 
-    /// Moves break points between a piece that misses and a neighbour that fits until both fit: near its limit a piece's
-    /// error is no smooth function of its length, and no quantile finds the place. Returns `true` if all pieces fit now.
+    /// Moves break points between a piece that misses and a neighbour that fits until both fit. Near its limit, a piece's
+    /// error is not a smooth function of its length, so that quantiles fail. Returns `true` if all pieces fit now.
     fn repair(&mut self, plan: &mut Plan) -> Result<bool, NotFinite> {
         let tol = self.tolerance;
         let fits = |o: &Option<FitOutcome>| o.is_some_and(|o| o.fits(tol));
@@ -231,7 +229,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(true)
     }
 
-    /// Moves the break point between two pieces, one of which fits, until both do or clearly cannot.
+    /// Moves the break point between two pieces, one of which fits, until both fit or clearly cannot.
     fn balance(&mut self, ends: &mut [BreakPoint], outcomes: &mut [Option<FitOutcome>]) -> Result<(), NotFinite> {
         let tol = self.tolerance;
         let [from, mid, to] = *ends else { return Ok(()) };
@@ -239,7 +237,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let (mut lo, mut hi, mut t) = (from.t, to.t, mid.t);
         let mut now = [a, b];
         for _ in 0..BISECTIONS {
-            // The piece that fits may grow.
+            // Let the piece that fits grow.
             if now[0].fits(tol) {
                 lo = t;
             } else {

@@ -1,4 +1,4 @@
-//! The check of a cubic over several segments: the error is smooth along each segment, and may have corners at the joints.
+//! Checks a cubic over several segments. The error is smooth along each segment and may have corners at the joints.
 
 use crate::fit::FOOT_ROUNDING;
 use crate::limits::{COARSE_CHECK, PEAK_FACTOR, PEAK_NEAR, SHARP_TURN, SHORT_FACTOR, SHORT_PART};
@@ -23,31 +23,31 @@ pub(crate) struct Distances {
 /// A cubic over several segments that has passed its check, with some of its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkedCubic {
-    /// Lengths of the handles.
+    /// Handle lengths.
     pub handles: [f64; 2],
     /// The checked error.
     pub error: f64,
-    /// Samples.
+    /// Samples, in batches of eight.
     pub batches: Vec<MarkBatch>,
 }
 
-/// Eight samples.
+/// Eight samples of a [`MarkedCubic`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkBatch {
-    /// Segment in the run, and parameter.
+    /// Segment in the run and parameter of each sample.
     pub at: [(usize, f64); 8],
-    /// Distances, signed by the side of the cubic, and foot points.
+    /// Distances, signed by the side of the cubic.
     pub errors: Lane,
-    /// See there.
+    /// Foot points.
     pub feet: Lane,
-    /// Unit tangents of the cubic there.
+    /// Unit tangents of the cubic at the foot points.
     pub tangents: [Vec2; 8],
 }
 
 impl Distances {
-    /// The distance between the cubic and the run, by the run's samples and closer ones where it may exceed `enough` between them.
-    /// `None` if the foot points do not advance along the cubic or it may turn by more than 60° from one to the next, so that
-    /// the samples may have missed something.
+    /// Distance between the cubic and the run, by the run's samples, and by closer ones where it may exceed `enough` between them.
+    /// `None` if samples may miss something: the foot points do not advance along the cubic, or it may turn by more than 60° from one to
+    /// the next.
     pub(crate) fn measure(
         &mut self,
         run: &SegmentRun<impl Source>,
@@ -78,12 +78,12 @@ impl Distances {
         Ok(Some(worst))
     }
 
-    /// The pairs of neighbouring samples, each with its segment, between which the cubic turns so sharply that it may leave the image by
-    /// more than `enough`: an arc that turns by θ bulges by θ/8 of its chord.
+    /// Pairs of neighbouring samples, each with its segment, between which the cubic turns so sharply that it may leave the image by
+    /// more than `enough`. An arc that turns by θ bulges by θ/8 of its chord.
     fn bulging(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
         let power = c.frame.power(c.a, c.b);
         let first = c.samples[0];
-        // Tangents of the angles, which are less than 60° between samples, are larger than those.
+        // Angles between samples are less than 60°; their tangents are upper bounds for them.
         let turn = |feet: [f64; 2]| {
             let [u, v, w] = controls(&power, feet);
             let little = u.dot(v) > 0.0 && v.dot(w) > 0.0;
@@ -106,7 +106,7 @@ impl Distances {
         out
     }
 
-    /// The largest distance between cubic and image, both ways, between two samples of segment `i`.
+    /// Hausdorff distance between cubic and image between two samples of segment `i`.
     fn both_ways(
         &self,
         run: &SegmentRun<impl Source>,
@@ -131,7 +131,7 @@ impl Distances {
         Ok(worst.max(self.between(c, g, [a, b])))
     }
 
-    /// The pairs of samples, each with its segment, between which the error may exceed `enough`.
+    /// Pairs of samples, each with its segment, between which the error may exceed `enough`.
     fn doubtful(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
         let mut out = Vec::new();
         let [first, last] = c.samples;
@@ -162,9 +162,9 @@ impl Distances {
         out
     }
 
-    /// By how much the error may rise between the sample at a joint and its neighbour `next` because the cubic turns by another angle than
-    /// the image does, which is known from the polygon's at `next`: a difference of θ moves them apart by θ/8 of the chord. Beside a joint,
-    /// errors do not show a turn that begins just there.
+    /// Possible rise of the error between the sample at a joint and its neighbour `next` if cubic and image turn by different angles:
+    /// a difference of θ moves them apart by θ/8 of the chord. The image's angle is that of the polygon at `next`. Beside a joint, the
+    /// errors do not show a turn that begins there.
     fn parting(&self, run: &SegmentRun<impl Source>, c: &RunCubic, joint: usize, next: usize) -> f64 {
         let k = joint.min(next);
         let j = k - c.samples[0];
@@ -175,7 +175,7 @@ impl Distances {
         0.125 * chord(k).hypot() * apart.abs()
     }
 
-    /// A cubic that has passed, with some of its samples. `None` for a line.
+    /// A cubic that has passed its check, with some of its samples. `None` for a line.
     pub(crate) fn marked(&self, run: &SegmentRun<impl Source>, c: &RunCubic, error: f64) -> Option<MarkedCubic> {
         let Piece::Cubic(_) = c.piece() else { return None };
         let [first, last] = c.samples;
@@ -190,12 +190,12 @@ impl Distances {
             let tangents = feet.map(|s| (c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s).normalize());
             MarkBatch { at, errors: picked(&self.errors), feet, tangents }
         };
-        // Elsewhere only differences from here are measured.
+        // Copies of the cubic are later judged by differences from these samples, so the error must hold between them, too.
         let error = error.max(self.highest_parabola(run, c));
         Some(MarkedCubic { handles: [c.a, c.b], error, batches: (0..count).map(batch).collect() })
     }
 
-    /// The highest of the parabolas through three neighbouring errors in a segment: about the largest error between the samples.
+    /// Height of the highest parabola through three neighbouring errors in a segment: about the largest error between samples.
     pub(crate) fn highest_parabola(&self, run: &SegmentRun<impl Source>, c: &RunCubic) -> f64 {
         let first = c.samples[0];
         parts(run.per_segment, c.samples)
@@ -204,7 +204,7 @@ impl Distances {
             .fold(0.0, larger)
     }
 
-    /// The largest distance of a sample; too large a value if it is above `enough`.
+    /// Largest distance of a sample. Above `enough`, only a sign that the cubic fails: the remaining samples are not measured.
     fn at_samples(&mut self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> f64 {
         let [first, last] = c.samples;
         let origin = c.ends[0];
@@ -249,7 +249,7 @@ impl Distances {
         })
     }
 
-    /// The largest distance between two samples of segment `i`, by eight more and the parabolas through all ten.
+    /// Largest distance between two samples of segment `i`, by eight more and the parabolas through all ten.
     fn closely(
         &self,
         run: &SegmentRun<impl Source>,
@@ -260,7 +260,7 @@ impl Distances {
         Ok(self.between(c, run.images(i, &places(run, i, [a, b]))?, [a, b]))
     }
 
-    /// The same, given eight images `g` evenly between the samples.
+    /// Largest distance between two samples, by eight images `g` evenly between them and the parabolas through all ten.
     fn between(&self, c: &RunCubic, mut g: Lanes, [a, b]: [usize; 2]) -> f64 {
         let first = c.samples[0];
         for i in 0..8 {
@@ -280,24 +280,25 @@ impl Distances {
     }
 }
 
-/// Eight parameters of segment `i` between two samples.
+/// Eight parameters of segment `i`, evenly between two samples.
 fn places(run: &SegmentRun<impl Source>, i: usize, [a, b]: [usize; 2]) -> Lane {
     let param = |k: usize| (k - i * run.per_segment) as f64 / run.per_segment as f64;
     spread([param(a), param(b)])
 }
 
-/// Eight places evenly between two.
+/// Eight parameters evenly between two.
 fn spread([a, b]: [f64; 2]) -> Lane {
     std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 9.0)
 }
 
-/// The segments between two samples, each with its first and last sample.
+/// Segments between two samples, each with its first and last sample.
 pub(crate) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Iterator<Item = (usize, [usize; 2])> {
     let n = per_segment;
     (first / n..last.div_ceil(n)).map(move |i| (i, [first.max(i * n), last.min((i + 1) * n)]))
 }
 
-/// Piecewise linear interpolation of the known foot points at a share of the length, from the knot of the share before.
+/// Piecewise linear interpolation of the known foot points at a share of the length. `knot` is the index of the interval, kept from the
+/// share before.
 #[inline(always)]
 fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
     let (at, feet): (&Evenly, &Evenly) = (&c.shares, &c.feet);
@@ -309,21 +310,21 @@ fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
 }
 
 /// Returns `true` if the cubic C(s) = ((c₃s + c₂)s + c₁)s turns little between two parameters: if the three control vectors of its
-/// derivative there are pairwise less than 60° apart. The slopes at both ends alone would not see a hook between them.
+/// derivative are pairwise less than 60° apart. The tangents at both ends alone would miss a hook between them.
 fn turns_little_between(c: &[Vec2; 3], between: [f64; 2]) -> bool {
     let [first, middle, last] = controls(c, between);
     turns_little(first, middle) && turns_little(middle, last) && turns_little(first, last)
 }
 
-/// The control vectors of its derivative between two parameters.
+/// Control vectors of the derivative of ((c₃s + c₂)s + c₁)s between two parameters.
 #[inline(always)]
 fn controls([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> [Vec2; 3] {
     let control = |u: f64, v: f64| *c1 + *c2 * (u + v) + *c3 * (3.0 * u * v);
     [control(s, s), control(s, t), control(t, t)]
 }
 
-/// The proven distance of a cubic from the run, which is divided at the foot points of the joints. `feet` are those of its samples.
-/// Infinite if nothing can be proven.
+/// Proven distance of a cubic from the run; infinite if none can be proven. The cubic is divided at the foot points of the joints.
+/// `feet` are the foot points of its samples.
 pub(crate) fn proven(
     run: &SegmentRun<impl Source>,
     c: &RunCubic,
@@ -352,7 +353,7 @@ pub(crate) fn proven(
     Ok(worst)
 }
 
-/// The parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
+/// Parameter of the point of `c` nearest to `p`, by Newton steps from `s`.
 fn foot_point(c: &CubicBez, p: Point, mut s: f64) -> f64 {
     let slope = c.deriv();
     for _ in 0..8 {

@@ -1,40 +1,39 @@
-//! Fits the two handle lengths of a cubic to samples of the image.
+//! Fits the two handle lengths of a cubic to samples of the *image*, the curve that the cubic is to replace.
 //!
-//! Chosen well, the handles bring the error down to sixth order in the piece's length (de Boor, Höllig, Sabin, *High accuracy
-//! geometric Hermite interpolation*, CAGD 4, 1987); matching the parametrisation (Hermite) gives fourth order.
-//!
-//! **Variable projection.** Each sample gᵢ has a foot point sᵢ, the parameter of the nearest point of the cubic. There the
-//! residual ρᵢ = C(sᵢ) − gᵢ is normal to the curve, so its length nᵢ does not depend on sᵢ to first order. Gauss–Newton
-//! therefore runs on (a, b) alone, with two by two normal equations, and the foot points follow by a Newton step of their own
-//!
-//! > δsᵢ = −(ρᵢ + δa·T₀B₁ − δb·T₁B₂)·C′ / |C′|²
-//!
-//! Its middle part, the movement of the curve under the foot point, must not be left out: without it the foot points lag one
-//! step behind.
-//!
-//! **The curved valley.** To leading order nᵢ ≈ s²(1−s)²·(mismatch of the area under the curve). The sum of squares is
-//! therefore a valley along the curves of equal area in the (a, b) plane, and those are bent. The area is proportional to
-//! α(a, b) = k₀a + k₁b − k₂ab with k₀ = q×T₀, k₁ = T₁×q, k₂ = (T₁×T₀)/2, q = P₃−P₀ (compare Levien's quartic in *Fitting
-//! cubic Bézier curves*, 2021, which solves for area and moment). A straight Gauss–Newton step (δa, δb) leaves the valley by
-//! −k₂δaδb; one Newton step along ∇α returns to it.
-//!
-//! **The frame.** A cubic that shares its ends P₀, P₃ and its unit end tangents T₀, T₁ with the image has two unknowns left, its handle
-//! lengths a, b:
+//! **The unknowns.** A cubic that shares its ends P₀, P₃ and its unit end tangents T₀, T₁ with the image has two unknowns left, its
+//! handle lengths a and b. With the Bernstein polynomials Bₖ,
 //!
 //! > C(s) = P₀(B₀+B₁) + P₃(B₂+B₃) + a·T₀·B₁ − b·T₁·B₂
 //!
-//! Everything here is relative to P₀, so C(0) = 0 and C(1) = q = P₃−P₀.
+//! Coordinates are relative to P₀, so C(0) = 0 and C(1) = q = P₃−P₀. Chosen well, the handles bring the error down to sixth order in the
+//! piece's length (de Boor, Höllig, Sabin, *High accuracy geometric Hermite interpolation*, CAGD 4, 1987). The Hermite cubic, whose end
+//! derivatives are those of the image, gives fourth order.
 //!
-//! Minimax fit of the two handle lengths: the largest of sixteen residuals as small as possible.
+//! **Variable projection.** Each sample gᵢ has a foot point sᵢ, the parameter of the nearest point of the cubic. There the residual
+//! ρᵢ = C(sᵢ) − gᵢ is normal to the curve, so its length nᵢ does not depend on sᵢ to first order. Gauss–Newton therefore minimises Σnᵢ²
+//! over (a, b) alone, with two by two normal equations, and the foot points follow by a Newton step
 //!
-//! Gauss–Newton for the uniform norm. To first order the normal residuals are nᵢ + δa·aᵢ + δb·bᵢ, and the step is their best uniform
-//! approximation by zero. It is levelled on three of the samples, a *reference* (E. Stiefel, *Über diskrete und lineare
-//! Tschebyscheff-Approximationen*, Numer. Math. 1, 1959):
+//! > δsᵢ = −(ρᵢ + δa·T₀B₁ − δb·T₁B₂)·C′ / |C′|²
+//!
+//! The terms with δa and δb are the movement of the curve under the foot point. Without them, the foot points lag one step behind.
+//!
+//! **The curved valley.** To leading order nᵢ ≈ s²(1−s)²·(mismatch of the area under the curve). The sum of squares is therefore a valley
+//! along the curves of equal area in the (a, b) plane. The area is proportional to α(a, b) = k₀a + k₁b − k₂ab with k₀ = q×T₀, k₁ = T₁×q,
+//! k₂ = (T₁×T₀)/2 (compare Levien's quartic in *Fitting cubic Bézier curves*, 2021, which solves for area and moment). A straight step
+//! (δa, δb) leaves the valley by −k₂δaδb; one Newton step along ∇α returns to it.
+//!
+//! **Minimax.** Where least squares just miss the tolerance, Gauss–Newton for the uniform norm makes the largest of sixteen residuals as
+//! small as possible. To first order the residuals are nᵢ + δa·aᵢ + δb·bᵢ, and the step is their best uniform approximation by zero. It
+//! is levelled on three of the samples, a *reference* (E. Stiefel, *Über diskrete und lineare Tschebyscheff-Approximationen*, Numer.
+//! Math. 1, 1959):
 //!
 //! > λᵢ = (aⱼ, bⱼ) × (aₖ, bₖ), and so on in turn; h = Σλᵢnᵢ / Σ|λᵢ|; nᵢ + δa·aᵢ + δb·bᵢ = h·sgn λᵢ
 //!
-//! |h| is the least error that three residuals allow, and over four it is the largest |h| of any three. So the sample with the
-//! largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
+//! |h| is the least error that three residuals allow, and the least error of all sixteen is the largest |h| of any three. So the sample
+//! with the largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
+//!
+//! In the code `z` is a state (a, b, s), `n` a normal residual with the derivatives `na`, `nb` by the handles, and `ds` the Newton step of
+//! a foot point with the derivatives `sa`, `sb`.
 
 use crate::limits::{
     GIVE_UP, GOOD_ENOUGH, MAX_EVALUATIONS, MIN_GAIN, MINIMAX_HOPE, MINIMAX_WITHIN, PROMISE_AFTER, RESTART_FACTOR,
@@ -44,7 +43,7 @@ use crate::sample::{Lane, Lanes, clamp_unit, fma, larger, largest, norm_squared,
 use crate::source::{BreakPoint, NotFinite, Source, images};
 use kurbo::{CubicBez, Point, Vec2};
 
-/// The state with the smallest sum of squares that was found.
+/// Result of a fit: the state with the smallest sum of squares.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fit {
     pub(crate) z: FitState,
@@ -52,7 +51,7 @@ pub(crate) struct Fit {
     pub(crate) error: f64,
     /// If the fit was given up, a prediction of the largest residual it would have reached; otherwise `error`.
     pub(crate) reach: f64,
-    /// The Newton step that the foot points still have to take.
+    /// Newton step that the foot points still have to take.
     pub(crate) ds: Lane,
     /// Squares of the normal residuals.
     pub(crate) squares: Lane,
@@ -68,16 +67,16 @@ pub(crate) struct Effort {
     gives_up: bool,
 }
 
-/// For single segments, most of which one cubic fits.
+/// Limits for single segments, most of which one cubic fits.
 pub(crate) const USUAL: Effort = Effort { evaluations: MAX_EVALUATIONS, trust_radius: TRUST_RADIUS, gives_up: true };
 
-/// For several segments under one cubic: it may turn much, so that the handles to start from are far off.
+/// Limits for several segments under one cubic. It may turn much, so that the handles to start from are far off.
 pub(crate) const THOROUGH: Effort = Effort { evaluations: RUN_EVALUATIONS, trust_radius: 1.0, gives_up: false };
 
 /// Fits from `start` until the largest residual is at most `enough` or stops improving. If it stays far above `wanted`, a
 /// rough fit suffices: it only has to predict the number of pieces.
 ///
-/// The foot points of `start` must be within a Newton step of the right places; see [`ChordFrame::settle`].
+/// The foot points of `start` must be within a Newton step of the nearest points; see [`ChordFrame::settle`].
 #[inline(never)]
 pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wanted]: [f64; 2]) -> Fit {
     let (enough, beyond) = (enough * enough, (GIVE_UP * wanted).powi(2));
@@ -101,7 +100,7 @@ pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitStat
             best = 1 - best;
             trust *= 2.0;
         } else if k == 1 {
-            // NaN.
+            // The sum is NaN.
             break;
         } else {
             trust = 0.25 * length;
@@ -122,7 +121,7 @@ pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitStat
     Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds, squares: r[best].squares }
 }
 
-/// Chord and end tangents of a piece, and the limits of its handles.
+/// Chord, end tangents and limits of the handles of a piece.
 #[derive(Debug, Clone, Copy)]
 pub struct ChordFrame {
     /// The chord.
@@ -133,15 +132,15 @@ pub struct ChordFrame {
     pub t1: Vec2,
     /// Shortest handles allowed.
     pub floor: [f64; 2],
-    /// Scale of the piece: roughly the largest distance of the image from its first point.
+    /// Size of the piece: roughly the largest distance of the image from its first point.
     pub size: f64,
-    /// Handles of the Hermite cubic, to which the handles are pulled.
+    /// Handles of the Hermite cubic, towards which the fit is pulled.
     pub home: [f64; 2],
     /// Weight of that pull in the sum of squares; nearly straight pieces leave the handles undetermined.
     pub pull: f64,
 }
 
-/// The scale of a piece with chord `q`: the largest distance of some samples from its first point; `evenly`, from either end.
+/// Size of a piece with chord `q`: the largest distance of some samples from its first point; if `evenly`, from either end.
 #[inline(always)]
 pub(crate) fn size(q: Vec2, g: &Lanes, evenly: bool) -> f64 {
     let far = |i: usize, p: Vec2| (Vec2::new(g.x[i], g.y[i]) - p).hypot2();
@@ -150,8 +149,8 @@ pub(crate) fn size(q: Vec2, g: &Lanes, evenly: bool) -> f64 {
 }
 
 impl ChordFrame {
-    /// From a chord, unit tangents at the ends, size, and Hermite's handles. A handle that vanishes there starts tiny and may grow. One
-    /// that differs from it by the size counts like a residual of a twentieth of the tolerance.
+    /// Makes a frame from chord, unit end tangents, size, and the handles `home` of the Hermite cubic. Where one of those vanishes, the
+    /// fitted one starts tiny and may grow. A difference of `size` from `home` counts like a residual of a twentieth of the tolerance.
     #[inline(always)]
     pub(crate) fn new(q: Vec2, [t0, t1]: [Vec2; 2], size: f64, home: [f64; 2], tolerance: f64) -> Self {
         let floor = home.map(|a| if a > 0.0 { a.min(1e-3 * size) } else { 1e-5 * size });
@@ -165,7 +164,7 @@ impl ChordFrame {
         [u, self.q * 3.0 - u * 2.0 - v, self.q * -2.0 + u + v]
     }
 
-    /// The cubic in the plane.
+    /// The cubic from `p0` to `p3` with handles `a`, `b`.
     pub fn cubic(&self, p0: Point, p3: Point, a: f64, b: f64) -> CubicBez {
         CubicBez::new(p0, p0 + self.t0 * a, p3 - self.t1 * b, p3)
     }
@@ -202,7 +201,7 @@ impl ChordFrame {
         best
     }
 
-    /// The distances whose squares are given, signed by the side of the cubic on which each sample lies.
+    /// Square roots of `squares`, signed by the side of the cubic on which each sample lies.
     #[inline(always)]
     pub fn signed_distances(&self, g: &Lanes, a: f64, b: f64, s: &Lane, squares: &Lane) -> Lane {
         let c = self.power(a, b);
@@ -221,12 +220,12 @@ pub(crate) struct FitState {
     /// Handle lengths.
     pub(crate) a: f64,
     pub(crate) b: f64,
-    /// Foot points: the parameters of the points of the cubic nearest to the samples.
+    /// Foot points: parameters of the points of the cubic nearest to the samples.
     pub(crate) s: Lane,
 }
 
-/// One evaluation of a state. Kept in memory and written by separate functions, so that LLVM finds only the order lane by lane,
-/// and vectorises it.
+/// Evaluation of a state. It lies in memory and separate functions write it, so that LLVM sees nothing but loops over the lanes and
+/// vectorises them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Residuals {
     /// Normal equations (`JᵀJ` and `Jᵀn`) and the sum of squares, each in four partial sums.
@@ -239,11 +238,11 @@ pub(crate) struct Residuals {
     pub(crate) sb: Lane,
 }
 
-/// One sample's residual ρ = C(s) − g at its foot point, with its derivatives by the handles.
+/// Residual ρ = C(s) − g of one sample at its foot point, with the derivatives by the handles.
 pub(crate) struct SampleResidual {
     /// 1/|C′|².
     pub(crate) k: f64,
-    /// The normal part times |C′|: ρ×C′.
+    /// Normal part times |C′|: ρ×C′.
     pub(crate) n: f64,
     pub(crate) na: f64,
     pub(crate) nb: f64,
@@ -254,7 +253,7 @@ pub(crate) struct SampleResidual {
 }
 
 impl SampleResidual {
-    /// For the cubic `c` in the power basis with unit end tangents `t0` and `t1`.
+    /// Evaluates the cubic `c`, in the power basis and with unit end tangents `t0` and `t1`, at `s` against the sample (`x`, `y`).
     #[inline(always)]
     pub(crate) fn new(c: &[Vec2; 3], [t0, t1]: [Vec2; 2], s: f64, [x, y]: [f64; 2]) -> Self {
         let u = 1.0 - s;
@@ -297,7 +296,7 @@ impl Residuals {
 }
 
 impl ChordFrame {
-    /// Adds the pull towards the Hermite handles.
+    /// Adds the pull towards the Hermite handles to the equations.
     #[inline(always)]
     pub(crate) fn pulled(&self, (mut sums, squares, error): NormalEquations, z: &FitState) -> NormalEquations {
         let (da, db) = (z.a - self.home[0], z.b - self.home[1]);
@@ -326,7 +325,7 @@ impl ChordFrame {
         self.measure(g, to, out);
     }
 
-    /// The normal part of a residual ρ is ρ×C′/|C′|. Products of two of them need only the factor 1/|C′|², no root.
+    /// Evaluates `z`. The normal part of a residual ρ is ρ×C′/|C′|; products of two such need only the factor 1/|C′|², no root.
     #[inline(always)]
     fn measure(&self, g: &Lanes, z: &FitState, out: &mut Residuals) {
         let c = self.power(z.a, z.b);
@@ -373,8 +372,7 @@ impl ChordFrame {
     }
 }
 
-/// The Gauss–Newton step, and the amount by which it should lower the sum of squares. `None` if the samples do not
-/// determine a step.
+/// The Gauss–Newton step and the decrease of the sum of squares that it promises. `None` if the samples do not determine a step.
 #[inline(always)]
 pub(crate) fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
     let [aa, ab, bb, an, bn] = *sums;
@@ -385,7 +383,7 @@ pub(crate) fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
 }
 
 impl ChordFrame {
-    /// The state with the handle `scaled`, 0 or 1, `factor` times as long and the same area, if its handles are possible.
+    /// The state of equal area with handle number `scaled` (0 or 1) `factor` times as long. `None` if a handle is out of range.
     #[inline(always)]
     pub(crate) fn along_valley(&self, g: &Lanes, z: &FitState, (scaled, factor): (usize, f64)) -> Option<FitState> {
         let k2 = 0.5 * self.t1.cross(self.t0);
@@ -404,7 +402,7 @@ impl ChordFrame {
     }
 }
 
-/// The data of one request.
+/// Ends, frame and samples of a piece that is to be fitted.
 pub(crate) struct FitRequest<'a> {
     pub(crate) from: &'a BreakPoint,
     pub(crate) to: &'a BreakPoint,
@@ -423,19 +421,19 @@ impl FitRequest<'_> {
         self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
     }
 
-    /// A state as checks and proofs want it.
+    /// The cubic of a state, in the form that checks and proofs take.
     pub(crate) fn candidate(&self, z: &FitState) -> Candidate {
         Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: z.a, b: z.b }
     }
 }
 
-/// A fitted cubic.
+/// A fitted cubic and the stretch of the source that it replaces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate {
-    /// Parameters of the stretch.
+    /// Ends of the stretch, in the source's parameter.
     pub(crate) t0: f64,
     pub(crate) t1: f64,
-    /// First point; everything else is relative to it.
+    /// First point; the frame and all images are relative to it.
     pub(crate) p0: Point,
     pub(crate) frame: ChordFrame,
     /// Handle lengths.
@@ -444,17 +442,17 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// The curve's parameter at `tau` in [0, 1] of the piece.
+    /// The source's parameter at `tau` in [0, 1] of the piece.
     pub(crate) fn param(&self, tau: f64) -> f64 {
         self.t0 + (self.t1 - self.t0) * tau
     }
 
-    /// The place of the curve's parameter `t` on the piece; inside it if in [0, 1].
+    /// Inverse of [`Self::param`]: in [0, 1] if `t` is on the piece.
     pub(crate) fn tau(&self, t: f64) -> f64 {
         (t - self.t0) / (self.t1 - self.t0)
     }
 
-    /// Images at `tau`, relative to the first point.
+    /// Points of the image at `tau`, relative to the first point.
     pub(crate) fn images(&self, source: &impl Source, tau: &Lane) -> Result<Lanes, NotFinite> {
         let mut t = [0.0; 8];
         for i in 0..8 {
@@ -469,14 +467,14 @@ impl Candidate {
     }
 }
 
-/// Foot points this close count as in order.
+/// Consecutive foot points count as in order if the second is no further before the first than this.
 pub const FOOT_ROUNDING: f64 = 1e-9;
 
-/// A normal residual is the distance up to κδ²/2, with δ the way that the foot point still has to go. Below this share of the
-/// tolerance the difference is ignored, with κ taken as the inverse of the piece's size and δ as a share of it.
+/// A normal residual differs from the distance by κδ²/2, where κ is the curvature and δ the way that the foot point still has to go. Below
+/// this share of the tolerance the difference is ignored; κ is taken as the inverse of the piece's size and δ as a share of the size.
 pub(crate) const DRIFT: f64 = 0.02;
 
-/// A state with foot points and squared distances of the fitted samples.
+/// A state with settled foot points and the squared distances of the fitted samples.
 pub(crate) struct Measured<'a> {
     pub(crate) z: &'a FitState,
     pub(crate) s: Lane,
@@ -484,7 +482,7 @@ pub(crate) struct Measured<'a> {
     pub(crate) error: f64,
 }
 
-/// Moves the foot points by the Newton step that is left to do. If they drift too far, measures the distances anew.
+/// Moves the foot points by the Newton step that is left to do. Measures the distances anew if a foot point moves too far.
 #[inline(always)]
 pub(crate) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance: f64) -> Measured<'f> {
     let z = &fit.z;
@@ -507,10 +505,10 @@ pub(crate) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance
 /// Normal residuals at eight samples, with their derivatives.
 struct Normals {
     n: Lane,
-    /// By the handles.
+    /// Derivatives by the handles.
     na: Lane,
     nb: Lane,
-    /// Newton step of the foot points, and its derivatives by the handles.
+    /// Newton step of the foot points, with its derivatives by the handles.
     ds: Lane,
     sa: Lane,
     sb: Lane,
@@ -521,7 +519,7 @@ impl Normals {
 }
 
 impl ChordFrame {
-    /// Not inlined: alone, the loop is vectorised.
+    /// Evaluates the normal residuals of `z`. Not inlined: alone, the loop is vectorised.
     #[inline(never)]
     fn normals(&self, g: &Lanes, z: &FitState, out: &mut Normals) {
         let c = self.power(z.a, z.b);
@@ -574,18 +572,18 @@ pub(crate) fn minimax(
     best
 }
 
-/// Steps, which converge quadratically.
+/// Number of minimax steps. They converge quadratically.
 const STEPS: usize = 3;
 
-/// Exchanges of one sample in a step, which usually ends by itself after two or three.
+/// Most exchanges of a sample in one step. Two or three usually suffice.
 const EXCHANGES: usize = 8;
 
 /// The samples of the first reference: those next to a fifth, a half and four fifths, where the leading form of the residual,
 /// s²(1−s)²((s−½)²−c), has its extremes.
 const EXTREMES: [usize; 3] = [1, 11, 14];
 
-/// The step that makes the largest of the linearised residuals as small as possible, and that residual. `None` if the samples do not
-/// determine a step.
+/// The step that makes the largest linearised residual as small as possible, and the level |h| of that residual. `None` if the samples do
+/// not determine a step.
 fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
     let row = |i: usize| -> [f64; 3] {
         let (h, j) = (&r[i / 8], i % 8);
@@ -604,7 +602,7 @@ fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
             }
         }
         let most = (0..16).fold(0, |m, i| if residuals[i] > residuals[m] { i } else { m });
-        // Rounding may leave the reference's own residuals a little above the level.
+        // Rounding may leave the residuals of the reference a little above the level.
         if residuals[most] <= level * enough || reference.contains(&most) {
             break;
         }
@@ -624,35 +622,36 @@ fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
     found
 }
 
-/// Residuals that exceed the level by less than a thousandth are level: the step is only of first order.
+/// Residuals below this multiple of the level count as level, as the step is only of first order.
 const LEVELLED: f64 = 1.001;
 
-/// As a factor, excess over the level that counts as level in fits that are to be alike from either end.
+/// Multiple of the level that counts as level in fits that must be alike from either end.
 const LEVELLED_EVENLY: f64 = 1.0 + 1e-9;
 
-/// Handles that differ by less, as a share, are those of a symmetrical curve.
+/// Handles whose relative difference is less than this belong to a symmetrical curve.
 const SAME_HANDLES: f64 = 1e-7;
 
-/// Three residuals levelled: λ and Σλᵢnᵢ.
+/// Level of three residuals: the weights λᵢ and Σλᵢnᵢ.
 struct Level {
     weights: [f64; 3],
     sum: f64,
 }
 
 impl Level {
+    /// Makes the level of three rows, each a residual with its derivatives by the handles.
     fn of([p, q, r]: &[[f64; 3]; 3]) -> Self {
         let cross = |u: &[f64; 3], v: &[f64; 3]| u[1] * v[2] - u[2] * v[1];
         let weights = [cross(q, r), cross(r, p), cross(p, q)];
         Self { weights, sum: weights[0] * p[0] + weights[1] * q[0] + weights[2] * r[0] }
     }
 
-    /// h; 0 if the derivatives of all three are parallel.
+    /// The level h; 0 if the derivatives of all three are parallel.
     fn height(&self) -> f64 {
         let size: f64 = self.weights.iter().map(|w| w.abs()).sum();
         if size > 0.0 { self.sum / size } else { 0.0 }
     }
 
-    /// The step that levels the three rows, from the two that are furthest from parallel; and |h|.
+    /// The step that levels the three rows, solved from the two that are furthest from parallel, and |h|.
     fn step(&self, rows: &[[f64; 3]; 3]) -> Option<([f64; 2], f64)> {
         let height = self.height();
         let k = (0..3).fold(0, |m, i| if self.weights[i].abs() > self.weights[m].abs() { i } else { m });
@@ -665,28 +664,28 @@ impl Level {
     }
 }
 
-/// Samples of a piece, and the judge of its fits.
+/// A piece with its samples, which judges its fits.
 pub(crate) trait Fitting {
-    /// What a judgement finds besides the error.
+    /// Findings of a judgement besides the error.
     type Mark: Default;
 
     /// The frame and the fitted samples.
     fn samples(&self) -> (&ChordFrame, &Lanes);
 
-    /// The samples between those.
+    /// The checked samples, which lie between the fitted ones.
     fn checked(&mut self) -> Result<Lanes, NotFinite>;
 
-    /// Their foot points, interpolated.
+    /// Foot points of the checked samples, interpolated from those of the fitted ones.
     fn between(&self, s: &Lane) -> Lane;
 
-    /// Fits are to be the same from either end, so that even handles stay even.
+    /// Returns `true` if fits must be the same from either end, so that even handles stay even.
     fn evenly(&self) -> bool;
 
-    /// The error of a fit that comes within the tolerance; above the tolerance if it must be rejected.
+    /// Error of a fit that promises to come within the tolerance; above the tolerance if the fit must be rejected.
     fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark), NotFinite>;
 }
 
-/// The best fit so far, and its error: judged if its fit came within the tolerance, else what that would have reached.
+/// The best fit so far, with its error: the judged one if the fit came within the tolerance, else [`Fit::reach`].
 pub(crate) struct BestFit<M> {
     pub(crate) fit: Fit,
     pub(crate) error: f64,
@@ -694,13 +693,14 @@ pub(crate) struct BestFit<M> {
 }
 
 impl<M: Default> BestFit<M> {
+    /// Judges a fit, unless it is predicted to miss the tolerance.
     #[inline(always)]
     pub(crate) fn of(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self, NotFinite> {
         let (error, mark) = if fit.reach <= tolerance { on.judge(&fit)? } else { (fit.reach, M::default()) };
         Ok(Self { fit, error, mark })
     }
 
-    /// Minimax on all sixteen samples until the error is at most `wanted`.
+    /// Improves the fit by minimax on all sixteen samples until the error is at most `wanted`.
     pub(crate) fn minimised(
         &mut self,
         on: &mut impl Fitting<Mark = M>,
@@ -742,8 +742,8 @@ pub(crate) fn improved<F: Fitting>(
         frame.settle(g, start.a, start.b, &mut start.s);
         best = BestFit::of(fitted(on, start, 0.0), on, tolerance)?;
     }
-    // Start again farther along the valley of equal area, from more even handles first, which more often succeeds. Of the two, the shorter
-    // one is scaled if fits are to be the same from either end, and none if they are even.
+    // Start again farther along the valley of equal area, from more even handles first, which more often succeeds. If fits must be the
+    // same from either end, the shorter handle is scaled, and even handles are left alone.
     let FitState { a, b, .. } = best.fit.z;
     let even = if a < b || on.evenly() { RESTART_FACTOR } else { 1.0 / RESTART_FACTOR };
     let scaled = usize::from(on.evenly() && b < a);
@@ -772,7 +772,7 @@ pub(crate) fn improved<F: Fitting>(
 mod tests {
     use super::*;
 
-    /// Rows from smooth functions like those of a fit, with phases at random.
+    /// Residuals and derivatives from smooth functions, much as in a fit, with random phases.
     fn rows(seed: u64) -> [Normals; 2] {
         let mut state = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let mut random = || {
@@ -796,7 +796,7 @@ mod tests {
         [r[i / 8].n[i % 8], r[i / 8].na[i % 8], r[i / 8].nb[i % 8]]
     }
 
-    /// By duality the least possible maximum is the largest level of any three residuals (de la Vallée Poussin).
+    /// By duality, the least possible maximum is the largest level of any three residuals (de la Vallée Poussin).
     #[test]
     fn the_step_is_the_best_uniform_approximation() {
         for seed in 0..200 {

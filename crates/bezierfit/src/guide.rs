@@ -1,9 +1,9 @@
-//! Smooth guides: splines of cubics with continuous derivative, near to points by least squares.
+//! Guides: splines of cubics with continuous derivative, near to points by least squares. Their parameter is about the length.
 
 use crate::banded::solve_banded;
 use kurbo::{CubicBez, Point, Vec2};
 
-/// Points with their weights and their places along a curve.
+/// Points with their parameters along a curve (`place`) and their weights.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Samples {
     pub(crate) place: Vec<f64>,
@@ -26,33 +26,33 @@ impl Samples {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct End {
     pub(crate) point: Point,
-    /// Its direction, if that is given.
+    /// Direction, if it is given.
     pub(crate) along: Option<Vec2>,
 }
 
-/// The ends of a guide: points with directions, or none where it is closed.
+/// The ends of a guide.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Ends {
-    /// It runs from one to the other.
+    /// The guide runs from one end to the other.
     Open([End; 2]),
-    /// It is closed.
+    /// The guide is closed.
     Closed,
 }
 
 /// A spline of cubics with continuous derivative.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Guide {
-    /// Places of the knots.
+    /// Parameters of the knots.
     pub(crate) knots: Vec<f64>,
-    /// Points at the knots, and derivatives by the place.
+    /// Points and derivatives at the knots.
     values: Vec<(Point, Vec2)>,
 }
 
-/// Weight of the bending of an interval beside the distances of its points.
+/// Weight of the bending of an interval relative to the distances of its points.
 const STIFF: f64 = 1e-6;
 /// Weight of given ends.
 const FIXED: f64 = 1e3;
-/// Distance, in those that are allowed, up to which even weights may be what is wrong.
+/// Largest multiple of the allowed distance that other weights may bring down to it.
 const UNEVEN: f64 = 2.5;
 
 /// The cubic Hermite basis on an interval of length h.
@@ -97,7 +97,7 @@ impl Guide {
         }
         if let Ends::Open(ends) = ends {
             for (i, End { point, along }) in [(0, ends[0]), (2 * n - 2, ends[1])] {
-                // Places are lengths, nearly, so that derivatives are directions.
+                // Parameters are nearly lengths, so that derivatives are directions.
                 for (i, given) in [(i, Some(point.to_vec2())), (i + 1, along)] {
                     if let Some(given) = given {
                         band[i][0] += FIXED * total;
@@ -117,7 +117,7 @@ impl Guide {
         Some(out)
     }
 
-    /// The part between two knots, the first and the last of which become one.
+    /// The part between two knots, which become one.
     fn closed(&self, [first, last]: [usize; 2]) -> Self {
         let mut values = self.values[first..=last].to_vec();
         let [(p, d), (q, e)] = [values[0], values[last - first]];
@@ -126,7 +126,7 @@ impl Guide {
         Self { knots: self.knots[first..=last].to_vec(), values }
     }
 
-    /// The point, and the first and second derivative.
+    /// Point, first and second derivative.
     fn jet(&self, place: f64) -> (Point, Vec2, Vec2) {
         let k = interval(&self.knots, place);
         let h = self.knots[k + 1] - self.knots[k];
@@ -138,7 +138,7 @@ impl Guide {
         (point, (a + (c2 * 2.0 + c3 * (3.0 * t)) * t) / h, (c2 * 2.0 + c3 * (6.0 * t)) / (h * h))
     }
 
-    /// The foot point of `p` near a place, its distance, and the distance to the left.
+    /// The foot point of `p` near a parameter, the distance, and the signed distance of `p` to the left.
     fn foot(&self, p: Point, place: f64) -> (f64, f64, f64) {
         let (mut best, mut at, mut left) = (f64::INFINITY, place, 0.0);
         let mut now = place;
@@ -161,7 +161,7 @@ impl Guide {
         (at, best, left)
     }
 
-    /// The cubics.
+    /// The cubics of the spline.
     pub(crate) fn cubics(&self) -> impl Iterator<Item = CubicBez> + '_ {
         (1..self.knots.len()).map(|k| {
             let third = (self.knots[k] - self.knots[k - 1]) / 3.0;
@@ -170,23 +170,23 @@ impl Guide {
         })
     }
 
-    /// Guides for samples over places from the first knot to the last, each with its distance from them: within `within` of each, with few
-    /// knots to begin with, and then with as many as it takes to come near to what remains of the samples without noise. Intervals have at
-    /// least the length `finest`. Without any, the intervals in which the last one was too far away.
+    /// Guides whose distance from all samples is at most `within`, with that distance: first with few knots, then with as many as it takes
+    /// to come near to the samples without their noise. Intervals between knots are not shorter than `finest`. `Err` are the
+    /// intervals in which the last guide was too far away, if none was found.
     pub(crate) fn all(
         samples: &mut Samples,
         mut knots: Vec<f64>,
         ends: Ends,
         [within, finest]: [f64; 2],
     ) -> Result<Vec<(Self, f64)>, Vec<[f64; 2]>> {
-        /// How near, as shares of the distance, one after the other.
+        /// Largest means of the distance to one side, as shares of `within`, one after the other.
         const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
-        /// Rounds of divisions for each.
+        /// Most rounds of divisions for each.
         const ROUNDS: usize = 8;
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
         let (mut levels, mut rounds) = (NEAR.iter().peekable(), 0);
         while let Some(near) = levels.peek() {
-            // Once more with the foot points as places.
+            // Fit once more with the foot points as parameters.
             let once = Self::missed(&knots, samples, ends);
             let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
                 break;
@@ -194,7 +194,7 @@ impl Guide {
             guide.strays(samples, ends, fine, &mut misses);
             let far = furthest(&misses);
             if far <= UNEVEN * within {
-                // Without splitting an interval, more weight for what is far.
+                // Try more weight for far samples before dividing intervals.
                 let evened = Self::evened(&knots, samples, ends, fine);
                 out.extend([Some((guide, far)), evened].into_iter().flatten().filter(|(_, far)| *far <= within));
             }
@@ -219,13 +219,13 @@ impl Guide {
         if out.is_empty() { Err(failed) } else { Ok(out) }
     }
 
-    /// A spline whose largest distance is nearly as small as it can be: each sample weighs more the further it is, again and again (C. L.
+    /// A spline whose largest distance is nearly as small as possible. In each round, samples gain weight with their distance (C. L.
     /// Lawson, *Contributions to the theory of linear least maximum approximation*, 1961).
     fn evened(knots: &[f64], samples: &Samples, ends: Ends, fine: f64) -> Option<(Self, f64)> {
         const ROUNDS: usize = 4;
         /// Share of the weight that a sample keeps.
         const KEPT: f64 = 0.05;
-        /// Ratio of a distance to the one before, beyond which the next one is not looked for.
+        /// Ratio of a round's distance to the least so far above which the rounds end.
         const GAIN: f64 = 0.99;
         let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
         for _ in 0..ROUNDS {
@@ -248,7 +248,7 @@ impl Guide {
         Some((guide, furthest(&misses)))
     }
 
-    /// The nearest spline, and how each of its intervals misses the samples, which move to their foot points.
+    /// The nearest spline, with the misses of its intervals. The samples' parameters become their foot points.
     fn missed(knots: &[f64], samples: &mut Samples, ends: Ends) -> Option<(Self, Vec<Miss>)> {
         let guide = match ends {
             Ends::Open(_) => Self::nearest(knots.to_vec(), samples, ends)?,
@@ -258,7 +258,7 @@ impl Guide {
         Some((guide, misses))
     }
 
-    /// How each interval misses the samples, which move to their foot points.
+    /// Misses of each interval. The samples' parameters become their foot points.
     fn misses(&self, samples: &mut Samples) -> Vec<Miss> {
         let mut out = vec![Miss::default(); self.knots.len() - 1];
         for i in 0..samples.place.len() {
@@ -270,9 +270,9 @@ impl Guide {
         out
     }
 
-    /// Adds how far the guide strays between the foot points of samples, in steps of about `fine`.
+    /// Adds the distances of the guide from the edges between samples, measured in steps of about `fine` between foot points.
     fn strays(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
-        /// Looks between two samples, at most.
+        /// Most steps between two samples.
         const MOST: f64 = 64.0;
         let mut order: Vec<usize> = (0..samples.place.len()).collect();
         order.sort_by(|a, b| samples.place[*a].total_cmp(&samples.place[*b]));
@@ -295,7 +295,7 @@ impl Guide {
         }
     }
 
-    /// The nearest closed spline: what lies around its ends comes again before and after them.
+    /// The nearest closed spline, fitted to samples that are repeated before the start and after the end.
     fn nearest_closed(knots: &[f64], samples: &Samples) -> Option<Self> {
         let n = knots.len() - 1;
         let length = knots[n];
@@ -325,18 +325,18 @@ pub(crate) fn off(p: Point, [a, b]: [Point; 2]) -> f64 {
     (w - v * t).hypot2()
 }
 
-/// The largest distance in all intervals.
+/// Largest distance in all intervals.
 fn furthest(misses: &[Miss]) -> f64 {
     misses.iter().map(|m| m.far).fold(0.0, f64::max)
 }
 
-/// How samples of an interval between knots miss a guide.
+/// Distances of a guide from the samples of one interval between knots.
 #[derive(Debug, Default, Clone, Copy)]
 struct Miss {
     /// The largest distance.
     far: f64,
     count: usize,
-    /// For each quarter, the sum of the distances to the left with their weights, and of the weights.
+    /// For each quarter, the weighted sum of the distances to the left and the sum of the weights.
     quarters: [[f64; 2]; 4],
 }
 
@@ -349,24 +349,24 @@ impl Miss {
         quarter[1] += weight;
     }
 
-    /// The largest mean distance to one side in a quarter: what noise leaves of the distance.
+    /// Largest mean distance to one side in a quarter, in which noise cancels.
     fn bias(&self) -> f64 {
         self.quarters.iter().map(|[sum, weight]| (sum / weight).abs()).fold(0.0, f64::max)
     }
 }
 
-/// Knots with those intervals divided that are too far away or, on a mean, further than `near` to one side. `true` if another one is so far
-/// away that weights do not bring it near, either.
+/// Divides the intervals that are too far away or, in the mean, further than `near` to one side. Returns the knots, and `true` if another
+/// interval is so far away that weights do not bring it near, either.
 fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> (Vec<f64>, bool) {
-    /// Share of the distance that a bias has where more knots help.
+    /// Bias, as a share of the distance, from which on more knots help.
     const BIASED: f64 = 0.2;
-    /// Share of the distance that the bias of noise has by chance, times the root of the number of samples.
+    /// Bias of noise by chance, as a share of the distance times the root of the number of samples.
     const CHANCE: f64 = 1.5;
-    /// Fewer samples say nothing about a half.
+    /// Least number of samples of an interval that is divided.
     const FEW: usize = 12;
     let (mut out, mut hopeless) = (vec![knots[0]], false);
     for (ends, miss) in knots.windows(2).zip(misses) {
-        // Samples that are as far to one side as to the other are noise, which no division brings nearer.
+        // Samples that are equally far to both sides are noise, which no division brings nearer.
         let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
         let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near;
         if wanted && ends[1] - ends[0] > 2.0 * finest && miss.count >= FEW {
@@ -379,7 +379,7 @@ fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> 
     (out, hopeless)
 }
 
-/// The interval between knots that holds a place.
+/// Index of the interval between knots that contains a parameter.
 fn interval(knots: &[f64], place: f64) -> usize {
     knots[1..knots.len() - 1].partition_point(|k| *k <= place)
 }

@@ -1,4 +1,4 @@
-//! Fewer pieces for stretches that follow each other: of one long curve, each with the piece that it has, and across smooth joints.
+//! Fewer pieces for consecutive stretches: across smooth joints, and across the pieces of one long curve.
 
 use crate::limits::{LONG, LONG_GRID, LONG_SEGMENT, LONG_WORK, LONGEST_RUN};
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
@@ -12,17 +12,17 @@ use crate::stretch::StretchFitter;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct JoinSettings {
     pub(crate) tolerance: f64,
-    /// Joints that turn by less, in radians, are smooth.
+    /// Largest turn of a smooth joint, in radians.
     pub(crate) corner: f64,
-    /// Errors are to be proven where they can be.
+    /// Prove errors where possible.
     pub(crate) certify: bool,
-    /// The stretches are those of pieces, so that new ones are hardly longer and must end at closer places.
+    /// Set if each stretch has one piece: new pieces are hardly longer, so that the grid of their ends must be finer.
     pub(crate) finely: bool,
-    /// Pieces are to be the same from either end.
+    /// Fit alike from either end.
     pub(crate) evenly: bool,
 }
 
-/// A stretch with the pieces that cover it, and what is known of them.
+/// A stretch with the pieces that cover it, and their report.
 pub(crate) struct Covered<'a, S> {
     pub(crate) part: Part<'a, S>,
     pub(crate) pieces: Vec<Piece>,
@@ -30,7 +30,7 @@ pub(crate) struct Covered<'a, S> {
 }
 
 impl<'a, S: Source> Covered<'a, S> {
-    /// Appends a part with its pieces: each with its own stretch, if they are several and `joints` are their ends but the first.
+    /// Appends a part, divided into the stretches of its pieces if they are several and `joints` are the last ends of each.
     pub(crate) fn add(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
         let Self { part, pieces, report } = self;
         if pieces.len() < LONG || pieces.len() != joints.len() || !report.unresolved.is_empty() {
@@ -47,8 +47,7 @@ impl<'a, S: Source> Covered<'a, S> {
     }
 }
 
-/// Appends the pieces of stretches that follow each other, or fewer that run on across the smooth joints of those that have no more than
-/// two.
+/// Appends the pieces of consecutive stretches, or fewer that cross smooth joints between stretches with at most two pieces.
 pub(crate) fn joined<S: Source>(
     covered: &[Covered<'_, S>],
     settings: JoinSettings,
@@ -88,10 +87,10 @@ pub(crate) fn joined<S: Source>(
     Ok(())
 }
 
-/// Covers a stretch as [`StretchFitter::cover`] does, and then with fewer pieces if it takes several and has no slow spots.
+/// Covers a stretch by [`StretchFitter::cover`], and then with fewer pieces if it takes several and has no slow spots.
 ///
 /// # Errors
-/// The curve is not finite somewhere.
+/// [`NotFinite`] if the curve is not finite somewhere.
 pub fn cover_far<S: Source>(
     fitter: &mut StretchFitter<'_, S>,
     [from, to]: [&BreakPoint; 2],
@@ -101,7 +100,7 @@ pub fn cover_far<S: Source>(
 ) -> Result<(), NotFinite> {
     let (start, first) = (pieces.len(), report.pieces.len());
     fitter.cover(from, to, pieces, report)?;
-    // Near slow spots, even samples say too little; and no proof of several pieces knows of ends beside the curve.
+    // Near slow spots, even samples do not suffice; and proofs over several pieces need ends on the curve.
     let count = fitter.joints.len();
     let differs = !fitter.slow.all().is_empty() || fitter.form.as_ref().is_some_and(|f| f.blur > 0.0);
     if count < LONG_SEGMENT || pieces.len() - start != count || differs {
@@ -122,7 +121,7 @@ pub fn cover_far<S: Source>(
     joined(&covered, settings, &mut ReachMemory::default(), pieces, report)
 }
 
-/// Appends the fewest pieces of a run, or few that are the same `evenly` from either end. Returns the number of cubics that were tried.
+/// Appends the fewest pieces of a run or, if `evenly`, few that are alike from either end. Returns the number of cubics that were tried.
 pub(crate) fn fewest<S: Source + Clone>(
     run: &SegmentRun<S>,
     own: OwnPieces<impl FitOwn>,

@@ -1,8 +1,8 @@
-//! Judges a fit: its error by the cheapest test that can decide, from eight samples to a closer check or a proof. The closer checks are
+//! Judges a fit: finds its error by the cheapest test that can decide, from eight samples to a closer check or a proof.
 //!
-//! - [`dense`]: 64 samples, and closer ones around every maximum.
-//! - [`thorough`]: 160 samples each way, with a search for every nearest point. For curves whose foot points cannot be
-//!   followed along the cubic, or that turns sharply between two.
+//! - [`dense`] takes 64 samples, and closer ones around every maximum.
+//! - [`thorough`] takes 160 samples each way and searches for every nearest point. It serves where foot points cannot be followed along
+//!   the cubic, or where the cubic turns sharply between two of them.
 
 use crate::fit::{Candidate, FOOT_ROUNDING, Fit, FitRequest, FitState, Measured, settled};
 use crate::limits::{
@@ -18,7 +18,7 @@ use crate::stretch::{EIGHT_GROWTH, StretchFitter, THOROUGH_WORK};
 use kurbo::Vec2;
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// The error of a fit; above the tolerance if it must be rejected.
+    /// Error of a fit; above the tolerance if the fit must be rejected.
     #[inline(never)]
     pub(crate) fn judge(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64, NotFinite> {
         let fitted = settled(&request.frame, request.g, fit, self.tolerance);
@@ -43,7 +43,7 @@ impl<S: Source> StretchFitter<'_, S> {
         self.by_dense_check(request, fitted.z, &feet, error)
     }
 
-    /// A small error under a map of low degree: eight samples determine the rest.
+    /// Error by eight samples, which suffice if it is small and the map of low degree. `None` if they do not.
     #[inline(always)]
     fn by_eight(&self, request: &FitRequest<'_>, fitted: &Measured<'_>) -> Option<f64> {
         let limit = SMALL_ERROR * self.tolerance;
@@ -54,7 +54,7 @@ impl<S: Source> StretchFitter<'_, S> {
         (error <= limit).then_some(EIGHT_GROWTH * error)
     }
 
-    /// Errors predicted between sixteen samples, or between those and more halfway beside doubtful ones.
+    /// Error by sixteen samples, with peaks predicted between them, and more samples beside doubtful ones. `None` if that cannot decide.
     #[inline(always)]
     fn by_sixteen(
         &self,
@@ -86,7 +86,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(closer.filter(|closer| *closer <= ACCEPTED * tol).map(|closer| closer.max(error)))
     }
 
-    /// Many samples.
+    /// Error by many samples.
     #[inline(never)]
     fn by_dense_check(
         &self,
@@ -113,9 +113,9 @@ impl<S: Source> StretchFitter<'_, S> {
 
 /// Verdict on sixteen samples.
 pub(crate) struct Resolution {
-    /// The samples resolve image and cubic.
+    /// Set if the samples resolve image and cubic.
     pub(crate) resolved: bool,
-    /// The image's speed is even besides.
+    /// Set if they do and the image's speed is even.
     pub(crate) even: bool,
 }
 
@@ -127,8 +127,8 @@ impl FitRequest<'_> {
         Resolution { resolved: ratio < PACE_SIXTEEN, even: ratio < PACE_EIGHT }
     }
 
-    /// The largest error in the widest gap between the fitted samples, extrapolated from their residuals; infinite if
-    /// eight samples do not resolve the state. `squares` are the squared residuals.
+    /// Largest error in the two widest gaps between the fitted samples, extrapolated from their residuals, whose squares are `squares`.
+    /// Infinite if eight samples do not resolve the state.
     #[inline(always)]
     pub(crate) fn middle_error(&self, z: &FitState, s0: &Lane, squares: &Lane) -> f64 {
         let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
@@ -144,9 +144,9 @@ impl FitRequest<'_> {
         larger(sum(&left).abs(), sum(&right).abs())
     }
 
-    /// The squared ratio of the image's largest speed to its least; infinite unless the foot points advance evenly and the
-    /// cubic's direction at every foot point is that of the image. Each fitted sample is paired with its neighbour towards
-    /// the middle: that one's image, foot point and place.
+    /// Squared ratio of the image's largest speed to its least; infinite unless the foot points advance evenly and the cubic's direction
+    /// at every foot point is nearly that of the image. Each fitted sample is paired with its neighbour towards the middle: the
+    /// neighbours' images, foot points and parameters (in units of 1/17) are the last argument.
     #[inline(always)]
     fn pace_ratio(&self, z: &FitState, s0: &Lane, (next, s1, set): (&Lanes, &Lane, &Lane)) -> f64 {
         let [c1, c2, c3] = self.frame.power(z.a, z.b);
@@ -172,7 +172,7 @@ impl FitRequest<'_> {
             pace[i] = l2;
             slowness[i] = -l2;
         }
-        // The cubic must not turn back between the outermost foot points and its ends either.
+        // Nor must the cubic turn back between its ends and the outermost foot points.
         let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
         let resolved = largest(&margin) < 0.0
             && turns_little(self.frame.t0, slope(s0[0]))
@@ -182,7 +182,7 @@ impl FitRequest<'_> {
 }
 
 /// Returns `true` if the foot points step from sample to sample about as far as the samples do. A longer step means that
-/// image or cubic nearly stops in between, and the distance has a corner there that may be far above its neighbours.
+/// image or cubic nearly stops in between. There the distance has a corner, which may be far above the errors beside it.
 #[inline(always)]
 pub(crate) fn steady(feet: &Evenly) -> bool {
     let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
@@ -194,8 +194,8 @@ pub(crate) fn steady(feet: &Evenly) -> bool {
     larger(feet[17] - feet[16], longest) < FOOT_STEP * UNIT
 }
 
-/// The highest error predicted between sixteen samples, with eight to sixteen more wherever a sample or its prediction is
-/// above its limit. `errors` are signed by their side and go with `feet`.
+/// The highest error predicted between sixteen samples, with up to sixteen more wherever a sample or its prediction is
+/// above its limit. `errors` are signed by the side of the cubic and go with `feet`.
 ///
 /// `None` if nearly all samples are in doubt, or if an error halfway is far from the mean of its neighbours: then sixteen
 /// samples do not resolve the error.
@@ -244,13 +244,13 @@ pub(crate) fn halfway(
     Ok(Some(gaps.iter().map(|j| 2 * j + 1).chain(doubtful).map(peak).fold(highest, f64::max)))
 }
 
-/// Newton steps from the nearest place on the chords through the samples,
+/// Newton steps from the nearest point of the chords through the samples,
 const STEPS: usize = 2;
-/// and where those leave an error above the tolerance.
+/// and where these leave an error above the tolerance.
 const MORE_STEPS: usize = 4;
 
-/// The Hausdorff distance between candidate and image, by sampling: the nearest sample by search, the place on the
-/// chords beside it, then Newton steps. Steps left out would only make distances larger.
+/// Hausdorff distance between candidate and image, by sampling: for each point the nearest sample by search, the nearest point of the
+/// chords beside that, then Newton steps. Omitted steps only make distances larger.
 #[cold]
 pub(crate) fn thorough(
     source: &impl Source,
@@ -276,7 +276,7 @@ pub(crate) fn thorough(
     Ok(from_cubic(source, c, &curve, &images, enough, worst)?.sqrt())
 }
 
-/// Evenly spaced places, and geometrically denser ones around slow spots, in order; a multiple of eight.
+/// Evenly spaced parameters, with geometrically denser ones around slow spots, in order. Their number is a multiple of eight.
 fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
     let step = 1.0 / THOROUGH_SAMPLES as f64;
     let mut dense = Vec::new();
@@ -306,8 +306,8 @@ fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
     taus
 }
 
-/// The sample of `set` nearest to `p`, and its squared distance: downhill from `from`, or the best of all if that does not
-/// come within `enough` (squared).
+/// The sample of `set` nearest to `p` and its squared distance. Descends from the sample `from`; if the squared distance remains above
+/// `enough`, searches all.
 fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
     let d = |i: usize| (set[i] - p).hypot2();
     let (mut at, mut best) = (from, d(from));
@@ -315,7 +315,7 @@ fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
         at += 1;
         best = d(at);
     }
-    // After a step ahead, what lies behind is farther.
+    // After a step ahead, samples behind are farther.
     while at <= from && at > 0 && d(at - 1) < best {
         at -= 1;
         best = d(at);
@@ -331,14 +331,14 @@ fn nearest(set: &[Vec2], from: usize, p: Vec2, enough: f64) -> (usize, f64) {
     (at, best)
 }
 
-/// A curve by its samples.
+/// Samples of a curve: parameters and points.
 struct Sampled<'a> {
     at: &'a [f64],
     points: &'a [Vec2],
 }
 
 impl Sampled<'_> {
-    /// The parameter of the place nearest to `p` on the chords at sample `i`, and the derivative along the chord that has it.
+    /// Parameter of the point nearest to `p` on the two chords at sample `i`, and the derivative along that chord.
     fn beside(&self, i: usize, p: Vec2) -> (f64, Vec2) {
         let r = p - self.points[i];
         let along = |j: usize| (j, r.dot(self.points[j] - self.points[i]));
@@ -350,7 +350,7 @@ impl Sampled<'_> {
     }
 }
 
-/// The largest squared distance of an image from the cubic.
+/// Largest squared distance of an image from the cubic.
 fn from_image(c: &Candidate, images: &[Lanes], curve: &[Vec2], enough: f64) -> f64 {
     let at: [f64; THOROUGH_SAMPLES + 1] = std::array::from_fn(|i| i as f64 / THOROUGH_SAMPLES as f64);
     let sampled = Sampled { at: &at, points: curve };
@@ -372,7 +372,7 @@ fn from_image(c: &Candidate, images: &[Lanes], curve: &[Vec2], enough: f64) -> f
     worst
 }
 
-/// The largest squared distance of a point of the cubic from the image, if larger than `worst`.
+/// Largest squared distance of a point of the cubic from the image, or `worst` if that is larger.
 fn from_cubic(
     source: &impl Source,
     c: &Candidate,
@@ -399,17 +399,17 @@ fn from_cubic(
     if waiting.is_empty() { Ok(worst) } else { refined(source, c, &mut waiting, enough, worst) }
 }
 
-/// A point of the cubic, its squared distance from the image, and the place to look next.
+/// A point of the cubic, its squared distance from the image, and the parameter to try next.
 #[derive(Debug, Clone, Copy)]
 struct Foot {
     q: Vec2,
     square: f64,
     tau: f64,
-    /// Derivative of the image, nearly.
+    /// Approximate derivative of the image.
     slope: Vec2,
 }
 
-/// Measures the distances of up to eight points together. Returns the largest square, or `worst` if that is larger.
+/// Measures the distances of up to eight points together. Returns the largest squared distance, or `worst` if that is larger.
 fn refined(
     source: &impl Source,
     c: &Candidate,
@@ -431,7 +431,7 @@ fn refined(
         }
     }
     for foot in feet {
-        // Take Newton steps with the derivative where the chords lead to no place within the tolerance.
+        // Where the chords lead to no point within the tolerance, take Newton steps with the derivative.
         let (mut tau, mut best) = (foot.tau, foot.square);
         for _ in 0..MORE_STEPS {
             if best <= larger(worst, enough) {
@@ -447,14 +447,14 @@ fn refined(
     Ok(worst)
 }
 
-/// Levels of a zoom on a maximum, each four times as close.
+/// Levels of a zoom on a maximum; each samples four times as closely.
 const ZOOMS: usize = 4;
 
-/// Distance between samples.
+/// Distance between samples of the dense check.
 const STEP: f64 = 1.0 / (DENSE_BATCHES * 8) as f64;
 
-/// The distance between the candidate and the image over its stretch, by dense sampling, more densely around slow spots.
-/// `feet` are foot points of sixteen samples, to start from. Returns `true` beside it if the thorough check was needed.
+/// Distance between the candidate and the image, by dense sampling, denser around slow spots, and `true` if the thorough
+/// check was needed. `feet` are foot points of sixteen samples, to start from.
 pub(crate) fn dense(
     source: &impl Source,
     c: &Candidate,
@@ -498,7 +498,7 @@ struct FootPoint {
     slope: Vec2,
 }
 
-/// A walk along the image.
+/// A walk along the image that measures its distance from the candidate.
 struct Walk<'a, S> {
     source: &'a S,
     c: &'a Candidate,
@@ -509,8 +509,8 @@ struct Walk<'a, S> {
 }
 
 impl<S: Source> Walk<'_, S> {
-    /// Measures the next eight samples and returns their squared distances; `None` if the foot points do not advance, leave out a long part
-    /// of the cubic, or if that turns by 60° between two of them.
+    /// Measures the next eight samples and returns their squared distances. `None` if the foot points do not advance, leap over a long part
+    /// of the cubic, or if the cubic turns by 60° between two of them.
     fn advance(&mut self, tau: &Lane) -> Result<Option<Lane>, NotFinite> {
         let c = self.c;
         // Newton steps left out would only make distances larger.
@@ -529,8 +529,8 @@ impl<S: Source> Walk<'_, S> {
         Ok(Some(squares))
     }
 
-    /// Eight more samples between the neighbours of every local maximum that is nearly the largest: where the cubic nearly
-    /// stops, the distance has a corner that no parabola follows. Returns the highest distance found.
+    /// Takes eight more samples beside every local maximum that is nearly the largest. Returns the highest distance found.
+    /// Where the cubic nearly stops, the distance has a corner that no parabola follows.
     fn zoom_on_peaks(&self, even: &[f64]) -> Result<f64, NotFinite> {
         let mut highest = 0.0f64;
         for i in 0..even.len() {
@@ -556,8 +556,8 @@ impl<S: Source> Walk<'_, S> {
     }
 }
 
-/// One test for all eight: foot points `s` in order after `last`, none of them far from the one before, and no turn of 60° between two.
-/// Nearly always true.
+/// Returns `true` if eight foot points `s` follow `last` in order, none of them far from the one before, and the cubic, with derivatives
+/// `dx`, `dy`, turns by less than 60° between any two.
 #[inline(always)]
 fn advances_smoothly(last: FootPoint, s: &Lane, dx: &Lane, dy: &Lane) -> bool {
     let mut before = [(last.s, last.slope.x, last.slope.y); 8];
@@ -578,18 +578,18 @@ fn advances_smoothly(last: FootPoint, s: &Lane, dx: &Lane, dy: &Lane) -> bool {
     largest(&margin) < 0.0
 }
 
-/// The highest parabola through three neighbours, of which the middle one is a local maximum near `most`. Takes squares.
+/// Highest peak of the parabolas through a local maximum near `most` and its neighbours. Takes squares and returns the distance.
 fn highest_parabola(squares: &[f64], most: f64) -> f64 {
     let tops = squares.windows(3).filter(|w| w[1] >= PEAK_NEAR * most && w[1] >= w[0] && w[1] >= w[2]);
     tops.map(|w| parabola_peak(w[0].sqrt(), w[1].sqrt(), w[2].sqrt())).fold(0.0, f64::max)
 }
 
-/// Eight places between `a` and `b`, the last of them `b`.
+/// Eight even parameters after `a`, the last of them `b`.
 fn spread(a: f64, b: f64) -> Lane {
     std::array::from_fn(|i| a + (b - a) * (i as f64 + 1.0) / 8.0)
 }
 
-/// Eight samples with their foot points and squared distances.
+/// Eight samples with foot points and squared distances.
 pub(crate) struct Probe {
     pub(crate) g: Lanes,
     pub(crate) s: Lane,
@@ -628,7 +628,7 @@ mod tests {
     #[test]
     fn foot_points_that_leap_are_not_steady() {
         let even: Evenly = std::array::from_fn(|j| j as f64 * UNIT);
-        // Foot point 6 late by a share of the spacing, so that the step after it is longer.
+        // Delays foot point 6 by a share of the spacing, so that the step after it is longer.
         let late = |share: f64| -> Evenly {
             let mut feet = even;
             feet[6] -= share * UNIT;
@@ -639,7 +639,7 @@ mod tests {
         assert_eq!(ALL, 18);
     }
 
-    /// The verdict on images at `x(τ)` of a line from 0 to 1, fitted by the line itself with foot points `s(τ)`.
+    /// Verdict on a line from 0 to 1 with images at `x(τ)`, fitted by the line itself with foot points `s(τ)`.
     fn verdict(x: impl Fn(f64) -> f64, s: impl Fn(f64) -> f64) -> Resolution {
         let unit = Vec2::new(1.0, 0.0);
         let end = |t: f64| BreakPoint { t, p: Point::new(t, 0.0), speed: 1.0, into: unit, away: unit };
@@ -657,7 +657,7 @@ mod tests {
 
     #[test]
     fn foot_points_far_from_even_ones_are_not_resolved() {
-        // Ahead of the samples by up to 0.17 and 0.19.
+        // The foot points are ahead of the samples by up to 0.17 and 0.19.
         let ahead = |by: f64| verdict(|t| t, |t| t + 4.0 * by * t * (1.0 - t));
         assert!(ahead(0.17).resolved && !ahead(0.19).resolved);
     }
@@ -671,7 +671,7 @@ mod tests {
         assert!(!slowing(2.2).resolved);
     }
 
-    /// The line beside the x axis at this height.
+    /// Line parallel to the x axis at this height.
     struct Beside(f64);
     impl Source for Beside {
         fn eval(&self, t: f64) -> (Point, Vec2) {

@@ -1,46 +1,46 @@
-//! Thresholds of the fit, each with what it does to pieces and work.
+//! Thresholds of the fit, each with its effect on pieces and work.
 //!
 //! "0.15: −0.9 % pieces, +7 % work" is the change over the sample of `tests/libraries/bending/figures.rs` at tolerances 1, 0.1, 0.01 and
-//! 0.001 together if this threshold alone has that value. Work is counted in calls of the map. Numbers that change either by less than
-//! 0.3 % when halved or doubled, and constants of mathematics, stand where they are used.
+//! 0.001 together if this threshold alone has the value 0.15. Work is counted in calls of the map. Numbers that change both by less than
+//! 0.3 % when halved or doubled, and constants of mathematics, are defined where they are used.
 
-// Shares of the tolerance. Errors add up along the way from the source to the output; each sum below is one.
+// Shares of the tolerance. Errors add up from the source to the output, and so the shares of each task add up to one.
 
-/// For errors at samples; the rest is for errors between them. 0.98: +0.2 % pieces, +3 % work; 0.5: +4 % and +68 %.
+/// Share for errors at samples; the rest is for errors between them. 0.98: +0.2 % pieces, +3 % work; 0.5: +4 % and +68 %.
 pub const ACCEPTED: f64 = 0.99;
 
-/// For the sides of a stroke that miss each other: gaps that are closed without a join, half of it from either side.
+/// Share for gaps between the sides of a stroke that are closed without a join, half of it from either side.
 pub(crate) const GAPS: f64 = 0.3;
 
-/// For segments of a stroked path that are points, as a share of those gaps.
+/// Longest segment of a stroked path that counts as a point, as a share of [`GAPS`].
 pub(crate) const POINTS: f64 = 0.07;
 
-/// For a stroke's curves: what gaps and points leave.
+/// Share for a stroke's curves: the rest that gaps and points leave.
 pub(crate) const STROKED: f64 = 1.0 - (0.5 + POINTS) * GAPS;
 
-/// For the places at which edges of an area cross.
+/// Share for the points at which edges of an area cross.
 #[cfg(feature = "area")]
 pub(crate) const CROSSINGS: f64 = 0.02;
 
-/// For fewer pieces of an area's edges before it grows or shrinks.
+/// Share for simplifying an area's edges before it grows or shrinks.
 #[cfg(feature = "area")]
 pub(crate) const SOURCE: f64 = 0.2;
 
-/// For the edges of an area before fewer pieces are looked for.
+/// Share for fitting the edges of an area before they are simplified.
 #[cfg(feature = "area")]
 pub(crate) const EDGES: f64 = 0.3;
 
-/// For those pieces.
+/// Share for simplifying the edges of the result.
 #[cfg(feature = "area")]
 pub(crate) const SIMPLIFIED: f64 = 1.0 - SOURCE - 2.0 * CROSSINGS - EDGES;
 
-/// For the cubics that a long run becomes before it is covered with quadratics, which have the rest.
+/// Share for the cubics that a long run becomes before it is covered with quadratics, which have the rest.
 pub(crate) const CUBICS_FIRST: f64 = 0.05;
 
 /// A wider gap between parts of a source is a jump. A narrower one is closed, within what [`ACCEPTED`] leaves.
 pub(crate) const JUMP: f64 = 1.0 - ACCEPTED;
 
-/// Sagitta up to which an image is a line, so that lines leave the rest to other errors.
+/// Sagitta up to which an image counts as a line, as a share of the tolerance.
 pub const STRAIGHT: f64 = 1e-3;
 
 // Segments
@@ -63,14 +63,14 @@ pub(crate) const TRUST_RADIUS: f64 = 0.15;
 /// Evaluations of one fit. 3: +6 % pieces, +0.9 % work; 12: −0.1 % and 0.
 pub(crate) const MAX_EVALUATIONS: usize = 6;
 
-/// … and of one over several segments, whose error decides where to look next. 5: +1.1 % pieces; 20: unchanged, +0.6 % proofs.
+/// Evaluations of a fit over several segments, whose error decides where to look next. 5: +1.1 % pieces; 20: unchanged, +0.6 % proofs.
 pub(crate) const RUN_EVALUATIONS: usize = 10;
 
-/// A step that promises to lower the sum of squares by less than this share is not taken. 0: −0.1 % pieces, +0.8 % work; 0.2: as much
-/// less certified work.
+/// A step that promises to lower the sum of squares by less than this share is not taken. 0: −0.1 % pieces, +0.8 % work; 0.2: −0.8 %
+/// certified work.
 pub(crate) const MIN_GAIN: f64 = 0.1;
 
-/// Evaluations after which a step's promise predicts the residual reached. 2: +0.3 % pieces, +0.5 % work; 6: +0.4 % and −1.8 %.
+/// Evaluations after which a step's promised gain predicts the final residual. 2: +0.3 % pieces, +0.5 % work; 6: +0.4 % and −1.8 %.
 pub(crate) const PROMISE_AFTER: usize = 3;
 
 /// A fit predicted to leave more than this multiple of the tolerance is given up: it only has to predict the number of pieces. 1: −0.3 %
@@ -85,7 +85,7 @@ pub(crate) const GOOD_ENOUGH: f64 = 0.85;
 /// +0.3 %.
 pub(crate) const RESTART_WITHIN: f64 = 3.0;
 
-/// By how much the first handle is longer or shorter then. 1: +0.3 % pieces; 2.9: +0.2 %.
+/// Factor by which a restart lengthens or shortens the first handle. 1: +0.3 % pieces; 2.9: +0.2 %.
 pub(crate) const RESTART_FACTOR: f64 = 1.45;
 
 /// Try a minimax fit if the error is within this multiple of the tolerance. Least squares is within 5 % of minimax to leading
@@ -98,45 +98,44 @@ pub(crate) const MINIMAX_HOPE: f64 = 1.02;
 
 // Acceptance by samples
 
-/// Below this share of the tolerance an error is small: between sixteen samples, a residual of the leading form
-/// s²(1−s)²((s−½)²−c) exceeds its samples by 4 %, others by little more. Such errors at eight samples are accepted if the curve is a
-/// quotient of polynomials of low degree, at sixteen under any other. 0.35: +4.6 % work; 1.4: −3.4 % work and errors above the tolerance.
+/// Errors below this share of the tolerance are small: between sixteen samples, a residual of the leading form s²(1−s)²((s−½)²−c)
+/// exceeds its samples by 4 %, others by little more. Small errors are accepted at eight samples if the curve is a quotient of
+/// polynomials of low degree, else at sixteen. 0.35: +4.6 % work; 1.4: −3.4 % work and errors above the tolerance.
 pub(crate) const SMALL_ERROR: f64 = 0.6;
 
-/// Excess of an error over its samples relative to that of a parabola through them: corners and faster oscillations rise more.
-/// Residuals that oscillate over six samples have peaks that rise twice as far as the parabolas. 1.25: −1 % work, errors above the
-/// tolerance; 5: +2.1 % work.
+/// Rise of an error above its samples, as a multiple of the rise of the parabola through them. Corners and fast oscillations rise more
+/// than parabolas: residuals that oscillate over six samples rise twice as far. 1.25: −1 % work, errors above the tolerance; 5: +2.1 %
+/// work.
 pub(crate) const PEAK_FACTOR: f64 = 2.5;
 
-/// Samples taken halfway: two batches. With more gaps in doubt than that, the dense check is not much dearer. 8: +4 % work; 18:
-/// unchanged.
+/// Most samples taken halfway: two batches. If more gaps are in doubt, the dense check costs little more. 8: +4 % work; 18: unchanged.
 pub(crate) const MAX_HALFWAY: usize = 16;
 
-/// Largest ratio of speeds along a piece, squared, for which sixteen samples suffice under a quotient of polynomials of low degree
-/// (tenfold). 50: +2.4 % work; 200: −0.4 %; without:
-/// errors between samples.
+/// Largest squared ratio of speeds along a piece (here tenfold) for which sixteen samples suffice under a quotient of polynomials of low
+/// degree. 50: +2.4 % work; 200: −0.4 %; without: errors between samples.
 pub(crate) const PACE_SIXTEEN: f64 = 100.0;
 
-/// The same for eight samples, for any other map, and for trusting peaks predicted from sixteen (two and a half times): an image that slows down more may turn
-/// between two samples. 3: +1.5 % work; 12: −1 %, and errors half as high again as accepted.
+/// Largest squared ratio of speeds (here two and a half times) for which eight samples suffice, or sixteen under any other map, and
+/// for trusting peaks predicted from sixteen. An image that slows down more may turn between two samples. 3: +1.5 % work; 12: −1 %, and
+/// errors half as high again as accepted.
 pub(crate) const PACE_EIGHT: f64 = 6.25;
 
-/// Largest distance of a foot point from its sample's own parameter; three spacings. Farther ones mean that the cubic's speed
+/// Largest difference between a foot point and its sample's parameter: three spacings. A larger one means that the cubic's speed
 /// differs much from the image's. 0.09: +4 % work; 0.36: −0.2 %.
 pub(crate) const FOOT_LEAD: f64 = 0.18;
 
-/// Longest step between consecutive foot points, in spacings. A longer one means that image or cubic nearly stops in between: random
-/// tests found errors of up to 37 % there. 0.8: +61 % work; 3.2: −2 %.
+/// Longest step between consecutive foot points, in spacings. A longer one means that image or cubic nearly stops in between, where
+/// errors are missed. 0.8: +61 % work; 3.2: −2 %.
 pub(crate) const FOOT_STEP: f64 = 1.6;
 
 // Dense checks
 
-/// Longest step between foot points, as a share of the cubic: eight times the usual one. A longer one may cross a gap of the image, and
-/// is measured both ways.
+/// Longest step between foot points of a dense check, as a share of the cubic: eight times the usual one. A longer one may cross a gap of
+/// the image, and the thorough check follows.
 pub(crate) const FOOT_LEAP: f64 = 0.125;
 
-/// Batches of eight samples in a dense check. 4: −5 % work; 16: +10 % work. Zooming in finds the maxima even from a single batch; the
-/// others are a margin.
+/// Batches of eight samples in a dense check. Zooming in finds the maxima even from a single batch; the others are a margin.
+/// 4: −5 % work; 16: +10 % work.
 pub(crate) const DENSE_BATCHES: usize = 8;
 
 /// A sample whose square is below this share of the largest (0.8 of the error) is not sampled more closely. 0.32: +0.8 % work; 1.3
@@ -151,16 +150,16 @@ pub(crate) const THOROUGH_SAMPLES: usize = 160;
 
 // Break points
 
-/// Evaluations of a smooth part that may find no pieces: more would be spent on noise, and at jumps that no source declares …
+/// Most evaluations of a smooth part that may be in vain, to limit the work on noise and at undeclared jumps.
 pub(crate) const FUTILE_EVALUATIONS: usize = 2_000_000;
 
-/// … and for each piece found. Usual ones take some hundreds.
+/// Evaluations that are allowed in addition for each piece found. Most pieces take some hundreds.
 pub(crate) const EVALUATIONS_PER_PIECE: usize = 10_000;
 
 /// Shorter stretches of the parameter are not split. Bounds the attempts at a jump: 27 halvings.
 pub(crate) const MIN_STRETCH: f64 = 1e-8;
 
-/// Pieces planned at once; a stretch that needs more is divided again. 4: +5.3 % pieces, −8.8 % work; 16: −0.1 % pieces, +0.2 % work.
+/// Most pieces planned at once; a stretch that needs more is divided again. 4: +5.3 % pieces, −8.8 % work; 16: −0.1 % pieces, +0.2 % work.
 pub(crate) const MAX_PLANNED: usize = 8;
 
 /// Placements of the break points tried with one number of pieces. 2: +0.2 % pieces, −0.6 % work; 6: −0.1 % and +0.5 %.
@@ -170,33 +169,33 @@ pub(crate) const PLACEMENTS: usize = 3;
 /// work; 2: −0.9 % pieces, +17 % work.
 pub(crate) const FULL: f64 = 0.995;
 
-/// Move single break points if the difficulties add up to less than this share of the pieces: the leading term of the error
-/// vanishes somewhere on many curves. 0.6 (never): +3 % pieces, −11 % work; 2.3: −0.2 % pieces, +1.6 % work.
+/// Move single break points if the difficulties add up to less than this share of the pieces. On many curves the leading term of the
+/// error vanishes somewhere, so that difficulties mislead. 0.6 (never): +3 % pieces, −11 % work; 2.3: −0.2 % pieces, +1.6 % work.
 pub(crate) const REPAIRABLE: f64 = 1.15;
 
-/// Share of the difficulty of long pieces that is believed, for the same reason: fewer pieces are tried first. 0.4: −0.4 % pieces (of
+/// Share of the difficulty of long pieces that is believed, so that fewer pieces are tried first. 0.4: −0.4 % pieces (of
 /// spirals +15 %), +5 % work; 1.6: +26 % pieces.
 pub(crate) const HOPE: f64 = 0.8;
 
 /// Bisection steps for one break point. 3: +0.6 % pieces, −3 % work; 100: −0.3 % pieces, +2 % work.
 pub(crate) const BISECTIONS: usize = 5;
 
-/// A trial place closer than this share of the interval to one already tried is replaced by the middle. 0.05: −0.3 % work (spirals +3 %);
+/// A trial break point closer than this share of the interval to an end is replaced by the middle. 0.05: −0.3 % work (spirals +3 %);
 /// 0.2: +0.9 % work.
 pub(crate) const BISECTION_MARGIN: f64 = 0.1;
 
-// Merging: figures are those of merged pieces
+// Merging (figures count merged pieces)
 
-/// Pieces of one stretch from which on fewer are looked for.
+/// Pieces of one stretch from which on fewer are searched for.
 pub(crate) const LONG: usize = 3;
 
-/// Pieces of one segment of a path from which on fewer are looked for. 3: +40 % time for rectangles under waves, which take four pieces a side, and no fewer.
+/// Pieces of one segment of a path from which on fewer are searched for. 3: +40 % time for rectangles under waves, in vain.
 pub(crate) const LONG_SEGMENT: usize = 6;
 
-/// Places per piece at which those may end, with a sample at each and between them.
+/// Grid points per piece at which the fewer pieces may end, with a sample at each and between them.
 pub(crate) const LONG_GRID: usize = 32;
 
-/// Stretches that are searched together, for the memory of their samples: hundreds of numbers each. Of so many, one piece is hardly one.
+/// Most stretches that are searched together: the samples of each take hundreds of numbers of memory.
 pub(crate) const LONGEST_RUN: usize = 4096;
 
 /// Work of the search for each piece, with its checks, in evaluations of the source.
@@ -205,44 +204,44 @@ pub(crate) const LONG_WORK: usize = 400;
 /// Joints that turn by less than this are smooth: drawings round their coordinates. Radians (half a degree). 0: +19 % pieces.
 pub const SMOOTH_JOINT: f64 = 0.0087;
 
-/// A line more than this many times as long as the next is an edge and no chord of a flattened curve. Flattened rounded rectangles keep
-/// their sides; at 1, flattened ellipses keep most of their chords.
+/// A line more than this many times as long as the next is an edge, not a chord of a flattened curve, so that flattened rounded
+/// rectangles keep their sides. 1: flattened ellipses keep most of their chords.
 pub(crate) const LONG_EDGE: f64 = 8.0;
 
-/// Places per segment at which a merged piece may end. 4: +2.4 % pieces, −12 % work; 16: −1.7 % pieces, +30 % work.
+/// Grid points per segment at which a merged piece may end. 4: +2.4 % pieces, −12 % work; 16: −1.7 % pieces, +30 % work.
 pub const MERGE_GRID: usize = 8;
 
-/// Runs whose curvature jumps by no more than this share are one curve, and searched again on a finer grid. 0.1: −0.3 % pieces, +6 % work;
-/// without: circles of eight cubics under strong maps have up to a sixth more pieces.
+/// Runs whose curvature jumps by no more than this share are one curve and are searched again on a finer grid. 0.1: −0.3 % pieces, +6 %
+/// work; without: circles of eight cubics under strong maps have up to a sixth more pieces.
 pub(crate) const EVEN_CURVATURE: f64 = 0.05;
 
-/// Share of a cubic's grid places to which its end is searched: the last of 64 or fewer exactly, of more as a share. Without: 100,000
-/// cubics round a circle take more than linear time.
+/// The end of a cubic is searched up to its length in grid points divided by this, so that short cubics end as late as possible.
+/// Without: 100,000 cubics round a circle take more than linear time.
 pub(crate) const FINEST_STEP: usize = 128;
 
 /// Intervals between samples of a segment in a run, under a quotient of polynomials. A multiple of eight and of [`MERGE_GRID`]. 32: −4 %
-/// work of the map, twice as much of the fitter.
+/// calls of the map, twice the work of the fitter.
 pub(crate) const RATIONAL_SAMPLES: usize = 16;
 
-/// … and under any other map, whose error may swing several times within a segment. 16: errors between the samples in one of 16,000
-/// random cases.
+/// Intervals under any other map, whose error may swing several times within a segment. 16: errors between the samples in
+/// rare random cases.
 pub(crate) const OPAQUE_SAMPLES: usize = 32;
 
-/// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: that of x²/2 right of zero and
-/// 0 left of it, on −1..1, in the uniform norm. A joint with a larger jump than this allows is not crossed, so no fit is wasted
-/// on it. 0: −0.1 % pieces, +27 % trials; 0.014: +0.2 % pieces, −1.3 % work.
+/// Error of the best cubic for a curve whose curvature jumps by 1, per square of the shorter side: for the function that is x²/2 right
+/// of zero and 0 left of it, on −1..1, in the uniform norm. No fit is tried across a joint with a larger jump than this allows.
+/// 0: −0.1 % pieces, +27 % trials; 0.014: +0.2 % pieces, −1.3 % work.
 pub(crate) const JUMP_ERROR: f64 = 0.0069;
 
-/// Error ÷ tolerance that the next guess of a reach aims at, by the sixth-order law: a little too far, as interpolation comes
-/// back faster than galloping goes on. 2.5: +0.4 % work; 10: +0.1 %.
+/// Error ÷ tolerance that the next guess of a cubic's reach aims at, by the sixth-order law: a little too far, because
+/// interpolation between a fit and a miss is faster than galloping. 2.5: +0.4 % work; 10: +0.1 %.
 pub(crate) const REACH_TARGET: f64 = 5.0;
 
-/// The same once a fit and a miss are known: between them the error's logarithm is taken as linear in that of the length. 0.6: +0.6 % work;
-/// 2.4: +0.2 %.
+/// Error ÷ tolerance aimed at once a fit and a miss are known. Between these, log(error) is taken as linear in log(length).
+/// 0.6: +0.6 % work; 2.4: +0.2 %.
 pub(crate) const BETWEEN_TARGET: f64 = 1.2;
 
-/// A stretch interpolates its samples if those of the run are off the wanted places by more than this share of the spacing. 0.3: −0.1 %
-/// work, more instructions; 1.2: +0.1 % pieces, +0.5 % work.
+/// A stretch interpolates its samples if the samples of the run are off the wanted parameters by more than this share of the spacing.
+/// 0.3: −0.1 % work, more instructions; 1.2: +0.1 % pieces, +0.5 % work.
 pub(crate) const COARSE: f64 = 0.6;
 
 /// A check samples the run more closely where two samples are further apart than this share of the cubic's length: a little more than
@@ -250,28 +249,28 @@ pub(crate) const COARSE: f64 = 0.6;
 /// 0.03: +32 % work; 0.13: −22 % and errors above the tolerance.
 pub(crate) const COARSE_CHECK: f64 = 0.065;
 
-/// Parts of a segment with fewer intervals than this have too few samples to show how their error bends: a cubic's ends have errors of
-/// zero slope, so that the error may peak close beside a joint. 2: −0.2 % work, and errors of up to 1.2 % above the tolerance in one of a
-/// thousand random runs; 8: +1 % work.
+/// Parts of a segment with fewer intervals than this have too few samples to show the shape of their error, which starts with zero slope
+/// at a cubic's ends and may peak close beside a joint. 2: −0.2 % work, and errors above the tolerance in rare random runs;
+/// 8: +1 % work.
 pub(crate) const SHORT_PART: usize = 4;
 
-/// In such parts it may exceed its samples by this multiple of a parabola's excess, instead of by [`PEAK_FACTOR`]. 12: +0.3 % work.
+/// Replaces [`PEAK_FACTOR`] in short parts. 12: +0.3 % work.
 pub(crate) const SHORT_FACTOR: f64 = 6.0;
 
-/// Between two samples at which the cubic's direction differs by more than this (as a tangent), its own distance from the image is
-/// measured: elsewhere the two run side by side. 0.12: +3.4 % work; 0.5: −0.5 %; without: bulges of the cubic are missed.
+/// If the cubic's direction differs by more than this (as a tangent) between two samples, its distance from the image is measured
+/// in between; elsewhere the two run side by side. 0.12: +3.4 % work; 0.5: −0.5 %; without: bulges of the cubic are missed.
 pub(crate) const SHARP_TURN: f64 = 0.25;
 
-/// Share of the tolerance above which the error of a cubic of a shape that comes again is brought down as far as possible: the error
-/// grows a little when the cubic is carried.
+/// Share of the tolerance above which the error of a cubic that will be carried to other copies of its shape is brought down as far as
+/// possible, because it grows a little when carried.
 pub(crate) const CARRY_BELOW: f64 = 0.7;
 
 // Placed nodes
 
-/// A node goes to an extreme if the curve turns by less than this up to there, as a sine (20°).
+/// A node moves to an extreme if the curve turns by less than this up to the extreme, as a sine (20°).
 pub(crate) const MOVED_TURN: f64 = 0.342;
 
-/// A direction that is off an axis by less than this is along it: rounding.
+/// A direction counts as along an axis if it is off by less than this, which is rounding.
 pub(crate) const ON_AXIS: f64 = 1e-7;
 
 // Quadratics

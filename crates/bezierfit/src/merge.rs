@@ -1,8 +1,11 @@
-//! Fewer pieces across smooth joints: the fewest over the places of a grid on a run of segments.
+//! Fewer pieces across smooth joints: the fewest cubics that cover a run of segments, where pieces may end at the points of a grid.
 //!
-//! After c pieces only the furthest place matters, nearly: what one cubic covers from some place it also covers from a later
-//! one. So the search keeps one place for each number of pieces, extends it as far as one cubic reaches, and compares with
-//! the segments' own pieces, which lead from joint to joint.
+//! After c pieces nearly only the furthest grid point matters, because a cubic that covers a stretch also covers its later part.
+//! So the search keeps one grid point for each number of pieces, extends it as far as one cubic reaches, and compares with
+//! the separate pieces of the segments, which lead from joint to joint.
+//!
+//! Grid points are numbered along the run (`k`, `m` in the code); joints are the multiples of the grid points per segment. A *leg* leads
+//! from one grid point to a later one.
 
 use crate::distances::{Distances, MarkedCubic, proven};
 use crate::limits::{ACCEPTED, BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, JUMP_ERROR, MERGE_GRID, REACH_TARGET};
@@ -12,16 +15,16 @@ use crate::run::{RunCubic, Stretch, Trial};
 use crate::source::{BreakPoint, NotFinite, Source};
 use std::collections::VecDeque;
 
-/// A cubic that was tried from one place to another.
+/// A cubic that was tried from one grid point to another.
 struct Tried {
     to: usize,
     /// Error ÷ tolerance at the samples. At most 1 if the cubic fits.
     error: f64,
-    /// Set if it fits.
+    /// The cubic, if it fits and has not been checked.
     cubic: Option<Box<RunCubic>>,
-    /// Set once it has passed its check.
+    /// The piece, once it has passed its check.
     passed: Option<Box<Passed>>,
-    /// The next entry with the same start.
+    /// Number of the next entry with this start.
     next: usize,
 }
 
@@ -32,59 +35,58 @@ struct Passed {
     marked: Option<MarkedCubic>,
 }
 
-/// No entry.
+/// Number that stands for no entry.
 const NONE: usize = usize::MAX;
-/// Break points that are remembered at the same time.
+/// Most break points that are remembered.
 const ENDS: usize = 256;
-/// Joints that are looked at together.
+/// Number of joints in a block.
 const BLOCK: usize = 64;
 
-/// Lists of [`Reaches`], which keep their memory from run to run.
+/// Memory of [`Reaches`], reused from run to run.
 #[derive(Default)]
 pub struct ReachMemory {
-    /// Break points at grid places, each where its number modulo the length leads; computed on first use.
+    /// Break points at grid points, at their number modulo the length; computed on first use.
     ends: Vec<Option<(usize, BreakPoint)>>,
-    /// For each joint, how far on either side of it a cubic may extend: the shorter side of a cubic that crosses it is at most
-    /// this long.
+    /// For each joint, the greatest length of the shorter side of a cubic that crosses it.
     crossing: Vec<f64>,
-    /// The last place on the run from which a cubic may cross each joint of a block of joints.
+    /// For each block of joints, the length along the run from which on a cubic may cross all of them.
     blocks: Vec<f64>,
     tried: Vec<Tried>,
-    /// The last entry of `tried` from each place.
+    /// The last entry of `tried` from each grid point.
     latest: Vec<usize>,
     distances: Distances,
-    /// Places reached from the start before: drawings change little along a curve.
+    /// Grid points that the last cubic spanned, as a guess for the next.
     pub last_reach: usize,
 }
 
-/// Everything known about single cubics between the grid places of a run.
+/// All that is known about single cubics between the grid points of a run.
 pub struct Reaches<'r, S, F> {
     pub(crate) run: &'r SegmentRun<S>,
-    /// The segments' own pieces.
+    /// Pieces of the single segments.
     pub own: OwnPieces<F>,
-    /// The tolerance of checks, smaller than that of proofs.
+    /// Tolerance of checks, smaller than the tolerance of proofs.
     tolerance: f64,
     settings: MergeSettings,
     memory: &'r mut ReachMemory,
 }
 
-/// What is wanted of merged pieces.
+/// Requirements for merged pieces.
 #[derive(Debug, Clone, Copy)]
 pub struct MergeSettings {
     /// Largest allowed distance.
     pub tolerance: f64,
-    /// The error is to be proven.
+    /// Prove the error.
     pub proof: bool,
-    /// Cubics are to be marked, for use elsewhere.
+    /// Mark cubics, for use elsewhere.
     pub marks: bool,
-    /// They are certain to be used, so that their errors should be small.
+    /// The marked cubics are certain to be used, so that their errors should be small.
     pub again: bool,
-    /// They are to be the same from either end.
+    /// Fit alike from either end.
     pub evenly: bool,
 }
 
 impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
-    /// For one run; the memory is that of any run before.
+    /// Starts the search on a run. `memory` may come from any other run.
     pub fn new(
         run: &'r SegmentRun<S>,
         mut own: OwnPieces<F>,
@@ -101,7 +103,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         memory.tried.clear();
         let crossing = (0..=run.segments.len()).map(|j| {
             let most = (tolerance / (JUMP_ERROR * run.curvature_jump(j))).sqrt();
-            // Segments shorter than that say nothing about the curvature so far from the joint.
+            // Shorter segments say nothing about the curvature so far from the joint.
             if most < run.shorter_beside(j) { most } else { f64::INFINITY }
         });
         memory.crossing.clear();
@@ -120,12 +122,12 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         self.memory.tried.len()
     }
 
-    /// The last grid place.
+    /// The last grid point.
     pub(crate) fn last(&self) -> usize {
         self.run.last_place()
     }
 
-    /// The break point at place `k`. `Err`: the curve is not finite there.
+    /// The break point at grid point `k`. An error if the curve is not finite there.
     fn end(&mut self, k: usize) -> Result<BreakPoint, NotFinite> {
         let slot = k % self.memory.ends.len();
         if let Some((at, end)) = self.memory.ends[slot]
@@ -138,7 +140,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(end)
     }
 
-    /// The piece from place `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
+    /// The piece from grid point `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
     fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>, NotFinite> {
         let i = self.entry(k, m)?;
         if let Some(cubic) = self.memory.tried[i].cubic.take() {
@@ -150,19 +152,18 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             }
             tried.passed = passed;
         }
-        // Samples tell an error but for what the tolerance of checks leaves; a proof tells all of it.
+        // An error by samples may be too small by the margin that the tolerance of checks leaves; a proven one is not.
         let margin = if self.settings.proof { 1.0 } else { ACCEPTED };
         Ok(self.memory.tried[i].passed.as_ref().map(|p| (p.piece, p.error / margin)))
     }
 
-    /// A leg's piece as other sites need it, if it has passed its check.
+    /// Takes the marked cubic of a leg, if it has passed its check.
     pub fn marked(&mut self, leg: Leg) -> Option<MarkedCubic> {
         let i = self.known(leg.from, leg.to)?;
         self.memory.tried[i].passed.as_mut()?.marked.take()
     }
 
-    /// Checks a cubic, and one fitted more closely if it is just outside the tolerance or to be carried with a larger error
-    /// than need be.
+    /// Checks a cubic. If it fails, or has a large error and will be carried, checks a closer fit too. Returns the better of both.
     fn checked(&mut self, cubic: RunCubic, k: usize, m: usize) -> Result<Option<Passed>, NotFinite> {
         let found = self.within(&cubic)?;
         let enough =
@@ -178,7 +179,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(if error(&closer) < error(&found) { closer } else { found })
     }
 
-    /// The error of a cubic by the samples of all segments, or proven segment by segment. `None` if it is not within the tolerance.
+    /// Piece and error of a cubic, by the samples of all segments or proven segment by segment. `None` if it is not within the tolerance.
     fn within(&mut self, cubic: &RunCubic) -> Result<Option<Passed>, NotFinite> {
         let enough = self.tolerance;
         let checked = self.memory.distances.measure(self.run, cubic, enough)?;
@@ -231,7 +232,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(self.memory.tried[i].error)
     }
 
-    /// The furthest place that jumps of curvature let a cubic from `k` reach.
+    /// The furthest grid point to which jumps of curvature let a cubic from `k` extend.
     fn limit(&self, k: usize) -> usize {
         let (last, start) = (self.last(), self.run.place(k));
         let mut j = k / self.run.grid + 1;
@@ -255,11 +256,11 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         last
     }
 
-    /// The furthest place that one cubic from `k` was found to reach; `k` itself if there is none, or if nothing beyond the
-    /// segment's own single piece can be reached.
+    /// The furthest grid point found within reach of one cubic from `k`; `k` itself if there is none, or if the only piece of the segment
+    /// leads as far.
     ///
-    /// A stretch that fails makes nearly all longer ones fail, so places are tried in the manner of a bisection, with the
-    /// sixth-order law of the error as the guess.
+    /// If a stretch fails, nearly all longer ones do, so grid points are tried as in a bisection, with the sixth-order law of
+    /// the error as the guess.
     fn furthest(&mut self, k: usize) -> Result<usize, NotFinite> {
         let limit = self.limit(k);
         let grid = self.run.grid;
@@ -283,16 +284,16 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
     }
 
-    /// The furthest place that one cubic reaches from `k` as far as its samples show. `back`: places are counted from the end of the run.
+    /// The furthest grid point that one cubic reaches from `k`, as far as its samples show. If `back`, grid points count from the end.
     fn seek(&mut self, k: usize, (joint, limit): (usize, usize), back: bool) -> Result<usize, NotFinite> {
         let start = self.place(k, back);
         let (mut low, mut high) = (k, limit + 1);
-        // Errors at `low` and `high`, as far as they are known.
+        // Errors at `low` and `high`, if known.
         let (mut below, mut above) = (None, None);
         let mut probe = (joint + self.run.grid / 2).max(k + self.memory.last_reach).min(limit);
         for round in 0.. {
             let [from, to] = self.in_order([k, probe], back);
-            // Smaller errors are rounding to the guess, which then grows at most fivefold.
+            // Smaller errors may be rounding. This limits the growth of the next guess to sixfold.
             let error = self.error(from, to)?.max(1e-4);
             if error <= 1.0 {
                 (low, below) = (probe, Some(error));
@@ -319,18 +320,18 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(low)
     }
 
-    /// Two places in the order of the run.
+    /// Two grid points in the order of the run.
     fn in_order(&self, [k, m]: [usize; 2], back: bool) -> [usize; 2] {
         if back { [self.last() - m, self.last() - k] } else { [k, m] }
     }
 
-    /// The length up to a place.
+    /// Length of the run up to a grid point.
     fn place(&self, k: usize, back: bool) -> f64 {
         let run = self.run;
         if back { run.place(self.last()) - run.place(self.last() - k) } else { run.place(k) }
     }
 
-    /// The last place between two up to which the length is at most `length`; the first of them if there is none.
+    /// The last grid point between two up to which the length is at most `length`; the first of them if there is none.
     fn place_before(&self, length: f64, between: [usize; 2], back: bool) -> usize {
         if !back {
             return self.run.place_before(length, between);
@@ -343,8 +344,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         low
     }
 
-    /// The places that divide the run into the fewest pieces, each in the middle of those at which it may lie. `None` if one cubic does
-    /// not lead from some place to the next.
+    /// The grid points that divide the run into the fewest pieces, each in the middle of the range in which it may lie. `None` if no cubic
+    /// leads from some grid point to the next.
     pub(crate) fn middles(&mut self) -> Result<Option<Vec<usize>>, NotFinite> {
         let last = self.last();
         let mut ways = [vec![0], vec![0]];
@@ -377,7 +378,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(out.windows(2).all(|w| w[0] < w[1]).then_some(out))
     }
 
-    /// The place that is nearest to a length; of two that are as near, that closer to the middle, from whichever end.
+    /// The grid point nearest to a length; of two that are equally near, the one closer to the middle of the run.
     pub(crate) fn nearest_place(&self, length: f64, between: [usize; 2]) -> usize {
         let (run, whole) = (self.run, self.run.place(self.last()));
         let k = run.place_before(length, between);
@@ -387,34 +388,34 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 }
 
-/// A step between two grid places.
+/// A step between two grid points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Leg {
-    /// Its first place.
+    /// First grid point.
     pub from: usize,
-    /// Its last place.
+    /// Last grid point.
     pub to: usize,
-    /// By one cubic; otherwise by the pieces of one segment.
+    /// Set if one cubic covers the leg; otherwise the pieces of one segment do.
     pub merged: bool,
 }
 
-/// Fits a segment, given its index in the run, and appends its pieces.
+/// Function that fits a segment, given its index in the run, and appends its pieces.
 pub trait FitOwn: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {}
 
 impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite>> FitOwn for F {}
 
-/// The pieces of single segments, fitted when they are needed: where merging succeeds, most never are.
+/// Pieces of single segments, fitted only when they are needed. Where merging succeeds, few are.
 pub struct OwnPieces<F> {
     fit: F,
-    /// Grid places per segment of the legs between them.
+    /// Grid points per segment, in which legs are counted.
     grid: usize,
     pieces: Vec<Piece>,
-    /// For each segment, its range of `pieces` and their report.
+    /// For each segment that was fitted, its range in `pieces` and its report.
     known: Vec<Option<(usize, usize, Report)>>,
 }
 
 impl<F: FitOwn> OwnPieces<F> {
-    /// For a number of segments.
+    /// Makes an empty list for a number of segments.
     pub fn new(segments: usize, fit: F) -> Self {
         Self { fit, grid: MERGE_GRID, pieces: Vec::new(), known: vec![None; segments] }
     }
@@ -443,10 +444,10 @@ impl<F: FitOwn> OwnPieces<F> {
         (0..self.segments()).map(|i| self.count(i)).sum()
     }
 
-    /// Number of pieces that a way takes; without one, of the segments' own.
+    /// Number of pieces of these legs; without legs, of all segments fitted separately.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub fn count_of(&mut self, legs: Option<&[PassedLeg]>) -> Result<usize, NotFinite> {
         let Some(legs) = legs else { return self.total() };
         legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { self.count(leg.from / self.grid) }).sum()
@@ -461,10 +462,10 @@ impl<F: FitOwn> OwnPieces<F> {
         Ok(())
     }
 
-    /// Appends the pieces of a way; without one, the segments' own.
+    /// Appends the pieces of these legs; without legs, of all segments fitted separately.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub fn append(
         &mut self,
         legs: Option<Vec<PassedLeg>>,
@@ -487,14 +488,14 @@ impl<F: FitOwn> OwnPieces<F> {
     }
 }
 
-/// A leg with its piece and that one's error, if it is merged.
+/// A leg, with the piece and its error if it is merged.
 pub type PassedLeg = (Leg, Option<(Piece, f64)>);
 
 impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// The legs with their pieces. `None` if one of them does not pass its check.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
         let mut out = Vec::with_capacity(legs.len());
         for leg in legs {
@@ -506,10 +507,10 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
         Ok((out.len() == legs.len()).then_some(out))
     }
 
-    /// The way with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
+    /// The legs with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
         match fewest_legs(self)? {
             Some(legs) => self.pieces_of(&legs),
@@ -518,11 +519,11 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     }
 }
 
-/// A way with fewer pieces on a finer grid, if there is one: where pieces are hardly longer than segments, they lose much by ending at
-/// places of a coarse one.
+/// Searches for legs with fewer pieces on a finer grid: where pieces are hardly longer than segments, ending at the points of a coarse
+/// grid costs many. Returns `legs` if there are none.
 ///
 /// # Errors
-/// A segment is not finite.
+/// [`NotFinite`] if a segment is not finite.
 pub fn refined<S: Source + Clone, F: FitOwn>(
     run: &SegmentRun<S>,
     mut own: OwnPieces<F>,
@@ -549,19 +550,19 @@ pub fn refined<S: Source + Clone, F: FitOwn>(
 /// Largest factor by which a grid is refined.
 const MOST_REFINED: usize = 16;
 
-/// The furthest place found for some number of pieces.
+/// The furthest grid point found for some number of pieces.
 #[derive(Debug, Clone, Copy)]
 struct Furthest {
     place: usize,
-    /// The start of the last leg, and `true` if it is merged. `None` if one piece less leads as far.
+    /// Start of the last leg, and `true` if it is merged. `None` if one piece fewer leads as far.
     leg: Option<(usize, bool)>,
 }
 
-/// The way through the grid with the fewest pieces. `None` if there are not fewer than the segments have.
+/// The legs with the fewest pieces. `None` if they are not fewer than the segments have.
 fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Option<Vec<Leg>>, NotFinite> {
     let (last, grid) = (reaches.last(), reaches.run.grid);
     let mut furthest = vec![Furthest { place: 0, leg: None }];
-    // (number of pieces, joint) that a segment's own pieces lead to.
+    // Number of pieces and joint to which the pieces of a single segment lead.
     let mut by_own: VecDeque<(usize, usize)> = VecDeque::new();
     for count in 0.. {
         // A segment has at least one piece.
@@ -571,7 +572,7 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
         let Furthest { place: k, leg } = furthest[count];
         let joint = k - k % grid;
         let mut best = Furthest { place: reaches.furthest(k)?, leg: Some((k, true)) };
-        // The segment's own pieces matter only if no cubic leads as far. The leg to k may end at the joint before it as well.
+        // The pieces of a single segment matter only if no cubic leads as far. The leg to k may also end at the joint before.
         let at_joint = best.place <= joint + grid
             && best.place < last
             && joint < last
@@ -599,7 +600,7 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
     Ok(None)
 }
 
-/// The number of places that a search may leave open at place `m` after `k`: a long cubic need not end at the last possible one.
+/// Number of grid points that a search may leave open at `m` after `k`: a long cubic need not end at the last possible one.
 fn step(k: usize, m: usize) -> usize {
     ((m - k) / FINEST_STEP).max(1)
 }

@@ -1,5 +1,5 @@
-//! Nodes where a type designer puts them: at the structure of a drawing and at extremes, with handles along the axes, and between them as
-//! few pieces as the tolerance allows, divided alike from either end.
+//! Places nodes where a type designer would: at the structure of a drawing and at extremes, with handles along the axes. Between them are
+//! as few pieces as the tolerance allows, divided alike from either end.
 
 use crate::joined::{cover_far, fewest};
 use crate::limits::{FULL, HOPE, MAX_PLANNED, MOVED_TURN, ON_AXIS, PLACEMENTS, SMOOTH_JOINT};
@@ -12,14 +12,14 @@ use crate::source::{BreakPoint, NotFinite, Quotient, Source};
 use crate::stretch::StretchFitter;
 use kurbo::{Point, Vec2};
 
-/// A side of a joint, as far as it tells if the joint belongs to the structure of a drawing.
+/// One side of a joint: the properties that decide whether the joint belongs to the structure of a drawing.
 #[derive(Debug, Clone, Copy)]
 pub struct Side {
-    /// The direction at the joint.
+    /// Direction at the joint.
     pub tangent: Vec2,
-    /// The second derivative there, or any vector to the side to which the curve bends.
+    /// Second derivative at the joint, or any vector to the side to which the curve bends.
     pub bend: Vec2,
-    /// It is a straight line.
+    /// Set if this side is a straight line.
     pub is_line: bool,
 }
 
@@ -32,14 +32,14 @@ pub fn is_structure(before: &Side, after: &Side) -> bool {
     before.is_line != after.is_line || (along(before) && along(after) && side(before) * side(after) > 0.0)
 }
 
-/// Where the pieces of a run have their nodes, and how near to it they are.
+/// Settings for the pieces of a run with placed nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeSettings {
     /// [`Nodes::Auto`] or [`Nodes::Extremes`].
     pub nodes: Nodes,
     /// Largest allowed distance.
     pub tolerance: f64,
-    /// The end of the run joins its start smoothly.
+    /// Set if the end of the run joins its start smoothly.
     pub closed: bool,
     /// Evaluations that are left.
     pub left: f64,
@@ -54,7 +54,7 @@ pub struct PlacedWork {
     pub evaluations: usize,
 }
 
-/// A place on a run: a segment, its parameter there, and the direction of the handles if it is not the curve's own.
+/// A node on a run: the segment, its parameter, and the direction of the handles if they must lie along an axis.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     segment: usize,
@@ -68,10 +68,10 @@ impl Place {
     }
 }
 
-/// Appends the pieces of a run, with nodes where they are wanted. Those of a closed run begin at the first of them. Returns the work.
+/// Appends the pieces of a run with placed nodes. The pieces of a closed run begin at the first of these. Returns the work.
 ///
 /// # Errors
-/// A segment is not finite.
+/// [`NotFinite`] if a segment is not finite.
 pub fn placed<S: Source>(
     run: &SegmentRun<S>,
     settings: NodeSettings,
@@ -105,7 +105,7 @@ pub fn placed<S: Source>(
     Ok(work)
 }
 
-/// Places on a run that are closer, in segments, are one.
+/// Nodes on a run that are closer, in segments, are one.
 const SAME_PLACE: f64 = 1e-7;
 
 struct Places<'r, S> {
@@ -113,7 +113,7 @@ struct Places<'r, S> {
     closed: bool,
 }
 
-/// One of a point's coordinates: 0 or 1.
+/// Number of a point's coordinate: 0 or 1.
 type Coordinate = usize;
 
 fn coordinate(v: Vec2, c: Coordinate) -> f64 {
@@ -121,13 +121,13 @@ fn coordinate(v: Vec2, c: Coordinate) -> f64 {
 }
 
 impl<'r, S: Source> Places<'r, S> {
-    /// Number of samples' intervals.
+    /// Number of intervals between samples.
     fn intervals(&self) -> usize {
         self.run.segments.len() * self.run.per_segment
     }
 
-    /// The sign in which a coordinate changes over an interval between samples, which may be one beyond the ends of a closed run. Zero if
-    /// it hardly does.
+    /// Change of a coordinate over an interval between samples, relative to its length; zero if it is rounding. `k` may be beyond the ends
+    /// of a closed run.
     fn change(&self, c: Coordinate, k: isize) -> f64 {
         let k = k.rem_euclid(self.intervals() as isize) as usize;
         let v = if c == 0 { &self.run.x } else { &self.run.y };
@@ -141,8 +141,8 @@ impl<'r, S: Source> Places<'r, S> {
         let segment = |j: isize| &self.run.segments[j.rem_euclid(count / n) as usize];
         let mut out = Vec::new();
         for c in 0..2 {
-            // How the coordinate changes at joints and between samples, with the samples around: at a joint along the axis, on either
-            // side of it.
+            // Changes of the coordinate at joints and between samples, with the samples around. A joint along the axis has a change
+            // on either side.
             let beside = |j: isize, t: f64| coordinate(segment(j).source.eval(t).1.normalize(), c);
             let mut all: Vec<(isize, isize, f64)> = Vec::new();
             for k in 0..count {
@@ -175,7 +175,7 @@ impl<'r, S: Source> Places<'r, S> {
         Ok(out)
     }
 
-    /// The extremes that are the outermost of their coordinate.
+    /// The smooth extremes that lie on the bounding box of all.
     fn outermost(&self) -> Result<Vec<Place>, NotFinite> {
         let all = self.extremes()?;
         let at: Vec<Point> = all.iter().map(|p| self.run.segments[p.segment].source.eval(p.t).0).collect();
@@ -188,7 +188,7 @@ impl<'r, S: Source> Places<'r, S> {
         Ok(all.into_iter().zip(&at).filter(|(_, p)| outer(p)).map(|(place, _)| place).collect())
     }
 
-    /// The nodes of the source that are its structure, where they belong in the result.
+    /// The nodes of the source that are its structure, moved to the nearest extreme if that is near.
     fn structure(&self) -> Result<Vec<Place>, NotFinite> {
         let mut out = Vec::new();
         for (j, segment) in self.run.segments.iter().enumerate() {
@@ -210,8 +210,8 @@ impl<'r, S: Source> Places<'r, S> {
         Ok(out)
     }
 
-    /// The nearest extreme up to which the curve turns by little from joint `j`, where it is off the axis by `off`, and up to the next
-    /// node that is kept.
+    /// The nearest extreme before the next kept node up to which the curve turns by little from joint `j`, where it is off the axis by
+    /// `off`.
     fn near(&self, j: usize, c: Coordinate, off: f64) -> Result<Option<Place>, NotFinite> {
         let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
         let start = j as isize * n;
@@ -229,7 +229,7 @@ impl<'r, S: Source> Places<'r, S> {
                 let passed = far > 0 && is_kept(if side == 0 { k } else { k + 1 });
                 let d = if inside && !passed { self.change(c, k) } else { f64::INFINITY };
                 if d * off < 0.0 && d.abs() <= MOVED_TURN {
-                    // Between the middles of this interval and of the one before.
+                    // The extreme is between the middles of this interval and of the one before.
                     let bracket = if side == 0 { [(k - 1).max(start), k + 1] } else { [k, (k + 2).min(start)] };
                     let other = self.extreme(c, bracket, if side == 0 { d } else { off })?;
                     found = found.into_iter().chain(other).min_by(|p, q| from_joint(p).total_cmp(&from_joint(q)));
@@ -246,8 +246,8 @@ impl<'r, S: Source> Places<'r, S> {
         Ok(None)
     }
 
-    /// The extreme of a coordinate between two samples, after which it changes with the sign of `after`. `None` if the derivatives show
-    /// none.
+    /// The extreme of a coordinate between two samples, after which the coordinate changes with the sign of `after`. `None` if the
+    /// derivatives show none.
     fn extreme(&self, c: Coordinate, [from, to]: [isize; 2], after: f64) -> Result<Option<Place>, NotFinite> {
         let (n, count) = (self.run.per_segment as isize, self.run.segments.len() as isize);
         let from = if self.closed { from } else { from.max(0) };
@@ -278,7 +278,7 @@ impl<'r, S: Source> Places<'r, S> {
         Ok(None)
     }
 
-    /// The stretch between two places as a run of its own; a segment beyond the last is the first again.
+    /// The stretch between two nodes as a run. After the last segment, segments are counted from the first again.
     fn between(&self, from: Place, to: Place) -> Result<SegmentRun<Part<'r, S>>, NotFinite> {
         let (run, count) = (self.run, self.run.segments.len());
         let mut out = SegmentRun::new(true, to.segment + 1 - from.segment);
@@ -306,21 +306,21 @@ impl<'r, S: Source> Places<'r, S> {
     }
 }
 
-/// The direction along the axis on which coordinate `c` does not change.
+/// Unit vector along the axis on which coordinate `c` does not change, in the direction of `v`.
 fn along(v: Vec2, c: Coordinate) -> Vec2 {
     if c == 0 { Vec2::new(0.0, 1.0f64.copysign(v.y)) } else { Vec2::new(1.0f64.copysign(v.x), 0.0) }
 }
 
-/// Share of the interval between two samples at which the direction beside a joint is looked at.
+/// Share of the interval between two samples at which the direction beside a joint is taken.
 const INSIDE: f64 = 1e-3;
 
-/// The direction of the axis along which a unit vector is but for rounding.
+/// Direction of the axis along which a unit vector is, to rounding.
 fn axis_of(v: Vec2) -> Option<Vec2> {
     (0..2).find(|c| coordinate(v, *c).abs() <= ON_AXIS).map(|c| along(v, c))
 }
 
-/// The parameter between two at which the derivative of a coordinate changes its sign to that of `after`, with the derivative, by the
-/// method of Illinois.
+/// Parameter between two at which the derivative of a coordinate changes its sign to the sign of `after`, and the derivative, by the
+/// Illinois method.
 fn root<S: Source>(
     source: &S,
     (c, after): (Coordinate, f64),
@@ -331,7 +331,7 @@ fn root<S: Source>(
         if d.is_finite() { Ok((coordinate(d, c) / d.hypot(), d)) } else { Err(NotFinite { t, at: p }) }
     };
     let ((mut fa, da), (mut fb, db)) = (at(a)?, at(b)?);
-    // An end may be an extreme to the other side, with the wanted one close by.
+    // An end may be an extreme to the other side, close to the wanted one.
     let inside = INSIDE * (b - a);
     if fa.abs() <= ON_AXIS * 1e-3 {
         let f = at(a + inside)?.0;
@@ -371,13 +371,13 @@ fn root<S: Source>(
     Ok((f.abs() <= ON_AXIS).then_some((b, d)))
 }
 
-/// Stretches that take more pieces are searched from both of their ends.
+/// Most pieces found by quantiles of the difficulty; stretches that take more are also searched from both ends.
 const FROM_BOTH: usize = 2 * MAX_PLANNED;
 
-/// Errors ÷ tolerance above this, of a stretch that takes four pieces, tell no number of pieces.
+/// Largest error ÷ tolerance that predicts a number of pieces: about four.
 const MOST_TOLD: f64 = 4096.0;
 
-/// Appends the pieces of a stretch, alike from either end.
+/// Appends the pieces of a stretch, chosen alike from either end.
 fn evenly<S: Source + Clone>(
     run: &SegmentRun<S>,
     settings: NodeSettings,
@@ -401,7 +401,7 @@ fn evenly<S: Source + Clone>(
 }
 
 impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
-    /// A way of few pieces of about equal difficulty, the same from either end. `None` if the segments have fewer.
+    /// Legs with few pieces of about equal difficulty, chosen alike from either end. `None` if the segments have fewer pieces.
     pub(crate) fn even(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
         let last = self.last();
         let (mut n, mut placements, mut searched) = (1, 0, false);
@@ -443,7 +443,8 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
         }
     }
 
-    /// The places that divide the difficulty, whose sums up to some places are given, into equal parts. `None` if two of them are one.
+    /// Grid points that divide the difficulty into equal parts. `sums` are the sums of the difficulty up to the grid points `ends`.
+    /// `None` if two of the results coincide.
     fn quantiles(&self, ends: &[usize], sums: &[f64], parts: usize) -> Option<Vec<usize>> {
         let (n, last) = (ends.len() - 1, self.last());
         let (run, total) = (self.run, sums[n]);

@@ -1,4 +1,4 @@
-//! Curves beside a curve.
+//! Offset curves: curves at a distance from another.
 
 use crate::path::Segment;
 use crate::source::{BreakPoint, NotFinite, Source};
@@ -7,29 +7,29 @@ use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
 /// distance is negative.
 ///
-/// It has cusps where the segment's radius of curvature is the distance, at which a fit breaks it.
+/// It has cusps where the segment's radius of curvature is the distance. A fit breaks it there.
 #[derive(Debug, Clone, Copy)]
 pub struct Offset {
     segment: Segment,
     distance: f64,
-    /// Power basis of a vector along the segment that vanishes at no end, and the factor a + b·t that makes it the derivative.
+    /// Power basis of a vector along the segment that vanishes at no end, and the factor a + b·t with which it is the derivative.
     along: [Vec2; 3],
     factor: [f64; 2],
-    /// What is added at the start and at the end, and a share of each in between.
+    /// Vectors that are added at the start and at the end, and in proportion in between.
     shift: [Vec2; 2],
 }
 
-/// Samples between which the curvature reaches that of the distance once at most, or twice, which is looked for.
+/// Number of intervals that are searched for cusps. Each may have one cusp or a pair.
 const SAMPLES: usize = 32;
 
-/// Cusps nearer to each other or to an end are none.
+/// Cusps nearer to each other or to an end are ignored.
 const NEAR: f64 = 1e-7;
 
-/// Handles shorter than this, against the control polygon, have no direction.
+/// Handles shorter than this share of the control polygon have no direction.
 const NO_HANDLE: f64 = 1e-9;
 
 impl Offset {
-    /// Beside a segment of a path.
+    /// Makes the curve at a distance from a segment of a path.
     #[must_use]
     pub fn new(segment: PathSeg, distance: f64) -> Self {
         let c = segment.to_cubic();
@@ -44,19 +44,19 @@ impl Offset {
         Self { segment: Segment::new(segment), distance, along, factor, shift: [Vec2::ZERO; 2] }
     }
 
-    /// The segment that it is beside.
+    /// The segment beside which the curve runs.
     #[must_use]
     pub fn segment(&self) -> PathSeg {
         self.segment.segment()
     }
 
-    /// The distance from it.
+    /// Distance from the segment.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.distance
     }
 
-    /// The same curve from `start` to `end`, which are near its ends, with a share of the difference everywhere.
+    /// Moves the ends of the curve to `start` and `end` nearby, and points in between in proportion.
     #[must_use]
     pub fn with_ends(mut self, [start, end]: [Point; 2]) -> Self {
         self.shift = [Vec2::ZERO; 2];
@@ -64,7 +64,7 @@ impl Offset {
         self
     }
 
-    /// The part between two parameters.
+    /// The part of the curve between two parameters.
     #[must_use]
     pub(crate) fn part(&self, t0: f64, t1: f64) -> Self {
         let [a, b] = self.shift;
@@ -72,14 +72,14 @@ impl Offset {
         Self { shift, ..Self::new(self.segment().subsegment(t0..t1), self.distance) }
     }
 
-    /// The same curve in the other direction.
+    /// The curve in the other direction.
     #[must_use]
     pub(crate) fn reversed(&self) -> Self {
         let [a, b] = self.shift;
         Self { shift: [b, a], ..Self::new(self.segment().reverse(), -self.distance) }
     }
 
-    /// The vector along the segment with its derivative, a little beside where it vanishes, and the speed for its unit.
+    /// The vector along the segment with its derivative, taken a little aside where it vanishes, and the speed of the segment.
     fn along(&self, t: f64) -> (Vec2, Vec2, f64) {
         let [q0, q1, q2] = self.along;
         let at = |t: f64| ((q2 * t + q1) * t + q0, q2 * (2.0 * t) + q1);
@@ -91,22 +91,22 @@ impl Offset {
         (q, dq, factor * q.hypot())
     }
 
-    /// The unit tangent of the segment.
+    /// Unit tangent of the segment.
     #[must_use]
     pub(crate) fn direction(&self, t: f64) -> Vec2 {
         let (q, _, _) = self.along(t);
         q / q.hypot()
     }
 
-    /// The speed along the segment's direction: negative where the curve runs backwards, zero where it has a cusp.
+    /// Speed along the segment's direction: negative where the curve runs backwards, zero at cusps.
     pub(crate) fn speed(&self, t: f64) -> f64 {
         let (q, dq, speed) = self.along(t);
         speed - self.distance * q.cross(dq) / q.hypot2()
     }
 
-    /// The parameters of the cusps.
+    /// Parameters of the cusps.
     pub(crate) fn cusps(&self) -> Vec<f64> {
-        // Far from any: the segment turns in a circle of twice the distance at most.
+        // There is no cusp where the radius of curvature is at least twice the distance.
         let is_calm = |i: u32| {
             let (q, dq, speed) = self.along(f64::from(i) / 8.0);
             (self.distance * q.cross(dq)).abs() <= 0.5 * speed * q.hypot2() && speed > 0.0
@@ -152,7 +152,7 @@ impl Offset {
         };
         let mut out: Vec<f64> = Vec::new();
         for t in ends.windows(2).filter_map(crossing).filter(|t| *t > NEAR && *t < 1.0 - NEAR) {
-            // Between two that are as near as this, it hardly moves.
+            // Between cusps so near to each other, the curve hardly moves.
             if out.last().is_some_and(|last| t - last < NEAR) {
                 out.pop();
             } else {
@@ -178,7 +178,7 @@ impl Source for Offset {
         out
     }
 
-    /// Between its cusps, an offset has no features of its own.
+    /// Between cusps, an offset has no features that samples could miss.
     fn resolved(&self, _: [f64; 2], _: usize, _: f64) -> Option<bool> {
         Some(true)
     }

@@ -1,10 +1,10 @@
-//! Options of a fit, and what can go wrong.
+//! Options and errors of a fit.
 
 use crate::limits::SMOOTH_JOINT;
 use crate::source::NotFinite;
 use kurbo::Point;
 
-/// What is wanted of a fit.
+/// Requirements for a fit.
 ///
 /// ```
 /// use bezierfit::{Degree, Options};
@@ -19,51 +19,51 @@ pub struct Options {
     pub tolerance: f64,
     /// Prove the error where the source is a quotient of polynomials, instead of measuring it by dense sampling. Cubics only.
     pub certify: bool,
-    /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: those for which no smooth curve can stand
-    /// within the tolerance, such as squares with sides of some ten tolerances, but neither stairs of pixels nor noise nor facets. Joints
-    /// of other curves are smooth up to half a degree by default.
+    /// Joints of a path that turn by more than this, in radians, are corners. `None`, the default: joints that no smooth curve can replace
+    /// within the tolerance are corners, such as those of a square with sides of ten tolerances, but not stairs of pixels, noise or facets.
+    /// Joints of other curves are smooth up to half a degree by default.
     pub corner: Option<f64>,
-    /// Where nodes are. As few as the tolerance allows by default.
+    /// Choice of the nodes. By default, as few as the tolerance allows.
     pub nodes: Nodes,
-    /// What the pieces are. Cubics by default.
+    /// Degree of the pieces. Cubics by default.
     pub degree: Degree,
-    /// How many pieces there may be. As many as the tolerance needs by default.
+    /// Number of pieces. By default, as few as the tolerance allows.
     pub pieces: Pieces,
-    /// Return the best path found where the tolerance was not met, and list the places in the report. Off by default: that is
-    /// [`Error::NotMet`]. A given number of pieces asks for the best itself.
+    /// Return the best path found if the tolerance was not met, and list the points in the report. Off by default, when this is
+    /// [`Error::NotMet`]. A given number of pieces implies it.
     pub best: bool,
-    /// Evaluations of the source in each smooth part between its [breaks](crate::Source::breaks), at most: [`MAX_EVALUATIONS`] by default.
-    /// Work ends earlier where it finds too little: after 2,000,000 evaluations and 10,000 for each piece found, of which usual ones take
-    /// some hundreds. A given number of pieces takes several fits.
+    /// Most evaluations of the source in each smooth part between its [breaks](crate::Source::breaks): [`MAX_EVALUATIONS`] by default.
+    /// Work ends earlier where it finds too little: after 2,000,000 evaluations, plus 10,000 for each piece found. Most pieces take some
+    /// hundreds. A given number of pieces takes several fits.
     pub evaluations: usize,
 }
 
-/// Evaluations of each smooth part of a source, at most, unless [`Options::evaluations`] allows another number.
+/// Most evaluations of each smooth part of a source, unless [`Options::evaluations`] is set.
 pub const MAX_EVALUATIONS: usize = 100_000_000;
 
-/// What pieces are, besides lines.
+/// Degree of pieces that are not lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Degree {
     /// Cubics.
     Cubic,
-    /// Quadratics, as the `glyf` table of fonts holds them. Where they join smoothly, the joint is midway between the control points, so
+    /// Quadratics, as stored in the `glyf` table of fonts. Where they join smoothly, the joint is midway between the control points, so
     /// that it need not be stored.
     Quadratic,
 }
 
-/// Where the nodes between pieces are, besides corners.
+/// Choice of the nodes between pieces, besides corners.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Nodes {
-    /// Where the source has its structure: at smooth horizontal and vertical extremes with handles along the axis, at ends of straight lines
-    /// and arcs. Such a node goes to the result's own extreme, with handles exactly along the axis, if the curve turns by less than 20° up
-    /// to there. Pieces between them are as few as the tolerance allows, and divided alike from either end.
+    /// Nodes of the source's structure: smooth horizontal and vertical extremes with handles along the axis, and ends of straight lines
+    /// and arcs. Such a node moves to an extreme of the result, with handles exactly along the axis, if the curve turns by less than 20° up
+    /// to there. Between them are as few pieces as the tolerance allows, divided alike from either end.
     Auto,
-    /// Where the fewest pieces need them.
+    /// Nodes wherever they allow the fewest pieces.
     #[default]
     Fewest,
-    /// At every smooth horizontal or vertical extreme of the result, with handles exactly along the axis; between them as for `Auto`.
+    /// Nodes at every smooth horizontal or vertical extreme of the result, with handles along the axis. Pieces between them as for `Auto`.
     Extremes,
-    /// Where the source has them: no piece crosses a joint.
+    /// Nodes of the source: no piece crosses a joint.
     Source,
 }
 
@@ -74,21 +74,21 @@ impl Nodes {
         self != Self::Source
     }
 
-    /// Returns `true` if some nodes are chosen for their place.
+    /// Returns `true` if some nodes are chosen for their position.
     #[must_use]
     pub fn are_placed(self) -> bool {
         matches!(self, Self::Auto | Self::Extremes)
     }
 }
 
-/// A number of pieces.
+/// Number of pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pieces {
     /// As few as the tolerance allows.
     Fewest,
-    /// At most this many: if the tolerance needs more, these with nearly the least error that they reach, which the report tells.
+    /// At most this many. If the tolerance needs more, they have nearly the least possible error, which is in the report.
     AtMost(usize),
-    /// This many, whatever the tolerance, with hardly more than the least error that a tolerance leads to: usually within 1.3 of it, but a
+    /// Exactly this many, whatever the tolerance. The error is usually at most 1.3 times the least one found with any tolerance, but a
     /// multiple where only a narrow range of tolerances finds the pieces that suit the symmetry of a curve.
     Exactly(usize),
 }
@@ -104,7 +104,7 @@ macro_rules! setters {
 }
 
 impl Options {
-    /// Within `tolerance`, measured.
+    /// Options for a fit within `tolerance`, which is measured.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         let (degree, pieces) = (Degree::Cubic, Pieces::Fewest);
@@ -122,7 +122,7 @@ impl Options {
         with_evaluations(evaluations: usize) => evaluations;
     }
 
-    /// Refuses what makes no sense.
+    /// Returns an error if a value is out of range.
     pub(crate) fn checked(&self) -> Result<(), Error> {
         if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
             return Err(Error::Tolerance(self.tolerance));
@@ -130,12 +130,12 @@ impl Options {
         self.corner.filter(|c| c.is_nan() || *c < 0.0).map_or(Ok(()), |c| Err(Error::Corner(c)))
     }
 
-    /// Joints of curves that are no path and turn by less, in radians, are smooth.
+    /// Largest turn of a smooth joint of curves other than paths, in radians.
     pub(crate) fn joint(&self) -> f64 {
         self.corner.unwrap_or(SMOOTH_JOINT)
     }
 
-    /// Joints of paths that turn by less, in radians, may lie inside of a piece, unless corners begin below that. At larger turns it would
+    /// Largest turn of a joint of a path that may lie inside a piece, in radians: at most the corner angle. At larger turns the piece would
     /// differ from the path in direction, although not in distance.
     pub(crate) fn path_joint(&self) -> f64 {
         const MOST: f64 = 15.0 / 180.0 * std::f64::consts::PI;
@@ -143,7 +143,7 @@ impl Options {
     }
 }
 
-/// Why a curve was not fitted.
+/// Reason why a curve was not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -153,21 +153,21 @@ pub enum Error {
     Tolerance(f64),
     /// The corner angle is negative or not a number.
     Corner(f64),
-    /// How the edges of an area cross was not found.
+    /// The crossings of the edges of an area were not found.
     Crossings,
-    /// The tolerance was not met, and [`Options::best`] does not ask for what was found: the curve jumps where it does not say so, or
-    /// swings faster than its evaluations allow.
+    /// The tolerance was not met, and [`Options::best`] is not set: the curve jumps at a parameter that is not among its breaks, or swings
+    /// faster than its evaluations allow.
     NotMet {
-        /// The first [place](crate::Source::place) where it was not.
+        /// The first [point](crate::Source::place) where it was not.
         at: Point,
         /// The largest distance.
         error: f64,
     },
-    /// Corners and gaps ask for more pieces than were allowed.
+    /// Corners and gaps need more pieces than were allowed.
     TooFewPieces {
-        /// The pieces that were allowed.
+        /// The number of pieces that were allowed.
         allowed: usize,
-        /// The fewest that were found.
+        /// The least number that was found.
         least: usize,
     },
 }

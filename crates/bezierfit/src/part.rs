@@ -1,4 +1,4 @@
-//! Stretches of a curve as curves of their own: the smooth parts between its breaks, and what one piece of a fit covers.
+//! Stretches of a curve as sources: the smooth parts between its breaks, and the stretches that single pieces of a fit cover.
 
 use crate::limits::JUMP;
 use crate::sample::{Lane, Lanes};
@@ -6,15 +6,15 @@ use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, Source};
 use kurbo::{Point, Vec2};
 use std::cell::Cell;
 
-/// A smooth stretch of a curve, with its own parameter from 0 to 1.
+/// A smooth stretch of a curve, with a parameter from 0 to 1.
 pub(crate) struct Part<'a, S> {
     source: &'a S,
     t: [f64; 2],
-    /// Its ends, at 0 and 1.
+    /// Ends, at 0 and 1.
     pub(crate) ends: [BreakPoint; 2],
-    /// It begins elsewhere than the part before ends.
+    /// Set if the part does not begin where the part before ends.
     pub(crate) jumps: bool,
-    /// Counts evaluations of the source.
+    /// Counter of evaluations of the source.
     calls: Option<&'a Cell<usize>>,
 }
 
@@ -34,7 +34,7 @@ impl<'a, S> Part<'a, S> {
         Self { source, t: [from.t, to.t], ends, jumps: false, calls: None }
     }
 
-    /// The stretch between two of its break points.
+    /// The stretch between two break points of this part.
     pub(crate) fn within(&self, [from, to]: [BreakPoint; 2]) -> Self {
         let t = [from.t, to.t].map(|t| self.at(t));
         Self { t, calls: self.calls, ..Part::between(self.source, [from, to]) }
@@ -73,7 +73,7 @@ impl<S: Source> Source for Part<'_, S> {
     }
 
     fn quotient(&self) -> Option<Quotient> {
-        // Bernstein coefficients would be those of the whole.
+        // Bernstein coefficients would belong to the whole source.
         self.source.quotient().map(|q| Quotient { weights: None, ..q })
     }
 
@@ -105,7 +105,7 @@ impl<S: Source> Source for Part<'_, S> {
     }
 }
 
-/// The parts between the breaks of a source, whose evaluations are counted.
+/// The parts between the breaks of a source. Their evaluations are counted.
 pub(crate) fn parts<'a, S: Source>(
     source: &'a S,
     tolerance: f64,
@@ -140,7 +140,7 @@ pub(crate) fn parts<'a, S: Source>(
 
 /// The end of a smooth part at `t`, with the tangent and the speed a little further inside.
 fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
-    // The limit from the left, where the curve jumps.
+    // Where the curve jumps, take the limit from the left.
     let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });
     let near = source.end(t + side * ONE_SIDED_STEP)?;
     let along = if side > 0.0 { near.away } else { near.into };

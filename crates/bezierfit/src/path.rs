@@ -1,4 +1,4 @@
-//! Fits of whole curves and paths, to a tolerance or with a given number of pieces, for which the tolerance is searched for.
+//! Fits of whole curves and paths, to a tolerance or with a given number of pieces, which takes a search for the tolerance.
 
 use crate::joined::{Covered, JoinSettings, fewest, joined};
 use crate::limits::CUBICS_FIRST;
@@ -16,15 +16,15 @@ use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 use std::cell::Cell;
 
-/// Evaluations between two looks at their number, at most: of a plan of eight pieces and its repair.
+/// Most evaluations between two checks of their number: a plan of eight pieces and its repair.
 const ONE_ROUND: usize = 200_000;
 
-/// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps where it
-/// [says](Source::breaks) so.
+/// Covers a curve with few pieces, within `options.tolerance`. The curve may have corners, cusps and jumps at its
+/// [breaks](Source::breaks).
 ///
 /// # Errors
-/// The curve is not finite somewhere, the tolerance could not be met ([`Options::best`] returns what was found), or the options make no
-/// sense.
+/// [`Error::NotFinite`] if the curve is not finite somewhere, [`Error::NotMet`] or [`Error::TooFewPieces`] if tolerance or number of pieces
+/// cannot be met, [`Error::Tolerance`] or [`Error::Corner`] if the options are out of range.
 ///
 /// ```
 /// use bezierfit::{Options, fit};
@@ -64,7 +64,7 @@ fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted, NotFinite> 
     Ok(out)
 }
 
-/// The pieces of parts that follow each other, fewer where they join smoothly. Stops early where `options` allow no more evaluations.
+/// Pieces of consecutive parts, fewer where the parts join smoothly. Stops early where `options` allow no more evaluations.
 fn merged_parts<S: Source>(
     parts: &[Part<'_, S>],
     (options, calls): (&Options, &Cell<usize>),
@@ -102,7 +102,7 @@ fn merged_parts<S: Source>(
     Ok(out)
 }
 
-/// Appends quadratics for parts that follow each other.
+/// Appends quadratics for consecutive parts.
 fn splines<S: Source>(
     parts: &[Part<'_, S>],
     (options, calls): (&Options, &Cell<usize>),
@@ -127,10 +127,11 @@ fn splines<S: Source>(
 
 /// Replaces the segments of a path by few, within `options.tolerance`. Corners stay: see [`Options::corner`].
 ///
-/// With [`Degree::Quadratic`], cubics become quadratics; with [`Nodes::Source`](crate::Nodes), each on its own.
+/// With [`Degree::Quadratic`], cubics become quadratics; with [`Nodes::Source`](crate::Nodes), each separately.
 ///
 /// # Errors
-/// The path has coordinates that are not finite, or the options make no sense.
+/// [`Error::NotFinite`] if a coordinate is not finite, [`Error::NotMet`] or [`Error::TooFewPieces`] if tolerance or number of pieces cannot
+/// be met, [`Error::Tolerance`] or [`Error::Corner`] if the options are out of range.
 ///
 /// ```
 /// use bezierfit::{Options, simplify};
@@ -146,11 +147,11 @@ pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
     limited(options, &|options| Ok(simplified(path, options)?))
 }
 
-/// Fits the curve that points mean, in their order: as [`simplify`] does the lines from one to the next, so that corners are those of the
-/// curve. It is closed if the last point is the first.
+/// Fits the curve on which points lie, in their order: applies [`simplify`] to the lines from one to the next, so that only corners of
+/// the curve stay. It is closed if the last point is the first.
 ///
 /// # Errors
-/// A point is not finite, or the options make no sense.
+/// [`Error::NotFinite`] if a point is not finite, and the other errors of [`simplify`].
 ///
 /// ```
 /// use bezierfit::{Options, fit_points};
@@ -217,7 +218,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
     Ok(out)
 }
 
-/// The first segments as a run, as far as they join smoothly, and their number.
+/// A run of the first segments, as far as they join smoothly, and their number.
 fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.nodes.merges() { segments.len() } else { 1 };
@@ -234,7 +235,7 @@ fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<S
     Ok((run, count))
 }
 
-/// Appends one of the segments as it is.
+/// Returns a function that appends one of the segments unchanged.
 fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {
     |i, pieces, report| {
         pieces.push(segments[i].piece());
@@ -243,8 +244,8 @@ fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Re
     }
 }
 
-/// Appends the pieces of the first segments, as far as they join smoothly, and returns their number. `closed`: after the last one comes
-/// the first again.
+/// Appends the pieces of the first segments, as far as they join smoothly, and returns the number of those segments. If `closed`, the
+/// first segment follows the last.
 pub(crate) fn smooth_run(
     (segments, closed): (&[Segment], bool),
     options: &Options,
@@ -268,7 +269,7 @@ pub(crate) fn smooth_run(
     Ok(count)
 }
 
-/// Appends quadratics for the first segments, as far as they join smoothly, and returns their number.
+/// Appends quadratics for the first segments, as far as they join smoothly, and returns the number of those segments.
 fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
     let (mut run, mut count) = smooth_start(segments, options)?;
     if let (true, Some(to)) = (options.nodes.are_placed(), (1..count).find(|i| run.segments[*i].kept)) {
@@ -279,7 +280,7 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
         PathSeg::Line(l) if count < 2 => out.path.line_to(l.p1),
         PathSeg::Quad(q) if count < 2 => out.path.quad_to(q.p1, q.p2),
         _ if count == 0 => {
-            // It has no length, or slow spots to be divided at.
+            // The segment has no length, or must be divided at slow spots.
             let slow = |t: f64| one.eval(t);
             let breaks = Broken { curve: slow, at: one.slow_spots() };
             if one.has_length() {
@@ -326,14 +327,14 @@ impl<F: Fn(f64) -> (Point, Vec2)> Source for Broken<F> {
     }
 }
 
-/// A whole path as a source, each of its segments over an equal share of the parameter.
+/// A whole path as a source. Each segment takes an equal share of the parameter.
 #[derive(Debug, Clone)]
 pub struct PathSource {
     segments: Vec<Segment>,
 }
 
 impl PathSource {
-    /// From a path. `None` if it has no segments.
+    /// Makes a source from a path. `None` if it has no segments.
     #[must_use]
     pub fn new(path: &BezPath) -> Option<Self> {
         let segments: Vec<Segment> = path.segments().map(Segment::new).collect();
@@ -370,7 +371,7 @@ pub(crate) fn subpaths(path: &BezPath) -> impl Iterator<Item = BezPath> + '_ {
     starts.zip(ends).map(|(i, j)| BezPath::from_vec(elements[i..j].to_vec()))
 }
 
-/// Writes pieces as a subpath. In a closed one, a last line is left to the close command.
+/// Appends pieces as a subpath. If `closed`, the close command stands for a last line.
 pub fn append(path: &mut BezPath, start: Point, pieces: &[Piece], closed: bool) {
     path.move_to(start);
     let by_close = closed && matches!(pieces.last(), Some(Piece::Line(_)));
@@ -394,7 +395,7 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// From kurbo's segment.
+    /// Makes a source from kurbo's segment.
     #[must_use]
     pub fn new(seg: PathSeg) -> Self {
         let c = match seg {
@@ -408,7 +409,7 @@ impl Segment {
         Self { seg, c }
     }
 
-    /// The segment itself, raised to a cubic.
+    /// The segment as a piece, raised to a cubic if it is a quadratic.
     fn piece(&self) -> Piece {
         match self.seg {
             PathSeg::Line(l) => Piece::Line(l),
@@ -416,13 +417,13 @@ impl Segment {
         }
     }
 
-    /// The side of a joint that this segment is at its start or its end.
+    /// The side of a joint formed by the start (`t` = 0) or the end (1) of the segment.
     fn side(&self, t: f64) -> Side {
         let [d1, d2] = self.derivatives(t);
         Side { tangent: d1, bend: d2, is_line: matches!(self.seg, PathSeg::Line(_)) }
     }
 
-    /// As kurbo's segment.
+    /// Kurbo's segment.
     pub(crate) fn segment(&self) -> PathSeg {
         self.seg
     }
@@ -433,7 +434,7 @@ impl Segment {
         [(c3 * (3.0 * t) + c2 * 2.0) * t + c1, c3 * (6.0 * t) + c2 * 2.0]
     }
 
-    /// Where it nearly stops.
+    /// Parameters at which the segment nearly stops.
     pub(crate) fn slow_spots(&self) -> SlowSpots {
         match &self.seg {
             PathSeg::Line(_) => SlowSpots::default(),
@@ -442,12 +443,12 @@ impl Segment {
         }
     }
 
-    /// Returns `true` if it is more than a point.
+    /// Returns `true` if the segment is more than a point.
     fn has_length(&self) -> bool {
         self.c[1..].iter().any(|c| c.hypot2() > 0.0)
     }
 
-    /// Returns `true` if it has a length and no cusps.
+    /// Returns `true` if the segment has a length and no cusps.
     fn is_smooth(&self) -> bool {
         self.slow_spots().all().is_empty() && self.has_length()
     }
@@ -494,17 +495,17 @@ impl Source for Segment {
     }
 }
 
-/// Fits tried on the way to the least error: it is then known to about a hundredth.
+/// Most fits in the bisection for the least error, which ends when it is known to about a hundredth.
 const TRIALS: usize = 40;
-/// Ratio of tolerances between which the search ends.
+/// Ratio of tolerances at which the bisection ends.
 const CLOSE: f64 = 1.01;
-/// Further fits, at most so many. Each has this share of the tolerance of the one before, until so many in a row found nothing closer: down
-/// to a seventieth, as where break points happen to suit the symmetry of a curve.
+/// After the bisection, most further fits, the ratio of their tolerances, and the number of fits in a row without improvement that ends
+/// them: a narrow range of tolerances, down to a seventieth, may find break points that suit the symmetry of a curve.
 const POLISHED: usize = 100;
 const CLOSER: f64 = 0.9;
 const MISSES: i32 = 40;
 
-/// Fits with the tolerance of the options, or with the one that leads to the wanted number of pieces.
+/// Fits with the tolerance of the options, or with a tolerance that leads to the wanted number of pieces.
 pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
     options.checked()?;
     let with = |tolerance: f64| fit(&Options { tolerance, pieces: Pieces::Fewest, ..*options });
@@ -531,14 +532,14 @@ pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted
     Ok(best)
 }
 
-/// The closest fit that was found with so many pieces at most, and the fewest pieces found. The search begins with a tolerance and its fit.
+/// The closest fit found with at most `allowed` pieces, and the fewest pieces found. The search begins with a tolerance and its fit.
 fn closest(
     allowed: usize,
     (mut tolerance, mut fitted): (f64, Fitted),
     with: &dyn Fn(f64) -> Result<Fitted, Error>,
 ) -> Result<(Option<Fitted>, usize), Error> {
     let (mut best, mut least) = (None::<Fitted>, count(&fitted));
-    // Tolerances that need too many pieces, and that need few enough.
+    // The largest tolerance that needs too many pieces, and the smallest that does not.
     let (mut low, mut high) = (0.0, f64::INFINITY);
     for _ in 0..TRIALS {
         let found = count(&fitted);
@@ -566,7 +567,7 @@ fn closest(
         }
         fitted = with(tolerance)?;
     }
-    // What was found may be closer than its tolerance asked for, and smaller tolerances do not always need more pieces.
+    // A fit may be closer than its tolerance, and smaller tolerances do not always need more pieces.
     let mut misses = 0;
     for _ in 0..POLISHED {
         let Some(b) = best.as_ref().filter(|_| misses < MISSES) else { break };
@@ -587,7 +588,7 @@ fn count(fitted: &Fitted) -> usize {
     fitted.report.pieces.len()
 }
 
-/// Divides pieces, the longest most, until there are `wanted`.
+/// Divides pieces in proportion to their lengths until there are `wanted`.
 fn divide(fitted: &mut Fitted, wanted: usize) {
     let segs: Vec<PathSeg> = fitted.path.segments().collect();
     let length = |s: &PathSeg| s.start().distance(s.eval(0.5)) + s.eval(0.5).distance(s.end());
@@ -603,7 +604,7 @@ fn divide(fitted: &mut Fitted, wanted: usize) {
             path.move_to(*p);
             continue;
         }
-        // A close command has a line of its own unless the subpath is back at its start.
+        // A close command draws a line unless the subpath is back at its start.
         let start = path.elements().iter().rev().find_map(|e| if let PathEl::MoveTo(p) = e { Some(*p) } else { None });
         let is_back = path.elements().last().and_then(PathEl::end_point) == start;
         if !(matches!(e, PathEl::ClosePath) && is_back) {

@@ -5,35 +5,29 @@
 //! point of C has one on g. With a polynomial φ that follows the foot points of the fit, D = g − C∘φ is a polynomial of known
 //! degree, and a bound for it follows from finitely many values.
 //!
-//! **Denominators.** If g = G/W, D is no polynomial. But with a polynomial V close to 1/W, the product F = V·W·D is one, and
-//! |D| ≤ |F| / (1−ε) where |VW − 1| ≤ ε. VW is a polynomial too, bounded in the same way.
-//!
-//! [`piece()`] tries the proofs in the order of their cost:
-//!
-//! - `sampled`: from the samples that the fit has taken anyway, or sixteen more.
-//! - `nodes`: from 24 to 48 Chebyshev nodes. Also for merged pieces, whose ends do not coincide with the image's.
-//! - `straight`: for lines.
-//!
-//! # Proofs from the values of D at Chebyshev nodes
+//! [`piece()`] tries proofs in the order of their cost: first from the samples that the fit has taken, or sixteen more (`sampled`),
+//! then from D at 24 to 48 Chebyshev nodes, as follows. Nodes also serve merged pieces, whose ends are not on the image ([`stretch()`]).
+//! Lines have a proof by themselves ([`line()`]).
 //!
 //! **φ** is a polynomial through the foot points of the fit, φ(τ) = τ + τ(1−τ)·p(2τ−1) with P coefficients in p. Since
 //! φ = τ·(1 + (1−τ)p) and 1−φ = (1−τ)·(1 − τp), it stays in [0, 1] if the two brackets, polynomials of degree P, are not
 //! negative. That holds if |p| ≤ 1, for which it suffices that the absolute values of p's Chebyshev coefficients add up to
 //! at most 1; otherwise the bound below is applied to the brackets.
 //!
-//! **The bound.** D = g − C∘φ is a polynomial of a known degree less than N. Its values at the N Chebyshev nodes therefore
+//! **The bound.** D is a polynomial of a known degree less than N. Its values at the N Chebyshev nodes therefore
 //! give its Chebyshev coefficients exactly (a discrete cosine transform), and for every d
 //!
 //! > sup |D| ≤ (max over nodes |D| + r_d) / cos(πd / 2N) + r_d,   r_d = Σ over k > d of |coefficient k|
 //!
 //! since a polynomial of degree d < N is at most 1/cos(πd/2N) times its largest value at the nodes (Ehlich and Zeller,
 //! *Schwankung von Polynomen zwischen Gitterpunkten*, Math. Z. 86, 1964). The best d is taken. D is a vector; the theorem
-//! holds for its component in any direction, hence for its length.
+//! holds for its component in any direction, hence for its length. A bound from few nodes with a simple φ comes first, as it is cheap;
+//! if it is above the tolerance, many nodes follow, which lose less.
 //!
-//! **Few nodes, then many.** The cost goes with the number of nodes, the loss with their scarcity. A bound from few nodes with
-//! a simple φ comes first; if it is not good enough, many nodes follow.
+//! **Denominators.** If g = G/W, D is no polynomial. But with a polynomial V close to 1/W, the product F = V·W·D is one, and
+//! |D| ≤ |F| / (1−ε) where |VW − 1| ≤ ε. VW is a polynomial too, bounded in the same way.
 //!
-//! Rounding of the samples (some 1e-14 of the coordinates) is added to the bound.
+//! **Rounding** of the samples (some 1e-14 of the coordinates) is added to the bound.
 
 use crate::fit::{Candidate, ChordFrame};
 use crate::sample::{CHECKED, FITTED, Lane, Lanes, fma, largest, sum};
@@ -43,8 +37,8 @@ use kurbo::{CubicBez, Point, Vec2};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// A bound for the distance between candidate and image, both ways; infinite if none was found. From few nodes first, from more if that
-/// is above the tolerance. `feet` approximate the foot points of the samples j/17.
+/// Bound for the Hausdorff distance between candidate and image from Chebyshev nodes: few, or more if that bound is above the tolerance;
+/// infinite if none was found. `feet` approximate the foot points of the samples j/17.
 fn by_nodes(
     source: &impl Source,
     form: &Quotient,
@@ -57,7 +51,7 @@ fn by_nodes(
     if quick <= tolerance { Ok(quick) } else { with_nodes::<NODES, PHI, CLEARING>(source, form, c, feet) }
 }
 
-/// A bound for any cubic over the stretch `t` of the source; the ends need not coincide.
+/// Bound for the Hausdorff distance between a cubic and the image of the stretch `t`, whose ends need not be those of the cubic.
 pub(crate) fn stretch(
     source: &impl Source,
     form: &Quotient,
@@ -86,7 +80,7 @@ pub(crate) fn stretch(
     by_nodes(source, form, &c, &feet, tolerance)
 }
 
-/// The bound with N nodes, P coefficients in p, V in V.
+/// The bound from N nodes, with P coefficients in p and V in the polynomial V.
 #[inline(never)]
 fn with_nodes<const N: usize, const P: usize, const V: usize>(
     source: &impl Source,
@@ -129,7 +123,7 @@ where
         }
         share = 1.0 - e;
     }
-    // Lane by lane, which is vectorised. NaN and infinity show in the sum.
+    // The loop over lanes is vectorised. NaN and infinity show in the sum.
     let (mut most, mut all) = ([0.0; 8], [0.0; 8]);
     for b in (0..N).step_by(8) {
         for i in 0..8 {
@@ -140,7 +134,7 @@ where
     }
     if !sum(&all).is_finite() {
         let t = tables.tau.map(|tau| c.t0 + h * tau);
-        // A value too large to be squared is too large to be fitted.
+        // Finite values whose squares overflow have no bound.
         let k = (0..N).find(|&k| !(x[k] + y[k]).is_finite());
         return k.map_or(Ok(f64::INFINITY), |k| Err(NotFinite { t: t[k], at: source.place(t[k]) }));
     }
@@ -172,7 +166,7 @@ fn in_range_by_bound<const N: usize, const P: usize>(tables: &ChebyshevTables<N,
     tables.least(&a, P) >= 0.0 && tables.least(&b, P) >= 0.0
 }
 
-/// φ at the nodes. Not inlined, like [`subtract`], so that LLVM sees nothing but the loop.
+/// φ at the nodes. Not inlined, so that LLVM sees nothing but the loop.
 #[inline(never)]
 fn phi<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, p: &[f64; P]) -> [f64; N] {
     let mut out = [0.0; N];
@@ -188,7 +182,7 @@ fn phi<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, p: &[f64;
     out
 }
 
-/// Subtracts one coordinate of the cubic, c₀ + (c₁ + (c₂ + c₃f)f)f, from that of the image.
+/// Subtracts one coordinate of the cubic, c₀ + (c₁ + (c₂ + c₃f)f)f, from that coordinate of the image.
 #[inline(never)]
 fn subtract<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f64; 4]) {
     for k in 0..N {
@@ -196,13 +190,12 @@ fn subtract<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f
     }
 }
 
-/// A bound for the rounding of the samples.
+/// Bound for the rounding of the samples.
 fn rounding(p0: Point, size: f64) -> f64 {
     ROUNDING * (p0.x.abs() + p0.y.abs() + size)
 }
 
-/// Replaces W by V·W and returns a bound for |VW − 1|, a polynomial of degree `degree`. `None` if W is not positive or
-/// varies too much.
+/// Replaces W by VW and returns a bound for |VW − 1|, where VW has degree `degree`. `None` if W is not positive or varies too much.
 pub(crate) fn cleared<const N: usize, const P: usize, const V: usize>(
     tables: &ChebyshevTables<N, P>,
     w: &mut [f64; N],
@@ -229,25 +222,25 @@ pub(crate) fn cleared<const N: usize, const P: usize, const V: usize>(
 /// Chebyshev nodes of the longest proof: more than the degree of D for a bicubic map of a cubic (max(18, 3·9)) and for a
 /// rational map of degree 4 (12 + 27 + 5), enough for the bound to lose little.
 pub(crate) const NODES: usize = 48;
-/// Coefficients of its p (see [`nodes`](super::nodes)), and of its V.
+/// Numbers of coefficients of p and of V in the longest proof.
 pub(crate) const PHI: usize = 8;
 pub(crate) const CLEARING: usize = 6;
 
 impl Quotient {
-    /// The form itself if its degree is low enough for proofs.
+    /// Returns the form if its degree is low enough for proofs.
     pub fn provable(self) -> Option<Self> {
         (self.total(PHI, CLEARING) < NODES && self.below + CLEARING - 1 < NODES).then_some(self)
     }
 
-    /// Degree of D, or of F: at most that of VW·C∘φ, with `p` coefficients of φ's p and `v` of V.
+    /// Degree of D or, with denominators, of F, for `p` coefficients of φ's p and `v` of V.
     pub(crate) fn total(&self, p: usize, v: usize) -> usize {
         let composed = 3 * (p + 1);
         if self.below > 0 { (self.below + composed).max(self.degree) + v - 1 } else { self.degree.max(composed) }
     }
 }
 
-/// A bound for the distance between candidate and image: at most the tolerance if one of the proofs succeeds; otherwise a
-/// larger one, or infinity. `g` and `feet` are those of the fitted and the checked samples.
+/// Bound for the Hausdorff distance between candidate and image: at most the tolerance if one of the proofs succeeds; otherwise
+/// larger or infinite. `g` and `feet` are images and foot points of the fitted and the checked samples.
 pub(crate) fn piece(
     source: &impl Source,
     form: &Quotient,
@@ -272,7 +265,7 @@ pub(crate) fn piece(
     if thirty_two <= tolerance {
         return Ok(thirty_two);
     }
-    // More nodes prove little more of a polynomial, and smaller pieces cost less.
+    // For a polynomial, more nodes would lower the bound little, and smaller pieces cost less.
     if form.below == 0 && thirty_two.is_finite() {
         return Ok(thirty_two);
     }
@@ -284,9 +277,9 @@ pub(crate) fn piece(
     by_nodes(source, form, c, &feet, tolerance)
 }
 
-/// A bound for the distance between the image and the line between two break points: the component of D across the line, if
-/// the image runs along the line in one direction. Then each point's partner is the point of the image with the same
-/// component along the line.
+/// Bound for the distance between the image and the line between two break points, if the image runs along the line in one direction.
+/// Then every point of the line has a partner on the image with the same component along the line, and their distance is the
+/// component across.
 pub(crate) fn line(
     source: &impl Source,
     form: &Quotient,
@@ -312,7 +305,7 @@ pub(crate) fn line(
             }
             let k = b + i;
             across[k] = (p - from.p).cross(unit);
-            // W²·g' = G'W − GW' is a polynomial and has the sign of g'.
+            // W²g′ = G′W − GW′ is a polynomial and has the sign of g′.
             pace[k] = d.dot(unit) * (w[k] * w[k]);
         }
     }
@@ -337,21 +330,21 @@ pub(crate) fn line(
 /// Number of samples with foot points, at j/17.
 pub(crate) const FEET: usize = 16;
 
-/// Coefficients are computed in fours, even and odd ones apart: the largest number of fours of one parity.
+/// Most groups of four coefficients of one parity. Coefficients are computed in fours, even and odd ones apart.
 const MOST_QUARTERS: usize = 6;
 
-/// Tables for all proofs with N nodes and P coefficients of p; see [`super::nodes`].
+/// Constant tables of the proofs with N nodes and P coefficients of p.
 pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
     /// The nodes on [0, 1].
     pub(crate) tau: [f64; N],
     /// The Chebyshev polynomials of degree less than P at the nodes.
     pub(crate) t: [[f64; N]; P],
-    /// Row k: contributions of the value at node k to the coefficients 0, 2, 4…, and 1, 3, 5…
+    /// Row k: contributions of the value at node k to the coefficients 0, 2, 4… and 1, 3, 5…
     even: [[f64; N]; N],
     odd: [[f64; N]; N],
     /// 1 / cos(πd/2N).
     stretch: [f64; N],
-    /// Row i: contributions of the foot point of sample i to the coefficients of p (P of the eight), by least squares.
+    /// Row i: contributions of the foot point of sample i to the coefficients of p, by least squares. P of the eight are used.
     pub(crate) feet: [[f64; 8]; FEET],
 }
 
@@ -402,13 +395,13 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
         out
     }
 
-    /// A bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
+    /// Bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
     pub(crate) fn between_nodes(&self, most: f64, degree: usize) -> f64 {
         most * self.stretch[degree]
     }
 
-    /// A bound for the length of the vector polynomial with these values at the nodes, of which `most` is the longest: the
-    /// least, over d, of the theorem's bound for the part up to degree d plus the sum of the coefficients beyond.
+    /// Bound for the length of the vector polynomial with these values at the nodes, the longest of which is `most`: the least
+    /// over d of the bound in the text above.
     pub(crate) fn supremum(&self, x: &[f64; N], y: &[f64; N], most: f64, degree: usize) -> f64 {
         // Even and odd coefficients of x and y. The values at a node and at its mirror image contribute equally to the even
         // ones and oppositely to the odd ones.
@@ -456,8 +449,7 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
         best
     }
 
-    /// A lower bound for a polynomial of the given degree from its values at the nodes, by an upper bound for its distance
-    /// from their midrange.
+    /// Lower bound for a polynomial of the given degree, by an upper bound for its distance from the midrange of its values at the nodes.
     pub(crate) fn least(&self, f: &[f64; N], degree: usize) -> f64 {
         let lo = f.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -480,7 +472,7 @@ fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
     a.map(|row| std::array::from_fn(|k| (0..P).map(|j| gram[k][j] * row[j]).sum()))
 }
 
-/// Places of the samples with foot points.
+/// Parameters τ of the samples with foot points.
 pub(crate) const SAMPLES: [f64; FEET] = {
     let mut out = [0.0; FEET];
     let mut i = 0;

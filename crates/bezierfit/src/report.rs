@@ -1,4 +1,4 @@
-//! Pieces, and what is known of their error.
+//! Pieces, and reports on their error.
 
 use kurbo::{BezPath, CubicBez, Line, ParamCurveNearest, Point};
 
@@ -12,7 +12,7 @@ pub enum Piece {
 }
 
 impl Piece {
-    /// The distance of a point.
+    /// Distance of a point from the piece.
     pub(crate) fn distance(&self, p: Point) -> f64 {
         let nearest = match self {
             Self::Line(l) => l.nearest(p, 0.0),
@@ -21,7 +21,7 @@ impl Piece {
         nearest.distance_sq.sqrt()
     }
 
-    /// Its first point.
+    /// First point.
     #[must_use]
     pub fn start(&self) -> Point {
         match self {
@@ -30,7 +30,7 @@ impl Piece {
         }
     }
 
-    /// The same piece in the other direction.
+    /// The piece in the other direction.
     #[must_use]
     pub fn reversed(self) -> Self {
         match self {
@@ -43,9 +43,9 @@ impl Piece {
 /// Basis of the reported error, from the weakest to the strongest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Assurance {
-    /// Measured by sampling a curve of which nothing else is known: something may hide between the samples.
+    /// Measured by sampling a curve of which nothing else is known. Errors may hide between the samples.
     Sampled,
-    /// Measured by sampling as densely as the curve needs; the error between samples is estimated.
+    /// Measured by sampling as densely as the curve needs. The error between samples is estimated.
     Checked,
     /// A proven bound.
     Certified,
@@ -53,10 +53,10 @@ pub enum Assurance {
     Exact,
 }
 
-/// Factor from a checked error to the one reported, up to the tolerance, for errors between samples. It decides no acceptance.
+/// Factor from a checked error to the reported error, up to the tolerance, for errors between samples. It does not affect acceptance.
 pub(crate) const REPORT_MARGIN: f64 = 1.05;
 
-/// What is known of the error of a piece.
+/// Error of a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PieceReport {
     /// Largest distance between the piece and its part of the curve.
@@ -65,14 +65,14 @@ pub struct PieceReport {
     pub assurance: Assurance,
 }
 
-/// What is known of the error of a fit.
+/// Error of a fit, as a whole and by pieces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// Largest distance between the curve and the output.
     pub max_error: f64,
     /// Basis of `max_error`: the weakest of all pieces.
     pub assurance: Assurance,
-    /// [Places](crate::Source::place) at which the tolerance was not met.
+    /// [Points](crate::Source::place) at which the tolerance was not met.
     pub unresolved: Vec<Point>,
     /// The pieces, in order.
     pub pieces: Vec<PieceReport>,
@@ -97,7 +97,7 @@ impl Report {
         self.assurance = self.assurance.min(assurance);
     }
 
-    /// Takes off the entries of the pieces from number `first` on.
+    /// Removes the entries of the pieces from number `first` on. Returns their report.
     pub(crate) fn split_off(&mut self, first: usize) -> Self {
         let [before, mut after] = [std::mem::take(self), Self::default()];
         for (i, p) in before.pieces.iter().enumerate() {
@@ -121,12 +121,12 @@ impl Report {
     }
 }
 
-/// A path with what is known of its error.
+/// A path with the report on its error.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Fitted {
     /// Lines, and cubics or quadratics.
     pub path: BezPath,
-    /// How far the path is from the source.
+    /// Distance of the path from the source.
     pub report: Report,
 }

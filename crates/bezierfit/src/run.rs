@@ -1,5 +1,5 @@
-//! Segments in a row as one curve, known by samples at even parameters of each, and one cubic for a stretch of it, fitted to sixteen of
-//! those samples.
+//! Runs of segments in a row as one curve, known by samples at even parameters of each segment, and cubics over stretches of a run, fitted
+//! to sixteen of its samples.
 
 use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled, size};
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
@@ -9,13 +9,13 @@ use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
 use kurbo::{CubicBez, Line, Point, Vec2};
 
-/// What a segment of a run was drawn as.
+/// Kind of a segment, by its form in the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Curve,
     /// A line that a map has bent.
     Bent,
-    /// A line that is one still. No curve takes in a part of it.
+    /// A line that is still straight. No curve covers a part of it.
     Straight,
 }
 
@@ -25,20 +25,20 @@ pub struct RunSegment<S> {
     pub(crate) source: S,
     /// Set if proofs are wanted.
     pub(crate) form: Option<Quotient>,
-    /// Its ends.
+    /// First point.
     pub from: BreakPoint,
-    /// See `from`.
+    /// Last point.
     pub to: BreakPoint,
     kind: Kind,
-    /// The curvature at both ends.
+    /// Curvature at both ends.
     curvature: [Curvature; 2],
-    /// It begins at a node that is the source's structure.
+    /// Set if the segment begins at a node that belongs to the source's structure.
     pub kept: bool,
-    /// Slow spots of a segment that is a run of its own; any other segment has none.
+    /// Slow spots. Only a segment that is the whole run may have any.
     pub slow: SlowSpots,
 }
 
-/// A curvature and how far it may be off.
+/// A curvature and its uncertainty.
 #[derive(Debug, Clone, Copy, Default)]
 struct Curvature {
     value: f64,
@@ -56,20 +56,20 @@ impl Curvature {
 }
 
 impl<S> RunSegment<S> {
-    /// A segment without slow spots, with its ends, its form if proofs are wanted, and `true` if it is a line.
+    /// Makes a segment without slow spots. `form` is given if proofs are wanted.
     pub fn new(source: S, form: Option<Quotient>, [from, to]: [BreakPoint; 2], is_line: bool) -> Self {
         let kind = if is_line { Kind::Straight } else { Kind::Curve };
         let (curvature, slow) = ([Curvature::default(); 2], SlowSpots::default());
         Self { source, form, from, to, kind, curvature, kept: false, slow }
     }
 
-    /// The same, drawn as a line that is none any more.
+    /// Marks the segment as a line that a map has bent.
     #[must_use]
     pub fn bent(self) -> Self {
         Self { kind: Kind::Bent, ..self }
     }
 
-    /// Another source of the same kind.
+    /// Replaces source, form and ends.
     pub(crate) fn over<T>(&self, source: T, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> RunSegment<T> {
         let Self { kind, curvature, kept, slow, .. } = *self;
         RunSegment { source, form, from, to, kind, curvature, kept, slow }
@@ -96,24 +96,24 @@ impl<S> RunSegment<S> {
     }
 }
 
-/// Smoothly joined segments as one curve. Samples lie at even parameters of each segment; the last of one segment is the first
+/// Smoothly joined segments as one curve. Samples lie at even parameters of each segment. The last sample of one segment is the first
 /// of the next.
 pub struct SegmentRun<S> {
     /// The segments.
     pub segments: Vec<RunSegment<S>>,
     /// Intervals between samples of a segment.
     pub(crate) per_segment: usize,
-    /// Places per segment at which a piece may end.
+    /// Grid points per segment, at which pieces may end.
     pub(crate) grid: usize,
     /// Images of the samples.
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
-    /// Lengths of the polygon through the samples, up to each.
+    /// Length of the polygon through the samples, up to each.
     pub(crate) length: Vec<f64>,
 }
 
 impl<S: Source> SegmentRun<S> {
-    /// A run without segments, of simple curves or any other.
+    /// Makes an empty run, of [simple](Source::is_simple) curves or of any others.
     pub fn new(simple: bool, capacity: usize) -> Self {
         let per_segment = per_segment(simple);
         let samples = || Vec::with_capacity(capacity * per_segment + 1);
@@ -121,13 +121,12 @@ impl<S: Source> SegmentRun<S> {
         Self { segments, per_segment, grid, x: samples(), y: samples(), length: samples() }
     }
 
-    /// Samples a segment and appends it. Returns `false` if it does not move everywhere: a stretch without length has no direction
-    /// to be merged along.
+    /// Samples a segment and appends it. Returns `false` if consecutive samples coincide: a stretch without length has no direction.
     pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool, NotFinite> {
         self.push_sampled(segment, None)
     }
 
-    /// Appends a segment as [`push`](Self::push) does, without evaluating it again if its samples are known.
+    /// Appends a segment by [`push`](Self::push), or by its `samples` if they are known.
     pub(crate) fn push_sampled(
         &mut self,
         mut segment: RunSegment<S>,
@@ -172,23 +171,23 @@ impl<S: Source> SegmentRun<S> {
         Ok(true)
     }
 
-    /// The samples of segment `i` but for its first.
+    /// Samples of segment `i` except the first.
     pub(crate) fn samples_of(&self, i: usize) -> [&[f64]; 2] {
         let range = i * self.per_segment + 1..=(i + 1) * self.per_segment;
         [&self.x[range.clone()], &self.y[range]]
     }
 
-    /// Returns `true` if the run ends where it begins, and pieces may run on there.
+    /// Returns `true` if the run ends at its start, and pieces may run on there.
     pub fn closes(&self, corner: f64) -> bool {
         let ends = [self.segments.last(), self.segments.first()];
         matches!(ends, [Some(last), Some(first)] if last.to.p == first.from.p && !last.parts(first, corner))
     }
 
-    /// Appends the first of `items` as long as `segment` makes a segment of them and they join with turns of at most `corner` radians.
-    /// Returns how many there were.
+    /// Appends the first of `items` as long as `segment` makes segments of them that join with turns of at most `corner` radians.
+    /// Returns their number.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub fn extend<'t, T>(
         &mut self,
         items: &'t [T],
@@ -205,7 +204,7 @@ impl<S: Source> SegmentRun<S> {
         Ok(items.len())
     }
 
-    /// The assurance that the checked error of a piece of this run has.
+    /// Assurance of the checked error of pieces of this run.
     pub fn assurance(&self, tolerance: f64) -> Assurance {
         let unknown = |s: &RunSegment<S>| s.source.resolved([0.0, 1.0], self.per_segment, tolerance).is_none();
         match self.segments.first() {
@@ -215,16 +214,16 @@ impl<S: Source> SegmentRun<S> {
         }
     }
 
-    /// Number of the last grid place.
+    /// The last grid point.
     pub(crate) fn last_place(&self) -> usize {
         self.grid * self.segments.len()
     }
 
-    /// The same run with `by` times as many samples and places, if it is one curve with more nodes than it needs: if its curvature
-    /// hardly jumps.
+    /// A copy with `by` times as many samples and grid points. `None` if the curvature jumps, so that the run is not one curve with more
+    /// nodes than it needs.
     ///
     /// # Errors
-    /// A segment is not finite.
+    /// [`NotFinite`] if a segment is not finite.
     pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>, NotFinite>
     where
         S: Clone,
@@ -247,17 +246,17 @@ impl<S: Source> SegmentRun<S> {
         Ok(Some(out))
     }
 
-    /// The sample at grid place `k`.
+    /// Index of the sample at grid point `k`.
     pub(crate) fn sample(&self, k: usize) -> usize {
         k * (self.per_segment / self.grid)
     }
 
-    /// The length up to grid place `k`.
+    /// Length up to grid point `k`.
     pub(crate) fn place(&self, k: usize) -> f64 {
         self.length[self.sample(k)]
     }
 
-    /// The break point at grid place `k`, with the length as its parameter.
+    /// The break point at grid point `k`, with the length as its parameter.
     pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint, NotFinite> {
         let (i, part) = (k / self.grid, k % self.grid);
         let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
@@ -271,11 +270,11 @@ impl<S: Source> SegmentRun<S> {
         Ok(BreakPoint { t: self.place(k), speed: 1.0, ..end })
     }
 
-    /// The last grid place between two at which the length is at most `length`; the first of them if there is none.
+    /// The last grid point between two at which the length is at most `length`; the first of them if there is none.
     pub(crate) fn place_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
         let step = self.per_segment / self.grid;
         let (mut low, mut high) = (first, last.max(first) + 1);
-        // Near at hand more often than not.
+        // Gallop, as it is usually near the start.
         let mut stride = 1;
         while low + stride < high && self.length[(low + stride) * step] <= length {
             low += stride;
@@ -289,13 +288,13 @@ impl<S: Source> SegmentRun<S> {
         low
     }
 
-    /// The length of the shorter of the segments beside the start of segment `j`.
+    /// Length of the shorter segment beside the start of segment `j`.
     pub(crate) fn shorter_beside(&self, j: usize) -> f64 {
         let length = |i: usize| self.length[(i + 1) * self.per_segment] - self.length[i * self.per_segment];
         if j == 0 || j >= self.segments.len() { f64::INFINITY } else { length(j - 1).min(length(j)) }
     }
 
-    /// The jump of the curvature at the start of segment `j`, as far as it is certain; 0 at the ends of the run.
+    /// Jump of the curvature at the start of segment `j`, as far as it is certain; 0 at the ends of the run.
     pub(crate) fn curvature_jump(&self, j: usize) -> f64 {
         let before = j.checked_sub(1).and_then(|i| self.segments.get(i));
         let (Some(before), Some(after)) = (before, self.segments.get(j)) else { return 0.0 };
@@ -303,7 +302,7 @@ impl<S: Source> SegmentRun<S> {
         ((a.value - b.value).abs() - a.uncertainty - b.uncertainty).max(0.0)
     }
 
-    /// Places at shares of the length between two samples, by polynomials of degree five through six samples of the same segment.
+    /// Interpolates points at shares of the length between two samples, by polynomials of degree five through six samples of one segment.
     pub(crate) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
         let (start, length) = (self.length[first], self.length[last] - self.length[first]);
         let n = self.per_segment;
@@ -333,13 +332,13 @@ pub fn per_segment(simple: bool) -> usize {
     if simple { RATIONAL_SAMPLES } else { OPAQUE_SAMPLES }
 }
 
-/// The parameters of a segment's samples.
+/// Parameters of a segment's samples.
 pub fn sample_lanes(per_segment: usize) -> impl Iterator<Item = Lane> + Clone {
     let n = per_segment;
     (0..n / 8).map(move |batch| std::array::from_fn(|i| (8 * batch + i + 1) as f64 / n as f64))
 }
 
-/// Lagrange's weights of the values at 0, 1, …, 5 for the value at `u`.
+/// Lagrange's weights, with which the values at 0, 1, …, 5 give the value at `u`.
 fn lagrange(u: f64) -> [f64; 6] {
     const SCALE: [f64; 6] = [-1.0 / 120.0, 1.0 / 24.0, -1.0 / 12.0, 1.0 / 12.0, -1.0 / 24.0, 1.0 / 120.0];
     let mut w = SCALE;
@@ -364,11 +363,11 @@ pub(crate) struct RunCubic {
     pub(crate) ends: [Point; 2],
     pub(crate) a: f64,
     pub(crate) b: f64,
-    /// The image is a line to rounding.
+    /// Set if the image is a line to rounding.
     line: bool,
-    /// Samples of the run at which it begins and ends.
+    /// Samples of the run at the ends.
     pub(crate) samples: [usize; 2],
-    /// Lengths of sixteen samples and the ends as shares of the whole, and their foot points.
+    /// Lengths up to the sixteen samples and the ends, as shares of the whole, and their foot points.
     pub(crate) shares: Evenly,
     pub(crate) feet: Evenly,
 }
@@ -386,7 +385,7 @@ impl RunCubic {
 
 /// The best cubic found for a stretch.
 pub(crate) struct Trial {
-    /// The error at the samples; or, if that is above the tolerance, an estimate of the least possible.
+    /// Error at the samples; above the tolerance, an estimate of the least possible error.
     pub(crate) error: f64,
     /// Set if the error is within the tolerance.
     pub(crate) cubic: Option<RunCubic>,
@@ -395,7 +394,7 @@ pub(crate) struct Trial {
 /// A stretch of a run with its sixteen samples, relative to its first point.
 pub(crate) struct Stretch {
     pub(crate) tolerance: f64,
-    /// See [`Fitting::evenly`].
+    /// Value of [`Fitting::evenly`].
     evenly: bool,
     ends: [BreakPoint; 2],
     samples: [usize; 2],
@@ -406,7 +405,7 @@ pub(crate) struct Stretch {
 }
 
 impl Stretch {
-    /// Picks the run's samples nearest to seventeenths of the length between two of them, or interpolates if those are too coarse.
+    /// Picks the run's samples nearest to seventeenths of the length between two samples, or interpolates if these are too coarse.
     pub(crate) fn new(
         run: &SegmentRun<impl Source>,
         ends: [BreakPoint; 2],
@@ -448,7 +447,7 @@ impl Stretch {
         Self { tolerance, evenly, ends, samples, frame, g, check, shares }
     }
 
-    /// Fits a cubic, by least squares first and in further ways as long as the error is above the tolerance.
+    /// Fits a cubic: by least squares, and by further methods as long as the error is above the tolerance.
     pub(crate) fn fitted(mut self) -> Result<Trial, NotFinite> {
         let [from, to] = &self.ends;
         if let Some((line, error)) = straight(&self.g, from, to, self.frame.size, self.tolerance) {
@@ -463,7 +462,7 @@ impl Stretch {
         Ok(self.trial(&best))
     }
 
-    /// As [`fitted`](Self::fitted), but with the least error that can be reached.
+    /// Fits a cubic with the least error that can be reached, starting from `from`.
     pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial, NotFinite> {
         let (z, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) }, self.tolerance);
         let fit = fit(&THOROUGH, &self.frame, &self.g, z, [0.0, tolerance]);
@@ -478,7 +477,7 @@ impl Stretch {
         Trial { error: *error, cubic: fits.then(|| self.with([fit.z.a, fit.z.b], *mark, false)) }
     }
 
-    /// Returns `true` if a handle of a curve that turns one way reaches beyond the crossing of both.
+    /// Returns `true` if a handle of a curve that turns one way extends beyond the crossing of both handles.
     fn crosses(&self, a: f64, b: f64) -> bool {
         let [from, to] = &self.ends;
         let (u, v, q) = (from.away, to.into, to.p - from.p);
@@ -538,7 +537,7 @@ impl Fitting for Stretch {
     }
 }
 
-/// The index of the length nearest to half of `twice`, at or after `from`.
+/// Index of the length nearest to half of `twice`, at or after `from`.
 #[inline(always)]
 fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
     let is_before = |i: usize| i + 1 < lengths.len() && lengths[i] + lengths[i + 1] < twice;
@@ -546,7 +545,7 @@ fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
     if !is_before(low) {
         return low;
     }
-    // `low` is before it, `low + stride` is not.
+    // The index is after `low`, up to `low + stride`.
     while is_before(low + stride) {
         low += stride;
         stride *= 2;
@@ -560,7 +559,7 @@ fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
     low + 1
 }
 
-/// The height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
+/// Height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
 fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
     let is_top = |w: &[f64]| {
         let side = 1.0f64.copysign(w[1]);
@@ -569,7 +568,7 @@ fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
     errors.windows(3).filter(|w| is_top(w)).map(|w| extreme([w[0], w[1], w[2]])).fold(most, larger)
 }
 
-/// The values at some of the samples.
+/// Values at eight of the samples.
 #[inline(always)]
 fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
     let mut out = [0.0; 8];
@@ -579,7 +578,7 @@ fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
     out
 }
 
-/// A handle may be longer than up to the crossing by this factor: rounding.
+/// Factor by which a handle may extend beyond the crossing: rounding.
 const CROSSING: f64 = 1.01;
 /// Error that is recorded for a cubic whose handles cross.
 const MISSED: f64 = 1.05;

@@ -1,25 +1,25 @@
-//! Eight numbers side by side with the operations that every stage shares, and the sixteen samples of a piece, at j/17 of its
-//! parameter: eight to fit, eight between them to check.
+//! Eight numbers side by side, with the operations that all stages share, and the sixteen samples of a piece, at j/17 of its
+//! parameter: eight to fit, and eight between them to check.
 //!
-//! Loops run by index through several arrays at once: the form that LLVM turns into vector instructions. Comparisons are
-//! written as `if a > b { a } else { b }`, which is one instruction; `f64::max` is not, because of its rule for NaN.
+//! Loops run by index through several arrays at once, the form that LLVM turns into vector instructions. Comparisons are
+//! written as `if a > b { a } else { b }`, which is one instruction; `f64::max` takes more, because of its rule for NaN.
 
 use crate::limits::PEAK_FACTOR;
 use kurbo::Vec2;
 
-/// One pass of the fit works on eight samples: two AVX registers of four, or four SSE2 registers of two.
+/// Values of eight samples, the unit of work: two AVX registers of four, or four SSE2 registers of two.
 pub type Lane = [f64; 8];
 
 /// Eight points.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Lanes {
-    /// Their first coordinates.
+    /// First coordinates.
     pub x: Lane,
-    /// Their second coordinates.
+    /// Second coordinates.
     pub y: Lane,
 }
 
-/// a·b + c: one instruction where the target has one; elsewhere `mul_add` would be a library call.
+/// a·b + c, by one instruction if the target has it. Elsewhere `mul_add` would be a library call.
 #[inline(always)]
 pub fn fma(a: f64, b: f64, c: f64) -> f64 {
     if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
@@ -37,7 +37,7 @@ pub(crate) fn residual_at(c: &[Vec2; 3], s: f64, x: f64, y: f64) -> (f64, f64, f
     )
 }
 
-/// |(x, y)|², never zero.
+/// |(x, y)|², kept above zero.
 #[inline(always)]
 pub(crate) fn norm_squared(x: f64, y: f64) -> f64 {
     fma(x, x, fma(y, y, f64::MIN_POSITIVE))
@@ -50,7 +50,7 @@ pub(crate) fn clamp_unit(s: f64) -> f64 {
     if s < 1.0 { s } else { 1.0 }
 }
 
-/// The sum, halves first, in the order that vector registers add.
+/// Sum, halves first, in the order in which vector registers add.
 #[inline(always)]
 pub(crate) fn sum(v: &Lane) -> f64 {
     let mut h = [0.0; 4];
@@ -60,7 +60,7 @@ pub(crate) fn sum(v: &Lane) -> f64 {
     (h[0] + h[2]) + (h[1] + h[3])
 }
 
-/// The largest of eight.
+/// Largest of eight numbers.
 #[inline(always)]
 pub(crate) fn largest(v: &Lane) -> f64 {
     let mut h = [0.0; 4];
@@ -76,13 +76,13 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Spacing of the samples.
+/// Spacing of the sixteen samples.
 pub(crate) const UNIT: f64 = 1.0 / 17.0;
 /// Samples that are fitted, in seventeenths; both sets are symmetric about the middle.
 pub const FITTED: Lane = [1.0, 3.0, 5.0, 7.0, 10.0, 12.0, 14.0, 16.0];
 /// Samples that check the fit, in seventeenths.
 pub const CHECKED: Lane = [2.0, 4.0, 6.0, 8.0, 9.0, 11.0, 13.0, 15.0];
-/// Places that no pattern meets, in seventeenths: the fractions of the multiples of the golden ratio.
+/// Samples at parameters that suit no pattern, in seventeenths: the fractional parts of multiples of the golden ratio.
 pub const UNEVEN: Lane = [10.5066, 4.0132, 14.5197, 8.0263, 1.5329, 12.0395, 5.5460, 16.0526];
 /// 1 if the checked sample of the same index follows the fitted one, −1 if it precedes it.
 pub(crate) const SIDE: Lane = [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0];
@@ -109,7 +109,7 @@ pub(crate) const MIDDLE: Lane = {
     out
 };
 
-/// The parameters of the samples `set` of a stretch that begins at `t0` and is `h` long.
+/// Parameters of the samples `set` in a stretch that begins at `t0` and is `h` long.
 #[inline(always)]
 pub fn spaced(t0: f64, h: f64, set: &Lane) -> Lane {
     let mut t = [0.0; 8];
@@ -121,10 +121,10 @@ pub fn spaced(t0: f64, h: f64, set: &Lane) -> Lane {
 
 /// Number of [`Evenly`] spaced values.
 pub(crate) const ALL: usize = 18;
-/// One value per sample in their order along the piece, and one for either end.
+/// One value for each sample and either end, in their order along the piece.
 pub(crate) type Evenly = [f64; ALL];
 
-/// Merges values of the fitted and the checked samples. The ends get 0 and `last`.
+/// Merges values of the fitted and the checked samples. The ends get the values 0 and `last`.
 pub(crate) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Evenly {
     let mut v = [0.0; ALL];
     v[ALL - 1] = last;
@@ -163,7 +163,7 @@ pub(crate) fn turns_little(a: Vec2, b: Vec2) -> bool {
     d > 0.0 && 4.0 * d * d >= a.hypot2() * b.hypot2()
 }
 
-/// The height to which errors may rise beside a sample that is a local maximum; 0 at other samples.
+/// Height to which errors may rise beside a sample that is a local maximum; 0 at other samples.
 ///
 /// Errors are signed by the side of the curve. A parabola through three neighbours exceeds the middle one by an eighth of
 /// their second difference at most. Corners and faster oscillations rise more: `factor` times as much.
@@ -176,15 +176,14 @@ pub(crate) fn predicted_peak([before, top, after]: [f64; 3], factor: f64) -> f64
     if (b >= a) & (b >= c) { peak } else { 0.0 }
 }
 
-/// The same for a sample at the end of a smooth part: the error may rise between it and the next sample, by as much as a middle
-/// sample's.
+/// Height to which errors may rise between a sample at the end of a smooth part and the next: by as much as beside a middle sample.
 pub(crate) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f64 {
     let side = 1.0f64.copysign(end);
     let (a, b, c) = (end * side, next * side, after * side);
     if a >= b { a + (factor / 8.0) * (2.0 * b - a - c).abs() } else { 0.0 }
 }
 
-/// The highest [`predicted_peak`] of sixteen samples.
+/// Highest [`predicted_peak`] of sixteen samples.
 #[inline(always)]
 pub(crate) fn highest_peak(errors: &Evenly) -> f64 {
     let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
@@ -195,14 +194,14 @@ pub(crate) fn highest_peak(errors: &Evenly) -> f64 {
     larger(largest(&first), largest(&second))
 }
 
-/// The height of the extreme of the parabola through three neighbouring errors, with signs, if it lies between them; else 0.
+/// Height of the extreme of the parabola through three neighbouring signed errors, if it lies between them; else 0.
 pub(crate) fn extreme([a, b, c]: [f64; 3]) -> f64 {
     let (slope, bend) = (c - a, a + c - 2.0 * b);
     let inside = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
     if inside { (b - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
 }
 
-/// The height of the parabola through three neighbours of which the middle one is the largest.
+/// Height of the parabola through three neighbours of which the middle one is the largest.
 pub(crate) fn parabola_peak(a: f64, b: f64, c: f64) -> f64 {
     let bend = 2.0 * b - a - c;
     if bend > 0.0 { b + (c - a).powi(2) / (8.0 * bend) } else { b }

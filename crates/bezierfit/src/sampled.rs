@@ -1,13 +1,13 @@
-//! Proofs from the samples that a fit has taken anyway.
+//! Proofs that a cubic C lies within a distance of the image g, from the samples that a fit has taken anyway.
 //!
-//! Here φ has the slopes at the ends that make D′ vanish there, |g′| / |C′| = Hermite's handle over the actual one, and up to
-//! eight more coefficients, by least squares from the foot points:
+//! The module `proof` explains the method: a bound for the polynomial D = g − C∘φ bounds the distance. Here φ has the
+//! end slopes that make D′ vanish there, namely Hermite's handle over the actual one, and up to eight more coefficients, by least
+//! squares from the foot points:
 //!
 //! > φ = τ + v·(p₀(1−τ) + p₁τ + v·r(u)),  v = τ(1−τ), u = 2τ−1, p₀ = φ′(0)−1, p₁ = 1−φ′(1)
 //!
-//! It stays in [0, 1] if its Bernstein coefficients do. With double zeros at both ends D = v²·q, and as D is of a known degree
-//! n, q is of degree n−4: sixteen samples determine it up to n = 19 (a cubic under a bicubic map has n = 18), thirty-two up to
-//! n = 35.
+//! φ stays in [0, 1] if its Bernstein coefficients do. As D has double zeros at both ends, D = v²·q, and if D is of degree n, q is of
+//! degree n−4: sixteen samples determine it up to n = 19 (a cubic under a bicubic map has n = 18), thirty-two up to n = 35.
 //!
 //! **Basis.** D = Σ cₖBₖ, where Bₖ is v² times the Gegenbauer polynomial of degree k and index 4, divided by its largest value.
 //! A Gegenbauer polynomial of index λ oscillates about evenly under the weight (1−u²)^(λ/2), so the Bₖ do, and bounding the tail
@@ -18,11 +18,11 @@
 //! > sup |D| ≤ sup |L| + T ≤ K(d)·(M + T) + T
 //!
 //! where K(d) ([`GROWTH`]) is the largest factor by which a polynomial v²·(degree d) can exceed its largest sample. The best d is
-//! taken. If the bound is close, L is evaluated on a grid of three times as many places ([`FINE_GROWTH`](expand::FINE_GROWTH)).
+//! taken. If the bound is close, L is evaluated on a grid of three times as many points ([`FINE_GROWTH`]).
 //! All that holds for the component of D in any direction, hence for its length.
 //!
-//! **Denominators.** If g = G/W, V is a polynomial close to 1/W, and VW·D takes the place of D; |VW − 1| is a polynomial known at
-//! twenty-four places.
+//! **Denominators.** If g = G/W, V is a polynomial close to 1/W, and VW·D replaces D; |VW − 1| is a polynomial known at
+//! twenty-four samples.
 //!
 //! **Rounding.** Samples, ends and end slopes are known up to some 1e-14 of the coordinates. The bound grows by at most that
 //! times the sum of the coefficients' sensitivities (240 for sixteen samples, 52 for thirty-two), which is added.
@@ -36,7 +36,7 @@ use crate::source::{NotFinite, Quotient, Source, images_into};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Largest |VW − 1| of a cleared denominator; the bound is divided by one minus this.
+/// Largest |VW − 1| allowed for a cleared denominator; the bound is divided by one minus |VW − 1|.
 pub(crate) const MAX_VARIATION: f64 = 0.5;
 
 /// Rounding of samples, ends and slopes relative to their coordinates: 45 units in the last place. Added to every bound.
@@ -51,8 +51,8 @@ const BELOW: usize = 16;
 /// Rounding of basis functions and of sums of them.
 const ARITHMETIC: f64 = 1.0 + 1e-9;
 
-/// Proofs of one candidate. Each returns a bound for the distance between candidate and image, both ways; infinity if none
-/// was found. A bound larger than `enough` is no proof, only an indication of how far off one is.
+/// Proofs for one candidate. Each returns a bound for the Hausdorff distance between candidate and image; infinity if none
+/// was found. A bound larger than `enough` is no proof and only indicates how far off one is.
 pub(crate) struct SampledProof<'a, S> {
     source: &'a S,
     form: &'a Quotient,
@@ -103,7 +103,7 @@ impl<'a, S: Source> SampledProof<'a, S> {
         }
     }
 
-    /// The bound with this φ, of degree p, from samples that determine D up to degree `limit`.
+    /// The bound with φ of degree `p` from samples that determine D up to degree `limit`.
     #[inline(always)]
     fn with<const F: usize>(&self, phi: &Phi<F>, p: usize, limit: usize) -> Result<f64, NotFinite> {
         let tables = SampleTables::shared();
@@ -126,14 +126,14 @@ impl<'a, S: Source> SampledProof<'a, S> {
     }
 }
 
-/// The data of a bound.
+/// Degree, rounding and goal of a bound.
 struct ProofData<'a, S> {
     proof: &'a SampledProof<'a, S>,
     /// Rounding of one sample of D.
     noise: f64,
     /// Degree of q.
     top: usize,
-    /// Sixteen samples only.
+    /// Set if there are only sixteen samples.
     few: bool,
     enough: f64,
 }
@@ -218,7 +218,7 @@ impl<S: Source> ProofData<'_, S> {
     }
 }
 
-/// Factor from the noise of the samples to that of the bound, given that of the coefficients.
+/// Factor from the noise of the samples to the noise of the bound, given the factor to the noise of the `coefficients`.
 #[inline(always)]
 fn amplification(coefficients: f64) -> f64 {
     // The tail occurs twice in the bound, and the samples have noise themselves.
@@ -226,17 +226,17 @@ fn amplification(coefficients: f64) -> f64 {
     (1.0 + largest) * coefficients + 2.0 * largest
 }
 
-/// Rounding of the samples, and of the ends and the slopes there, because of which D's zeros there are not exact. The scale
-/// is that of the coordinates and of the length of the whole segment's image, estimated by its speed at the ends.
+/// Rounding of the samples and of the ends and end slopes, so that D's zeros there are not exact. It is relative to the coordinates
+/// and to the length of the whole segment's image, which is estimated by its speed at the ends.
 #[inline(always)]
 fn noise(form: &Quotient, c: &Candidate) -> f64 {
     let speeds = 3.0 * (c.frame.home[0] + c.frame.home[1]) / (c.t1 - c.t0);
     let one = ROUNDING * (c.p0.x.abs() + c.p0.y.abs() + c.frame.size + speeds) + form.blur;
-    // Its own, and that of the cubic through the ends' errors: one for the place of either end, 4/27 for either slope.
+    // One for the sample, one for the ends' positions in between, and 4/27 for either end slope, the maxima of the Hermite basis.
     one * (1.0 + 1.0 + 8.0 / 27.0)
 }
 
-/// The polynomial φ − τ: p₀, p₁, and its part v²r in the orthonormal basis.
+/// The polynomial φ − τ: p₀, p₁, and the coefficients of v²r in the orthonormal basis.
 pub(crate) type Phi<const F: usize> = ([f64; 2], [f64; F]);
 
 /// φ of degree at most `p` with the given slopes at the ends, by least squares from the foot points. `None` if it leaves
@@ -288,7 +288,7 @@ pub(crate) const GROWTH: [f64; 9] = [1.0070, 1.0150, 1.0401, 1.0740, 1.0929, 1.2
 /// K for the fine grid j/51 from 2 to 49, for d = 5.
 pub(crate) const FINE_GROWTH: f64 = 1.0215;
 
-/// D at the places of batch `b`, and the largest square of its length.
+/// Computes D at the samples of batch `b`. Returns the largest square of its length.
 #[inline(never)]
 pub(crate) fn difference<const F: usize>(
     tables: &SampleTables,
@@ -346,7 +346,7 @@ pub(crate) fn clear(tables: &SampleTables, w: &mut [Lane; 4]) -> f64 {
     largest(&most)
 }
 
-/// The coefficients of D: even ones of x and y, odd ones of x and y.
+/// Computes the coefficients of D: the even ones of x and y, then the odd ones of x and y.
 #[inline(never)]
 pub(crate) fn coefficients<const B: usize, const H: usize>(
     e: &SampleExpansion<H>,
@@ -375,7 +375,7 @@ pub(crate) fn coefficients<const B: usize, const H: usize>(
     *c = sums;
 }
 
-/// The largest value of L, coefficients 0 to 5, on the fine grid without the samples.
+/// Largest |L|, with coefficients 0 to 5, at the points of the fine grid that are not samples.
 #[inline(never)]
 fn on_fine_grid<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4]) -> f64 {
     let [even, odd] = &tables.fine;
@@ -396,7 +396,7 @@ fn on_fine_grid<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4]) -> f64
     largest(&all).sqrt()
 }
 
-/// The bound for |D| from its coefficients and its largest sample. Evaluates the fine grid only if that may bring the bound
+/// Bound for |D| from its coefficients and its largest sample. Evaluates the fine grid only if that may bring the bound
 /// down to `enough`.
 #[inline(always)]
 pub(crate) fn supremum<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4], most: f64, enough: f64) -> f64 {
@@ -430,33 +430,33 @@ pub(crate) fn supremum<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4],
     best
 }
 
-/// Half of the further samples of the longer proof, in seventeenths; the others mirror them. Together with the sixteen even
-/// ones, they have nearly the largest determinant in the basis that sixteen more can have.
+/// Half of the sixteen further samples of the longer proof, in seventeenths; the others mirror them. Together with the sixteen even
+/// samples, they have nearly the largest determinant in the basis that is possible.
 const EXTRA: [[f64; 4]; 2] = [[0.15, 0.35, 0.62, 1.4], [2.4, 3.44, 4.54, 7.47]];
 /// Coefficients of either parity of L on the fine grid.
 pub(crate) const FINE: usize = 3;
 /// Degree of V.
 pub(crate) const CLEARING: usize = 4;
-/// Largest number of free coefficients of φ, and of all but that of τ.
+/// Largest number of free coefficients of φ. With p₀ and p₁ there are [`PHI`].
 pub(crate) const FREE: usize = 8;
 const PHI: usize = FREE + 2;
 
-/// Tables of the proofs from samples.
+/// Constant tables of the proofs from samples.
 pub(crate) struct SampleTables {
-    /// τ, v and u of the batches.
+    /// Values of τ, v and u at the samples, by batches.
     pub(crate) places: [[Lane; 3]; 4],
     pub(crate) few: SampleExpansion<8>,
     pub(crate) many: SampleExpansion<16>,
     /// Basis functions 0, 2, 4 and 1, 3, 5 in the left half of the fine grid.
     pub(crate) fine: [[[f64; 16]; FINE]; 2],
-    /// v(1−τ), vτ, and v² times the polynomials that are orthonormal under v⁴ at the sixteen samples, in the batches.
+    /// Basis of φ − τ at the samples, by batches: v(1−τ), vτ, and v² times the polynomials orthonormal under v⁴ at the sixteen samples.
     pub(crate) phi: [[Lane; 4]; PHI],
-    /// Their products with each other and with τ, summed over the sixteen samples.
+    /// Inner products of the orthonormal functions with τ, v(1−τ) and vτ over the sixteen samples.
     pub(crate) products: [[f64; 3]; FREE],
-    /// Their Bernstein coefficients of degree eleven, and those of τ.
+    /// Bernstein coefficients of degree eleven of the basis and, in `line`, of τ.
     pub(crate) bernstein: [[f64; 12]; PHI],
     pub(crate) line: [f64; 12],
-    /// Rows: the power coefficients of V from the values of 1/W at the sixteen samples.
+    /// Row k computes the k-th power coefficient of V from the values of 1/W at the sixteen samples.
     pub(crate) inverse: [[Lane; 2]; CLEARING + 1],
 }
 
@@ -499,13 +499,13 @@ impl SampleTables {
     }
 }
 
-/// See [`SampleTables`].
+/// The tables `phi`, `products` and `bernstein` of [`SampleTables`].
 type PhiTables = ([[Lane; 4]; PHI], [[f64; 3]; FREE], [[f64; 12]; PHI]);
 
 fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
     let tau = |i: usize| places[i / 8][0][i % 8];
     let v = |t: f64| t * (1.0 - t);
-    // Values at the samples, then at the nodes from which the Bernstein coefficients are interpolated.
+    // Functions are known by their values at the samples, then at the nodes from which Bernstein coefficients are interpolated.
     const AT: usize = 32 + 12;
     let at: [f64; AT] = std::array::from_fn(|i| if i < 32 { tau(i) } else { (i - 32) as f64 / 11.0 });
     let dot = |a: &[f64; AT], b: &[f64; AT]| -> f64 { (0..16).map(|i| a[i] * b[i]).sum() };
@@ -539,25 +539,25 @@ fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
     )
 }
 
-/// Matrices from samples to coefficients. Batches hold mirror images: the i-th and the (7−i)-th sample.
+/// Matrices from samples to coefficients. The i-th and the (7−i)-th sample of a batch are mirror images.
 pub(crate) struct SampleExpansion<const H: usize> {
     /// Row i: contributions of the sum (`odd`: difference) of the i-th sample and its mirror image to the coefficients 0, 2, 4…
     /// (1, 3, 5…).
     pub(crate) even: [[f64; H]; H],
     pub(crate) odd: [[f64; H]; H],
-    /// A bound for the change of the first k+1 coefficients together if no sample changes by more than one.
+    /// `noise[k][odd]` bounds the summed change of the coefficients up to number 2k + odd if no sample changes by more than one.
     pub(crate) noise: [[f64; 2]; H],
 }
 
-/// The functions Bₖ: their divisors.
+/// The functions Bₖ, as the divisors that make their largest values one.
 pub(crate) struct GegenbauerBasis(pub(crate) [f64; GegenbauerBasis::COUNT]);
 
 impl GegenbauerBasis {
-    /// One for each of thirty-two samples.
+    /// Number of functions: one for each of thirty-two samples.
     pub(crate) const COUNT: usize = 32;
 
     pub(crate) fn new() -> Self {
-        /// Nodes; a polynomial of degree n exceeds its largest value there by 1/cos(πn/2N) at most.
+        /// Number of nodes. A polynomial of degree n is at most 1/cos(πn/2N) times its largest value at them.
         const N: usize = 512;
         let mut largest = [0.0f64; Self::COUNT];
         for i in 0..N / 2 {
@@ -569,7 +569,7 @@ impl GegenbauerBasis {
         Self(std::array::from_fn(|k| largest[k] / (PI * (k + 4) as f64 / (2 * N) as f64).cos()))
     }
 
-    /// Their values at `tau`.
+    /// Values of the functions at `tau`.
     pub(crate) fn at(&self, tau: f64) -> [f64; Self::COUNT] {
         let (u, v) = (2.0 * tau - 1.0, tau * (1.0 - tau));
         // Gegenbauer polynomials of index 4 (DLMF 18.9.1).
@@ -584,7 +584,7 @@ impl GegenbauerBasis {
 }
 
 impl<const H: usize> SampleExpansion<H> {
-    /// From the basis at the first halves of the batches.
+    /// Builds the matrices from the values of the basis at the first halves of the batches.
     pub(crate) fn new(basis: &[[f64; GegenbauerBasis::COUNT]; 16]) -> Self {
         // A sum of mirror images is twice the even part.
         let rows = |odd: usize| -> [[f64; H]; H] {

@@ -1,14 +1,14 @@
-//! Paths as they are meant: corners as seen from a tolerance away, and smooth curves in place of what lies between them, such as stairs of
-//! pixels, noise, and facets.
+//! Simplifies paths at the scale of the tolerance: keeps corners that are seen from a tolerance away, and puts smooth curves in place of
+//! stairs of pixels, noise, and facets between them.
 //!
-//! 1. **Polygon.** The vertices that the path has within the tolerance (D. H. Douglas, T. K. Peucker, *Algorithms for the reduction of
-//!    the number of points required to represent a digitized line or its caricature*, 1973).
+//! 1. **Polygon.** The path is reduced to vertices of a polygon near the tolerance (D. H. Douglas, T. K. Peucker, *Algorithms for the
+//!    reduction of the number of points required to represent a digitized line or its caricature*, 1973).
 //! 2. **Corners.** Between two sides of length s that turn by θ, the nearest circle is s/4·tan(θ/4) off. Where that exceeds the tolerance,
 //!    no smooth curve replaces the corner.
-//! 3. **Guide.** Between corners, a spline of cubics with continuous derivative, near to the path by least squares, with as many knots as
-//!    it takes to stay well within the tolerance.
+//! 3. **Guide.** Between corners, a spline of cubics with continuous derivative is fitted to the path by least squares, with as many knots
+//!    as it takes to stay well within the tolerance.
 //!
-//! The fewest pieces of the guide are looked for afterwards, within what it leaves of the tolerance.
+//! The fewest pieces of the guide are searched for afterwards, within the rest of the tolerance.
 
 use crate::guide::{End, Ends, Guide, Samples, off};
 use crate::limits::{LONG_EDGE, SMOOTH_JOINT};
@@ -20,27 +20,27 @@ use kurbo::{Line, ParamCurve, PathSeg, Point, Vec2};
 
 /// Share of the tolerance that flattening uses.
 const FLAT: f64 = 1.0 / 64.0;
-/// Distance of vertices from the polygon, in tolerances: what swings by a tolerance to either side of a smooth curve mostly vanishes.
+/// Largest distance of the path from the polygon, in tolerances: swings of a tolerance to either side of a smooth curve mostly vanish.
 const POLYGON: f64 = 1.4;
-/// Distance of the circle from a corner, in tolerances, from which on it is one.
+/// Least distance of a corner from the nearest circle, in tolerances.
 const CORNER: f64 = 1.0;
-/// Distance of a guide from the path, in tolerances, up to which it is used.
+/// Largest distance of a guide from the path, in tolerances.
 const LOOSEST: f64 = 0.95;
 /// Least length of an interval between knots, in tolerances.
 const FINEST: f64 = 0.5;
-/// Times that what no guide follows is divided.
+/// Most times that a part which no guide follows is divided.
 const DIVISIONS: usize = 3;
-/// Samples of each side of the polygon, at least.
+/// Least number of samples of each side of the polygon.
 const SAMPLES: f64 = 16.0;
-/// Sum of turns of the sides that one interval between knots covers at first, and that of all sides, up to which one covers them all: an arc
-/// of a quarter turn.
+/// Turn of the sides, in radians, that one interval between knots covers at first, and the turn up to which one interval covers all sides:
+/// a little over a quarter turn.
 const FIRST_TURN: f64 = 1.0;
 const ONE_TURN: f64 = 1.7;
 
-/// A subpath flattened.
+/// A flattened subpath.
 struct Flat {
     points: Vec<Point>,
-    /// For each point, its segment and the parameter there: zero at nodes.
+    /// Segment and parameter of each point; the parameter is zero at nodes.
     at: Vec<(usize, f64)>,
 }
 
@@ -82,16 +82,16 @@ impl Flat {
         self.at.push(at);
     }
 
-    /// The number of the segment that begins at a point, if that is a node.
+    /// Index of the segment that begins at a point, if the point is a node.
     fn node(&self, i: usize) -> Option<usize> {
         let (segment, t) = self.at[i % self.at.len()];
         (t == 0.0).then_some(segment)
     }
 }
 
-/// Marks the vertices of the polygon between two vertices.
+/// Marks further vertices between two, so that the polygon is within the distance `within` of the points.
 fn reduce(points: &[Point], [first, last]: [usize; 2], within: f64, kept: &mut [bool]) {
-    // Limits the work where division by the furthest point takes off little each time.
+    // Limits the work where the furthest point divides off little each time.
     let mut work = 40 * (last - first + 1);
     let n = points.len();
     let mut stack = vec![[first, last]];
@@ -118,7 +118,7 @@ fn reduce(points: &[Point], [first, last]: [usize; 2], within: f64, kept: &mut [
     }
 }
 
-/// The vertices of the polygon within a distance, in ascending order; of a closed one, the first comes again a round further.
+/// Vertices of the polygon within a distance, in ascending order. If closed, the first is repeated, counted a round further.
 fn vertices(points: &[Point], closed: bool, mut kept: Vec<bool>, within: f64) -> Vec<usize> {
     let n = points.len();
     let given: Vec<usize> = (0..n).filter(|i| kept[*i]).collect();
@@ -153,18 +153,18 @@ fn vertices(points: &[Point], closed: bool, mut kept: Vec<bool>, within: f64) ->
 struct Polygon<'a> {
     flat: &'a Flat,
     closed: bool,
-    /// Indices of points, ascending. A closed polygon's first one comes again at the end, a round further.
+    /// Indices of points, ascending. If closed, the first is repeated at the end, counted a round further.
     vertices: Vec<usize>,
 }
 
 impl<'a> Polygon<'a> {
-    /// The polygon of a path with at least three points. Corners by their angle are vertices.
+    /// The polygon of a path with at least three points. Points that are `kept` are vertices.
     fn new(flat: &'a Flat, closed: bool, kept: &[bool], tolerance: f64) -> Self {
         let n = flat.points.len();
         let mut within = POLYGON * tolerance;
         loop {
             let out = Self { flat, closed, vertices: vertices(&flat.points, closed, kept.to_vec(), within) };
-            // A closed one has an area, unless the path has none.
+            // A closed polygon must have an area, unless the path has none.
             if !closed || out.sides() > 3 || n < 5 || within < 1e-3 * tolerance {
                 return out;
             }
@@ -172,20 +172,20 @@ impl<'a> Polygon<'a> {
         }
     }
 
-    /// The index of a vertex's point, in rounds of a closed polygon.
+    /// Index of a vertex's point, counted on over the rounds of a closed polygon.
     fn place(&self, vertex: usize) -> usize {
         let (n, sides) = (self.flat.points.len(), self.sides());
         if self.closed { self.vertices[vertex % sides] + n * (vertex / sides) } else { self.vertices[vertex] }
     }
 
-    /// The largest distance of the points between two vertices from the line through both.
+    /// Largest distance of the points between two vertices from the line between both.
     fn off(&self, [from, to]: [usize; 2]) -> f64 {
         let [a, b] = [from, to].map(|i| self.place(i));
         let ends = [self.point(a), self.point(b)];
         (a + 1..b).map(|k| off(self.point(k), ends)).fold(0.0, f64::max).sqrt()
     }
 
-    /// Samples between two vertices, with their places along the polygon, and knots where it has turned.
+    /// Samples between two vertices, with their lengths along the polygon as parameters, and knots where it has turned.
     fn samples(&self, [from, to]: [usize; 2], closed: bool) -> (Samples, Vec<f64>) {
         let mut samples = Samples::default();
         let (mut knots, mut along, mut turned) = (vec![0.0], 0.0, 0.0_f64);
@@ -226,19 +226,19 @@ impl<'a> Polygon<'a> {
         self.vertices.len() - 1
     }
 
-    /// A side, in rounds of a closed polygon.
+    /// A side, counted on over the rounds of a closed polygon.
     fn side(&self, i: usize) -> Vec2 {
         let i = i % self.sides();
         self.point(self.vertices[i + 1]) - self.point(self.vertices[i])
     }
 
-    /// The turn from one side to the next.
+    /// Turn from side `i` − 1 to side `i`.
     fn turn(&self, i: usize) -> f64 {
         let (u, v) = (self.side(i + self.sides() - 1), self.side(i));
         u.cross(v).atan2(u.dot(v))
     }
 
-    /// The length from a vertex, forwards or backwards, up to where the sides turn by more than `most`.
+    /// Length from a vertex, forwards or backwards, up to the vertex at which the sides have turned by more than `most`.
     fn arm(&self, i: usize, forwards: bool, most: f64) -> f64 {
         let (n, mut length, mut turned) = (self.sides(), 0.0, 0.0_f64);
         for k in 0..n {
@@ -256,14 +256,14 @@ impl<'a> Polygon<'a> {
         length
     }
 
-    /// The distance of the nearest circle from the corner at a vertex: s/4·tan(θ/4).
+    /// Distance of the nearest circle from the corner at a vertex: s/4·tan(θ/4).
     fn corner(&self, i: usize) -> f64 {
         let turn = self.turn(i).abs();
         let arm = self.arm(i, true, 0.5 * turn).min(self.arm(i, false, 0.5 * turn));
         0.25 * arm * (0.25 * turn).tan()
     }
 
-    /// Returns `true` if a side is one line of the source, or several in a row, and far longer than those beside it that go on smoothly.
+    /// Returns `true` if a side is one line of the source, or several in a row, and far longer than smoothly joined neighbours.
     fn is_edge(&self, i: usize, is_corner: &[bool]) -> bool {
         let own = self.side(i).hypot();
         let n = self.sides();
@@ -283,19 +283,19 @@ impl<'a> Polygon<'a> {
 
 /// A part of a subpath without corners that matter.
 pub(crate) struct SmoothPart {
-    /// Segments that join smoothly, or at corners.
+    /// Segments, which may also join at corners.
     pub(crate) segments: Vec<Segment>,
-    /// Their distance from the source.
+    /// Distance of the segments from the source.
     pub(crate) off: f64,
 }
 
 impl SmoothPart {
-    /// Segments of the source itself.
+    /// Makes a part of unchanged segments of the source.
     fn of(segments: Vec<Segment>) -> Self {
         Self { segments, off: 0.0 }
     }
 
-    /// Number of pieces that it takes.
+    /// Number of pieces that the part takes.
     fn count(&self, tolerance: f64) -> usize {
         let options = Options::new(tolerance - self.off);
         let (mut pieces, mut report, mut rest) = (Vec::new(), Report::default(), &self.segments[..]);
@@ -309,13 +309,13 @@ impl SmoothPart {
     }
 }
 
-/// The turn at the joint of two segments, in radians without sign.
+/// Turn at the joint of two segments, in radians without sign.
 pub(crate) fn turn(before: &Segment, after: &Segment) -> f64 {
     let [into, away] = [tangent(before, 1.0), tangent(after, 0.0)];
     into.cross(away).atan2(into.dot(away)).abs()
 }
 
-/// The direction at an end of a segment.
+/// Direction at the start (`t` = 0) or the end (1) of a segment.
 fn tangent(segment: &Segment, t: f64) -> Vec2 {
     let seg = segment.segment();
     let c = seg.to_cubic();
@@ -325,8 +325,8 @@ fn tangent(segment: &Segment, t: f64) -> Vec2 {
     towards.into_iter().find(|v| v.hypot() > long).unwrap_or(towards[2])
 }
 
-/// Divides a subpath into smooth parts. Joints that turn by more than the corner angle stay; without one, those that do so as seen from a
-/// tolerance away. Segments of no length are left out.
+/// Divides a subpath into smooth parts. Joints that turn by more than the corner angle stay; without a corner angle, those that are corners
+/// when seen from a tolerance away. Callers leave out segments without length.
 pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Options) -> Vec<SmoothPart> {
     let n = segments.len();
     let smooth = options.path_joint().min(SMOOTH_JOINT);
@@ -353,7 +353,7 @@ pub(crate) fn smooth_parts(segments: Vec<Segment>, closed: bool, options: &Optio
     if count < own.count(options.tolerance) { parts } else { vec![own] }
 }
 
-/// Parts that follow each other with the numbers of their pieces, and the sum of these.
+/// Concatenates consecutive parts and adds the numbers of their pieces.
 fn together(parts: Vec<(usize, Vec<SmoothPart>)>) -> (usize, Vec<SmoothPart>) {
     let count = parts.iter().fold(0, |sum: usize, (count, _)| sum.saturating_add(*count));
     (count, parts.into_iter().flat_map(|(_, parts)| parts).collect())
@@ -369,7 +369,7 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// The parts between corners and edges, and the number of their pieces.
+    /// Parts between corners and edges, and the number of their pieces.
     fn divide(&self, options: &Options) -> (usize, Vec<SmoothPart>) {
         let (polygon, n) = (&self.polygon, self.polygon.sides());
         let vertices = n + usize::from(!polygon.closed);
@@ -404,7 +404,7 @@ impl Scan<'_> {
         together(out)
     }
 
-    /// The turn of the source at a vertex; 0 inside of a segment.
+    /// Turn of the source at a vertex; 0 inside a segment.
     fn turn(&self, vertex: usize) -> f64 {
         let n = self.segments.len();
         match self.polygon.flat.node(self.polygon.vertices[vertex]) {
@@ -415,7 +415,7 @@ impl Scan<'_> {
         }
     }
 
-    /// The source's own segments between two vertices.
+    /// Segments of the source between two vertices.
     fn between(&self, [from, to]: [usize; 2]) -> Vec<Segment> {
         let (at, n) = (&self.polygon.flat.at, self.segments.len());
         let [(first, t0), (last, t1)] = [from, to].map(|i| {
@@ -435,8 +435,8 @@ impl Scan<'_> {
         (first..last + usize::from(t1 > 0.0)).map(part).collect()
     }
 
-    /// The part from one vertex to another, with given directions at the ends, and the number of its pieces; without ends, that of the
-    /// whole closed polygon. It is divided at most so many times.
+    /// The part from one vertex to another, with the directions `ends`, and the number of its pieces. Without `ends`, it is the closed
+    /// polygon. It is divided at most `divisions` times.
     fn part(
         &self,
         [from, to]: [usize; 2],
@@ -465,7 +465,7 @@ impl Scan<'_> {
         let guides = Guide::all(&mut samples, knots, ends, [LOOSEST * tolerance, FINEST * tolerance]);
         let corners = match guides {
             Ok(guides) => {
-                // The one with the fewest pieces, if they are fewer than the lines and curves of the source.
+                // Take the guide with the fewest pieces, if they are fewer than the source's.
                 let part = |(guide, off): (Guide, f64)| {
                     let segments = guide.cubics().map(|c| Segment::new(PathSeg::Cubic(c))).collect();
                     counted(SmoothPart { segments, off: off + FLAT * tolerance })
@@ -478,7 +478,7 @@ impl Scan<'_> {
             }
             Err(failed) => self.beside([from, to], &failed),
         };
-        // A part that no guide follows has corners after all.
+        // A part that no guide follows is divided at corners.
         if corners.is_empty() || divisions == 0 {
             return own;
         }
@@ -494,14 +494,14 @@ impl Scan<'_> {
         if divided.0 < own.0 { divided } else { own }
     }
 
-    /// The sharpest vertex between two, if they are near to each other.
+    /// The sharpest vertex between two that are near to each other.
     fn sharpest(&self, [from, to]: [usize; 2]) -> Option<usize> {
         const NEAR: usize = 8;
         let corner = |i: &usize| self.polygon.corner(i % self.polygon.sides());
         (from + 1..to).filter(|_| to - from <= NEAR).max_by(|i, j| corner(i).total_cmp(&corner(j)))
     }
 
-    /// The vertices between two that lie in or beside intervals of places; if there are none, the sharpest.
+    /// Vertices between two that lie in or beside intervals of the length along the polygon; if there are none, the sharpest.
     fn beside(&self, [from, to]: [usize; 2], intervals: &[[f64; 2]]) -> Vec<usize> {
         let (mut out, mut along, mut k) = (Vec::new(), 0.0, 0);
         for i in from + 1..to {

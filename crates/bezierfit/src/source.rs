@@ -1,4 +1,4 @@
-//! What can be fitted: a curve that gives points and derivatives, and whatever else it knows about itself.
+//! Sources of a fit: curves that give points and derivatives, and further properties that are known.
 
 use crate::limits::SLOW_SPEED;
 use crate::sample::{Lane, Lanes, sum};
@@ -13,10 +13,10 @@ pub(crate) const ONE_SIDED_STEP: f64 = 3e-7;
 
 /// A curve with a parameter from 0 to 1. A closure from a parameter to a point and a derivative is one.
 ///
-/// [`eval`](Source::eval) is all that must be written. The other methods are faster ways to the same values, or say what makes the
-/// fit quicker or its error provable.
+/// Only [`eval`](Source::eval) must be written. The other methods compute values faster, or describe properties that make the fit
+/// quicker or its error provable.
 pub trait Source {
-    /// The point and the derivative at `t`.
+    /// Point and derivative at `t`.
     fn eval(&self, t: f64) -> (Point, Vec2);
 
     /// Writes the points at eight parameters.
@@ -28,12 +28,12 @@ pub trait Source {
         }
     }
 
-    /// The parameters inside (0, 1) at which the curve has a corner or a cusp.
+    /// Parameters inside (0, 1) at which the curve has a corner, a cusp or a jump.
     fn breaks(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Returns `true` if the coordinates are polynomials of low degree or quotients of them: a few samples then tell how far a cubic
+    /// Returns `true` if the coordinates are polynomials of low degree or quotients of such, so that a few samples show how far a cubic
     /// is from the curve.
     fn is_simple(&self) -> bool {
         false
@@ -44,22 +44,22 @@ pub trait Source {
         None
     }
 
-    /// The denominators at eight parameters, for a [`quotient`](Source::quotient) that leaves them to the source.
+    /// Values of the denominator at eight parameters, for a [`quotient`](Source::quotient) that leaves them to the source.
     fn denominators(&self, _t: &Lane) -> Lane {
         [1.0; 8]
     }
 
-    /// Returns `true` if samples at `intervals` equal steps between two parameters tell the curve: if nothing between them can be further
-    /// than a share of `tolerance` from what they predict. `None` if that is not known. Then the curve is looked at in more, uneven
-    /// places, and the report says [`Sampled`](crate::Assurance::Sampled).
+    /// Returns `true` if samples at `intervals` equal steps between two parameters determine the curve: if no point between them can be
+    /// further than a share of `tolerance` from a prediction by them. `None` if that is not known. Then the curve is sampled at more,
+    /// uneven parameters, and the report's assurance is [`Sampled`](crate::Assurance::Sampled).
     ///
-    /// A curve with features of a known size, such as a quarter of the length of its shortest wave, answers if the samples are at most
-    /// half of that apart.
+    /// A curve with features of a known size, such as a quarter of its shortest wavelength, returns `true` if the samples are at most half
+    /// of that size apart.
     fn resolved(&self, _between: [f64; 2], _intervals: usize, _tolerance: f64) -> Option<bool> {
         self.is_simple().then_some(true)
     }
 
-    /// The place that reports name for `t`: by default the curve's own point.
+    /// The point that reports name for `t`: by default the curve's point.
     fn place(&self, t: f64) -> Point {
         self.eval(t).0
     }
@@ -67,7 +67,7 @@ pub trait Source {
     /// The point at `t` with the tangents before and after it.
     ///
     /// # Errors
-    /// The curve is not finite there.
+    /// [`NotFinite`] if the curve is not finite at `t`.
     fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
         let (p, d) = self.eval(t);
         if !(p.is_finite() && d.is_finite()) {
@@ -81,7 +81,7 @@ pub trait Source {
         Ok(BreakPoint { t, p, speed: 0.0, into: tangent_beside(self, t, -1.0), away: tangent_beside(self, t, 1.0) })
     }
 
-    /// Announces points and ends of several curves that are asked for next, for curves of which each call is expensive.
+    /// Announces the points and ends of several curves that are requested next, for curves whose calls are expensive.
     #[doc(hidden)]
     fn announce<'s>(
         _points: &mut dyn Iterator<Item = (&'s Self, Lane)>,
@@ -142,7 +142,7 @@ impl Source for &dyn Source {
 pub struct NotFinite {
     /// The parameter.
     pub t: f64,
-    /// The [place](Source::place) for it.
+    /// The [point](Source::place) that stands for it in reports.
     pub at: Point,
 }
 
@@ -176,26 +176,26 @@ pub struct Quotient {
     pub degree: usize,
     /// Degree of the denominator; 0 if there is none.
     pub below: usize,
-    /// Bernstein coefficients of the denominator; without, the source is asked for its values.
+    /// Bernstein coefficients of the denominator. If `None`, [`Source::denominators`] gives its values.
     pub weights: Option<Vec<f64>>,
     /// Distance of the pieces' ends from the curve, if larger than rounding.
     pub blur: f64,
 }
 
 impl Quotient {
-    /// For a polynomial.
+    /// A polynomial, which has no denominator.
     #[must_use]
     pub fn polynomial(degree: usize) -> Self {
         Self { degree, below: 0, weights: None, blur: 0.0 }
     }
 
-    /// The denominators at eight parameters.
+    /// Values of the denominator at eight parameters.
     pub(crate) fn denominators(&self, source: &impl Source, t: &Lane) -> Lane {
         self.weights.as_ref().map_or_else(|| source.denominators(t), |w| bernstein(w, t))
     }
 }
 
-/// The Bernstein polynomial with coefficients `b` at eight parameters.
+/// Values of the polynomial with Bernstein coefficients `b` at eight parameters.
 fn bernstein(b: &[f64], t: &Lane) -> Lane {
     let n = b.len() - 1;
     let mut out = [0.0; 8];
@@ -217,11 +217,11 @@ fn bernstein(b: &[f64], t: &Lane) -> Lane {
     out
 }
 
-/// Writes the points at eight parameters, all of them finite.
+/// Writes the points at eight parameters. An error unless all are finite.
 #[inline(always)]
 pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Result<(), NotFinite> {
     source.points(t, g);
-    // One test for all: the sum is finite only if every term is. Terms too large to add up are too large to fit.
+    // One test for all: the sum is finite only if every term is. Terms whose sum overflows are too large to fit.
     let mut all = [0.0; 8];
     for i in 0..8 {
         all[i] = g.x[i] + g.y[i];
@@ -229,7 +229,7 @@ pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Resu
     if sum(&all).is_finite() { Ok(()) } else { Err(not_finite(source, t, g)) }
 }
 
-/// The points at eight parameters, all of them finite.
+/// The points at eight parameters. An error unless all are finite.
 #[inline(always)]
 pub(crate) fn images(source: &impl Source, t: &Lane) -> Result<Lanes, NotFinite> {
     let mut out = Lanes::default();
@@ -243,7 +243,7 @@ fn not_finite(source: &impl Source, t: &Lane, g: &Lanes) -> NotFinite {
     NotFinite { t: t[i], at: source.place(t[i]) }
 }
 
-/// The unit tangent a little after (`side` = 1) or before (−1) a parameter at which the derivative vanishes; zero for a point.
+/// Unit tangent a little after (`side` = 1) or before (−1) a parameter at which the derivative vanishes; zero for a point.
 #[doc(hidden)]
 #[cold]
 pub fn tangent_beside<S: Source + ?Sized>(source: &S, t: f64, side: f64) -> Vec2 {
@@ -255,8 +255,7 @@ pub fn tangent_beside<S: Source + ?Sized>(source: &S, t: f64, side: f64) -> Vec2
         let (_, d) = source.eval(s);
         let n = d.hypot();
         if n > 0.0 && n.is_finite() {
-            // Beyond the end there is no curve. The tangent on that side is never used by a piece of this curve, so the sign does
-            // not matter.
+            // No piece uses the tangent beyond an end of the curve, so its sign does not matter.
             return d * (flip / n);
         }
         h *= 30.0;
@@ -264,10 +263,10 @@ pub fn tangent_beside<S: Source + ?Sized>(source: &S, t: f64, side: f64) -> Vec2
     Vec2::ZERO
 }
 
-/// Maximum number of slow spots of a segment: more than the speed of any of them has minima.
+/// Maximum number of slow spots of a segment: more than the number of minima of any segment's speed.
 const MAX_SLOW: usize = 4;
 
-/// Parameters inside a segment at which it is much slower than elsewhere: cusps and near-cusps, at which the direction turns
+/// Parameters inside a segment at which it is much slower than elsewhere: cusps and near-cusps, where it turns
 /// within a stretch too short for evenly spaced samples.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SlowSpots {
@@ -290,7 +289,7 @@ impl SlowSpots {
         }
     }
 
-    /// The same spots in another parametrisation.
+    /// Maps the spots to another parametrisation.
     #[must_use]
     pub fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
         for t in &mut self.t[..self.len] {
@@ -299,21 +298,21 @@ impl SlowSpots {
         self
     }
 
-    /// The spot well inside (t0, t1) that is nearest to the middle.
+    /// The spot nearest to the middle of (t0, t1) that is well inside.
     pub(crate) fn inside(&self, t0: f64, t1: f64) -> Option<f64> {
         let m = 1e-6 * (t1 - t0);
         let off = |t: f64| (t - 0.5 * (t0 + t1)).abs();
         self.all().iter().copied().filter(|t| *t > t0 + m && *t < t1 - m).min_by(|a, b| off(*a).total_cmp(&off(*b)))
     }
 
-    /// Those of a quadratic.
+    /// Slow spots of a quadratic segment.
     #[must_use]
     pub fn of_quad(s: &QuadBez) -> Self {
         let (v, a) = (s.p1 - s.p0, (s.p2 - s.p1) - (s.p1 - s.p0));
         speed_minima(&[v, a, Vec2::ZERO])
     }
 
-    /// Those of a cubic.
+    /// Slow spots of a cubic segment.
     #[inline]
     #[must_use]
     pub fn of_cubic(s: &CubicBez) -> Self {
@@ -329,7 +328,7 @@ impl SlowSpots {
         speed_minima(&[d0, (d1 - d0) * 2.0, d2 - d1 * 2.0 + d0])
     }
 
-    /// The ends of the long axis of a flat ellipse with conjugate semi-axes `a` and `b`, at start + t·sweep, if they lie inside the arc.
+    /// Slow spots of an arc, at angles start + t·sweep, of a flat ellipse with conjugate semi-axes `a` and `b`: the ends of its long axis.
     #[must_use]
     pub fn of_arc([a, b]: [Vec2; 2], start: f64, sweep: f64) -> Self {
         // |P'|² = A + B cos 2θ + C sin 2θ is smallest opposite to the phase (B, C).

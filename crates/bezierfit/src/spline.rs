@@ -1,12 +1,13 @@
-//! Quadratics: a smooth run as a quadratic spline, whose inner points on the curve lie midway between control points.
+//! Covers a smooth run with a quadratic spline, whose inner points on the curve lie midway between control points.
 //!
 //! A spline of n pieces has n control points; the first and the last lie on the end tangents, so 2n − 2 numbers are free. They minimise the
 //! residuals along the normals at the foot points of samples, by banded normal equations, in turn with the foot points. Weights that
 //! grow with the residual (Lawson) bring the largest one down. The least n whose spline passes its check is taken. A single piece has no
-//! freedom: its control point is where the end tangents meet.
+//! freedom: its control point is the crossing of the end tangents. In the code `c` are the control points, and the spline's parameter `u`
+//! runs from 0 to n.
 //!
-//! A quadratic that touches an arc of radius R and angle θ at both ends is R·θ⁴/128 off in its middle. The number of pieces that this law
-//! gives for the turns between samples is where the search for n begins, and lays out the foot points.
+//! A quadratic that touches an arc of radius R and angle θ at both ends is R·θ⁴/128 off in its middle. From the turns between samples,
+//! this law gives the number of pieces at which the search for n begins, and the layout of the foot points.
 
 use crate::banded::solve_banded;
 use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
@@ -14,34 +15,34 @@ use crate::report::{Assurance, REPORT_MARGIN, Report};
 use crate::source::{BreakPoint, NotFinite, Source};
 use kurbo::{BezPath, Point, Vec2};
 
-/// Rounds of a fit, the first of which is plain least squares.
+/// Most rounds of a fit. The first is plain least squares.
 const ROUNDS: usize = 16;
-/// Control points of a spline, at most: a longer run is divided.
+/// Most control points of a spline; a longer run is divided.
 const MOST: usize = 48;
-/// Stretches shorter than this share of a curve are not divided, nor are any after so many for which nothing was found.
+/// Shortest stretch that is divided, as a share of a curve, and the number of stretches in vain after which none is divided.
 const SHORTEST: f64 = 1e-6;
 const MOST_FUTILE: usize = 100;
-/// Samples to a piece, at least, that measure an error: it has corners where the curvature of the curve or of the spline jumps.
+/// Least number of samples for each piece that measure an error, which has corners where the curvature of curve or spline jumps.
 const CLOSELY: f64 = 64.0;
-/// By how much samples are refined for that, at most.
+/// Largest factor by which samples are refined for that.
 const MOST_CLOSELY: f64 = 32.0;
-/// Error that is recorded for what fails a check.
+/// Error that is recorded for a spline that fails a check, in tolerances.
 const MISSED: f64 = 1.001;
-/// Share of the residual along the tangent: it keeps the system regular.
+/// Share of the residual along the tangent that is counted, to keep the system regular.
 const ALONG: f64 = 0.005;
-/// By how much least squares bring the error below that of quadratics that touch the curve.
+/// Factor by which the error of quadratics that touch the curve exceeds that of least squares.
 const BALANCED: f64 = 1.3;
 /// A fit ends if the bound of its error exceeds the tolerance by this factor.
 const HOPELESS: f64 = 1.02;
-/// Weights begin when the mean falls by less than this factor in a round. A fit goes on if as many rounds more like the last would bring the
-/// mean to the tolerance.
+/// Weights begin when a round lowers the mean to no less than this share. A fit goes on if this many more rounds like the last would bring
+/// the mean to the tolerance.
 const SETTLED: f64 = 0.95;
 const PATIENCE: i32 = 8;
-/// Layouts that differ by less than this, in pieces, lead to the same spline.
+/// Largest difference of layouts, in pieces, that lead to the same spline.
 const ALIKE: f64 = 0.25;
-/// Curves that are covered together, at most, so that the time is linear.
+/// Most curves that are covered together, so that the time is linear.
 const MOST_CURVES: usize = 32;
-/// A spline with more pieces than this multiple of the estimate may not suit the whole of its curves.
+/// A spline with more pieces than this multiple of the estimate may do better on parts of its curves.
 const UNSUITED: f64 = 1.5;
 
 /// A stretch of one of the curves of a run.
@@ -51,15 +52,15 @@ struct Span {
     t: [f64; 2],
 }
 
-/// Curves that follow each other smoothly, and the tolerance.
+/// Consecutive curves that join smoothly, and the tolerance.
 pub(crate) struct Run<'a, S> {
     pub(crate) curves: &'a [S],
     pub(crate) tolerance: f64,
-    /// Tells when no more evaluations are allowed.
+    /// Returns `true` when no more evaluations are allowed.
     pub(crate) is_spent: &'a dyn Fn() -> bool,
 }
 
-/// Samples of a stretch: points, the length up to each, and the pieces that are expected up to each.
+/// Samples of a stretch: points, the length up to each, and the number of pieces expected up to each.
 struct Samples {
     p: Vec<Point>,
     /// Intervals between samples of each curve.
@@ -77,7 +78,7 @@ struct Stretch {
 /// A line or a spline that covers a stretch.
 struct Covered {
     ends: [BreakPoint; 2],
-    /// A line if there is none.
+    /// The spline; a line if `None`.
     spline: Option<Spline>,
     error: f64,
     resolved: bool,
@@ -107,7 +108,7 @@ impl<S: Source> Run<'_, S> {
         Ok(())
     }
 
-    /// The curves of the run: straight ones alone, and between them as many together as a spline may cover.
+    /// Groups the curves of the run: straight ones alone, and between them as many together as a spline may cover.
     fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>, NotFinite> {
         let mut all: Vec<(Stretch, f64)> = Vec::new();
         let (mut from, last) = (ends[0], self.curves.len() - 1);
@@ -116,7 +117,7 @@ impl<S: Source> Run<'_, S> {
             let span = Span { curve, t: [0.0, 1.0] };
             let samples = self.samples(&[span], SPLINE_SAMPLES, &[from, to])?;
             let straight = samples.straight(STRAIGHT * self.tolerance).is_some();
-            // A line has an expectation beyond all limits.
+            // A line joins no group.
             let expected = if straight { f64::INFINITY } else { samples.pieces() };
             match all.last_mut() {
                 Some((s, sum)) if *sum + expected <= 0.5 * MOST as f64 && s.spans.len() < MOST_CURVES => {
@@ -131,7 +132,7 @@ impl<S: Source> Run<'_, S> {
         Ok(all.into_iter().map(|(s, _)| s).collect())
     }
 
-    /// Covers a stretch, divided where it needs too many pieces or fewer in parts.
+    /// Covers a stretch, divided if it needs too many pieces, or fewer when divided.
     fn covered(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>, NotFinite> {
         let (found, expected) = self.least(&stretch)?;
         let [t0, t1] = stretch.spans[0].t;
@@ -156,7 +157,7 @@ impl<S: Source> Run<'_, S> {
             halves.extend(self.covered(half, futile)?);
         }
         *futile = if halves.iter().all(|c| c.resolved) { 0 } else { *futile };
-        // Points that are stored: a control point for each piece, and one between splines.
+        // Count the stored points: a control point for each piece, and one between splines.
         let points: usize = halves.iter().map(|c| c.pieces() + 1).sum();
         Ok(match whole {
             Some(whole) if whole.pieces() < points => vec![whole],
@@ -182,7 +183,7 @@ impl<S: Source> Run<'_, S> {
         Ok([Stretch { spans: first, ends: [ends[0], to] }, Stretch { spans: second, ends: [from, ends[1]] }])
     }
 
-    /// Covers a stretch with the fewest pieces, if [`MOST`] suffice. Returns the expected number, too.
+    /// Covers a stretch with the fewest pieces, if [`MOST`] suffice. Also returns the expected number.
     fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64), NotFinite> {
         let Stretch { spans, ends } = stretch;
         let sampled = |n: usize| {
@@ -197,7 +198,7 @@ impl<S: Source> Run<'_, S> {
         let expected = samples.pieces();
         let mut n = ((0.5 * expected) as usize).clamp(1, MOST / 2);
         let (mut too_few, mut found) = (0, None);
-        // Up by the error, which goes with the third to fourth power of the length, then down to the least that fits.
+        // Go up by the error, which goes with the third to fourth power of the length, then down to the least that fits.
         while n <= MOST && too_few < n {
             if samples.p.len() <= SPLINE_SAMPLES * n {
                 samples = sampled(n)?;
@@ -205,7 +206,7 @@ impl<S: Source> Run<'_, S> {
             match self.best(spans, n, &samples, ends)? {
                 Ok((spline, error, bound)) => {
                     found = Some((spline, error));
-                    // One piece less raises the bound by the third to fourth power of the length; the square leaves room for luck.
+                    // One piece fewer raises the bound with the third to fourth power of the length; the square is cautious.
                     if bound * (n as f64 / (n as f64 - 1.0)).powi(2) > self.tolerance {
                         break;
                     }
@@ -222,7 +223,8 @@ impl<S: Source> Run<'_, S> {
         Ok((found.and_then(|(spline, error)| covered(Some(spline), error)), expected))
     }
 
-    /// The best spline of `n` pieces with its error, measured at samples as close as it needs; otherwise the least error found.
+    /// The best spline of `n` pieces with its error, measured at samples that are close enough, and a lower bound for any error. `Err` is
+    /// the least error found if none fits.
     fn best(
         &self,
         spans: &[Span],
@@ -250,7 +252,7 @@ impl<S: Source> Run<'_, S> {
         Ok(error.map(|e| (spline, e, bound)).ok_or(MISSED * self.tolerance))
     }
 
-    /// `each` intervals between samples of every span.
+    /// Samples `each` intervals of every span.
     fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples, NotFinite> {
         let all = each * spans.len() + 1;
         let mut p = vec![ends[0].p];
@@ -271,7 +273,7 @@ impl<S: Source> Run<'_, S> {
 }
 
 impl Covered {
-    /// Appends its line or its quadratics.
+    /// Appends the line or the quadratics.
     fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
         let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
         match &self.spline {
@@ -294,7 +296,7 @@ impl Samples {
         for i in 1..p.len() {
             let chord = p[i] - p[i - 1];
             let along = chord.hypot();
-            // Half of the turns at inner samples, and those at the ends.
+            // The turns at both ends of the chord, of which inner samples share half with the next chord.
             let after = if i + 1 < p.len() { p[i + 1] - p[i] } else { ends[1].into };
             let half = |inner: bool, turn: f64| if inner { 0.5 * turn } else { turn };
             let angle = half(i > 1, turn(before, chord)) + half(i + 1 < p.len(), turn(chord, after));
@@ -305,12 +307,12 @@ impl Samples {
         Self { p, each, length, expected }
     }
 
-    /// The number of pieces that are expected of all.
+    /// Number of pieces that are expected.
     fn pieces(&self) -> f64 {
         self.expected[self.p.len() - 1]
     }
 
-    /// The largest distance from the chord, if it is at most `limit` and the samples advance along it.
+    /// Largest distance from the chord, if that is at most `limit` and the samples advance along the chord.
     fn straight(&self, limit: f64) -> Option<f64> {
         let (a, b) = (self.p[0], self.p[self.p.len() - 1]);
         let (q, length) = (b - a, a.distance(b));
@@ -320,7 +322,7 @@ impl Samples {
         ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
     }
 
-    /// Shares along which pieces are laid out to begin with: by the parameters of curves with what is expected of each, and by length.
+    /// Shares of the whole up to each sample, by which pieces are laid out at first: by the pieces expected of each curve, and by length.
     fn layouts(&self) -> [Vec<f64>; 2] {
         let all = self.p.len() - 1;
         let even: Vec<f64> = (0..=all)
@@ -355,7 +357,7 @@ impl Spline {
         }
     }
 
-    /// The point and its two derivatives at `u`, from 0 to the number of pieces.
+    /// Point, first and second derivative at `u`, which runs from 0 to the number of pieces.
     fn at(&self, u: f64) -> (Point, Vec2, Vec2) {
         let k = (u as usize).min(self.c.len() - 1);
         let (p, c, q, s) = (self.joint(k), self.c[k], self.joint(k + 1), u - k as f64);
@@ -363,7 +365,7 @@ impl Spline {
         (p + (d0 * (2.0 - s) + d1 * s) * s, (d0 * (1.0 - s) + d1 * s) * 2.0, (d1 - d0) * 2.0)
     }
 
-    /// Moves a foot point towards the place nearest to `p`, and returns the distance, signed by the side.
+    /// Moves a foot point towards the point nearest to `p`. Returns the distance, signed by the side.
     fn settle(&self, p: Point, u: &mut f64, steps: usize) -> f64 {
         let n = self.c.len() as f64;
         let (mut r, mut d) = (Vec2::ZERO, Vec2::ZERO);
@@ -380,7 +382,8 @@ impl Spline {
         r.hypot().copysign(d.cross(r))
     }
 
-    /// The best spline of `n` pieces with its error and the foot points of the samples; otherwise the least error found.
+    /// The best spline of `n` pieces with its error, the bound, and the foot points of the samples. `Err` is the least error found if none
+    /// fits.
     fn best(
         n: usize,
         samples: &Samples,
@@ -404,7 +407,7 @@ impl Spline {
         Err(least.max(MISSED * tolerance))
     }
 
-    /// Fits in rounds from the foot points `u`. Returns the largest error at the samples.
+    /// Fits in rounds from the foot points `u`. Returns the spline with the largest error at the samples and the bound.
     fn fitted(
         n: usize,
         samples: &Samples,
@@ -451,7 +454,7 @@ impl Spline {
             if least <= ACCEPTED * 0.98 * tolerance {
                 break;
             }
-            // Foot points still move while the mean falls.
+            // The mean falls as long as foot points move.
             let falls = (bound / before).min(1.0);
             if bound * falls.powi(PATIENCE) > HOPELESS * tolerance {
                 break;
@@ -467,7 +470,7 @@ impl Spline {
         Some((spline, [worst, bound]))
     }
 
-    /// The largest error at and between the samples; `None` if they may have missed something.
+    /// Largest error at and between the samples; `None` if they may miss something.
     fn checked(&self, samples: &Samples, u: &mut [f64]) -> Option<f64> {
         let errors: Vec<f64> = samples.p.iter().zip(u.iter_mut()).map(|(p, u)| self.settle(*p, u, 4)).collect();
         let slopes: Vec<Vec2> = u.iter().map(|u| self.at(*u).1).collect();
@@ -485,10 +488,10 @@ fn tangents(samples: &Samples) -> Vec<Vec2> {
     (0..n).map(|i| along(i) / along(i).hypot().max(f64::MIN_POSITIVE)).collect()
 }
 
-/// Unknowns that a piece depends on, and so the width of the band.
+/// Number of unknowns on which a piece depends: the width of the band.
 const BAND: usize = 6;
 
-/// The spline of `n` ≥ 2 pieces with the least weighted squares of the residuals.
+/// The spline of `n` ≥ 2 pieces with the least weighted sum of squared residuals.
 fn solve(
     n: usize,
     samples: &Samples,
@@ -504,7 +507,7 @@ fn solve(
         let k = (u[j] as usize).min(n - 1);
         let s = u[j] - k as f64;
         let (w0, w1, w2) = ((1.0 - s) * (1.0 - s), 2.0 * s * (1.0 - s), s * s);
-        // Shares of the control points k − 1, k, k + 1, and what does not depend on them.
+        // Shares of the control points k − 1, k, k + 1, and the part that is independent of them.
         let first = if k > 0 { 0.5 * w0 } else { 0.0 };
         let last = if k + 1 < n { 0.5 * w2 } else { 0.0 };
         let share = [first, w1 + first + last, last];

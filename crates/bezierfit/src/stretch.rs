@@ -1,4 +1,4 @@
-//! One piece for one stretch of a curve: its samples, a line if they are on one, the Hermite cubic if that fits, or the best cubic found.
+//! Fits one piece to one stretch of a curve: a line if the samples are on one, the Hermite cubic if it fits, else the best cubic found.
 
 use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved, size};
 use crate::limits::{
@@ -15,10 +15,10 @@ use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images, 
 use kurbo::{Line, Point, Vec2};
 use std::cell::Cell;
 
-/// Evaluations of the source for a thorough check: its own, and its search.
+/// Evaluations counted for a thorough check, including an allowance for its search.
 pub(crate) const THOROUGH_WORK: usize = 800;
 
-/// Factor from the error at eight samples to the one reported.
+/// Factor from the error at eight samples to the reported error.
 pub(crate) const EIGHT_GROWTH: f64 = 1.1;
 
 /// Evaluations of the source for an attempt at a piece with its usual checks.
@@ -28,15 +28,15 @@ const EVALUATIONS: usize = 32;
 const LINE_INTERVALS: usize = 5;
 const NINTHS: usize = 9;
 
-/// A part of a piece as short as this is not searched further: the curve has no derivative there.
+/// Shortest part of a piece that is searched further, as a share of the piece. On shorter ones the curve has no derivative.
 const SHORTEST: f64 = 1e-6;
 
-/// Parts of a piece that are searched, and the evaluations for which each counts.
+/// Most parts of a piece that are searched, and the evaluations that count for each.
 const MAX_LOOKS: usize = 2_000;
 const LOOK_WORK: usize = 8;
 
-/// A part with more attempts may be one where the curve oscillates faster than samples can tell, so that most need the thorough check:
-/// fewer are allowed from there on.
+/// Attempts from which on each counts as a thorough check: the curve may oscillate too fast for its samples, so that most attempts need
+/// one.
 const HARD: usize = 64;
 
 /// Fits pieces to stretches of one smooth curve.
@@ -46,26 +46,26 @@ pub struct StretchFitter<'a, S> {
     pub(crate) tolerance: f64,
     /// The curve as a quotient of polynomials, if proofs are wanted and possible.
     pub(crate) form: Option<Quotient>,
-    /// The curve is simple, and the ends of the pieces lie on it.
+    /// Set if the curve is [simple](Source::is_simple) and the ends of the pieces lie on it.
     pub(crate) simple: bool,
     pub(crate) attempts: usize,
-    /// Evaluations besides those of attempts with their usual checks, so far.
+    /// Evaluations so far besides those of attempts with their usual checks.
     pub(crate) extra: Cell<usize>,
-    /// The curve does not tell if samples resolve it.
+    /// Set if the curve cannot tell whether samples resolve it.
     pub(crate) sampled: bool,
-    /// The number of attempts at which the work ends.
+    /// Number of attempts at which the work ends.
     most_attempts: usize,
-    /// Where evaluations are counted one by one, and the number at which the work ends.
+    /// Counter of evaluations, if they are counted one by one, and the number at which the work ends.
     pub(crate) counted: Option<(&'a Cell<usize>, usize)>,
-    /// Break points are to be the same from either end.
+    /// Place break points alike from either end.
     pub evenly: bool,
-    /// The last ends of the pieces found so far, where one was not enough.
+    /// Last ends of the pieces found so far, if one piece was not enough.
     pub(crate) joints: Vec<BreakPoint>,
 }
 
 impl<'a, S: Source> StretchFitter<'a, S> {
-    /// For pieces whose ends are at most `blur` from the curve. Ends after the attempts that exceed `left` evaluations by themselves, so
-    /// that the result does not depend on what others count at the same time.
+    /// Makes a fitter for pieces whose ends are at most `blur` from the curve. The work ends when the attempts of this fitter alone
+    /// exceed `left` evaluations, so that the result does not depend on other threads.
     #[inline(always)]
     pub fn new(source: &'a S, slow: &'a SlowSpots, tolerance: f64, (certify, blur): (bool, f64), left: f64) -> Self {
         let (usual, hard) = (left / EVALUATIONS as f64, left / THOROUGH_WORK as f64);
@@ -90,14 +90,14 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         }
     }
 
-    /// Returns `true` if the work ends here.
+    /// Returns `true` if the allowed work is done.
     pub(crate) fn is_spent(&self) -> bool {
         let (spent, most) = self.counted.map_or((self.evaluations(), usize::MAX), |(calls, most)| (calls.get(), most));
         let earned = FUTILE_EVALUATIONS + EVALUATIONS_PER_PIECE * self.joints.len();
         self.attempts >= self.most_attempts || spent >= most.min(earned)
     }
 
-    /// Evaluations so far, at most.
+    /// Upper bound for the evaluations so far.
     #[inline(always)]
     pub fn evaluations(&self) -> usize {
         let each = if self.attempts > HARD { THOROUGH_WORK } else { EVALUATIONS };
@@ -128,7 +128,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(FitRequest { from, to, frame, g, check: None, careful })
     }
 
-    /// The outcome, if the image is straight to rounding.
+    /// A line, if the image is straight to rounding.
     #[inline(always)]
     pub(crate) fn line(&self, request: &FitRequest<'_>) -> Result<Option<FitOutcome>, NotFinite> {
         let size = request.frame.size;
@@ -153,8 +153,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(request.check.get_or_insert_default())
     }
 
-    /// The proven error of a state whose measured error is `error` with these foot points; `error` itself if there is
-    /// nothing to prove it with.
+    /// Proven error of a state with these foot points; the measured `error` if no proof is wanted or possible.
     #[inline(never)]
     pub(crate) fn proven(
         &self,
@@ -168,7 +167,7 @@ impl<S: Source> StretchFitter<'_, S> {
         proof::piece(self.source, form, &request.candidate(z), [request.g, &check], feet, self.tolerance)
     }
 
-    /// Images at the samples `set` of a stretch of length `h`, relative to its first point.
+    /// Computes the images at the samples `set` of a stretch of length `h`, relative to its first point.
     #[inline(always)]
     fn sample(&self, from: &BreakPoint, h: f64, set: &Lane, g: &mut Lanes) -> Result<(), NotFinite> {
         images_into(self.source, &spaced(from.t, h, set), g)?;
@@ -185,9 +184,9 @@ impl<S: Source> StretchFitter<'_, S> {
 pub(crate) struct FitOutcome {
     /// The best piece found.
     pub(crate) piece: Piece,
-    /// Its error, proven where a proof is wanted and possible.
+    /// Error of the piece, proven where a proof is wanted and possible.
     pub(crate) error: f64,
-    /// Error at the fitted samples, or what more iterations would reach: it predicts the number of pieces.
+    /// Error at the fitted samples, or a prediction after more iterations, from which the number of pieces is predicted.
     pub(crate) reach: f64,
     /// A parameter at which the image nearly stops, if the piece misses.
     pub(crate) cusp: Option<f64>,
@@ -198,14 +197,14 @@ impl FitOutcome {
         self.error <= tolerance
     }
 
-    /// The share of one piece's capacity that the stretch takes: the sixth root of error ÷ tolerance.
+    /// Number of pieces that the stretch needs, as a fraction: the sixth root of error ÷ tolerance.
     pub(crate) fn difficulty(&self, tolerance: f64) -> f64 {
-        // No piece counts as free, nor as more than can be planned at once.
+        // Limited to what can be planned at once, and above zero.
         (self.reach / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
     }
 }
 
-/// A stretch with the fitter that judges its fits.
+/// A stretch and the fitter that judges its fits.
 struct Attempt<'f, 'r, 'a, S> {
     fitter: &'f StretchFitter<'a, S>,
     request: FitRequest<'r>,
@@ -238,7 +237,7 @@ impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Fits one piece to a stretch, and makes sure that nothing hides between the samples of one that fits.
+    /// Fits one piece to a stretch. If it fits, makes sure that nothing hides between the samples.
     #[inline]
     pub(crate) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
         let outcome = self.fitted(from, to)?;
@@ -255,8 +254,8 @@ impl<S: Source> StretchFitter<'_, S> {
         }
     }
 
-    /// The outcome if closer samples confirm it: so many that nothing hides, or, if the curve does not tell how many that are, some at
-    /// uneven places.
+    /// The outcome, with a larger error if closer samples contradict it. They are close enough for nothing to hide or, if the curve cannot
+    /// tell when that is so, at uneven parameters.
     #[cold]
     fn searched(&self, outcome: FitOutcome, [from, to]: [f64; 2], known: bool) -> Result<FitOutcome, NotFinite> {
         let off = |t: &Lane| -> Result<f64, NotFinite> {
@@ -292,7 +291,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(FitOutcome { error: worst, ..outcome })
     }
 
-    /// A line, the Hermite cubic, or the best cubic found from that on.
+    /// A line, the Hermite cubic, or the best cubic found from the Hermite cubic on.
     #[inline(never)]
     fn fitted(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome, NotFinite> {
         let mut g = Lanes::default();
@@ -324,7 +323,7 @@ impl<S: Source> StretchFitter<'_, S> {
         })
     }
 
-    /// The Hermite cubic, if it fits and nothing more needs to be looked at.
+    /// The Hermite cubic, if few samples suffice to show that it fits.
     #[inline(always)]
     fn hermite(&self, request: &mut FitRequest<'_>, first: &HermiteResiduals) -> Result<Option<FitOutcome>, NotFinite> {
         let pace = if self.simple { PACE_SIXTEEN } else { PACE_EIGHT };
@@ -342,7 +341,7 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error, cusp: None }))
     }
 
-    /// Infinite if sixteen samples leave the error in doubt.
+    /// Error of the Hermite cubic; infinite if sixteen samples leave it in doubt.
     #[inline(never)]
     fn hermite_error_at_sixteen(
         &self,
@@ -360,8 +359,8 @@ impl<S: Source> StretchFitter<'_, S> {
         self.proven(request, &FitState { a, b, s }, [&s, &second.feet(&CHECKED)], both.worst.sqrt())
     }
 
-    /// The Hermite cubic itself, where the image is that to rounding: maps that change little then return cusps and coincident handles as
-    /// they were.
+    /// The Hermite cubic, if the image is identical to rounding, so that maps that change little preserve cusps and coincident
+    /// handles.
     #[cold]
     fn exact_hermite(&self, request: &mut FitRequest<'_>) -> Result<Option<FitOutcome>, NotFinite> {
         let check = *self.checked(request)?;
@@ -381,17 +380,17 @@ impl<S: Source> StretchFitter<'_, S> {
     }
 }
 
-/// Residuals of the Hermite cubic, which has the curve's end derivatives, at eight samples. Most pieces of a gentle curve end with it, so
-/// this is the hot path: foot points are the samples' own parameters, and one reduction serves each test.
+/// Residuals of the Hermite cubic, which has the curve's end derivatives, at eight samples. Most pieces of a gentle curve end with it.
+/// As this is the hot path, foot points are the parameters of the samples, and each test takes one reduction.
 struct HermiteResiduals {
     /// Square of the largest normal residual.
     worst: f64,
-    /// Newton step of each foot point, and the longest of them.
+    /// Newton steps of the foot points, and the length of the longest.
     ds: Lane,
     drift: f64,
     /// Squares of the least and the largest distance between neighbouring samples.
     paces: [f64; 2],
-    /// The cubic's direction at every sample is within 45° of that to the neighbouring sample.
+    /// Set if the cubic's direction at every sample is within 45° of the direction to the neighbouring sample.
     along: bool,
 }
 
@@ -406,8 +405,8 @@ impl HermiteResiduals {
         Self::at(&request.frame, &CHECKED, check, request.g, -1.0)
     }
 
-    /// At the samples `g` of the places `set`. `next` are their neighbours: following in the first half and preceding in the second if
-    /// `side` is 1, the other way round if it is −1.
+    /// Measures at the samples `set` with images `g`. `next` are their neighbours' images: following in the first half and preceding in the
+    /// second if `side` is 1, the other way round if it is −1.
     #[inline(always)]
     fn at(frame: &ChordFrame, set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Self {
         let power = frame.power(frame.home[0], frame.home[1]);
@@ -438,7 +437,7 @@ impl HermiteResiduals {
         }
     }
 
-    /// The two together, with the Newton steps of the first.
+    /// Both sets of residuals together, with the Newton steps of the first.
     fn and(&self, other: &Self) -> Self {
         Self {
             worst: larger(self.worst, other.worst),
@@ -449,11 +448,11 @@ impl HermiteResiduals {
         }
     }
 
-    /// Returns `true` if the residuals are small, and the samples resolve both the cubic and an image whose speeds squared differ less
-    /// than `pace` times.
+    /// Returns `true` if the residuals are small, the image's squared speeds differ by a factor of less than `pace`, and the samples
+    /// resolve cubic and image.
     #[inline(always)]
     fn suffice(&self, size: f64, tolerance: f64, pace: f64) -> bool {
-        // Foot points that move by less than half the spacing each cannot change order.
+        // Foot points that move by less than half the spacing keep their order.
         self.worst <= (SMALL_ERROR * tolerance).powi(2)
             && self.drift * self.drift * size <= DRIFT * tolerance
             && self.along
@@ -472,7 +471,7 @@ impl HermiteResiduals {
     }
 }
 
-/// Parabolas through three speeds in a search for the slowest place, at most; six are usual.
+/// Most parabolas through three speeds in the search for the slowest point; six are usual.
 const CLOSER: usize = 16;
 
 impl<S: Source> StretchFitter<'_, S> {
@@ -480,7 +479,7 @@ impl<S: Source> StretchFitter<'_, S> {
     #[inline(never)]
     fn cusp(&self, request: &FitRequest<'_>) -> Option<f64> {
         let FitRequest { from, to, frame, g, .. } = request;
-        // The polygon through the samples. At the ends the image slows down because of a short handle, which is no cusp.
+        // Find the shortest step of the polygon through the samples, except at the ends, where a short handle slows the image down.
         let place = |i: usize| if i == 0 { 0.0 } else { FITTED.get(i - 1).map_or(1.0, |j| j * UNIT) };
         let point = |i: usize| match i {
             0 => Vec2::ZERO,
@@ -515,7 +514,7 @@ impl<S: Source> StretchFitter<'_, S> {
             let shift = (0.5 * step * (before - after) / bend).clamp(-2.0 * step, 2.0 * step);
             mid += shift;
             step = (0.5 * shift.abs()).clamp(0.125 * step, 0.5 * step);
-            // One at an end is that end's own.
+            // A minimum at an end is the effect of a short handle.
             if mid <= step || mid >= 1.0 - step {
                 return None;
             }
@@ -527,11 +526,11 @@ impl<S: Source> StretchFitter<'_, S> {
     }
 }
 
-/// Tangents within this many radians of the chord make no corner with it: far below the 0.01° to which joints are kept smooth.
+/// Angle in radians up to which tangents count as along the chord: far below the 0.01° to which joints are kept smooth.
 pub const STRAIGHT_TURN: f64 = 1e-6;
 
 /// Returns the line between the ends and the largest distance of the samples from it, if the image is that line to within
-/// an invisible distance, runs along it in one direction, and leaves and enters it without a corner.
+/// an invisible distance, runs along it in one direction, and has end tangents along it.
 #[inline(always)]
 pub(crate) fn straight(
     g: &Lanes,
@@ -542,9 +541,9 @@ pub(crate) fn straight(
 ) -> Option<(Line, f64)> {
     let q = to.p - from.p;
     let from_origin = larger(from.p.x.abs() + from.p.y.abs(), to.p.x.abs() + to.p.y.abs());
-    // Of some twenty operations on coordinates, and of differences between samples.
+    // The rounding of some twenty operations on coordinates, and of differences between samples.
     let (rounding, of_samples) = (4e-15 * from_origin, 1e-12 * size);
-    // Invisible at any scale.
+    // Distances that are invisible at any scale.
     let (by_size, by_tolerance) = (1e-9 * size, STRAIGHT * tolerance);
     let limit = larger(if by_size < by_tolerance { by_size } else { by_tolerance }, of_samples) + rounding;
     // One sample rejects nearly all curved pieces.
@@ -554,7 +553,7 @@ pub(crate) fn straight(
     all_on_line(g, from, to, limit, if size <= rounding { rounding } else { 0.0 })
 }
 
-/// `point` is the largest extent of a piece that is a single point to rounding; zero for all other pieces.
+/// Tests all samples. `point` is the largest extent of a piece that is a single point to rounding; zero for all other pieces.
 #[inline(never)]
 fn all_on_line(g: &Lanes, from: &BreakPoint, to: &BreakPoint, limit: f64, point: f64) -> Option<(Line, f64)> {
     let (q, line) = (to.p - from.p, Line::new(from.p, to.p));

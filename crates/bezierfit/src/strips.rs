@@ -1,5 +1,5 @@
-//! Strips beside outlines: where outlines are rough, most of what lies beside them at a distance is nearer to another part of them. Strips
-//! cover what is left, so that few edges cross.
+//! Strips between an outline and the curve at a distance from it. Where outlines are rough, most of that curve is nearer to another
+//! part of them. Strips follow only the remaining parts, so that few edges cross.
 
 use crate::source::Source;
 use crate::stroke::{Edge, EdgeCurve, Kept};
@@ -7,20 +7,20 @@ use kurbo::{BezPath, ParamCurve, ParamCurveArclen, Point, Vec2};
 use std::cell::Cell;
 use std::collections::HashMap;
 
-/// Cells to the distance.
+/// Number of cells along the distance.
 const CELLS: f64 = 6.0;
-/// Longest step along the source between points that stand for it, and between those of a strip's way back, as a share of the distance.
+/// Longest step between the points that stand for the source, and between the points of a strip's way back, as a share of the distance.
 const STEP: f64 = 0.25;
-/// Parts of edges that are shorter are not divided, as a share of the distance.
+/// Shortest part of an edge that is divided, as a share of the distance.
 const FINEST: f64 = 1e-3;
 
 /// Points of outlines, by cell.
 pub(crate) struct Neighbors {
     cell: f64,
     points: HashMap<[i64; 2], Vec<Point>>,
-    /// Cells that a circle of the distance touches, the nearest first, with the distance between the cells.
+    /// Offsets to the cells that a circle of the distance touches, the nearest first, with the distances between the cells.
     around: Vec<([i64; 2], f64)>,
-    /// The point that was near last: it is near to what follows, more often than not.
+    /// The last point found near, which is often near to the next one, too.
     last: Cell<Point>,
 }
 
@@ -61,14 +61,14 @@ impl Neighbors {
     }
 }
 
-/// The square cell that a point is in.
+/// Indices of the square cell that contains a point.
 pub(crate) fn cell_of(p: Point, cell: f64) -> [i64; 2] {
     #[expect(clippy::cast_possible_truncation, reason = "saturates, far from all drawings")]
     [p.x, p.y].map(|v| (v / cell).floor() as i64)
 }
 
-/// Closed contours, each along parts of a contour's edges at `distance` that are not known to be nearer to the outlines by more than
-/// `slack`, and back beside the outline.
+/// Closed contours, each along parts of the edges at `distance` that are not known to be nearer to the outlines by more than
+/// `slack`, and back along the outline.
 pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neighbors) -> Vec<Vec<Edge>> {
     let reach = distance.abs();
     let step = STEP * reach;
@@ -79,7 +79,7 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
         remaining(edge, whole, &is_near, least, &mut out);
         out
     };
-    // Parts that follow each other are one strip where the line between them is near, too.
+    // Consecutive parts are one strip where the line between them is near the outlines.
     let follows = |a: &Strip, b: &Strip| {
         let (from, to) = (a.end(), b.edges[0].p0);
         let is_short = from.distance(to) <= step && a.feet[a.feet.len() - 1].distance(b.feet[0]) <= step;
@@ -87,7 +87,7 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
     };
     let mut out: Vec<Strip> = Vec::new();
     for kept in edges {
-        // Beyond the places where edges cross, too: strips overlap there.
+        // Whole edges are used, beyond their crossings, too: strips overlap there.
         let is_backwards = matches!(kept.edge.curve, EdgeCurve::Side(s) if s.speed(0.5) < 0.0);
         if kept.is_link || is_backwards {
             continue;
@@ -115,7 +115,7 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
     }
 }
 
-/// Parts of the edges, and the points of the outline that they are beside.
+/// Consecutive parts of edges, and the points of the outline beside them.
 struct Strip {
     edges: Vec<Edge>,
     feet: Vec<Point>,
@@ -126,7 +126,7 @@ impl Strip {
         self.edges[self.edges.len() - 1].p1
     }
 
-    /// Goes on, by a line where there is a gap.
+    /// Appends another strip, with a line across a gap.
     fn add(&mut self, next: Self) {
         let (from, to) = (self.end(), next.edges[0].p0);
         if from != to {
@@ -136,7 +136,7 @@ impl Strip {
         self.feet.extend(next.feet);
     }
 
-    /// The points that it is beside, backwards, in steps of `step` or more.
+    /// The points of the outline, backwards, in steps of more than `step`.
     fn back(&self, step: f64) -> Vec<Point> {
         let mut out: Vec<Point> = Vec::new();
         for p in self.feet.iter().rev() {
@@ -147,14 +147,14 @@ impl Strip {
         out
     }
 
-    /// There along the edges, and back beside the outline.
+    /// The contour of the strip: along the edges, and back along the outline.
     fn contour(&self, step: f64) -> Vec<Edge> {
         let mut out = self.edges.clone();
         add_lines(&mut out, self.back(step).into_iter().chain([self.feet[0], self.edges[0].p0]));
         out
     }
 
-    /// All round along the edges, and all round beside the outline.
+    /// The two contours of a closed strip: all round along the edges, and all round along the outline.
     fn rings(&self, step: f64) -> Vec<Vec<Edge>> {
         let mut outer = self.edges.clone();
         add_lines(&mut outer, [self.edges[0].p0]);
@@ -168,7 +168,7 @@ impl Strip {
     }
 }
 
-/// Lines from the end of an edge to one point after the other.
+/// Appends lines from the last edge to one point after the other.
 fn add_lines(edges: &mut Vec<Edge>, points: impl IntoIterator<Item = Point>) {
     for p in points {
         let from = edges[edges.len() - 1].p1;
@@ -178,7 +178,7 @@ fn add_lines(edges: &mut Vec<Edge>, points: impl IntoIterator<Item = Point>) {
     }
 }
 
-/// Appends the parts of an edge that are not known to be near. A place is asked for with half the length of the part around it.
+/// Appends the parts of an edge that are not known to be near. `is_near` takes the middle of a part and half of its length.
 fn remaining(
     edge: &Edge,
     [t0, t1]: [f64; 2],
@@ -201,7 +201,7 @@ fn remaining(
     }
 }
 
-/// The point of the outline that a point of an edge is beside.
+/// The point of the outline beside a point of an edge.
 fn foot(edge: &Edge, t: f64, distance: f64) -> Point {
     match edge.curve {
         EdgeCurve::Line => {
@@ -213,7 +213,7 @@ fn foot(edge: &Edge, t: f64, distance: f64) -> Point {
     }
 }
 
-/// About the length of a part of an edge, by its speed at a few places.
+/// Approximate length of a part of an edge, by the largest of a few speeds.
 fn length(edge: &Edge, [t0, t1]: [f64; 2]) -> f64 {
     let places = if matches!(edge.curve, EdgeCurve::Side(_)) { 8 } else { 0 };
     let speeds = (0..=places).map(|i| edge.eval(t0 + (t1 - t0) * f64::from(i) / f64::from(places.max(1))).1.hypot());

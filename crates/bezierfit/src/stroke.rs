@@ -1,8 +1,8 @@
-//! Outlines of strokes: sides, joins and caps as exact curves, which are fitted once.
+//! Outlines of strokes: sides, joins and caps as exact curves, which are then fitted.
 //!
-//! The outline of a stroke is made of [`Edge`]s: curves beside the path's, lines, and arcs. On the inner side of a corner, the edges end where
-//! they cross; where they are too short for that, they are linked by way of the corner. All parts of the outline then turn around what
-//! they cover in one direction, so that nothing inside is bare under the nonzero rule.
+//! The outline of a stroke consists of [`Edge`]s: curves beside the path's segments, lines, and arcs. On the inner side of a corner, the
+//! edges end where they cross; where they are too short for that, lines by way of the corner link them. All contours then turn
+//! around the stroke in one direction, so that nothing inside is bare under the nonzero rule.
 
 use crate::joined::fewest;
 use crate::limits::{GAPS, POINTS, STROKED};
@@ -22,13 +22,13 @@ use std::f64::consts::PI;
 /// Length of a dash that stands for a dot, as a fraction of the width.
 const DOT: f64 = 1e-5;
 
-/// Dashes of a path, at most.
+/// Most dashes of a path.
 const MOST_DASHES: f64 = 20_000.0;
 
 /// The outline of a path's stroke, to be filled by the nonzero rule, within `options.tolerance`.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// [`Error::NotFinite`] if a coordinate is not finite.
 ///
 /// ```
 /// use bezierfit::{Options, stroke};
@@ -58,7 +58,7 @@ pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<
     Ok(out)
 }
 
-/// One side of the strokes of closed subpaths, at a distance from them, with joins; miters beyond the limit are cut off there.
+/// One side of the strokes of closed subpaths, at a distance from them, with joins. Miters are cut off at the limit.
 #[cfg(feature = "area")]
 pub(crate) fn beside_area(
     path: &BezPath,
@@ -70,7 +70,7 @@ pub(crate) fn beside_area(
     fit_contours(&edges_beside_area(path, style, distance, options).into_iter().map(whole).collect::<Vec<_>>(), options)
 }
 
-/// The edges of [`beside_area`] for each subpath, before parts of them are joined.
+/// For each closed subpath, the edges on one side of its stroke, with the parameters between which they are kept.
 #[cfg(feature = "area")]
 pub(crate) fn edges_beside_area(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Vec<Vec<Kept>> {
     let gap = GAPS * options.tolerance;
@@ -109,11 +109,11 @@ pub(crate) fn beside_path(
 /// A smooth part of an outline.
 #[derive(Debug, Clone, Copy)]
 pub struct Edge {
-    /// Its start, which is the end of the edge before.
+    /// First point, which is the end of the edge before.
     pub p0: Point,
-    /// Its end.
+    /// Last point.
     pub p1: Point,
-    /// The curve between.
+    /// The curve between both.
     pub curve: EdgeCurve,
 }
 
@@ -124,7 +124,7 @@ pub enum EdgeCurve {
     Line,
     /// A part of a circle.
     Arc(Arc),
-    /// Beside a segment of the path, without cusps.
+    /// A curve beside a segment of the path, without cusps.
     Side(Offset),
 }
 
@@ -152,7 +152,7 @@ impl Edge {
         matches!(self.curve, EdgeCurve::Line)
     }
 
-    /// The part between two parameters.
+    /// The part of the edge between two parameters.
     pub(crate) fn part(&self, t0: f64, t1: f64) -> Self {
         if (t0, t1) == (0.0, 1.0) {
             return *self;
@@ -170,7 +170,7 @@ impl Edge {
         Self { p0, p1, curve }
     }
 
-    /// The same with other ends, which are near.
+    /// Moves the ends of the edge to points nearby.
     fn with_ends(self, p0: Point, p1: Point) -> Self {
         let curve = match self.curve {
             EdgeCurve::Side(s) if (p0, p1) != (self.p0, self.p1) => EdgeCurve::Side(s.with_ends([p0, p1])),
@@ -179,13 +179,13 @@ impl Edge {
         Self { p0, p1, curve }
     }
 
-    /// Appends pieces within a tolerance, found in less time than the fewest are.
+    /// Appends pieces within a tolerance that take less time to find than the fewest.
     ///
     /// # Errors
-    /// It is not finite.
+    /// [`NotFinite`] if the edge is not finite.
     pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
         if let EdgeCurve::Side(_) = self.curve {
-            // The cubic with the ends' derivatives is near enough more often than not.
+            // The Hermite cubic is usually near enough.
             let (v0, v1) = (self.eval(0.0).1 / 3.0, self.eval(1.0).1 / 3.0);
             let cubic = CubicBez::new(self.p0, self.p0 + v0, self.p1 - v1, self.p1);
             let off = |t: f64| cubic.eval(t).distance(self.eval(t).0);
@@ -197,10 +197,10 @@ impl Edge {
         self.fit(tolerance, pieces, &mut Report::default())
     }
 
-    /// Appends its pieces.
+    /// Appends few pieces within a tolerance.
     ///
     /// # Errors
-    /// It is not finite.
+    /// [`NotFinite`] if the edge is not finite.
     pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
         if self.is_line() {
             pieces.push(Piece::Line(Line::new(self.p0, self.p1)));
@@ -252,11 +252,11 @@ impl Source for Edge {
     }
 }
 
-/// The outline of a stroke, of closed contours, before anything is fitted. Gaps between sides up to `gap`, at joints that turn very
-/// little, are closed without a join; segments much smaller than that are points. If `clipped`, miters beyond the limit are cut off there.
+/// The outline of a stroke as closed contours, before anything is fitted. At joints that turn very little, gaps of up to `gap` between
+/// sides are closed without a join. Segments much smaller than `gap` are points. If `clipped`, miters are cut off at the limit.
 ///
 /// # Errors
-/// The path has coordinates that are not finite.
+/// [`NotFinite`] if a coordinate is not finite.
 pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
     let control = |e: &PathEl| match *e {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
@@ -275,7 +275,7 @@ pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Resu
     let pen = Pen { style, clipped, half, gap, point: POINTS * gap };
     let mut dashes = style.dash_pattern.to_vec();
     if style.start_cap != Cap::Butt || style.end_cap != Cap::Butt {
-        // kurbo drops dashes of zero length, which show their caps.
+        // Dashes of zero length show their caps, but kurbo drops them.
         dashes.iter_mut().for_each(|d| *d = d.max(DOT * style.width));
     }
     let is_dashed = drawn_dashes(path.segments().map(|s| s.to_cubic()), &dashes) > 0.0;
@@ -292,10 +292,10 @@ pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Resu
     Ok(out)
 }
 
-/// A bound for the number of dashes that are drawn along these curves. 0 if none are: there is no pattern, or it has so many dashes that they
-/// look like a grey line, which is drawn as a line.
+/// Bound for the number of dashes that are drawn along these curves. 0 if the curves are drawn as lines, because there is no pattern or so
+/// many dashes that they would look grey.
 pub fn drawn_dashes(curves: impl Iterator<Item = CubicBez>, pattern: &[f64]) -> f64 {
-    /// A dash and a gap.
+    /// Entries of the pattern for each dash: a dash and a gap.
     const PAIR: f64 = 2.0;
     let period: f64 = pattern.iter().sum();
     if !(period > 0.0 && pattern.iter().all(|d| *d >= 0.0 && d.is_finite())) {
@@ -306,18 +306,18 @@ pub fn drawn_dashes(curves: impl Iterator<Item = CubicBez>, pattern: &[f64]) -> 
     if count < MOST_DASHES { count } else { 0.0 }
 }
 
-/// How two parts of a path meet.
+/// Kind of point at which two parts of a path meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Meeting {
-    /// At a node.
+    /// A node.
     Node,
-    /// Inside of a segment, at a cusp.
+    /// A cusp inside a segment.
     Cusp,
-    /// Inside of a segment that goes on.
+    /// A point inside a segment that goes on smoothly.
     Inside,
 }
 
-/// A part of a path along which it never stops, and how it meets the next.
+/// A part of a path that never stops inside, and the kind of point at its end.
 struct Stretch {
     seg: PathSeg,
     meeting: Meeting,
@@ -326,29 +326,29 @@ struct Stretch {
 /// A corner, or the end of a path.
 struct Corner {
     at: Point,
-    /// The directions before and after.
+    /// Directions of the path before and after.
     into: Vec2,
     away: Vec2,
     meeting: Meeting,
 }
 
 impl Corner {
-    /// The angle by which the path turns.
+    /// Angle by which the path turns.
     fn turn(&self) -> f64 {
         let turn = self.into.cross(self.away).atan2(self.into.dot(self.away));
         if turn == -PI { PI } else { turn }
     }
 }
 
-/// What strokes are drawn with.
+/// Settings with which strokes are drawn.
 struct Pen<'a> {
     style: &'a Stroke,
-    /// Miters are cut off at their limit.
+    /// Cut miters off at their limit.
     clipped: bool,
     half: f64,
     /// Longest gap between sides that is closed without a join.
     gap: f64,
-    /// Size of what is a point.
+    /// Size up to which a segment is a point.
     point: f64,
 }
 
@@ -388,7 +388,7 @@ impl Pen<'_> {
         (stretches, corners)
     }
 
-    /// A subpath without length.
+    /// Appends the caps of a subpath without length.
     fn dot(&self, path: &BezPath, out: &mut Vec<Vec<Edge>>) {
         let Some(PathEl::MoveTo(at)) = path.elements().first().copied() else { return };
         let along = path.segments().last().map_or(Vec2::ZERO, |s| s.end() - at);
@@ -418,7 +418,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Cuts a path where it stops or nearly does, and drops what is a point.
+    /// Cuts a path where it stops or nearly does, and drops segments that are points.
     fn stretches(&self, path: &BezPath, closed: bool) -> Vec<Stretch> {
         let Some(PathEl::MoveTo(start)) = path.elements().first().copied() else { return Vec::new() };
         let mut segments: Vec<PathSeg> = Vec::new();
@@ -450,7 +450,7 @@ impl Pen<'_> {
         let legs = [c.p1 - c.p0, c.p2 - c.p0, c.p3 - c.p0];
         let longest = legs.iter().copied().fold(Vec2::ZERO, |a, b| if b.hypot2() > a.hypot2() { b } else { a });
         let line = longest / longest.hypot();
-        // Straight to rounding, or so that neither it nor its sides are off by more.
+        // The cubic is straight to rounding, or neither it nor its sides are off by more than a share of a point.
         let rounding = 1e-12 * longest.hypot().max(c.p0.to_vec2().hypot());
         let off = rounding.max(0.05 * self.point * (longest.hypot() / self.half).min(1.0));
         if legs.iter().all(|v| v.cross(line).abs() <= off) {
@@ -462,7 +462,7 @@ impl Pen<'_> {
         let mut t0 = 0.0;
         for t in slow.into_iter().chain([1.0]) {
             let part = if (t0, t) == (0.0, 1.0) { c } else { c.subsegment(t0..t) };
-            // Where it turns within less than can be seen, it has a cusp.
+            // A turn too tight to be seen is a cusp.
             let (speed, change) = slowness(&c, t);
             let meeting = match t {
                 1.0 => Meeting::Node,
@@ -481,7 +481,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Appends a cubic on a straight line: lines between the places where it turns back.
+    /// Appends a cubic on a straight line, as lines between the points at which it turns back.
     fn straight(&self, c: &CubicBez, line: Vec2, out: &mut Vec<Stretch>) {
         let x = [c.p0, c.p1, c.p2, c.p3].map(|p| (p - c.p0).dot(line));
         let d = [x[1] - x[0], x[2] - x[1], x[3] - x[2]];
@@ -504,7 +504,7 @@ impl Pen<'_> {
         }
     }
 
-    /// Handles that are points have no direction.
+    /// Sets handles that are too short for a direction to zero.
     fn without_short_handles(&self, mut c: CubicBez) -> CubicBez {
         let least = (0.1 * self.point).min(1e-4 * (c.p3 - c.p0).hypot());
         if c.p1.distance(c.p0) <= least {
@@ -516,7 +516,7 @@ impl Pen<'_> {
         c
     }
 
-    /// The edges on one side of a path, with their joins.
+    /// Edges on one side of a path, with their joins.
     fn side(&self, stretches: &[Stretch], corners: &[Corner], closed: bool, distance: f64) -> Vec<Kept> {
         let mut side = Side { pen: self, distance, edges: Vec::with_capacity(2 * stretches.len()) };
         for (i, stretch) in stretches.iter().enumerate() {
@@ -534,10 +534,10 @@ impl Pen<'_> {
     }
 }
 
-/// The parts that are kept, as one contour.
+/// Joins the kept parts of edges into one contour.
 fn whole(kept: &[Kept], closed: bool) -> Vec<Edge> {
     let mut edges: Vec<Edge> = kept.iter().map(|k| k.edge.part(k.from, k.to)).collect();
-    // Parts of one edge meet where the edges do, to the last bit.
+    // Consecutive parts meet exactly.
     for i in 0..edges.len() {
         let next = (i + 1) % edges.len();
         if next != 0 || closed {
@@ -547,13 +547,13 @@ fn whole(kept: &[Kept], closed: bool) -> Vec<Edge> {
     if closed { joined_round(edges) } else { edges }
 }
 
-/// An edge of which the part between two parameters is kept.
+/// An edge, and the parameters between which it is kept.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kept {
     pub(crate) edge: Edge,
     from: f64,
     to: f64,
-    /// It leads by way of an inner corner, nearer to the path than the distance.
+    /// Set if the edge leads by way of an inner corner, nearer to the path than the distance.
     #[cfg_attr(not(feature = "area"), expect(dead_code, reason = "areas alone ask"))]
     pub(crate) is_link: bool,
 }
@@ -601,13 +601,13 @@ impl Side<'_> {
         self.edges.splice(place..place, links);
     }
 
-    /// The join on the outer side of a corner.
+    /// Edges of the join on the outer side of a corner.
     fn outer(&self, [p, q]: [Point; 2], turn: f64, corner: &Corner) -> Vec<Edge> {
         let style = self.pen.style;
         match style.join {
             _ if corner.meeting == Meeting::Cusp => vec![Edge::arc([p, q], corner.at, turn)],
             Join::Round => vec![Edge::arc([p, q], corner.at, turn)],
-            // A miter is as many times the width as one over the cosine of half the turn.
+            // A miter's length is the width over the cosine of half the turn.
             Join::Miter if (0.5 * turn).cos() * style.miter_limit >= 1.0 => {
                 // The tangent of half the turn.
                 let along = corner.into.cross(corner.away).abs() / (1.0 + corner.into.dot(corner.away));
@@ -624,7 +624,7 @@ impl Side<'_> {
     }
 }
 
-/// The curves beside a segment, cut at their cusps.
+/// The curve beside a segment, cut at its cusps.
 fn beside(seg: &PathSeg, distance: f64) -> Vec<Edge> {
     if let PathSeg::Line(l) = seg {
         let along = (l.p1 - l.p0) / l.length();
@@ -645,7 +645,7 @@ fn beside(seg: &PathSeg, distance: f64) -> Vec<Edge> {
     out
 }
 
-/// The direction of a segment at its start or its end.
+/// Direction of a segment at its start (`t` = 0) or its end (1).
 fn direction(seg: &PathSeg, t: f64) -> Vec2 {
     match seg {
         PathSeg::Line(l) => (l.p1 - l.p0) / l.length(),
@@ -653,7 +653,7 @@ fn direction(seg: &PathSeg, t: f64) -> Vec2 {
     }
 }
 
-/// A segment with other ends.
+/// Moves the ends of a segment, with their handles.
 fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
     if (seg.start(), seg.end()) == (start, end) {
         return seg;
@@ -667,7 +667,7 @@ fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
     }
 }
 
-/// Parameters between which a cubic with a short handle turns from its direction into that of the rest.
+/// Parameters at which the swift turns of a cubic beside its short handles end and begin.
 fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
     let [d0, d1, d2] = [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(Vec2::hypot);
     let turn = |short: f64, other: f64| 4.0 * (0.5 * short / d1).min((short / other).sqrt());
@@ -676,7 +676,7 @@ fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
     [Some(first).filter(is_short), Some(last).filter(is_short).map(|t| 1.0 - t)].into_iter().flatten()
 }
 
-/// The speed of a cubic, and the size of its second derivative.
+/// Lengths of a cubic's first and second derivative.
 fn slowness(c: &CubicBez, t: f64) -> (f64, f64) {
     let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
     let u = 1.0 - t;
@@ -685,10 +685,10 @@ fn slowness(c: &CubicBez, t: f64) -> (f64, f64) {
     (first.hypot(), second.hypot())
 }
 
-/// Where the last half of one edge on the inner side of a corner crosses the first half of the next, as parameters. Both strokes then
-/// cover what is cut off.
+/// Parameters at which the last half of an edge on the inner side of a corner crosses the first half of the next. Both strokes then
+/// cover the parts that are cut off.
 fn crossing(a: &Edge, b: &Edge, distance: f64) -> Option<(f64, f64)> {
-    /// Newton steps; each doubles the digits.
+    /// Most Newton steps. Each doubles the correct digits.
     const STEPS: usize = 12;
     let forward = |e: &Edge| match e.curve {
         EdgeCurve::Side(s) => s.speed(0.5) > 0.0,
@@ -715,12 +715,12 @@ fn crossing(a: &Edge, b: &Edge, distance: f64) -> Option<(f64, f64)> {
     let (at, u) = a.eval(s);
     let (to, v) = b.eval(t);
     let met = to.distance(at) <= 1e-9 * size;
-    // The sides turn as the path does where they cross.
+    // At the crossing, the sides turn in the direction of the path.
     let inner = u.cross(v) * distance > 0.0;
     (met && inner && (0.5..1.0).contains(&s) && t > 0.0 && t <= 0.5).then_some((s, t))
 }
 
-/// The same contour with lines that go on as one.
+/// Unites lines of a contour that go on in one direction.
 fn joined(contour: Vec<Edge>) -> Vec<Edge> {
     let mut out: Vec<Edge> = Vec::with_capacity(contour.len());
     for e in contour {
@@ -733,7 +733,7 @@ fn joined(contour: Vec<Edge>) -> Vec<Edge> {
     out
 }
 
-/// As [`joined`], across the start as well.
+/// Unites lines of a closed contour that go on in one direction, also across its start.
 fn joined_round(contour: Vec<Edge>) -> Vec<Edge> {
     let mut out = joined(contour);
     if let [first, .., last] = &out[..]
@@ -745,7 +745,7 @@ fn joined_round(contour: Vec<Edge>) -> Vec<Edge> {
     out
 }
 
-/// Returns `true` if two lines have the same direction.
+/// Returns `true` if both edges are lines in the same direction.
 fn goes_on(a: &Edge, b: &Edge) -> bool {
     let (u, v) = (a.p1 - a.p0, b.p1 - b.p0);
     let same = u.dot(v) > 0.0 && u.cross(v).abs() <= 1e-10 * u.hypot() * v.hypot();

@@ -18,7 +18,7 @@ impl Noise {
     }
 }
 
-/// Polynomials in xⁱyʲ, i, j < 4, over a denominator that is 1 plus a small one.
+/// A map by polynomials in xⁱyʲ, i, j < 4, over a denominator that is 1 plus a small polynomial.
 struct RationalMap {
     x: [[f64; 4]; 4],
     y: [[f64; 4]; 4],
@@ -77,14 +77,14 @@ impl Source for Image {
     }
 }
 
-/// The largest distance of 400 points of the image from the cubic, by brute force and golden sections.
+/// Largest distance of 400 points of the image from the cubic, by brute force and golden sections.
 fn truth(source: &impl Source, c: &Candidate) -> f64 {
     let cubic = c.frame.cubic(c.p0, c.p0 + c.frame.q, c.a, c.b);
     let mut worst = 0.0f64;
     for i in 0..=400 {
         let p = source.eval(c.t0 + (c.t1 - c.t0) * f64::from(i) / 400.0).0;
         let d = |s: f64| cubic.eval(s.clamp(0.0, 1.0)).distance(p);
-        // Every local minimum of the distance: near a hairpin or a crossing the nearest sample may lie beside the wrong one.
+        // Try every local minimum of the distance: near a hairpin or a crossing, the nearest sample may be beside the wrong one.
         let at: Vec<f64> = (-1..=65).map(|j| d(f64::from(j) / 64.0)).collect();
         let mut least = f64::INFINITY;
         for j in (1..66).filter(|j| at[*j] <= at[j - 1] && at[*j] <= at[j + 1]) {
@@ -179,7 +179,7 @@ fn proofs_hold_for_random_pieces() {
     }
 }
 
-/// K(d) against random polynomials v²q.
+/// Compares K(d) with random polynomials v²q.
 #[test]
 fn growth_factors_hold_for_random_polynomials() {
     let mut r = Noise(5);
@@ -233,8 +233,8 @@ impl Source for Swing {
     }
 }
 
-/// The bounds by sixteen and thirty-two samples for such an image and the straight line, and the largest sample. The true
-/// distance is 0.01.
+/// Bounds by sixteen and thirty-two samples for the distance of such an image from the straight line, which is 0.01, and the largest
+/// sample.
 fn swing_bounds(source: &Swing) -> ([f64; 2], f64) {
     let form = source.quotient().unwrap();
     let unit = Vec2::new(1.0, 0.0);
@@ -249,8 +249,7 @@ fn swing_bounds(source: &Swing) -> ([f64; 2], f64) {
     ([proof.sixteen(feet).unwrap(), proof.thirty_two(feet).unwrap()], most)
 }
 
-/// An error of the highest degree that nearly vanishes at the samples shows only in its coefficients.
-/// The places of the sixteen samples.
+/// Parameters of the sixteen samples. An error of the highest degree that nearly vanishes at them shows only in its coefficients.
 fn evenly() -> Vec<f64> {
     (1..17).map(|j| f64::from(j) * UNIT).collect()
 }
@@ -270,7 +269,7 @@ fn errors_hidden_between_samples_are_bounded() {
     assert!(hidden > 20, "{hidden}");
 }
 
-/// An error of higher degree than sixteen samples determine may vanish at all of them: then they must prove nothing.
+/// An error of higher degree than sixteen samples determine may vanish at all of them, so that they must prove nothing.
 #[test]
 fn degrees_too_high_for_sixteen_samples_need_thirty_two() {
     let ([few, many], most) = swing_bounds(&Swing::new(evenly()));

@@ -1,4 +1,4 @@
-//! Offsets are at their distance from the source, and unions cover what their parts do, without crossing themselves.
+//! Offsets are at their distance from the source, and unions cover the area of their parts without crossing themselves.
 
 use super::common::random_path;
 use bezierfit::{Options, offset, stroke, union};
@@ -32,7 +32,7 @@ const OPEN: [&str; 8] = [
     "M30 30C80 75 20 75 70 30",
 ];
 
-/// By how much polygons may be off.
+/// Largest distance of polygons from the curves for which they stand.
 const FLAT: f64 = 1e-4;
 
 fn samples(path: &BezPath) -> impl Iterator<Item = Point> + '_ {
@@ -43,11 +43,11 @@ fn grid() -> impl Iterator<Item = Point> {
     (0..70 * 70).map(|i| Point::new(f64::from(i % 70) * 2.3 - 29.7, f64::from(i / 70) * 2.3 - 29.7))
 }
 
-/// Returns how many results say that they are off.
+/// Checks offsets by several distances. Returns the number of those that report unresolved points.
 fn check_area(path: &BezPath) -> usize {
     let mut unresolved = 0;
     let area = flat(path, FLAT);
-    // Only edges between what is inside and what is outside count, and no cracks that are narrower than the tolerance.
+    // Only edges between inside and outside count, and no cracks that are narrower than the tolerance.
     let parts = |[a, b]: &[Point; 2]| {
         let (middle, along) = (a.midpoint(*b), *b - *a);
         let aside = Vec2::new(-along.y, along.x) * (TOLERANCE / along.hypot());
@@ -69,7 +69,7 @@ fn check_area(path: &BezPath) -> usize {
         for p in grid() {
             let to_edge = edges.distance(p);
             let inside = if by > 0.0 { area.covers(p) || to_edge < by } else { area.covers(p) && to_edge > -by };
-            // What is left may be a sliver.
+            // The remaining area may be a sliver.
             let near = (to_edge - by.abs()).abs() < 3.0 * TOLERANCE || area.distance(p) < 1e-3;
             assert!(near || outline.covers(p) == inside, "{what}\n{p:?}, {to_edge} from the edge");
         }
@@ -84,7 +84,7 @@ fn areas_grow_and_shrink_by_their_distance() {
     }
 }
 
-/// Needles, edges along the axes and edges on each other, with which a sweep has most trouble: none of them panics.
+/// None of the cases that are hardest for a sweep panics: needles, edges along the axes, and edges on each other.
 #[test]
 fn degenerate_areas_are_swept() {
     let mut random = Random::new(5);
@@ -126,7 +126,7 @@ fn open_paths_run_beside_themselves() {
                 let off = (line.distance(p) - by.abs()).abs();
                 assert!(off <= 1.02 * TOLERANCE, "{what}\n{p:?} is off by {off}");
             }
-            // Whatever is to the side of the path, and no nearer to any other part of it, is reached.
+            // The result passes every point at the distance beside the path that is no nearer to another part of it.
             let result = flat(&beside, FLAT);
             for (s, i) in segs.iter().flat_map(|s| (1..40).map(move |i| (s, i))) {
                 let t = f64::from(i) / 40.0;
@@ -141,7 +141,7 @@ fn open_paths_run_beside_themselves() {
     }
 }
 
-/// Winding numbers of the union are 0 and 1, where those of the parts are zero and not; and no two of its segments cross.
+/// Winding numbers of the union are 0 where those of the parts are, else 1; and no two of its segments cross.
 #[test]
 fn unions_are_simple() {
     let mut random = Random::new(5);
@@ -157,12 +157,12 @@ fn unions_are_simple() {
         for p in grid().filter(|p| before.distance(*p) > 2.0 * TOLERANCE && after.distance(*p) > 1e-3) {
             assert_eq!(after.winding(p), if before.covers(p) { sign } else { 0 }, "{what}\n{p:?}");
         }
-        // By more than what flattening may have moved them.
+        // Crossings that flattening may cause do not count.
         assert_eq!(after.crossings(1e-3), 0, "{what}\n{}", whole.to_svg());
     }
 }
 
-/// An edge at a tip runs at the distance from it, however sharp it is: a miter that would reach too far is cut off.
+/// However sharp a tip is, the edges around it run at the distance: a miter that would reach too far is cut off.
 #[test]
 fn tips_keep_their_distance() {
     const BY: f64 = 5.0;
@@ -183,7 +183,7 @@ fn tips_keep_their_distance() {
     }
 }
 
-/// Bevels are nearer than the distance: rough outlines do not vanish because most of what they become are bevels.
+/// Rough outlines of which most become bevels do not vanish, although bevels are nearer than the distance.
 #[test]
 fn rough_outlines_grow_by_bevels() {
     let points = (0..120).map(|i| {
@@ -197,11 +197,11 @@ fn rough_outlines_grow_by_bevels() {
     path.close_path();
     let grown = offset(&path, 12.0, Join::Bevel, &Options::new(0.05)).unwrap().path;
     let area = grown.area().abs();
-    // Between the circles that the inner corners' edges and the outer corners' tips reach.
+    // The area is between those of the circles up to the edges at inner corners and up to the tips at outer corners.
     assert!((PI * 40.0_f64.powi(2)..PI * 43.3_f64.powi(2)).contains(&area), "{area}");
 }
 
-/// Rough outlines, of which most neighbors lie within the distance, keep it: a flower with a hole whose middle closes.
+/// Rough outlines with many nodes within the distance of each other keep it: a flower with a hole whose middle closes.
 #[test]
 fn rough_outlines_keep_their_distance() {
     const POINTS: u32 = 1500;

@@ -1,4 +1,4 @@
-//! Curves to fit and to stroke, and their distances from what comes out.
+//! Curves to fit and to stroke, and their distances from the results.
 
 use bezierfit::Source;
 use kurbo::{BezPath, Point, Vec2};
@@ -6,7 +6,7 @@ use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Random, Run, apart, far};
 use std::cell::Cell;
 
-/// A curve by a function, with its breaks. It counts evaluations. The fitter, which is generic, is compiled for this curve only.
+/// A curve given by a function and its breaks, which counts its evaluations.
 pub struct Drawn<'a> {
     eval: Box<dyn Fn(f64) -> (Point, Vec2) + 'a>,
     pub breaks: Vec<f64>,
@@ -30,19 +30,19 @@ impl Source for Drawn<'_> {
     }
 }
 
-/// The distance between a curve and a path, both ways; they are sampled for distances like `tolerance`.
+/// Hausdorff distance between a curve and a path, sampled for distances like `tolerance`.
 pub fn distance(source: &dyn Source, path: &BezPath, tolerance: f64) -> f64 {
     let (exact, segments) = (Run::new(1, |(_, t)| source.eval(t).0), path.curves());
     let n = (100 * segments.len()).clamp(1000, 4000);
     apart(&exact.sampled(n, tolerance), &Run::of(&segments).sampled(40, tolerance)).0
 }
 
-/// The largest distance of points from a path.
+/// Largest distance of points from a path.
 pub fn off(points: &[Point], path: &BezPath) -> f64 {
     far(points, &[Run::of(&path.curves()).sampled(40, 0.01)]).0
 }
 
-/// A sine of so many radians.
+/// A sine wave of a number of radians.
 pub fn wave(radians: f64) -> Drawn<'static> {
     let eval = move |t: f64| {
         let (s, c) = (radians * t).sin_cos();

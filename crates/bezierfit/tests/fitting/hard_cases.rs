@@ -1,12 +1,12 @@
-//! Curves on which fits hang, panic, leave the curve or cut corners elsewhere: each is covered within the tolerance, by a measurement of
-//! its own, with a bounded number of pieces and of evaluations.
+//! Curves on which other fitters hang, panic, leave the curve or cut corners. Each is covered within the tolerance, by an independent
+//! measurement, with a bounded number of pieces and of evaluations.
 
 use super::common::{Drawn, distance, off, polygon};
 use bezierfit::{Degree, Fitted, Offset, Options, PathSource, Pieces, Source, fit, simplify};
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, ParamCurveNearest, PathSeg, Point, Vec2};
 use pathwarp_oracle::Random;
 
-/// Fits a source, and checks the distance, the number of pieces and that of evaluations.
+/// Fits a source, and checks the distance and the numbers of pieces and of evaluations.
 fn check(name: &str, source: &dyn Source, tolerance: f64, most: usize) -> Fitted {
     let counted = Drawn::new(|t| source.eval(t), source.breaks());
     let fitted = fit(&counted, &Options::new(tolerance)).unwrap();
@@ -24,8 +24,8 @@ fn polyline(points: &[(f64, f64)], close: bool) -> BezPath {
     polygon(&points.iter().map(|p| (*p).into()).collect::<Vec<_>>(), close)
 }
 
-/// kurbo's issues 601 and 603 (a panic on a sliver), 602 (a hang on a fold) and 604 (a control point 19,000 units away on a nearly flat
-/// polygon), with their coordinates and tolerances.
+/// Polygons of kurbo's issues 601 and 603 (a panic on a sliver), 602 (a hang on a fold) and 604 (a control point 19,000 units away on a
+/// nearly flat polygon), with their coordinates and tolerances.
 #[test]
 fn polygons_keep_their_corners() {
     let sliver = polyline(&[(1.0, 0.7), (4.1, 2.0), (4.4, 2.1), (0.0, 0.0)], true);
@@ -40,7 +40,7 @@ fn polygons_keep_their_corners() {
             assert!(distance(&PathSource::new(&path).unwrap(), &meant.path, tolerance) <= tolerance);
         }
     }
-    // The same polygons as one curve, with what those fits were given: corners where its sides meet.
+    // These polygons as one curve with corners where the sides meet, as kurbo's fits got them.
     for path in [sliver_and_fold(0), sliver_and_fold(1)] {
         let fitted = fit(&PathSource::new(&path).unwrap(), &Options::new(2.0)).unwrap();
         let error = distance(&PathSource::new(&path).unwrap(), &fitted.path, 2.0);
@@ -59,7 +59,8 @@ fn sliver_and_fold(which: usize) -> BezPath {
     }
 }
 
-/// As points of smooth curves, too, nothing leaves their neighbourhood: kurbo's issues 604 and 605, where end tangents were missing.
+/// Nearly flat polygons do not leave their neighbourhood as points of smooth curves, either: kurbo's issues 604 and 605, in which
+/// end tangents are missing.
 #[test]
 fn flat_polygons_stay_flat() {
     let points = [(415.74, 324.0), (440.0, 324.5), (460.0, 325.49), (480.0, 325.0), (493.93, 324.0)].map(Point::from);
@@ -74,10 +75,10 @@ fn flat_polygons_stay_flat() {
     }
 }
 
-/// kurbo's issue 268: a path of smooth runs and corners, simplified at 0.18 (crosses its corners) and 0.3 (a panic).
+/// A path of smooth runs and corners, from kurbo's issue 268: kurbo crosses its corners at 0.18 and panics at 0.3.
 #[test]
 fn corners_between_smooth_runs_are_not_crossed() {
-    // Petals of many cubics around a middle, corners where they meet.
+    // Petals of many cubics around a middle, with corners where they meet.
     let mut path = BezPath::new();
     let at = |u: f64| {
         let (r, a) = (100.0 * (5.0 * u).sin().abs(), u);
@@ -105,8 +106,8 @@ fn corners_between_smooth_runs_are_not_crossed() {
     }
 }
 
-/// kurbo's issues 344 (at −8 within 0.01) and 300 hang or give NaN on such offsets: an end without a handle, curves on one line, radii of curvature
-/// below the distance.
+/// Offsets as in kurbo's issues 344 (at −8 within 0.01) and 300, which hang or give NaN: an end without a handle, curves on one
+/// line, radii of curvature below the distance.
 #[test]
 fn offsets_break_at_their_cusps() {
     let cubic = |p: [f64; 8]| PathSeg::Cubic(CubicBez::new((p[0], p[1]), (p[2], p[3]), (p[4], p[5]), (p[6], p[7])));
@@ -118,7 +119,7 @@ fn offsets_break_at_their_cusps() {
             check(&format!("{name} at {distance}"), &Offset::new(seg, distance), 0.01, 40);
         }
     }
-    // Each point of an offset is as far from the curve.
+    // Each point of the offset is at the distance from the curve.
     let far = fit(&Offset::new(bow, 5.0), &Options::new(1e-4)).unwrap();
     for p in far.path.segments().flat_map(|s| (0..=10).map(move |i| s.eval(f64::from(i) / 10.0))) {
         let off = bow.nearest(p, 1e-12).distance_sq.sqrt();
@@ -133,7 +134,7 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
         (Point::new(100.0 * t * c, 100.0 * t * s), Vec2::new(c - 40.0 * t * s, s + 40.0 * t * c) * 100.0)
     };
     check("spiral", &Drawn::new(spiral, Vec::new()), 0.01, 40);
-    // A clothoid, its integrals summed by the midpoint rule between closed-form derivatives.
+    // A clothoid: its derivative is in closed form, its points are integrals by the midpoint rule.
     let clothoid = |t: f64| {
         let phase = |u: f64| 12.0 * u * u;
         let n = 400;
@@ -157,7 +158,7 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
         )
     };
     check("Lissajous", &Drawn::new(lissajous, Vec::new()), 0.01, 60);
-    // y² = x³, with the cusp inside.
+    // The curve y² = x³, with the cusp inside.
     let cusp = |t: f64| {
         let u = 2.0 * t - 1.0;
         (Point::new(50.0 * u * u, 50.0 * u * u * u), Vec2::new(200.0 * u, 300.0 * u * u))
@@ -170,8 +171,8 @@ fn spirals_loops_flat_ellipses_and_cusps_are_followed() {
     check("near-cusp", &Drawn::new(near, Vec::new()), 0.001, 16);
 }
 
-/// Closed and open curves far from the origin under x + 4 sin(y/16), y − xy/500: 20 units wide and 10,000 long, they turn back within a
-/// few units.
+/// Closed and open curves far from the origin under x + 4 sin(y/16), y − xy/500. They are 20 units wide and 10,000 long, and turn back
+/// within a few units.
 #[test]
 fn hairpins_are_followed() {
     let mut random = Random::new(3);
@@ -236,7 +237,7 @@ fn a_circle_of_any_number_of_cubics_is_four() {
             assert!(radii.into_iter().all(|r| (r - 1000.0).abs() <= 1.0));
         }
         let quadratics = simplify(&path, &Options::new(1.0).with_degree(Degree::Quadratic)).unwrap();
-        // Eleven that touch the circle at both ends are off by (sec α + cos α)/2 − 1 at α = π/11: 0.86 thousandths.
+        // Eleven quadratics that touch the circle at both ends are off by (sec α + cos α)/2 − 1 = 0.00086, where α = π/11.
         assert!(quadratics.path.segments().count() <= 11, "{n}: {}", quadratics.path.segments().count());
         let radii = quadratics
             .path

@@ -1,11 +1,11 @@
-//! Waves that fit the spacing of samples, measured densely at places that have nothing to do with it.
+//! Waves that fit the spacing of samples, measured densely at parameters that are independent of it.
 
 use crate::common::{Drawn, off};
 use bezierfit::{Assurance, Degree, Options, Source as _, fit};
 use kurbo::{Point, Vec2};
 use std::f64::consts::TAU;
 
-/// Asserts that a fit is within its tolerance, or says that it is not.
+/// Asserts that a fit is within its tolerance or reports that it is not.
 #[track_caller]
 fn honest(what: &str, source: &Drawn<'_>, n: u32) {
     const TOLERANCE: f64 = 0.05;
@@ -47,14 +47,14 @@ fn waves_that_fit_the_samples_are_not_missed() {
     all_honest([2, 9, 16, 17, 33, 34, 35, 51, 66, 67, 68, 85, 102, 136, 153, 272].into_iter());
 }
 
-/// Quadratics are measured at closer places, but nothing says that those suffice.
+/// Quadratics are measured at closer samples, but there is no guarantee that they suffice.
 #[test]
 fn quadratics_of_unknown_curves_are_sampled() {
     let options = Options::new(0.05).with_degree(Degree::Quadratic);
     assert_eq!(fit(&cosine(9.0), &options).unwrap().report.assurance, Assurance::Sampled);
 }
 
-/// `cargo test --release -p bezierfit --test fitting hidden -- --ignored`.
+/// Run it with `cargo test --release -p bezierfit --test fitting hidden -- --ignored`.
 #[test]
 #[ignore = "all numbers take a minute"]
 fn no_number_of_waves_is_missed() {

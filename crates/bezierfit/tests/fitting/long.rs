@@ -1,4 +1,4 @@
-//! Long curves: as many pieces as they need, found in work that is proportional to them, and no more than a greedy search takes.
+//! Long curves get no more pieces than by a greedy search, in work proportional to the number of pieces.
 
 use super::common::{Drawn, distance, wave};
 use bezierfit::{Degree, Error, Nodes, Options, Pieces, Source, fit, simplify};
@@ -7,7 +7,7 @@ use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Run, apart};
 use std::f64::consts::TAU;
 
-/// An Archimedean spiral of so many turns, out to a radius.
+/// An Archimedean spiral with a number of turns, out to a radius.
 fn spiral(turns: f64, radius: f64) -> Drawn<'static> {
     let eval = move |t: f64| {
         let u = Vec2::from_angle(TAU * turns * t);
@@ -33,7 +33,7 @@ fn lissajous(a: f64, b: f64) -> Drawn<'static> {
     Drawn::new(eval, Vec::new())
 }
 
-/// A line under a wave that shrinks.
+/// A line under a wave with decreasing amplitude.
 fn dying() -> Drawn<'static> {
     let eval = |t: f64| {
         let ((s, c), k) = ((40.0 * t).sin_cos(), (-2.0 * t).exp() * 30.0);
@@ -58,8 +58,8 @@ fn count(source: &Drawn<'_>, options: &Options) -> usize {
     fit(source, options).unwrap().path.segments().count()
 }
 
-/// The largest distance of a path from a curve. Fails unless the path runs along all of it in order. `guess` gives the parameter of about
-/// the nearest place.
+/// Largest distance of a path from a curve. Fails unless the path runs along all of the curve in order. `guess` gives the approximate
+/// parameter of the nearest point.
 fn along(source: &Drawn<'_>, path: &BezPath, guess: impl Fn(Point) -> f64) -> f64 {
     let (mut worst, mut last, mut longest) = (0.0f64, 0.0, 0.0f64);
     for p in path.segments().flat_map(|s| (0..=24).map(move |i| s.eval(f64::from(i) / 24.0))) {
@@ -109,7 +109,7 @@ fn what_cannot_be_fitted_is_an_error_with_the_true_distance() {
         let Err(Error::NotMet { at, error }) = fit(&torn, &options) else { panic!() };
         assert!((at.x - 45.67).abs() < 1.0, "{at}");
         let best = fit(&torn, &options.with_best(true)).unwrap();
-        // Either side of the jump is a curve of its own.
+        // Treat either side of the jump as a separate curve.
         let sides = |(i, t): (usize, f64)| [0.4567f64.next_down() * t, 0.4567 + 0.5433 * t][i];
         let sides = Run::new(2, |place| torn.eval(sides(place)).0);
         let truth = apart(&sides.sampled(500, 0.01), &Run::of(&best.path.curves()).sampled(40, 0.01)).0;
@@ -135,7 +135,7 @@ fn endless_derivatives_at_an_end_are_errors() {
     }
 }
 
-/// The number of pieces if each reaches as far as a single one can.
+/// Number of pieces if each extends as far as possible.
 fn greedy(source: &Drawn<'_>, tolerance: f64) -> usize {
     let fits = |from: f64, to: f64| {
         let part = |t: f64| {
@@ -174,8 +174,8 @@ fn long_curves_take_hardly_more_pieces_than_a_greedy_search() {
     assert!(wrong.is_empty() && all as f64 <= 1.05 * least as f64, "{all}, greedy {least}; {wrong:#?}");
 }
 
-/// Of some 700 pairs of neighbouring tolerances. Where break points happen to suit the symmetry of a curve, a smaller tolerance needs
-/// less: 117 pieces of a wave, and 133 within a tolerance a quarter larger.
+/// Tests some 700 pairs of neighbouring tolerances. Where break points happen to suit the symmetry of a curve, a smaller tolerance may take
+/// fewer pieces.
 #[test]
 fn larger_tolerances_take_hardly_ever_more_than_one_piece_more() {
     let (mut more, mut all) = (Vec::new(), 0);
@@ -214,13 +214,13 @@ fn a_fit_knows_what_simplification_knows() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// But for a curve that runs back on itself: tolerances from a narrow range let its pieces end where it turns.
+/// An exception is a curve that runs back on itself: only with a narrow range of tolerances do pieces end where it turns.
 #[test]
 fn a_given_number_of_pieces_is_about_as_close_as_any_tolerance_leads_to() {
     const MOST: usize = 10;
     let mut wrong = Vec::new();
     for (name, curve) in curves().into_iter().filter(|c| c.0 != "long wave") {
-        // The least error of fits with each number of pieces.
+        // Least error of fits with each number of pieces.
         let mut least = [f64::INFINITY; MOST + 1];
         for k in 0..120 {
             let fitted = fit(&curve, &Options::new(1e-2 * 1.08f64.powi(k))).unwrap();

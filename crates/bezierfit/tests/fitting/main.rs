@@ -1,4 +1,4 @@
-//! The fitter from outside. One program: linking takes longer than most of these tests run.
+//! Tests of the fitter from outside. They are one program because linking takes longer than most of them run.
 
 #![allow(
     unreachable_pub,

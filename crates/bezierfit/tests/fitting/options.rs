@@ -1,4 +1,4 @@
-//! What options and sources promise, measured on the output itself.
+//! Promises of options and sources, measured on the output.
 
 use super::common::{Drawn, distance, off, polygon, wave};
 use bezierfit::{
@@ -53,7 +53,7 @@ fn at_most_n_pieces_have_nearly_the_least_error() {
         assert!(error <= 1.001 * fitted.report.max_error, "{n}: {error} {:?}", fitted.report);
         assert!(error <= last * 1.01, "{n}: {error}, with one less {last}");
         assert_eq!(fitted.report.max_error > 1e-3, !fitted.report.unresolved.is_empty());
-        // With a tolerance a little below the error, more pieces are needed.
+        // A tolerance a little below the error takes more pieces.
         let below = Options::new(0.9 * fitted.report.max_error);
         assert!(fitted.report.max_error <= 1e-3 || fit(&source, &below).unwrap().path.segments().count() > n, "{n}");
         last = error;
@@ -79,7 +79,7 @@ fn exactly_n_pieces_are_n() {
         let stated = fitted.report.max_error;
         assert!(distance(&source, &fitted.path, stated) <= 1.001 * stated + 1e-9);
     }
-    // Corners need pieces of their own.
+    // Corners need more pieces than that.
     for pieces in [Pieces::AtMost(3), Pieces::Exactly(3), Pieces::AtMost(0)] {
         let few = simplify(&path, &Options::new(0.1).with_corner(0.01).with_pieces(pieces));
         assert!(matches!(few, Err(Error::TooFewPieces { least: 6, .. })), "{few:?}");
@@ -136,7 +136,7 @@ fn whole_paths_are_sources() {
     assert!(PathSource::new(&BezPath::new()).is_none());
 }
 
-/// The points of a quadratic spline that a font stores: control points, and those on the curve that are not halfway between two.
+/// Numbers of points of a quadratic spline that a font stores: control points, and points on the curve that are not halfway between two.
 fn stored(path: &BezPath) -> (usize, usize) {
     let quads: Vec<QuadBez> =
         path.segments().filter_map(|s| if let PathSeg::Quad(q) = s { Some(q) } else { None }).collect();
@@ -206,7 +206,7 @@ fn quadratics_keep_extremes_on_the_curve() {
 #[test]
 fn points_become_arcs_lines_and_corners() {
     let degrees = |d: f64| d.to_radians();
-    // A rounded rectangle, its corners of few points, its sides of none.
+    // A rounded rectangle with few points at its corners and none on its sides.
     let mut points = Vec::new();
     for (i, (x, y)) in [(200.0, 100.0), (0.0, 100.0), (0.0, 0.0), (200.0, 0.0)].into_iter().enumerate() {
         points.extend(
@@ -230,7 +230,7 @@ fn points_become_arcs_lines_and_corners() {
     let fitted = simplify(&polygon(&noisy, false), &Options::new(0.2).with_corner(degrees(170.0))).unwrap();
     assert!(fitted.path.segments().count() <= 12, "{}", fitted.path.segments().count());
     assert!(off(&noisy, &fitted.path) <= 0.2);
-    // Few points, equal points, points that are no points.
+    // Few points, equal points, points that are not finite.
     for few in [&noisy[..0], &noisy[..1], &noisy[..2], &noisy[..3], &[Point::ORIGIN; 5][..]] {
         for closed in [false, true] {
             let fitted = simplify(&polygon(few, closed), &Options::new(0.1)).unwrap();
@@ -243,7 +243,7 @@ fn points_become_arcs_lines_and_corners() {
     ));
 }
 
-/// Points of a circle, of a square and of a wave: corners are those of the curve, not the points.
+/// Points of a circle, a square and a wave. Corners of the curve stay, and points are no corners.
 #[test]
 fn points_have_no_corners_of_their_own() {
     let circle = |i: i32| 100.0 * Vec2::from_angle(f64::from(i % 400) * std::f64::consts::TAU / 400.0);
@@ -271,7 +271,7 @@ fn points_have_no_corners_of_their_own() {
     }
 }
 
-/// Kurbo's fitter with a source of ours, with its corner kept, and a round trip through both adaptors.
+/// Kurbo's fitter takes one of our sources and keeps its corner; a curve survives both adaptors.
 #[test]
 fn curves_go_to_kurbo_and_back() {
     let theirs = kurbo::fit_to_bezpath(&Kurbo(wave(20.0)), 0.01);

@@ -1,4 +1,4 @@
-//! Corners as seen from a tolerance away: what was drawn by hand, traced, scanned or flattened becomes the lines and curves that it means.
+//! Corners as seen from a tolerance away: drawings by hand, traced, scanned or flattened ones become smooth curves and lines.
 
 use super::common::polygon;
 use bezierfit::{Degree, Options, simplify};
@@ -7,7 +7,7 @@ use pathwarp_oracle::curves::Curved as _;
 use pathwarp_oracle::{Random, Run, apart};
 use std::f64::consts::{PI, TAU};
 
-/// Simplifies a path, checks the distance both ways, and returns the result with the number of its segments.
+/// Simplifies a path and checks the Hausdorff distance. Returns the result with the number of its segments.
 fn simple(name: &str, path: &BezPath, tolerance: f64) -> (BezPath, usize) {
     let fitted = simplify(path, &Options::new(tolerance)).unwrap();
     let (source, result) = (path.curves(), fitted.path.curves());
@@ -65,7 +65,7 @@ fn corners_stay_where_no_smooth_curve_can_stand_for_them() {
     let mut random = Random::new(62);
     for k in [3, 4, 5, 6, 8, 12, 17] {
         let turn = TAU / f64::from(k);
-        // The nearest circle is s/4·tan(turn/4) off.
+        // The nearest circle is s/4·tan(θ/4) off, for sides of length s and a turn θ.
         for (off, kept) in [(1.5, true), (2.0, true), (9.0, true), (0.7, false), (0.4, false)] {
             let side = 4.0 * off / (0.25 * turn).tan();
             let (r, a) = (0.5 * side / (0.5 * turn).sin(), random.between(0.0, TAU));
@@ -141,7 +141,7 @@ fn random_polylines_keep_their_distance() {
         for _ in 1..n {
             heading += drift * normal(&mut random);
             at += Vec2::from_angle(heading) * (step * random.between(0.0, 1.0));
-            // Some points come twice, and some lie on a grid.
+            // Some points are repeated, and some lie on a grid.
             at = if random.below(8) == 0 { at.round() } else { at };
             points.push(at);
         }
@@ -156,7 +156,7 @@ fn random_polylines_keep_their_distance() {
     }
 }
 
-/// Letters and stars keep their corners within the tolerance, with noise, too.
+/// Letters and stars keep their corners within the tolerance, also with noise.
 #[test]
 fn corners_of_noisy_stars_stay_near() {
     let mut random = Random::new(3);

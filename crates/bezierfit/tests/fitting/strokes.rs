@@ -1,5 +1,5 @@
-//! Outlines of strokes against what a stroke covers: the points within half its width of the path, or of its segments for other joins
-//! and caps, by winding numbers at many places.
+//! Compares outlines of strokes, by winding numbers at many points, with the area that a stroke covers: the points within half its width of
+//! the path, or of its segments for other joins and caps.
 
 use super::common::random_path;
 use bezierfit::{Options, stroke};
@@ -46,8 +46,8 @@ const SHAPES: [(&str, &str); 34] = [
     ("line", "M20 20L80 60"),
 ];
 
-/// With round joins and caps, a stroke covers what is within half its width of the path. A loop that is narrower than the stroke may
-/// be bare inside, as in all renderers, if all of it is nearer than that.
+/// With round joins and caps, a stroke covers all points within half its width of the path. As in all renderers, a loop may be bare
+/// inside if its whole inside is nearer than that.
 fn check(name: &str, path: &BezPath, width: f64, grid: i32) {
     let style = Stroke::new(width).with_join(Join::Round).with_caps(Cap::Round);
     let fitted = stroke(path, &style, &Options::new(0.01)).unwrap();
@@ -78,7 +78,7 @@ fn check_random(seed: u64, paths: usize) {
     let mut random = Random::new(seed);
     for i in 0..paths {
         let path = random_path(&mut random, i);
-        // A known fault, below.
+        // A known fault: see `strands_that_nearly_touch_leave_nothing_bare`.
         if (seed, i) == (1, 114) {
             continue;
         }
@@ -124,7 +124,7 @@ fn all_strokes_are_finite_and_near() {
     }
 }
 
-/// A path that misses its start by less than can be seen has a corner there like the others.
+/// A path that misses its start by an invisible distance has a corner there, too.
 #[test]
 fn a_path_that_nearly_closes_has_all_its_miters() {
     let path = BezPath::from_svg("M150,300L200,165 310,250 150,300.00001Z").unwrap();
@@ -136,7 +136,7 @@ fn a_path_that_nearly_closes_has_all_its_miters() {
     for i in 0..3 {
         let out = |j: usize| (corners[i] - corners[j]) / (corners[i] - corners[j]).hypot();
         let (u, v) = (out((i + 1) % 3), out((i + 2) % 3));
-        // A miter's tip is at half the width over the sine of half the angle.
+        // A miter's tip is at half the width over the sine of half the angle between the sides.
         let tip = 10.0 / ((1.0 - u.dot(v)) / 2.0).sqrt();
         let along: Vec2 = (u + v) / (u + v).hypot();
         assert!(covered.covers(corners[i] + along * (tip - 0.2)), "{i}");
