@@ -102,7 +102,7 @@ impl Chain {
         &self.steps
     }
 
-    /// The same chain with its searches charged to `budget`.
+    /// Returns the chain with its searches charged to `budget`.
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         Self { steps: self.steps.iter().map(|s| s.within(budget).unwrap_or_else(|| Arc::clone(s))).collect() }
     }

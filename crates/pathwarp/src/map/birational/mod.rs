@@ -165,7 +165,7 @@ impl Birational {
             .then(|| Self::from_monoids(self.region, self.rows, vec![pair]))
     }
 
-    /// A, the point in which all lines across the rows of the first piece meet, in homogeneous coordinates: at infinity if they are parallel.
+    /// A, the point in which all lines across the rows of the first piece meet, in homogeneous coordinates; at infinity for parallel lines.
     #[must_use]
     pub fn axis(&self) -> [f64; 3] {
         let Monoid { first, last, .. } = &self.pieces[0].rows[0];
@@ -188,7 +188,7 @@ impl Birational {
         Ok(Self::from_monoids(self.region, self.rows, vec![[row(a)?, row(b)?]]))
     }
 
-    /// The largest angle in degrees by which curves along the rows turn on a line between two pieces, and its place in the image.
+    /// The largest angle in degrees by which curves along the rows turn on a line between two pieces, and the image point where they do.
     #[must_use]
     pub fn kink(&self) -> Option<(f64, Point)> {
         const SAMPLES: usize = 16;

@@ -89,8 +89,8 @@ pub struct Monoid {
 
 impl Monoid {
     /// The curve with these control points and the multiple point `a`, which is homogeneous, so that it may lie at infinity. The line of
-    /// parameter t joins A and (1 − t)·Q₀ + t·Q₁: they meet the lines from A to the first and to the last control point, and their distances
-    /// from A set the speed of t (equations 9 to 12). The first weight is 1.
+    /// parameter t joins A and (1 − t)·Q₀ + t·Q₁: Q₀ and Q₁ lie on the lines from A to the first and to the last control point, and their
+    /// distances from A set the speed of t (equations 9 to 12). The first weight is 1.
     ///
     /// # Errors
     /// [`GeometryError::AnchorCount`] for fewer than two points; [`GeometryError::Coincident`] if A is an end of the curve, Q₀ or Q₁;
