@@ -1,8 +1,8 @@
 //! Borders that shapes share, simplified once for all of them.
 //!
-//! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, those that several
-//! outlines have counted once. Between junctions, outlines that share a segment share all of them: what stands in their place is found in
-//! one direction, from the segments alone, so that it is the same for all.
+//! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, counting segments
+//! of several outlines once. Outlines that share a segment share all segments between two junctions. These are replaced in one direction,
+//! from the segments alone, so that the result is the same for all outlines.
 
 use super::limits::ARCS;
 use super::options::Options;
