@@ -56,8 +56,8 @@ impl fmt::Debug for Cost<'_> {
 /// Points, and a slot for the result at each.
 pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
 
-/// A map whose calls are expensive and whose points are cheap. Where its [`cost`](Map::cost) refers to this trait, callers collect the
-/// points they need.
+/// A map whose calls are expensive and whose points are cheap. If its [`cost`](Map::cost) has [`batches`](Cost::batches), callers collect
+/// the points that they need.
 pub trait Batches: Map {
     /// Maps some points and computes the jets at others, in one call where possible.
     fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {

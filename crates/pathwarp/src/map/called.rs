@@ -29,7 +29,7 @@ impl Ask {
 
 /// A program or function that gives the values of a map.
 pub trait Callee: Send + Sync {
-    /// Answers for some points, all of them finite: [`Ask::numbers`] numbers for each. Asked only within the [`Abilities`].
+    /// Answers for some points, all of them finite: [`Ask::numbers`] numbers for each. Only questions within its [`Abilities`] are asked.
     ///
     /// # Errors
     /// Any [`Error`] by which the callee fails. The map is undefined everywhere from then on, and reports this error.

@@ -172,7 +172,7 @@ impl Level {
             }
             let e = self.enclose(along)?;
             let stays = e.lo > 0.0 || e.hi < 0.0 || stays(e.d[0]);
-            // The slope differs from the mean slope by less than the second-order term of the enclosure.
+            // The slope differs from the mean slope by less than the bound of the second derivative.
             let goes_one_way = (to.1 - from.1).abs() > 2.0 * e.d[1];
             let undefined = from.1.is_nan() || to.1.is_nan();
             if stays || goes_one_way || undefined || to.0 - from.0 < SHORTEST {
@@ -218,7 +218,7 @@ fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg
             let [d0, d1, d2] = [s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2].map(along);
             solve_quadratic(d0, 2.0 * (d1 - d0), d2 - 2.0 * d1 + d0).to_vec()
         }
-        // On an arc, the level differs from that of its centre by at most this.
+        // Up to rounding, the level on an arc differs from the centre's by at most this hypotenuse.
         Seg::Arc(s) if level(s.center).abs() > 1.000_001 * along(s.a).hypot(along(s.b)) => return Vec::new(),
         Seg::Arc(s) => {
             let first = along(s.b).atan2(along(s.a));

@@ -96,7 +96,7 @@ impl Enclosure {
         (0..ORDER).any(by_order) || (x.hi - x.lo) + (y.hi - y.lo) <= by
     }
 
-    /// The size of the smallest feature of a curve, as a share of its length.
+    /// The size of the smallest feature of a curve, as a share of its parameter range.
     pub(crate) fn finest([x, y]: &[Self; 2]) -> f64 {
         let d = |k: usize| x.d[k] + y.d[k];
         (1..ORDER).map(|k| (d(0) / d(k)).powf(1.0 / k as f64)).fold(f64::INFINITY, f64::min)
@@ -390,7 +390,7 @@ mod tests {
         }
     }
 
-    /// A wave is resolved by forty samples for each period, and not by a fixed number, whatever their spacing.
+    /// A wave is resolved by forty samples for each period, but not by seventeen samples of many periods.
     #[test]
     fn samples_resolve_a_wave_where_they_show_it() {
         let wave = |n: f64| {

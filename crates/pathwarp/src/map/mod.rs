@@ -19,8 +19,8 @@
 //! - [`Map::class`] and [`Map::image`] describe the image exactly, so that the error of a fit can be proved instead of measured.
 //! - [`Map::inverse`] gives the inverse in closed form. [`NewtonInverse`] inverts any smooth map over a box.
 //!
-//! - [`Map::creases`] lists the lines along which the derivative jumps and the boundary of the domain. Paths are split there, and
-//! [`Map::branch`] gives the smooth map on one side.
+//! # Composing maps
+//!
 //! [`Chain`] applies maps one after another. Compose first and refit once: every refit adds to the error and to the number of
 //! nodes.
 //!
@@ -148,11 +148,11 @@ pub(crate) use quotient::{Plane, Quotient, source_coordinates};
 pub(crate) use tiled::{TileRow, Tiled};
 
 /// A differentiable map of the plane, in root user units, y down.
-/// The value and both partial derivatives at `p`. On a crease, the derivatives on either side.
+///
 /// Only [`Map::jet`] is required. [`point`](Map::point), [`points`](Map::points) and [`jets`](Map::jets) are faster ways to the
 /// same values; the other methods tell the refitter where the map is not smooth and what is known about it exactly.
 pub trait Map: Send + Sync {
-    /// Value and both partial derivatives at `p`. On a crease, those of either side.
+    /// The value and both partial derivatives at `p`. On a crease, the derivatives on either side.
     fn jet(&self, p: Point) -> Jet;
 
     /// The value alone.

@@ -421,7 +421,7 @@ impl Searches for NewtonInverse {
     }
 }
 
-// The inverse of a map with creases has the images of these creases, with a smooth branch on either side.
+// The inverse of a map with creases has creases along their images, with a smooth branch on either side.
 
 /// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
 /// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
