@@ -93,8 +93,8 @@ impl Limit {
         }
     }
 
-    /// The addition for each pixel of a picture, half of them the source's, half the result's: ten million of each are allowed work of a
-    /// second, ten times the seconds, and 60 MB beyond the decoded picture.
+    /// The addition for each pixel of a picture, half of them the source's, half the result's: ten million of each add 80 million units of
+    /// work, ten seconds, and 60 MB beyond the decoded picture.
     fn per_pixel(self) -> f64 {
         match self {
             Self::Work => 4.0,

@@ -1,4 +1,4 @@
-//! The Hausdorff distance between two paths: the largest distance between two drawings of the same shape.
+//! The Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 //!
 //! ```
 //! use pathwarp::{Outline, distance};

@@ -616,7 +616,7 @@ fn first_across<'a>(
 // Finds points where undoing a map must go wrong: two points of the source have the same image, and the inverse can return only one
 // of them.
 
-/// The number of samples in each direction over the box. Smaller ambiguities can go unnoticed.
+/// The number of samples in each direction over the box. Ambiguous areas smaller than the spacing can go unnoticed.
 const GRID: usize = 32;
 /// The number of all samples.
 const SAMPLES: usize = GRID * GRID;

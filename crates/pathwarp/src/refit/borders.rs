@@ -1,8 +1,8 @@
 //! Borders that shapes share, simplified once for all of them.
 //!
 //! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, counting segments
-//! of several outlines once. Outlines that share a segment share all segments between two junctions. These are replaced in one direction,
-//! from the segments alone, so that the result is the same for all outlines.
+//! of several outlines once. Outlines that share a segment share the whole chain of segments up to the next junctions. A chain is replaced
+//! in one direction, from its segments alone, so that the result is the same for all outlines.
 
 use super::limits::ARCS;
 use super::options::Options;

@@ -37,11 +37,11 @@ use repeats::Shapes;
 use shared::SharedEdges;
 use std::sync::Arc;
 
+/// Returns the image of `outline` under `map`, within `options.tolerance`, or the tolerances of its [spans](Options::spans).
+///
 /// Subpaths keep their order, direction and closedness, and smooth joints remain smooth. With [`Nodes::Source`], source nodes remain
 /// nodes; with [`Nodes::Auto`] and [`Nodes::Extremes`], a closed smooth subpath begins at the node nearest to its start. Affine maps move
 /// control points, and arcs become cubics within the tolerance; under projective maps lines remain lines.
-/// nodes; otherwise a closed smooth subpath begins at the node nearest to its start. Affine maps move control points, and arcs become
-/// cubics within the tolerance; under projective maps lines remain lines.
 ///
 /// Sets [`PathReport::resolution`] if coordinates are so large that their rounding exceeds the tolerance.
 ///

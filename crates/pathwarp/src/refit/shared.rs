@@ -30,8 +30,8 @@ impl SharedEdges {
         Self::held(outlines.into_iter().map(|o| (o, &[][..])))
     }
 
-    /// The segments that outlines share whose contours have different tolerances: one for each subpath, or none. A contour that comes again
-    /// as a whole, from the same start and with the same tolerance, shares nothing with the first: both get the same curves.
+    /// The segments that `outlines` share, each with the tolerances of its subpaths, or none. A contour that comes again as a whole, from
+    /// the same start and with the same tolerance, shares nothing with the first: both get the same curves.
     #[must_use]
     pub fn held<'a>(outlines: impl IntoIterator<Item = (&'a Outline, &'a [f64])>) -> Self {
         let outlines: Vec<(&Outline, &[f64])> = outlines.into_iter().collect();
