@@ -108,7 +108,7 @@ fn key(p: Point) -> Key {
     Key(p.x.to_bits(), p.y.to_bits())
 }
 
-/// A hash of coordinates. The points are computed here, so nobody can choose them to collide.
+/// A hash of coordinates. The points are computed, so they cannot be chosen to collide.
 #[derive(Default)]
 struct Mixer(u64);
 

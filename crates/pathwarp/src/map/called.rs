@@ -52,7 +52,7 @@ pub trait Callee: Send + Sync {
     }
 }
 
-/// The abilities of a [`Callee`], and what is known of its map.
+/// The abilities of a [`Callee`], and the known properties of its map.
 #[derive(Debug, Clone, Default)]
 pub struct Abilities {
     /// `true` if it answers [`Ask::Jets`]. Otherwise derivatives are differences of values.

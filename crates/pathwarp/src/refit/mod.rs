@@ -93,7 +93,7 @@ impl KnownShapes {
     /// is small, or if nothing is to be merged.
     #[must_use]
     pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>, map: &dyn Map, options: &Options) -> Self {
-        /// The work on this outline, which is done twice, is at most one part in so many of all work.
+        /// The least ratio of all segments to the outline's, whose work is done twice.
         const SHARE: usize = 32;
         /// The least number of segments for which this pays: a line of text.
         const LEAST: usize = 400;
@@ -158,7 +158,7 @@ fn refit(
     Ok(out)
 }
 
-/// An image that is so many times as far away as the outline lies near a pole.
+/// The ratio of the largest coordinates of image and outline above which the image lies near a pole.
 const FAR_AWAY: f64 = 1e4;
 
 /// The size of coordinates that have the same rounding error as the outline's, amplified by the map.

@@ -111,7 +111,7 @@ impl SegmentFitter<'_> {
         covered
     }
 
-    /// Counts work. An exceeded budget is an error of the whole path, which ends by itself: `fit` does no more.
+    /// Counts work. If the budget is exceeded, `fit` stops searching, and the whole path fails at its end.
     pub(super) fn spend(&self, evaluations: f64) {
         let _ = self.options.budget.spend(evaluations);
     }
