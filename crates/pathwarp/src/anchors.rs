@@ -1,7 +1,7 @@
 //! Anchors of user-drawn paths, and the rules that give them an order.
 //!
-//! Users seldom know the direction of a path or the start of a closed one. The shaper paper's rule: the side that lies lowest on
-//! the screen is the bottom, and it runs left to right.
+//! Users seldom know the direction of a path or the start of a closed one. The rule is the one of the shaper paper: the side that lies
+//! lowest on the screen is the bottom, and it runs left to right.
 
 use crate::deform::{Built, Role};
 use crate::error::{Error, GeometryError};
@@ -32,7 +32,7 @@ impl Anchors {
         }
     }
 
-    /// Returns the path through them, for a preview.
+    /// Returns the path through the anchors, for a preview.
     pub(crate) fn outline(&self) -> Outline {
         Outline::from_points(self.points(), matches!(self, Self::Four(_)))
     }
@@ -55,7 +55,7 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     Ok(sub)
 }
 
-/// Returns the only run of a path that is closed, returns to its start, or is a polyline of as many lines as `polyline` accepts:
+/// Returns the only run of a path that is closed, returns to its start, or is a polyline of a number of lines that `polyline` accepts:
 /// plain points cannot be closed explicitly.
 pub(crate) fn closed_subpath(
     path: &NamedPath,
@@ -149,23 +149,23 @@ fn spread(a: &[Point]) -> f64 {
     a.iter().flat_map(|p| a.iter().map(move |q| p.distance(*q))).fold(0.0, f64::max)
 }
 
-/// The order of four corners in which the bottom side comes first, and on which end of it.
+/// An order of four corners that begins with one end of the bottom side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Arrangement {
     /// The bottom side: 0 to 3, as drawn.
     pub(crate) bottom: usize,
-    /// Runs the path against its drawn direction.
+    /// `true` to run the path against its drawn direction.
     pub(crate) reversed: bool,
 }
 
 impl Arrangement {
-    /// Follows the paper's rule. `heights[i]` is the mean y of the side from corner i to corner i+1.
+    /// Arranges corners by the paper's rule. `heights[i]` is the mean y of the side from corner i to corner i+1.
     pub(crate) fn by_rule(corners: &[Point; 4], heights: &[f64; 4]) -> Self {
         let bottom = (0..4).fold(0, |best, i| if heights[i] > heights[best] { i } else { best });
         Self::from_bottom(corners, bottom)
     }
 
-    /// Takes side `bottom` for the bottom, left to right.
+    /// Arranges corners with side `bottom` as the bottom, left to right.
     pub(crate) fn from_bottom(corners: &[Point; 4], bottom: usize) -> Self {
         Self { bottom, reversed: corners[bottom].x > corners[(bottom + 1) % 4].x }
     }
@@ -224,7 +224,7 @@ pub(crate) struct FourToFour {
 }
 
 impl FourToFour {
-    /// Takes the points in this order; the artwork's box is the base's.
+    /// Maps these points in order; the artwork's box is the base's.
     pub(crate) fn new(from: [Point; 4], to: [Point; 4]) -> Self {
         let frame = from.iter().fold(Rect::from_points(from[0], from[1]), |r, p| r.union_pt(*p));
         Self { from, to, frame }
@@ -284,7 +284,7 @@ pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error
 
 /// Reduces an affine map to its matrix, or to the identity if only rounding moves the corners of `frame`; leaves other maps alone.
 pub(crate) fn settled(map: Arc<dyn Map>, frame: Rect) -> Arc<dyn Map> {
-    /// A few dozen operations on numbers of the corners' size.
+    /// The rounding error of a few dozen operations on numbers of the corners' size.
     const ROUNDING: f64 = 1e-14;
     let Class::Affine(m) = map.class() else { return map };
     let corners = Frame::new(frame).corners();

@@ -1,8 +1,8 @@
-//! Limits on what one input may ask for: three sizes, checked when it is read, and one counter of work.
+//! Limits on the size and the work of one input: three sizes, checked when it is read, and one counter of work.
 //!
 //! A few bytes can ask for any amount of work: references to references, packed text, pictures that announce a size, formulas
-//! that oscillate. Sizes that are known beforehand are compared with a limit. Everything else is work: stages count what they have done or
-//! are about to do, long loops check the budget as they go, and an error names the limit.
+//! that oscillate. Sizes that are known beforehand are compared with a limit. Everything else is work: stages count their work before or
+//! after they do it, long loops check the budget as they go, and an error names the limit.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,15 +13,15 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Limit {
-    /// Bytes of text, unpacked and with entities expanded, and of embedded fonts. Those of pictures count beyond four for each pixel.
+    /// Bytes of text, unpacked and with entities expanded, and of embedded fonts. Bytes of pictures count beyond four for each pixel.
     Bytes,
-    /// Elements, with everything that references show again.
+    /// Elements, repeated for every reference to them.
     Elements,
     /// Pixels of pictures that are read or made.
     Pixels,
     /// Work of all kinds, in evaluations of a bicubic net with the work around them: about 50 nanoseconds each.
     Work,
-    /// Seconds of processor time: the last resort. Counted by the program around this library.
+    /// Seconds of processor time: the last resort. They are counted by the program around this library.
     Seconds,
     /// Bytes of memory. The program around this library counts them; layers are compared before they are painted.
     Memory,
@@ -30,11 +30,11 @@ pub enum Limit {
 /// The work that common operations take.
 #[doc(hidden)]
 pub mod cost {
-    /// A comparison of names, of places or of a selector with an element.
+    /// A comparison of names, of points or of a selector with an element.
     pub const COMPARISON: f64 = 2.0;
     /// An element that is read, styled and written.
     pub const ELEMENT: f64 = 600.0;
-    /// A segment that is read, laid out and written: its memory counts, too.
+    /// A segment that is read, laid out and written. Its memory counts, too.
     pub const SEGMENT: f64 = 40.0;
     /// A letter that is shaped and laid out.
     pub const LETTER: f64 = 200.0;
@@ -42,7 +42,7 @@ pub mod cost {
     pub const PIXEL: f64 = 0.08;
 }
 
-/// One mebibyte: an input up to this size has the base limits.
+/// One mebibyte: the largest size of an input with the base limits.
 const BASE_SIZE: f64 = 1_048_576.0;
 
 impl Limit {
@@ -80,8 +80,8 @@ impl Limit {
         }
     }
 
-    /// The value for inputs of up to a mebibyte. All of the work usually takes a few seconds; the limit of seconds is more than ten times as
-    /// high, since a slow or busy machine takes longer for the same.
+    /// The value for inputs of up to a mebibyte. All of the work usually takes a few seconds; the limit of seconds is more than ten times
+    /// that, since slow or busy machines take longer.
     fn base(self) -> f64 {
         match self {
             Self::Bytes => 32e6,
@@ -93,8 +93,8 @@ impl Limit {
         }
     }
 
-    /// What a pixel of a picture adds. Half of the pixels are the source's, half the result's: ten million of each are allowed work of a
-    /// second, ten times the seconds, and 60 MB beyond the decoded picture.
+    /// The addition for each pixel of a picture, half of them the source's, half the result's: ten million of each add 80 million units of
+    /// work, ten seconds, and 60 MB beyond the decoded picture.
     fn per_pixel(self) -> f64 {
         match self {
             Self::Work => 4.0,
@@ -123,14 +123,14 @@ impl fmt::Display for Limit {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     given: [Option<f64>; Limit::ALL.len()],
-    /// Factor on the limits that are not given.
+    /// The factor on the limits that are not given.
     scale: f64,
-    /// Pixels of the input's pictures.
+    /// The number of pixels of the input's pictures.
     pixels: f64,
     stop: Option<Stop>,
 }
 
-/// A switch that ends work early. It is static, as limits are copied to wherever work is counted.
+/// A switch that ends work early. It is static, as limits are copied to all code that counts work.
 #[derive(Debug, Clone, Copy)]
 struct Stop(&'static AtomicBool);
 
@@ -170,7 +170,7 @@ impl Limits {
         self.stop.is_some_and(|s| s.0.load(Ordering::Relaxed))
     }
 
-    /// The limits for an input of `bytes`: those that were not set grow in proportion above a mebibyte. They never shrink.
+    /// The limits for an input of `bytes`: limits that were not set grow in proportion above a mebibyte. They never shrink.
     #[must_use]
     pub fn for_input(self, bytes: usize) -> Self {
         Self { scale: (bytes as f64 / BASE_SIZE).max(self.scale), ..self }
@@ -182,7 +182,7 @@ impl Limits {
         Self { pixels: self.pixels + pixels, ..self }
     }
 
-    /// The value of a limit. Where other limits are raised, time and memory grow alike, unless they are set themselves.
+    /// The value of a limit. Where other limits are raised, time and memory grow in proportion, unless they are set themselves.
     #[must_use]
     pub fn of(&self, limit: Limit) -> f64 {
         let default = limit.base() * self.scale + limit.per_pixel() * self.pixels;
@@ -201,7 +201,7 @@ impl Limits {
     /// Checks a size.
     ///
     /// # Errors
-    /// It exceeds the limit.
+    /// [`Exceeded`] if the size exceeds the limit.
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let most = self.of(limit);
         // An amount that is not a number exceeds every limit.
@@ -217,18 +217,18 @@ impl Limits {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{}{} {}, and the limit `{limit}` is {}", if *.cut { "at least " } else { "" }, rounded(*.needed), .limit.things(), rounded(*.most))]
 pub struct Exceeded {
-    /// The limit.
+    /// The limit that was exceeded.
     pub limit: Limit,
-    /// Its value.
+    /// The value of the limit.
     pub most: f64,
     /// The amount that is needed, or was counted when work stopped.
     pub needed: f64,
-    /// The count was cut short at the limit.
+    /// `true` if the count was cut short at the limit.
     pub cut: bool,
 }
 
 impl Exceeded {
-    /// The same for a count that was cut short, so that the whole amount is not known.
+    /// Returns this error for a count that was cut short, so that the whole amount is not known.
     #[must_use]
     pub fn cut_short(self) -> Self {
         Self { cut: true, ..self }
@@ -245,7 +245,7 @@ impl Exceeded {
     }
 }
 
-/// Large numbers in three figures.
+/// Formats a large number in three figures.
 fn rounded(v: f64) -> String {
     if v < 1e6 { format!("{}", (v * 100.0).round() / 100.0) } else { format!("{v:.2e}") }
 }
@@ -257,7 +257,7 @@ const MAX_AMOUNT: f64 = (1_u64 << 52) as f64;
 #[derive(Debug, Default)]
 pub struct Budget {
     limits: Limits,
-    /// Work in sixteenths of a unit, so that the sum does not depend on the order of threads.
+    /// Work in sixteenths of a unit: whole numbers, so that the sum does not depend on the order of threads.
     work: AtomicU64,
     /// Bytes, elements and pixels.
     sizes: [AtomicU64; 3],
@@ -279,11 +279,11 @@ impl Budget {
     /// Counts work.
     ///
     /// # Errors
-    /// The sum exceeds the limit.
+    /// [`Exceeded`] if the sum exceeds the limit.
     pub fn spend(&self, work: f64) -> Result<(), Exceeded> {
         let sixteenths = (16.0 * work).ceil().min(MAX_AMOUNT);
         let before = self.work.fetch_add(sixteenths as u64, Ordering::Relaxed) as f64;
-        // How far beyond the limit the sum is depends on the threads, so the error does not say it.
+        // The excess over the limit depends on the threads, so the error does not contain it.
         self.limits().check(Limit::Work, (before + sixteenths) / 16.0).map_err(|e| Exceeded {
             needed: e.most,
             cut: true,
@@ -300,7 +300,7 @@ impl Budget {
         (self.limits().of(Limit::Work) - self.work.load(Ordering::Relaxed) as f64 / 16.0).max(0.0)
     }
 
-    /// Returns the limit if more work was counted than it allows.
+    /// Returns the error if more work was counted than the limit allows.
     #[must_use]
     pub fn exceeded(&self) -> Option<Exceeded> {
         self.spend(0.0).err()
@@ -309,7 +309,7 @@ impl Budget {
     /// Adds to a size: bytes, elements or pixels.
     ///
     /// # Errors
-    /// The sum exceeds the limit.
+    /// [`Exceeded`] if the sum exceeds the limit.
     pub fn take(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         let amount = amount.min(MAX_AMOUNT);
         let before = self.sizes.get(limit as usize).map_or(0, |n| n.fetch_add(amount as u64, Ordering::Relaxed));
@@ -331,7 +331,7 @@ impl Budget {
     /// Checks a size that is not added up.
     ///
     /// # Errors
-    /// It exceeds the limit.
+    /// [`Exceeded`] if the size exceeds the limit.
     pub fn check(&self, limit: Limit, amount: f64) -> Result<(), Exceeded> {
         self.limits().check(limit, amount)
     }
@@ -344,19 +344,19 @@ impl PartialEq for Budget {
     }
 }
 
-/// Work of a jet of a map of work 1, with the step of Newton's method around it.
+/// The work of a jet of a map of work 1, with the step of Newton's method around it.
 const JET: f64 = 0.4;
-/// Work of looking at a starting point.
+/// The work of looking at a starting point.
 const START: f64 = 0.01;
-/// Jets that usually find a preimage; the work of an inverse includes them.
+/// The number of jets that usually find a preimage; the work of an inverse includes them.
 const USUAL_JETS: usize = 12;
 
 /// The work of a search so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Search {
-    /// Jets of the inverted map.
+    /// The number of jets of the inverted map.
     pub jets: usize,
-    /// Looks at starting points.
+    /// The number of starting points that were looked at.
     pub starts: usize,
 }
 
@@ -367,17 +367,17 @@ impl Search {
         self.starts += other.starts;
     }
 
-    /// Charges what exceeds the usual work of `points` points, which callers charge themselves. `work` is that of a jet.
+    /// Charges the work beyond the usual work of `points` points, which callers charge. `work` is the work of a jet.
     pub fn spend(self, budget: Option<&Arc<Budget>>, points: usize, work: f64) {
         let beyond = JET * work * self.jets.saturating_sub(USUAL_JETS * points) as f64 + START * self.starts as f64;
         if let Some(budget) = budget.filter(|_| beyond >= 1.0) {
-            // The next search will find nothing left.
+            // An exceeded budget ends the next search.
             let _ = budget.spend(beyond);
         }
     }
 }
 
-/// Returns `true` once nothing is left of a budget: inverses within it are then undefined everywhere.
+/// Returns `true` once a budget is used up: inverses within it are then undefined everywhere.
 #[must_use]
 #[doc(hidden)]
 pub fn is_over(budget: Option<&Arc<Budget>>) -> bool {
@@ -435,7 +435,7 @@ mod tests {
     #[test]
     fn names_are_found_again() {
         assert!(Limit::ALL.into_iter().all(|l| Limit::named(l.name()) == Some(l)));
-        // The order is that of the declaration, by which limits are stored.
+        // The order equals the order of declaration, by which limits are stored.
         assert!(Limit::ALL.into_iter().enumerate().all(|(i, l)| l as usize == i));
     }
 }

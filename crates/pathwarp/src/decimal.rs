@@ -19,8 +19,8 @@ pub fn trimmed(v: f64, decimals: usize) -> String {
     out
 }
 
-/// Formats numbers that belong together, such as those of a point or a box: each with `digits` significant digits of its own, but no
-/// decimals beyond `more` digits more of the largest. So what is nothing beside it becomes 0.
+/// Formats numbers that belong together, such as the coordinates of a point or a box: each with `digits` significant digits, but with no
+/// more decimals than the largest needs for `digits + more` digits. Numbers that are negligible beside the largest become 0.
 ///
 /// ```
 /// use pathwarp::decimal::together;
@@ -35,15 +35,15 @@ pub fn together(values: &[f64], digits: i32, more: i32) -> impl Iterator<Item = 
 /// The number of decimals that the largest of these numbers needs for `digits` significant digits.
 #[must_use]
 pub fn decimals(values: impl IntoIterator<Item = f64>, digits: i32) -> usize {
-    /// More resolve nothing that can occur in a drawing.
+    /// The largest number of decimals: more resolve nothing that can occur in a drawing.
     const MOST: i32 = 30;
     let largest = values.into_iter().map(f64::abs).filter(|v| v.is_finite()).fold(0.0, f64::max);
     let before = if largest > 0.0 { largest.log10().floor() as i32 + 1 } else { 0 };
     usize::try_from((digits - before).clamp(0, MOST)).unwrap_or(0)
 }
 
-/// Formats an affine map as `matrix(…)`: the images of both unit vectors with twelve significant digits each, the shift with twelve of
-/// the largest number of all.
+/// Formats an affine map as `matrix(…)`: the images of both unit vectors with twelve significant digits each, the shift with twelve
+/// digits of the largest number of all.
 ///
 /// ```
 /// use kurbo::Affine;
@@ -61,8 +61,8 @@ pub fn matrix(m: Affine) -> String {
     format!("matrix({x} {y} {})", fine([e, f], &[a, b, c, d, e, f]))
 }
 
-/// Returns an affine map known in single precision with 0 for what is nothing in it: of the image of a unit vector and of the shift, a
-/// coordinate that single precision cannot tell from 0 beside the other.
+/// Returns an affine map known in single precision, with negligible coordinates set to 0: coordinates of the image of a unit vector, or of
+/// the shift, that single precision cannot distinguish from 0 beside the other coordinate.
 ///
 /// ```
 /// use kurbo::Affine;

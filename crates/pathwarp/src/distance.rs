@@ -1,4 +1,4 @@
-//! The Hausdorff distance between two paths: how far two drawings of the same shape are apart.
+//! The Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 //!
 //! ```
 //! use pathwarp::{Outline, distance};
@@ -15,44 +15,44 @@ use crate::budget::{Budget, Exceeded, Limits, cost};
 use crate::outline::{Outline, Seg};
 use kurbo::{Point, Rect, Vec2};
 
-/// Intervals per segment that [`symmetric`] samples.
+/// The number of intervals per segment that [`symmetric`] samples.
 const PER_SEGMENT: usize = 64;
-/// Starting points of the search for the nearest point of a segment.
+/// The number of intervals between starting points of the search for the nearest point of a segment.
 const STRETCHES: usize = 16;
-/// Cosine of 45°. Stretches in which the curve turns by more are halved for further starting points.
+/// The cosine of 45°. Stretches in which the curve turns by more are halved for further starting points.
 const COS_TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Limit on these halvings, one within the other.
+/// The limit on the depth of these halvings.
 const MAX_HALVINGS: u32 = 12;
-/// Limit on the steps of a search.
+/// The limit on the steps of a search.
 const MAX_STEPS: usize = 24;
 /// A search ends with a step that gains no more than this share of the distance.
 const SETTLED: f64 = 1e-9;
 /// A search ends if a step of this share of the Gauss–Newton step gains nothing.
 const MIN_SHARE: f64 = 1e-3;
 
-/// Work of looking at a box, at a line, and at a place on a Bézier curve or on an arc, in comparisons of the budget.
+/// The work of looking at a box, at a line, and at a point of a Bézier curve or of an arc, in comparisons of the budget.
 const BOX: f64 = 0.08;
 const LINE: f64 = 0.3;
 const CURVE: f64 = 0.2;
 const ARC: f64 = 0.7;
-/// Places of a curve that a step of the search for its foot point counts as.
+/// The number of points of a curve that a step of the search for its foot point counts as.
 const STEP: f64 = 2.0;
 
 /// The symmetric Hausdorff distance between two paths: the largest distance from a point of either path to the other.
 ///
-/// Sampled at 65 points per segment, whose nearest points are found by the damped Gauss–Newton method from 17 starting points per
-/// segment, more where it turns sharply. A lower bound, exact up to the movement of the distance between samples. `None` if one of the
-/// paths is empty.
+/// It is sampled at 65 points per segment, whose nearest points are found by the damped Gauss–Newton method from 17 starting points per
+/// segment, more where the segment turns sharply. The result is a lower bound, exact up to the change of the distance between samples.
+/// `None` if one of the paths is empty.
 #[must_use]
 pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
     symmetric_within(a, b, &Budget::new(Limits::none())).ok().flatten()
 }
 
-/// As [`symmetric`], with its comparisons charged to `budget`: paths of very many segments that are everywhere about equally far apart
-/// take time in proportion to the product of their numbers.
+/// The [`symmetric`] distance, with its comparisons charged to `budget`: paths of very many segments that are everywhere about equally
+/// far apart take time in proportion to the product of their numbers.
 ///
 /// # Errors
-/// `budget` does not allow so many comparisons.
+/// [`Exceeded`] if `budget` does not allow so many comparisons.
 pub fn symmetric_within(a: &Outline, b: &Outline, budget: &Budget) -> Result<Option<f64>, Exceeded> {
     let Some(there) = one_way(a, b, 0.0, budget)? else { return Ok(None) };
     one_way(b, a, there, budget)
@@ -130,17 +130,17 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The parts of a path under a tree of boxes: node i holds nodes 2i and 2i + 1, and the parts are the leaves. Neighbours along a
+/// The parts of a path under a tree of boxes: node i holds nodes 2i and 2i + 1, and the parts are the leaves. Consecutive parts of a
 /// path are near each other, so their boxes are small.
 struct Targets<'a> {
     all: Vec<Target<'a>>,
     boxes: Vec<Rect>,
-    /// The nearest part of the last point: neighbouring samples have neighbouring foot points.
+    /// The nearest part to the last point: neighbouring samples have neighbouring foot points.
     last: usize,
     pending: Vec<usize>,
 }
 
-/// The box of nothing: infinitely far from every point.
+/// The empty box, which is infinitely far from every point.
 const NOWHERE: Rect = Rect::new(f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
 
 impl<'a> Targets<'a> {
@@ -194,8 +194,8 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
     dx.hypot(dy)
 }
 
-/// Halves the part of a segment between two parameters, each with its derivative, wherever it turns sharply. A cubic does so in two
-/// places at most.
+/// Halves the part of a segment between two parameters, each with its derivative, wherever it turns sharply. A cubic does so at most
+/// twice.
 fn turns(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut Vec<f64>) {
     let t = 0.5 * (a.0 + b.0);
     let mid = (t, seg.deriv(t));
@@ -203,7 +203,7 @@ fn turns(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut 
     let control = 2.0 * mid.1 - 0.5 * (a.1 + b.1);
     let is_sharp = |u: Vec2, v: Vec2| u.dot(v) < COS_TURN * u.hypot() * v.hypot();
     let halves = halvings > 0 && (is_sharp(a.1, control) || is_sharp(control, b.1) || is_sharp(a.1, b.1));
-    // A search cannot leave a place where the derivative is zero.
+    // A search cannot leave a point where the derivative is zero.
     if halves || (a.1 == Vec2::ZERO) != (b.1 == Vec2::ZERO) {
         starts.push(t);
     }
@@ -227,7 +227,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
     *work += each * (STRETCHES + 1) as f64;
     let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
     let mut best = at.iter().copied().fold(known, f64::min);
-    // No point is farther than this from the nearest of those.
+    // No point of the segment is farther than this from the nearest starting point.
     let reach = max_speed(seg) * 0.5 / STRETCHES as f64;
     *work += each * starts.len() as f64;
     let regular = at.into_iter().enumerate().map(|(i, d)| (i as f64 / STRETCHES as f64, d));
@@ -235,7 +235,7 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
         if d - reach >= best {
             continue;
         }
-        // Gauss–Newton for the foot point, with shorter steps where the curve turns too sharply for it.
+        // Gauss–Newton iteration for the foot point, with shorter steps where the curve turns too sharply for it.
         let mut share = 1.0;
         for _ in 0..MAX_STEPS {
             *work += STEP * each;
@@ -314,7 +314,7 @@ mod tests {
         assert!(
             (symmetric_within(&zigzag(9000, 0.0), &zigzag(9000, 0.25), &budget).unwrap().unwrap() - 0.25).abs() < 1e-12
         );
-        // Every part of the star is as far from the centre.
+        // Every part of the star is equally far from the centre.
         let star: Vec<Point> = (0..30_000).map(|i| Point::new(1e3 * f64::from(i % 2 * 2 - 1), 0.0)).collect();
         let few = Budget::new(Limits::default().with(Limit::Work, 1e3));
         assert_eq!(

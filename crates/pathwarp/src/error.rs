@@ -1,4 +1,4 @@
-//! Errors: the problem, its place, and a remedy.
+//! Errors: each message names the problem, its place, and a remedy.
 //!
 //! The kinds differ in who can fix them: [`Error::Usage`] and [`Error::Missing`] (the caller), [`Error::Input`] (a file) and
 //! [`Error::Geometry`] (the drawing does not allow the deformation). Messages call parameters by their bare names; the command
@@ -8,7 +8,7 @@ use crate::budget::Exceeded;
 use kurbo::{Point, Rect};
 use thiserror::Error;
 
-/// Any error between a parameter's value and a warped path.
+/// Any error from a parameter's value to the warped path.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -21,7 +21,7 @@ pub enum Error {
         value: String,
         /// The problem, and legal values: the end of a sentence that begins with the value.
         problem: String,
-        /// What to do instead, with the punctuation that joins it to the problem; empty if the problem says so already.
+        /// The remedy, with the punctuation that joins it to the problem; empty if the problem contains it.
         advice: String,
     },
     /// A required parameter was not given.
@@ -35,7 +35,7 @@ pub enum Error {
     /// A file cannot be read or understood.
     #[error("{place}: {problem}")]
     Input {
-        /// File and place in it (line:column or byte), or the path reference.
+        /// The file and the position in it (line:column or byte), or the path reference.
         place: String,
         /// The problem and a remedy.
         problem: String,
@@ -59,7 +59,7 @@ impl From<GeometryError> for Error {
     }
 }
 
-/// The drawing, or a path that controls the deformation, does not allow it.
+/// An error because the drawing, or a path that controls the deformation, does not allow it.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GeometryError {
@@ -111,7 +111,7 @@ pub enum GeometryError {
         /// Their position.
         at: Point,
     },
-    /// A control point of a row lies on, or beyond, the line through the row's end and the facing row's.
+    /// A control point of a row lies on, or beyond, the line through the row's end and the facing row's end.
     #[error(
         "{path}: point {which} ({}) lies {} the line through the {end} points of both rows ({}), so that the map would have a pole: move it off, to the side of the other points{}",
         show(*at), if *on { "on" } else { "beyond" }, show_all(line), if *on { "" } else { ", or allow poles" }
@@ -226,7 +226,7 @@ impl GeometryError {
         }
     }
 
-    /// Returns the same error, naming the shape it happened on.
+    /// Returns this error with the name of the shape on which it happened.
     #[must_use]
     pub fn on_shape(mut self, name: &str) -> Self {
         if let Self::Infinity { shape, .. } | Self::NotFinite { shape, .. } | Self::Crossings { shape } = &mut self {
@@ -290,7 +290,7 @@ pub(crate) fn within(param: &str, value: f64, min: f64, max: f64) -> Result<f64,
     Err(Error::usage(param, value.to_string(), format!("is out of range: {min} to {max}")))
 }
 
-/// The value of an [`Error::Usage`] in backticks, after the parameter.
+/// Quotes the value of an [`Error::Usage`] in backticks, after the parameter.
 fn quoted(value: &str) -> String {
     if value.is_empty() { String::new() } else { format!(": `{value}`") }
 }

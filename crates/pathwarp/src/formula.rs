@@ -1,4 +1,4 @@
-//! Formulas as text: `expr` maps the plane by them, warp styles and text shapes compute their numbers with them.
+//! Formulas as text: `expr` maps the plane by them; warp styles and text shapes compute their numbers with them.
 
 use crate::decimal::trimmed;
 use crate::map::{Dual, Real};
@@ -7,11 +7,11 @@ use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
-// Text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
+// From text to a program: a Pratt parser (V. Pratt, *Top down operator precedence*, POPL 1973) that emits as it reads.
 
-/// Length limit, far above any real formula.
+/// The limit on the length, far above any real formula.
 const MAX_BYTES: usize = 10_000;
-/// Nesting limit for brackets, signs and powers, so that the recursion cannot exhaust the stack.
+/// The limit on nested brackets, signs and powers, so that the recursion cannot exhaust the stack.
 const MAX_DEPTH: usize = 100;
 
 /// The names that a formula may use, each with the index of its value in the program.
@@ -45,7 +45,7 @@ pub(crate) fn is_function(name: &str) -> bool {
 enum Function {
     One(Unary),
     Two(Binary),
-    /// A formula for arguments called a, b, c, of which there are so many.
+    /// A formula of this many arguments, called a, b, c.
     Formula(usize, Cow<'static, str>),
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Res
 /// pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
 /// representation*, Applied Mechanics Reviews 44, 1991).
 fn noise() -> String {
-    // Powers of 1/g, with g the golden ratio or, for two numbers at once, the root of g³ = g + 1.
+    // Powers of 1/g, where g is the golden ratio or, for two numbers at once, the root of g³ = g + 1.
     const STEPS: [f64; 3] = [0.618_033_988_749_895, 0.754_877_666_246_693, 0.569_840_290_998_053];
     let wave = |i: u32| {
         let [direction, length, phase] = STEPS.map(|s| (f64::from(i) * s).fract());
@@ -152,7 +152,7 @@ impl Parser<'_> {
         there
     }
 
-    /// An expression whose operators bind at least as tightly as `min`.
+    /// Parses an expression whose operators bind at least as tightly as `min`.
     fn expression(&mut self, min: u8) -> Result<u32, SyntaxError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -291,12 +291,12 @@ impl Parser<'_> {
     }
 }
 
-// A formula as a list of operations on earlier values. Several points are evaluated at a time, so that decoding the list
-// costs little.
+// A formula is a list of operations on earlier values. Several points are evaluated at a time, so that decoding the list costs
+// little.
 //
 // Equal operations are stored once, constants are folded.
 
-/// Size limit, so that no formula makes a single point expensive.
+/// The limit on the size, so that no formula makes a single point expensive.
 const MAX_OPS: usize = 2000;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -415,7 +415,7 @@ impl Program {
                 Op::Const(c) => [S::from(c); N],
                 Op::X => x,
                 Op::Y => y,
-                // The most frequent operations, with the dispatch outside the loop.
+                // The most frequent operations have the dispatch outside the loop.
                 Op::Two(Binary::Add, a, b) => from_fn(|i| at(a)[i] + at(b)[i]),
                 Op::Two(Binary::Sub, a, b) => from_fn(|i| at(a)[i] - at(b)[i]),
                 Op::Two(Binary::Mul, a, b) => from_fn(|i| at(a)[i] * at(b)[i]),
@@ -527,11 +527,11 @@ impl Program {
 /// A set on which an operation has a kink, or jumps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kink {
-    /// Where a value is zero.
+    /// The set where a value is zero.
     Zero(u32),
-    /// Where a value is an integer.
+    /// The set where a value is an integer.
     Integer(u32),
-    /// Where two values are equal.
+    /// The set where two values are equal.
     Equal(u32, u32),
 }
 
@@ -549,7 +549,7 @@ impl Kink {
 
 fn one<S: Real>(op: Unary, a: S) -> S {
     let rest = |a: S| (-(a * a) + 1.0).sqrt();
-    // Expressions that hold on both sides, of which one does not overflow or cancel.
+    // Both expressions hold on both sides, but only one does not overflow or cancel.
     let side = if a.value() < 0.0 { -1.0 } else { 1.0 };
     match op {
         Unary::Neg => -a,
@@ -587,7 +587,7 @@ fn two<S: Real>(op: Binary, a: S, b: S) -> S {
     }
 }
 
-// Formulas for single numbers, as presets keep them.
+// Formulas for single numbers, as in presets.
 
 /// Named values, and formulas over them.
 #[derive(Debug, Clone, Default)]

@@ -18,11 +18,10 @@
 //! ```
 //!
 //! [`deform::Registry`] builds deformations by name from text, as the command line and [`recipe`]s do; [`check`] tests the laws that
-//! every deformation must obey; [`fold`] finds places where a map turns the plane over; [`distance`] measures how far two paths are
-//! apart.
+//! every deformation must obey; [`fold`] finds where a map turns the plane over; [`distance`] measures how far two paths are apart.
 //!
-//! An application needs these, with [`edit`], [`map`] and [`budget`]. Who writes a deformation implements [`map::Map`] or
-//! [`map::Formula`], and [`deform::Deformation`] with [`param`]. A third part, `engine`, is for pathwarp's own crates, and hidden here.
+//! An application needs these, with [`edit`], [`map`] and [`budget`]. To write a deformation, implement [`map::Map`] or
+//! [`map::Formula`], and [`deform::Deformation`] with [`param`]. A third part, `engine`, is for pathwarp's crates, and hidden here.
 //!
 //! # Features
 //!
@@ -32,7 +31,7 @@
 //!
 //! The crate is pure: no I/O, no globals, no printing. All numbers are `f64`; coordinates are user units, y down.
 
-// Without the presets, the parts that only they use have no caller.
+// Without the presets, the code that only they use has no caller.
 #![cfg_attr(not(feature = "serde"), allow(dead_code, unused_imports))]
 
 /// Setters that take a value and return the changed deformation: `height(height: f64);` sets the field of that name,
@@ -77,8 +76,8 @@ pub mod refit;
 #[doc(hidden)]
 pub mod solve;
 
-/// For the crates that stand on this one, such as pathwarp-svg and pathwarp-engine: costs, memories and batches of maps, edges that shapes
-/// share, maps of other languages. It may change in any release.
+/// Interfaces for the crates that build on this one, such as pathwarp-svg and pathwarp-engine: costs, caches and batches of maps,
+/// edges that shapes share, maps written in other languages. It may change in any release.
 #[doc(hidden)]
 pub mod engine {
     pub use crate::map::batches::{Batches, Cost, Gathered, Images, Searches};

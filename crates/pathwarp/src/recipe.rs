@@ -39,28 +39,28 @@ pub struct Step {
     pub deformation: String,
     /// Its arguments, with path references resolved.
     pub args: Args,
-    /// Applies the inverse map.
+    /// `true` to apply the inverse map.
     pub inverse: bool,
-    /// Selectors of the artwork that the step holds for, in the syntax of whatever reads the artwork. Empty: all of it.
+    /// Selectors of the artwork to which the step applies, in the syntax of whatever reads the artwork. Empty for all artwork.
     pub select: Vec<String>,
     /// Selectors of the artwork that the step leaves out.
     pub exclude: Vec<String>,
 }
 
 impl Step {
-    /// Creates a step that is not inverted and holds for all artwork.
+    /// Creates a step that is not inverted and applies to all artwork.
     #[must_use]
     pub fn new(deformation: impl Into<String>, args: Args) -> Self {
         Self { deformation: deformation.into(), args, inverse: false, select: Vec::new(), exclude: Vec::new() }
     }
 
-    /// Returns `true` if the step has selectors of its own.
+    /// Returns `true` if the step has selectors.
     #[must_use]
     pub fn is_selective(&self) -> bool {
         !self.select.is_empty() || !self.exclude.is_empty()
     }
 
-    /// The given values with their names, as a command line takes them: a flag that is set has no value, one that is not is left out.
+    /// The given values with their names, as on a command line: a flag that is set has no value, a flag that is not set is left out.
     /// `params` are the deformation's parameters.
     pub fn options<'a>(&'a self, params: &'a [Param]) -> impl Iterator<Item = (&'a str, Option<&'a str>)> {
         self.args.iter().flat_map(move |(name, values)| {
@@ -98,34 +98,34 @@ pub struct BuiltRecipe {
     budget: Arc<Budget>,
 }
 
-/// A part of the artwork that the same steps hold for.
+/// A part of the artwork to which the same steps apply.
 #[derive(Debug, Clone, PartialEq)]
 #[doc(hidden)]
 pub struct Portion<'a> {
-    /// The indices of those steps, in order.
+    /// The indices of the steps that apply to the portion, in order.
     pub steps: Vec<usize>,
-    /// Its outlines.
+    /// The outlines of the portion.
     pub outlines: Vec<&'a Outline>,
 }
 
-/// A recipe whose steps hold for parts of the artwork, with every parameter settled.
+/// A recipe whose steps apply to parts of the artwork, with every parameter settled.
 #[derive(Debug, Clone)]
 #[doc(hidden)]
 pub struct BuiltParts {
-    /// All steps in order, for artwork that all of them hold for.
+    /// All steps in order, for artwork to which all of them apply.
     pub whole: BuiltRecipe,
-    /// For every portion, its own steps.
+    /// For every portion, the steps that apply to it.
     pub parts: Vec<BuiltRecipe>,
 }
 
 impl Recipe {
     /// Builds every step within a budget, which is charged for the segments of the paths that control the steps, and for the evaluations
-    /// that locate the artwork after each step. Inverses that search charge to it what each search takes beyond
-    /// [`Cost::work`](crate::map::Cost::work), for as long as they are used: once nothing is left they are undefined everywhere, and
-    /// [`BuiltRecipe::failure`] says so. See [`Recipe::build`].
+    /// that locate the artwork after each step. Inverses charge to it the work of each search beyond
+    /// [`Cost::work`](crate::map::Cost::work), for as long as they are used: once the budget is used up they are undefined everywhere, and
+    /// [`BuiltRecipe::failure`] reports it. See [`Recipe::build`].
     ///
     /// # Errors
-    /// As for [`Recipe::build`], and [`GeometryError::Limit`] if the budget is exceeded.
+    /// The errors of [`Recipe::build`], and [`GeometryError::Limit`] if the budget is exceeded.
     pub fn build_within<'a>(
         &self,
         registry: &Registry,
@@ -136,12 +136,12 @@ impl Recipe {
         self.build_parts(registry, &self.source_frame(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
     }
 
-    /// Builds steps that hold for parts of the artwork, within a budget as [`Recipe::build_within`]. `start` has the frame of every step
-    /// that [starts](Self::starts); the percentages of the others refer to the bounding box of all that the step holds for, each part of it
-    /// as the earlier steps that hold for that part have left it.
+    /// Builds steps that apply to parts of the artwork, within a budget; see [`Recipe::build_within`]. `start` has the frame of every step
+    /// that [starts](Self::starts); the percentages of the others refer to the bounding box of all artwork to which the step applies, after
+    /// the earlier steps that apply to each part of it.
     ///
     /// # Errors
-    /// As for [`Recipe::build_within`].
+    /// The errors of [`Recipe::build_within`].
     pub fn build_parts(
         &self,
         registry: &Registry,
@@ -160,8 +160,8 @@ impl Recipe {
         self.build_counted(registry, start, portions, (&count, budget))
     }
 
-    /// Returns `true` if no part of the artwork that step `i` holds for has been moved by an earlier step; for a recipe of inverse steps
-    /// alone, if none is moved by a later one: its frame is then that of the source.
+    /// Returns `true` if no part of the artwork to which step `i` applies has been moved by an earlier step; for a recipe of inverse steps
+    /// alone, if none is moved by a later one. The frame of the step is then the source's.
     #[must_use]
     pub fn starts(&self, i: usize, portions: &[Portion<'_>]) -> bool {
         let end = |p: &Portion<'_>| if self.undoes() { p.steps.last().copied() } else { p.steps.first().copied() };
@@ -173,20 +173,20 @@ impl Recipe {
         self.steps.len() > 1 && self.steps.iter().all(|s| s.inverse)
     }
 
-    /// The artwork as one portion that every step holds for.
+    /// The artwork as one portion to which every step applies.
     fn all_of<'a>(&self, artwork: &(impl Iterator<Item = &'a Outline> + Clone)) -> Portion<'a> {
         Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() }
     }
 
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
-    /// as it is by then.
+    /// after the earlier steps.
     ///
     /// A recipe of inverse steps alone undoes its reverse ([`Recipe::inverted`]): `artwork` is a result, `frame` that of its source, and
     /// the frames of the other steps are the boxes of the artwork on its way back. Those depend on the inverses, and these on them: they
     /// are found by iteration. A warning says so if they do not settle.
     ///
     /// # Errors
-    /// An unknown deformation, a step that only the first can be, or any error from building a step.
+    /// [`Error::Input`] for an unknown deformation or a step that only the first can be, and any [`Error`] from building a step.
     pub fn build<'a>(
         &self,
         registry: &Registry,
@@ -198,14 +198,14 @@ impl Recipe {
         self.build_counted(registry, &self.source_frame(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
     }
 
-    /// The known frames of a recipe whose steps hold for all artwork: only that of the source.
+    /// The known frames of a recipe whose steps apply to all artwork: only the frame of the source.
     fn source_frame(&self, source: Frame) -> Vec<Option<Frame>> {
         let known = if self.undoes() { self.steps.len() - 1 } else { 0 };
         let mut source = Some(source);
         (0..self.steps.len()).map(|i| if i == known { source.take() } else { None }).collect()
     }
 
-    /// Builds every step; inverse steps alone in the frames on the way back.
+    /// Builds every step. Inverse steps alone are built in the frames on the way back.
     fn build_counted(
         &self,
         registry: &Registry,
@@ -227,8 +227,8 @@ impl Recipe {
         Ok(out)
     }
 
-    /// The frames of inverse steps, in their order, for artwork that is a result; and by how much the last turn moved them, as a share of
-    /// their size. `start` has the frames of the source.
+    /// The frames of inverse steps, in their order, for artwork that is a result; and the distance by which the last iteration moved them,
+    /// as a share of their size. `start` has the frames of the source.
     fn frames_on_the_way_back(
         &self,
         registry: &Registry,
@@ -260,7 +260,7 @@ impl Recipe {
             off = 0.0;
             for (i, step) in self.steps.iter().enumerate() {
                 let members: Vec<usize> = members(portions, i).collect();
-                // The frames of the source are known, and nothing comes after them.
+                // The frames of the source are known, and no step comes after them.
                 if start[i].is_some() || members.is_empty() {
                     continue;
                 }
@@ -285,7 +285,7 @@ impl Recipe {
         Ok((frames.into_iter().map(Some).collect(), off))
     }
 
-    /// Builds every step in its frame from `start`, or else in that of the artwork after the earlier steps.
+    /// Builds every step in its frame from `start`, or else in the frame of the artwork after the earlier steps.
     fn build_in(
         &self,
         registry: &Registry,
@@ -350,12 +350,12 @@ fn entry<'a>(registry: &'a Registry, i: usize, step: &Step) -> Result<&'a Arc<dy
     })
 }
 
-/// The portions that step `i` holds for.
+/// The portions to which step `i` applies.
 fn members<'p>(portions: &'p [Portion<'_>], i: usize) -> impl Iterator<Item = usize> + use<'p> {
     portions.iter().enumerate().filter(move |(_, p)| p.steps.contains(&i)).map(|(m, _)| m)
 }
 
-/// Refuses copies and placed letters in all but a first step that is not inverted.
+/// Refuses copies and placed letters in all steps but a first one that is not inverted.
 fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step) -> Result<(), Error> {
     let effect = match placement {
         p if !p.copies.is_empty() => "repeats the artwork",
@@ -426,14 +426,14 @@ impl BuiltRecipe {
         built
     }
 
-    /// Returns the bounding box of the artwork's image under the steps so far, which percentages of a further step would refer to.
+    /// Returns the bounding box of the artwork's image under the steps so far, to which percentages of a further step would refer.
     /// `None` if nothing of the artwork is in the map's domain.
     #[must_use]
     pub fn image_box<'a>(&self, artwork: impl Iterator<Item = &'a Outline>) -> Option<Rect> {
         let Some(first) = self.frames.first().filter(|_| !self.placement.letters.is_empty()) else {
             return image_box(artwork, &self.placement.copies, &self.map);
         };
-        // The letters of the frame are those of all that the first step holds for.
+        // The letters of the frame are the letters of all artwork to which the first step applies.
         let key = |s: &Subpath| [s.start.x.to_bits(), s.start.y.to_bits()];
         let own: HashSet<[u64; 2]> = artwork.flat_map(|o| &o.subpaths).map(key).collect();
         let placed = first.letters.iter().zip(&self.placement.letters);
@@ -495,13 +495,13 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Bud
     Ok(Built { map, ..built })
 }
 
-/// Intervals between the samples of a segment.
+/// The number of intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
 
 /// Frames on the way back that move by no more than this share of their size have settled.
 const SETTLED: f64 = 1e-9;
 
-/// Turns after which frames count as not settling.
+/// The number of iterations after which frames count as not settling.
 const MAX_TURNS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
@@ -513,7 +513,7 @@ const INVERTING_WORK: f64 = 150.0;
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
 const SAMPLE_WORK: f64 = 0.25;
 
-/// Every segment of the artwork with the place of each of its copies.
+/// Every segment of the artwork, for each of its copies with the copy's position.
 fn placed<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
@@ -532,7 +532,7 @@ fn image_of(seg: &Seg, place: Affine, map: &dyn Map) -> [Point; PER_SEGMENT + 1]
 
 /// Returns points of the artwork's image, evenly spaced along the artwork.
 fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) -> Vec<Point> {
-    /// Their approximate number.
+    /// The approximate number of points.
     const POINTS: f64 = 1000.0;
     let length = |s: &Seg| {
         let ps = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| s.eval(t));
@@ -569,7 +569,7 @@ fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], 
             *extreme = reach.iter().copied().fold(*extreme, f64::max);
             for i in 0..=PER_SEGMENT {
                 let (before, after) = (i.saturating_sub(1), (i + 1).min(PER_SEGMENT));
-                // Twice what a parabola through three samples rises above them.
+                // Twice the height of a parabola through three samples above them.
                 let k = i.clamp(1, PER_SEGMENT - 1);
                 let rise = 0.25 * (2.0 * reach[k] - reach[k - 1] - reach[k + 1]).abs();
                 if reach[i] >= reach[before] && reach[i] >= reach[after] && reach[i] + rise > *extreme {
@@ -613,14 +613,14 @@ fn first_across<'a>(
     images.find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
 }
 
-// Finds places where undoing a map must go wrong: two points of the source have the same image, so that the inverse can return only one
+// Finds points where undoing a map must go wrong: two points of the source have the same image, and the inverse can return only one
 // of them.
 
-/// Samples in each direction over the box. Places smaller than the spacing can go unnoticed.
+/// The number of samples in each direction over the box. Ambiguous areas smaller than the spacing can go unnoticed.
 const GRID: usize = 32;
-/// All samples.
+/// The number of all samples.
 const SAMPLES: usize = GRID * GRID;
-/// A point and what the inverse makes of its image are two points if they are farther apart than this share of the box's diagonal, far
+/// A point and the preimage of its image are two points if they are farther apart than this share of the box's diagonal, far
 /// above the error of Newton's method.
 const APART: f64 = 1e-6;
 
@@ -633,11 +633,11 @@ struct Ambiguity {
 }
 
 /// Returns the first point inside `frame` that `inverse` does not bring back from its image under `map`. Points without an image
-/// or without a preimage are passed over: they are errors or warnings of their own.
+/// or without a preimage are skipped: they cause other errors or warnings.
 fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option<Ambiguity> {
     let mut creases = Creases::default();
     map.creases(&mut creases);
-    // The middles of cells: the two ends of a seam along the box's edge share their image by design.
+    // The middles of cells are sampled, since the two ends of a seam along the box's edge share their image by design.
     let at = |i: usize, j: usize| {
         let share = |n: usize| (n as f64 + 0.5) / GRID as f64;
         Point::new(frame.x0 + frame.width() * share(i), frame.y0 + frame.height() * share(j))
@@ -681,7 +681,7 @@ mod tests {
         assert!(e.to_string().contains("shaper"), "{e}");
     }
 
-    /// A step that changes nothing, or nearly, leaves the box of the next one as it is.
+    /// A step that changes nothing, or nearly, leaves the box of the next one unchanged.
     #[test]
     fn the_box_of_a_later_step_is_that_of_the_curves() {
         let art = Outline::from_svg("M17 3A40 23 20 1 1 16 9C-20 60 -30 -70 40 20Q90 170 5 5").unwrap();
@@ -721,7 +721,7 @@ mod tests {
         assert_eq!(recipe.inverted().inverted(), recipe);
     }
 
-    /// Percentages of the later steps refer to boxes that the result alone does not show.
+    /// Percentages of the later steps refer to boxes that the result alone does not determine.
     #[test]
     fn steps_of_percentages_are_undone_from_the_result() {
         let art = Outline::from_svg("M20,20 H180 V80 H20 Z M60,30 C80,90 120,10 140,70").unwrap();
@@ -747,7 +747,7 @@ mod tests {
         }
     }
 
-    /// Folds along x = 0.
+    /// A map that folds along x = 0.
     struct Fold;
     impl Formula for Fold {
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {

@@ -1,6 +1,6 @@
-//! Linear systems with more unknowns than equations: the smallest change that does what is asked.
+//! Linear systems with more unknowns than equations: finds the smallest change that satisfies them.
 
-/// Eigenvalues below this share of the largest count as zero: two equations that are almost the same.
+/// Eigenvalues below this share of the largest count as zero, as for two equations that are almost equal.
 const RANK: f64 = 1e-12;
 
 /// Returns the solution D of R·D = Δ of least squares and smallest norm, D = Rᵀ(R·Rᵀ)⁺Δ. `rows` holds the rows of R, all of one
@@ -20,7 +20,7 @@ pub fn smallest_change<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]]) -> 
     let gram: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
     let (values, vectors) = eigen(gram);
     let min = RANK * values.iter().fold(0.0, |a: f64, b| a.max(*b));
-    // (R·Rᵀ)⁺·Δ, then back through Rᵀ.
+    // First (R·Rᵀ)⁺·Δ, then back through Rᵀ.
     let mut y = vec![[0.0; D]; n];
     for (k, value) in values.iter().enumerate().filter(|(_, v)| **v > min) {
         let part: [f64; D] =
@@ -38,7 +38,7 @@ pub fn smallest_change<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]]) -> 
     change
 }
 
-/// Returns the distances |R·D − Δ|, one for each row: rounding, unless the rows contradict each other.
+/// Returns the distances |R·D − Δ|, one for each row: rounding errors, unless the rows contradict each other.
 #[must_use]
 pub fn misses<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]], change: &[[f64; D]]) -> Vec<f64> {
     let miss = |(row, want): (&Vec<f64>, &[f64; D])| {
@@ -49,7 +49,7 @@ pub fn misses<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]], change: &[[f
     rows.iter().zip(want).map(miss).collect()
 }
 
-/// a += k·b.
+/// Adds k·b to a.
 fn add<const D: usize>(a: &mut [f64; D], b: &[f64; D], k: f64) {
     for (a, b) in a.iter_mut().zip(b) {
         *a += k * b;
@@ -58,7 +58,7 @@ fn add<const D: usize>(a: &mut [f64; D], b: &[f64; D], k: f64) {
 
 /// Eigenvalues and eigenvectors (in columns) of a symmetric matrix, by Jacobi's rotations.
 fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
-    /// Limit on sweeps. Convergence is quadratic, so ten usually suffice.
+    /// The limit on sweeps. Convergence is quadratic, so ten usually suffice.
     const MAX_SWEEPS: usize = 30;
     let n = a.len();
     let mut v: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();

@@ -1,31 +1,31 @@
-//! Kinks and jumps that a map does not declare: found along lines across its box, and named as the creases to declare.
+//! Finds undeclared kinks and jumps along lines across the box of a map, and describes the creases to declare.
 
 use super::{Tested, number, place};
 use kurbo::{Point, Vec2};
 
-/// Lines across the box in either direction.
+/// The number of lines across the box in either direction.
 const LINES: u32 = 16;
-/// Intervals between the places on a line.
+/// The number of intervals between the samples of a line.
 const INTERVALS: u32 = 192;
-/// Places on a line that are looked at closely, at most.
+/// The largest number of points on a line that are examined.
 const CLOSE: usize = 24;
-/// Halvings of the interval around such a place.
+/// The number of halvings of the interval around such a point.
 const HALVINGS: usize = 20;
-/// The halvings between two looks that tell a kink from a bend: in a smooth map, the change of slope falls to 1/128 between them.
+/// The number of halvings after which a kink is told from a bend: in a smooth map, the change of slope has fallen to 1/128.
 const APART: usize = 7;
-/// The least change of slope that counts, in parts of the slope or of 1.
+/// The least change of slope that counts, as a share of the slope or of 1.
 const LEAST: f64 = 1e-4;
 
-/// A place on a line, with half the length of the interval around it.
+/// A point on a line, with half the length of the interval around it.
 #[derive(Clone, Copy)]
 struct Place {
     at: Point,
     half: Vec2,
-    /// Changes of slope in that interval, from the first halving on.
+    /// The changes of slope in that interval, from the first halving on.
     turns: [f64; HALVINGS],
 }
 
-/// A place where a map is not smooth.
+/// A point where a map is not smooth.
 #[derive(Clone, Copy)]
 struct Break {
     at: Point,
@@ -34,7 +34,7 @@ struct Break {
     is_jump: bool,
 }
 
-/// Describes every curve on which the map has a kink or jump that it does not declare, each with the place where it is worst.
+/// Describes every curve on which the map has a kink or jump that it does not declare, each with the point where it is worst.
 pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
     let mut left = closer(tested, candidates(tested));
     let size = tested.frame.size().to_vec2().hypot();
@@ -42,7 +42,7 @@ pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
     while !left.is_empty() {
         let points: Vec<Point> = left.iter().map(|b| b.at).collect();
         let curve = curve_through_most(&points, 2e-7 * size);
-        // All that is left lies on other curves.
+        // The remaining points lie on other curves.
         let (on, others): (Vec<Break>, Vec<Break>) =
             left.into_iter().partition(|b| curve.is_none_or(|c| c.distance(b.at) < 1e-5 * size));
         left = others;
@@ -65,12 +65,12 @@ pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
     faults
 }
 
-/// The places on lines across the box where fourth differences of the values are largest.
+/// The points on lines across the box where fourth differences of the values are largest.
 fn candidates(tested: &Tested<'_>) -> Vec<Place> {
     let frame = tested.frame;
     let mut all = Vec::new();
     for (k, along_x) in (0..LINES).flat_map(|k| [(k, true), (k, false)]) {
-        // No line goes through a center or a corner.
+        // No line goes through the center or a corner.
         let share = (f64::from(k) + 0.382) / f64::from(LINES);
         let at = |i: u32| {
             let t = f64::from(i) / f64::from(INTERVALS);
@@ -96,12 +96,12 @@ fn candidates(tested: &Tested<'_>) -> Vec<Place> {
     all
 }
 
-/// Halves the intervals around places towards the largest change of slope, and returns those where it does not vanish.
+/// Halves the intervals around points towards the largest change of slope, and returns those where it does not vanish.
 fn closer(tested: &Tested<'_>, mut places: Vec<Place>) -> Vec<Break> {
     let size = tested.frame.size().to_vec2().hypot();
     let mut found = Vec::new();
     for round in 0..HALVINGS {
-        // One more on either side, as rounding may push a jump over the end of the interval.
+        // One more sample on either side, as rounding may push a jump over the end of the interval.
         let around = |p: &Place| (-3..=3).map(|k| p.at + p.half * (0.5 * f64::from(k))).collect::<Vec<_>>();
         let values = tested.values(&places.iter().flat_map(around).collect::<Vec<_>>());
         let mut kept = Vec::new();
@@ -121,7 +121,7 @@ fn closer(tested: &Tested<'_>, mut places: Vec<Place>) -> Vec<Break> {
                 let slope = (v[k + 1] - v[k - 1]).hypot() / (2.0 * half.hypot());
                 let is_jump = turn(k) > 32.0 * before;
                 let by = if is_jump { turn(k) * half.hypot() } else { turn(k) };
-                // Two peaks beside each other lead to one place.
+                // Two adjacent peaks lead to one point.
                 let is_new = found.iter().all(|b: &Break| b.at.distance(next.at) > 1e-5 * size);
                 if is_new && by > if is_jump { 1e-7 * size } else { LEAST * slope.max(1.0) } {
                     found.push(Break { at: next.at, by, is_jump });
@@ -136,9 +136,9 @@ fn closer(tested: &Tested<'_>, mut places: Vec<Place>) -> Vec<Break> {
 /// A curve that can be declared as a crease.
 #[derive(Clone, Copy)]
 enum Curve {
-    /// a·x + b·y + c, the larger of a and b being 1 or −1.
+    /// The line a·x + b·y + c = 0; the larger of a and b is 1 or −1.
     Line([f64; 3]),
-    /// Center and radius.
+    /// The circle with this center and radius.
     Circle([f64; 3]),
 }
 
@@ -150,21 +150,21 @@ impl Curve {
         }
     }
 
-    /// The crease as plug-ins and functions declare it.
+    /// The crease in the notation of plug-ins and functions.
     fn text(self) -> String {
         let (word, numbers) = match self {
             Self::Line(numbers) => ("line", numbers),
             Self::Circle(numbers) => ("circle", numbers),
         };
-        // The places are known to a hundred millionth of the box.
+        // The points are known to a hundred millionth of the box.
         let [a, b, c] = numbers.map(|v| number(if v.abs() < 1e-5 { 0.0 } else { v }));
         format!("{word} {a} {b} {c}")
     }
 }
 
-/// The line or circle through the most of some points, at least four; `None` if there is none.
+/// The line or circle that contains most of the points, at least four; `None` if there is none.
 fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
-    // Curves are drawn through 24 of them.
+    // Curves are drawn through up to 24 of the points.
     let tried: Vec<Point> = points.iter().step_by(points.len().div_ceil(24).max(1)).copied().collect();
     let count = |c: &Curve| points.iter().filter(|p| c.distance(**p) < near).count();
     let mut best: Option<(usize, Curve)> = None;
@@ -181,7 +181,7 @@ fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
     best.map(|(_, curve)| curve)
 }
 
-/// The line through two points, unless they are too close to tell its direction.
+/// The line through two points; `None` if they are too close to determine its direction.
 fn line(a: Point, b: Point, near: f64) -> Option<Curve> {
     let along = b - a;
     let n = along.turn_90() / along.x.abs().max(along.y.abs());

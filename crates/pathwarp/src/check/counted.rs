@@ -8,7 +8,7 @@ thread_local! {
     static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
 }
 
-/// Counts the products (with quotients), sums and differences of `work`.
+/// Returns the numbers of products (with quotients), sums and differences of `work`.
 pub fn operations(work: impl FnOnce()) -> [usize; 3] {
     COUNT.with(|c| c.set([0; 3]));
     work();
@@ -54,7 +54,7 @@ impl From<f64> for Counted {
     }
 }
 
-/// Polynomials need none of these, so they are not counted.
+/// Only the operations of polynomials are counted.
 impl Real for Counted {
     fn value(self) -> f64 {
         self.0

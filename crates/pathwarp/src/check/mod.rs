@@ -1,4 +1,4 @@
-//! Checks of any deformation: its table, derivatives, exact images, laws and known values.
+//! Checks of a deformation: its table, derivatives, exact images, laws and known values.
 //!
 //! Authors of plug-ins call [`entry`] in a test:
 //!
@@ -8,7 +8,7 @@
 //! assert!(faults.is_empty(), "{faults:#?}");
 //! ```
 //!
-//! [`report`] gives the same check by check, for people.
+//! [`report`] hands over the checks one by one, to be shown to people.
 
 mod breaks;
 mod counted;
@@ -37,7 +37,7 @@ pub fn entry(entry: &dyn Deformation) -> Vec<String> {
     faults
 }
 
-/// Runs every check of `entry`, and hands over each as soon as it is done.
+/// Runs every check of `entry`, and hands over each one as soon as it is done.
 pub fn report(entry: &dyn Deformation, mut done: impl FnMut(Check)) {
     table(entry.info()).into_iter().for_each(&mut done);
     let mut build = Check::new("build");
@@ -58,7 +58,7 @@ pub fn report(entry: &dyn Deformation, mut done: impl FnMut(Check)) {
     done(cases(entry));
 }
 
-/// The failure of a map that asks another program, if it has failed: values after that mean nothing.
+/// The failure of a map that asks another program, if it has failed. Values after a failure mean nothing.
 fn failure(built: &Built) -> Option<Error> {
     built.failure.as_ref().and_then(|f| f())
 }
@@ -67,17 +67,17 @@ fn failure(built: &Built) -> Option<Error> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Check {
-    /// A word for what is checked.
+    /// A word for the property that is checked.
     pub name: &'static str,
-    /// What was checked, and the largest error.
+    /// A description of the samples, and the largest error.
     pub detail: String,
-    /// What is wrong; empty if nothing is.
+    /// The faults; empty if there are none.
     pub faults: Vec<String>,
-    /// Places that faults were seen at.
+    /// Points at which faults were seen.
     places: Vec<Point>,
 }
 
-/// Limit on listed faults of one kind: a wrong formula is wrong at every sample.
+/// The limit on listed faults of one kind: a wrong formula is wrong at every sample.
 const LISTED: usize = 3;
 
 impl Check {
@@ -89,7 +89,7 @@ impl Check {
         self.faults.push(what.into());
     }
 
-    /// Replaces the faults by the failure of the map, if it has failed: values after that mean nothing.
+    /// Replaces the faults by the failure of the map, if it has failed, or else limits their number.
     fn unless_failed(mut self, built: &Built) -> Self {
         if let Some(failure) = failure(built) {
             self.faults = vec![failure.to_string()];
@@ -114,13 +114,13 @@ fn is_kebab(name: &str) -> bool {
         && name.split('-').all(|w| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit()))
 }
 
-/// Checks what a deformation of the plane or of space says about itself: the texts for people, and the parameters with their defaults.
+/// Checks the description of a deformation of the plane or of space: the texts for people, and the parameters with their defaults.
 #[must_use]
 pub fn table(info: &Info) -> [Check; 2] {
     [help(info), parameters(info)]
 }
 
-/// The texts for people.
+/// Checks the texts for people.
 fn help(info: &Info) -> Check {
     let mut check = Check::new("help");
     check.detail = format!("title, group, about, source, {} examples", info.examples.len());
@@ -140,7 +140,7 @@ fn help(info: &Info) -> Check {
     check
 }
 
-/// The parameters and their defaults.
+/// Checks the parameters and their defaults.
 fn parameters(info: &Info) -> Check {
     let mut check = Check::new("parameters");
     check.detail = info.params.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
@@ -162,7 +162,7 @@ fn parameters(info: &Info) -> Check {
         }
         if p.default.is_some() {
             let (args, frame) = (Args::new(), frame());
-            // Only the getters are used, so that required parameters may be missing.
+            // Only getters are called, so that required parameters may be missing.
             let s = Settings::new(std::slice::from_ref(p), &args, &frame);
             let got = s.and_then(|s| match p.kind {
                 Kind::Flag => s.flag(p.name).map(|_| ()),
@@ -184,8 +184,8 @@ fn parameters(info: &Info) -> Check {
 
 // The map of a deformation: values, derivatives, creases, exact images, inverse, and a refit.
 
-/// Runs the checks of a map over a box, and hands over each as soon as it is done. Returns `false` if the map gives two answers for one
-/// point, so that nothing else can be said of it.
+/// Runs the checks of a map over a box, and hands over each one as soon as it is done. Returns `false` if the map gives two answers for one
+/// point, so that no other check makes sense.
 pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
     let tested = Tested::new(built, frame);
     if let Some(fault) = tested.two_answers(&[]) {
@@ -195,7 +195,7 @@ pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
     }
     let mut is_smooth = true;
     for (number, check) in [values::values, creases, exact_images, inverse, refitting].into_iter().enumerate() {
-        // What is wrong with values would be seen again as kinks, and both as errors of the refit.
+        // Wrong values would also be seen as kinks, and both as errors of the refit.
         if !is_smooth && (number == 1 || number == 4) {
             continue;
         }
@@ -218,11 +218,11 @@ struct Tested<'a> {
     map: &'a dyn Map,
     frame: Rect,
     creases: Creases,
-    /// Places in the box where the map is defined.
+    /// Points in the box where the map is defined.
     samples: Vec<Point>,
-    /// Their images when the map was asked first.
+    /// The images of the samples when the map was asked first.
     images: Vec<Point>,
-    /// The number of places that are outside of the domain.
+    /// The number of sampled points outside the domain.
     outside: usize,
 }
 
@@ -232,7 +232,7 @@ impl<'a> Tested<'a> {
         built.map.creases(&mut creases);
         let (map, samples, images) = (&*built.map, Vec::new(), Vec::new());
         let mut tested = Self { built, map, frame, creases, samples, images, outside: 0 };
-        // Away from likely creases.
+        // The grid avoids likely creases.
         let grid = (0..81).map(|n| (3.7 + 11.3 * f64::from(n / 9), 4.3 + 11.1 * f64::from(n % 9)));
         let at = |(u, v)| Point::new(frame.x0 + u * frame.width() / 100.0, frame.y0 + v * frame.height() / 100.0);
         tested.samples = grid.map(at).filter(|p| tested.contains(*p)).collect();
@@ -259,17 +259,17 @@ impl<'a> Tested<'a> {
         self.images.iter().any(|q| q.is_finite())
     }
 
-    /// The images of some points, asked for in one batch.
+    /// The images of some points, computed in one batch.
     fn values(&self, ps: &[Point]) -> Vec<Point> {
         let mut out = ps.to_vec();
         self.map.points(ps, &mut out);
         out
     }
 
-    /// Looks for a point for which the map gives two answers: at first and now, in a batch or alone. `more` are points beside the samples.
+    /// Looks for a point for which the map gives two answers: at first and now, in a batch or alone. `more` are points besides the samples.
     fn two_answers(&self, more: &[Point]) -> Option<String> {
         let differ = |(p, (a, b)): (&Point, (&Point, &Point)), why: &str| {
-            // Only one is a number, or they are apart.
+            // Either only one of them is a number, or they are apart.
             let apart =
                 a.is_finite() != b.is_finite() || a.is_finite() && a.distance(*b) > 1e-12 * (1.0 + a.to_vec2().hypot());
             let [at, a, b] = [place(*p), format!("{},{}", a.x, a.y), format!("{},{}", b.x, b.y)];
@@ -287,23 +287,23 @@ impl<'a> Tested<'a> {
     }
 }
 
-/// Writes a point as messages do.
+/// Formats a point for a message.
 fn place(p: Point) -> String {
     format!("{},{}", number(p.x), number(p.y))
 }
 
-/// Writes a number with six digits.
+/// Formats a number with six digits.
 fn number(v: f64) -> String {
     let short = format!("{v:.5e}").parse().unwrap_or(v) + 0.0;
     if short == 0.0 || (1e-4..1e9).contains(&short.abs()) { short.to_string() } else { format!("{short:e}") }
 }
 
-/// Words for points that were skipped.
+/// Describes the number of points that were skipped.
 fn skipped(count: usize) -> String {
     if count == 0 { String::new() } else { format!("; {count} outside of the domain are skipped") }
 }
 
-/// Kinks and jumps that the map does not declare.
+/// Looks for kinks and jumps that the map does not declare.
 fn creases(t: &Tested<'_>) -> Check {
     let mut check = Check::new("creases");
     check.detail = format!("{} are declared; others were looked for on lines across the box", t.creases.items().len());
@@ -350,7 +350,7 @@ fn inverse(t: &Tested<'_>) -> Check {
         if q.distance(*p).is_nan() || q.distance(*p) > 1e-8 * (1.0 + p.to_vec2().hypot()) {
             wrong += 1;
             check.places.push(*p);
-            // Two points with one image: the map folds.
+            // If two points have one image, the map folds.
             let folds = t.map.point(q).distance(*image) < 1e-8 * (1.0 + image.to_vec2().hypot());
             let why = if folds {
                 ", which has the same image: the map folds, so no inverse leads back everywhere"
@@ -370,20 +370,20 @@ fn inverse(t: &Tested<'_>) -> Check {
     check
 }
 
-/// Compares what a circle and lines become with dense samples of the true image. The lines are from 1 to 400 of the map's details long, of
-/// which none counts as larger than a hundredth of the frame, or as smaller than a hundredth of that.
+/// Compares the refitted images of a circle and of lines with dense samples of the true images. The lines are from 1 to 400 of the map's
+/// details long, where a detail counts as at most a hundredth of the frame and at least a hundredth of that.
 fn refitting(t: &Tested<'_>) -> Check {
     const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
-    /// Samples of a detail, to which a prime number is added for each line.
+    /// The number of samples of a detail, to which a prime number is added for each line.
     const SAMPLES: u32 = 12;
     let mut check = Check::new("refitting");
     let (map, frame) = (t.map, t.frame);
     check.detail = "a circle and 12 lines".to_owned();
-    // Within the domain, so that short lines are in it.
+    // A point inside the domain, so that short lines lie in it.
     let inner = t.samples.get(t.samples.len() / 2).copied();
     let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
     let hundredth = 0.01 * frame.size().to_vec2().hypot();
-    // A hundredth of a unit in the box of checks.
+    // In the box of checks, a hundredth of a unit.
     let tolerance = hundredth / 2_f64.sqrt() * 0.01;
     let declared = detail_in(map, frame);
     let size = declared.unwrap_or(f64::INFINITY).clamp(0.01 * hundredth, hundredth);
@@ -442,7 +442,7 @@ fn refitting(t: &Tested<'_>) -> Check {
 }
 
 /// The length of the shortest wave of a map on lines of a length through a point, from the number of times that their images bend the
-/// other way; `None` if ever finer samples do not agree on that.
+/// other way; `None` if ever finer samples do not agree on that number.
 fn wave(map: &dyn Map, p: Point, length: f64) -> Option<f64> {
     let turns = |along: Vec2, n: usize| {
         let at: Vec<Point> = (0..=n).map(|i| p + along * (i as f64 / n as f64 - 0.5)).collect();
@@ -463,14 +463,14 @@ fn wave(map: &dyn Map, p: Point, length: f64) -> Option<f64> {
     (0..8).filter_map(|k| waves(Vec2::from_angle(f64::from(k) * PI / 8.0) * length)).reduce(f64::min)
 }
 
-/// The first of evenly spaced samples that is further than `tolerance` from its place on a path after the map: the sample, and its distance.
+/// The first of evenly spaced samples whose image is further than `tolerance` from a path, and its distance.
 fn away(map: &dyn Map, seg: &Seg, path: &[PathSeg], samples: u32, tolerance: f64) -> Option<(Point, f64)> {
     let mut at = 0;
     (0..=samples).find_map(|i| {
         let source = seg.eval(f64::from(i) / f64::from(samples));
         let p = map.point(source);
         let off = |k: &usize| path[*k].nearest(p, tolerance * 1e-4).distance_sq.sqrt();
-        // Samples follow each other, so the nearest piece is that of the one before, or comes soon after it.
+        // Samples follow each other, so the nearest piece is that of the sample before, or comes soon after it.
         match (at..path.len()).chain(0..at).find(|k| off(k) <= tolerance * (1.0 + 1e-6)) {
             Some(k) => at = k,
             None => return Some((source, (0..path.len()).map(|k| off(&k)).fold(f64::INFINITY, f64::min))),
@@ -479,12 +479,12 @@ fn away(map: &dyn Map, seg: &Seg, path: &[PathSeg], samples: u32, tolerance: f64
     })
 }
 
-// The laws that a deformation states about itself, and values known from elsewhere.
+// The laws that a deformation states, and values known from elsewhere.
 
 /// Differences up to this are rounding.
 const NEAR: f64 = 1e-9;
 
-/// The laws.
+/// Checks the laws.
 fn laws(entry: &dyn Deformation) -> Check {
     let mut check = Check::new("laws");
     check.detail = format!("{} of them", entry.info().laws.len());
@@ -493,7 +493,7 @@ fn laws(entry: &dyn Deformation) -> Check {
     check
 }
 
-/// The known values.
+/// Checks the known values.
 fn cases(entry: &dyn Deformation) -> Check {
     let mut check = Check::new("cases");
     check.detail = format!("{} known values", entry.info().cases.len());
@@ -520,7 +520,7 @@ fn cases(entry: &dyn Deformation) -> Check {
     check
 }
 
-/// Writes values as the entry of a plug-in does.
+/// Writes values as in the entry of a plug-in.
 fn written(pairs: Pairs) -> String {
     let value = |v: &str| if v.parse::<f64>().is_ok() { v.to_owned() } else { format!("\"{v}\"") };
     let pairs: Vec<String> = pairs.iter().map(|(name, v)| format!("\"{name}\": {}", value(v))).collect();
@@ -540,7 +540,7 @@ fn bent(m: &dyn Map, p: Point, q: Point) -> f64 {
 
 /// Checks a law, and returns the number of samples that were skipped.
 fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
-    // The keys are those of the entry of a plug-in.
+    // The keys are named as in the entry of a plug-in.
     let (key, values) = match *law {
         Law::Identity(a) => ("identity", vec![a]),
         Law::Same(a, b) => ("same", vec![a, b]),
@@ -565,7 +565,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
     let is_partial = tested.is_partial() || later.is_partial();
     let skips = Cell::new(tested.outside);
     let tried = Cell::new(0);
-    // The place of the largest value of the last call of `worst`.
+    // The sample with the largest value in the last call of `worst`.
     let seen = Cell::new(None);
     let worst = |f: &dyn Fn(Point) -> f64| {
         seen.set(None);
@@ -586,7 +586,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
     };
     let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);
     let more = Vec::from_iter(seen.get());
-    // Values after a failure mean nothing, and neither do those that change.
+    // Values after a failure mean nothing, and values that change mean nothing either.
     if let Some((pairs, e)) = values.iter().zip(&built).find_map(|(pairs, b)| Some((pairs, failure(b)?))) {
         check.fault(format!("{}: {e}", written(pairs)));
     } else if tried.get() == 0 {
@@ -603,7 +603,7 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
 /// The largest value of a function at the samples.
 type Worst<'a> = &'a dyn Fn(&dyn Fn(Point) -> f64) -> f64;
 
-/// Says how `f` and `g` break a law, if they do. A law about one map gets it twice.
+/// Describes how `f` and `g` break a law, if they do. A law about one map gets it twice.
 fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> Option<String> {
     let by = |off: f64| if off.is_finite() { number(off) } else { "what is no number".to_owned() };
     let args = written(pairs);
@@ -646,7 +646,7 @@ fn broken(law: &Law, pairs: Pairs, [f, g]: [&dyn Map; 2], worst: Worst<'_>) -> O
                 .then(|| format!("{args} should multiply areas by {factor}; it is off by {}", by(off)))
         }
         Law::KeepsAngles(_) => {
-            // Cauchy–Riemann equations: ∂F/∂y is ∂F/∂x rotated by 90°.
+            // By the Cauchy–Riemann equations, ∂F/∂y is ∂F/∂x rotated by 90°.
             let off = worst(&|p| {
                 let j = f.jet(p);
                 (j.dy - j.dx.turn_90()).hypot() / j.dx.hypot().max(f64::MIN_POSITIVE)

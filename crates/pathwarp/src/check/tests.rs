@@ -1,4 +1,4 @@
-//! Tests of the checks: built-in deformations pass them, and a deformation with every fault fails each.
+//! Tests of the checks: built-in deformations pass them, and a deformation with every fault fails each of them.
 
 use super::{entry, frame, map};
 use crate::deform::{Built, Case, Deformation, Example, Info, Law, Registry};
@@ -17,7 +17,7 @@ fn every_builtin_entry_is_sound() {
     }
 }
 
-/// Artwork without width or height, and huge artwork: a map or an error, never a panic.
+/// Artwork without width or height, and huge artwork, gives a map or an error, never a panic.
 #[test]
 fn degenerate_frames_are_survived() {
     for (w, h) in [(0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (1e-200, 1e-200), (1e99, 1e99)] {
@@ -35,10 +35,10 @@ fn degenerate_frames_are_survived() {
     }
 }
 
-/// A deformation with a fault of every kind that `entry` looks for.
+/// A deformation with every kind of fault that `entry` looks for.
 struct Bad;
 struct BadMap;
-/// Its batches differ from its single values.
+/// A map whose batches differ from its single values.
 struct Fickle;
 impl Map for BadMap {
     fn jet(&self, p: Point) -> Jet {
@@ -167,7 +167,7 @@ fn undeclared_kinks_are_named() {
     assert_eq!(faults_by(|x, y| (x, y + 0.01 * (x - 50.0).max(0.0).powi(2))), "");
 }
 
-/// Values that no curve can be fitted to are told by what is wrong with them.
+/// Values to which no curve can be fitted are reported with the cause.
 #[test]
 fn bad_values_are_told_by_their_kind() {
     let wave = |x: f64, y: f64| (x + 3.0 * (y / 9.0).sin(), y);
@@ -199,7 +199,7 @@ fn bad_values_are_told_by_their_kind() {
     }
 }
 
-/// A map whose answers change late is told so by whatever check fails then.
+/// Answers that change late are reported by whatever check fails then.
 #[test]
 fn answers_that_change_late_are_told() {
     let count = AtomicU32::new(0);
@@ -237,7 +237,7 @@ fn wrong_inverses_are_counted() {
     );
 }
 
-/// A detail that is larger than the waves: the check names one that is not.
+/// If the declared detail is larger than the waves, the check names one that is not.
 #[test]
 fn a_wrong_detail_is_corrected() {
     const K: f64 = 2.0 * PI / 0.02;

@@ -1,4 +1,4 @@
-//! Values, alone and in batches, and derivatives against differences.
+//! Checks values, alone and in batches, and compares derivatives with differences.
 
 use super::{Check, Tested, number, place, skipped};
 use crate::map::{Batches, Jet};
@@ -22,7 +22,7 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
     }
     let mut jets = vec![Jet::default(); count];
     t.map.jets(&t.samples, &mut jets);
-    // Derivatives that are computed from values miss some digits of narrow waves.
+    // Derivatives computed from values lack some digits for narrow waves.
     let own = !t.map.cost().batches.is_some_and(Batches::differentiates);
     let near = if own { 1e-5 } else { 1e-2 };
     let mut outside = t.outside;
@@ -64,7 +64,7 @@ pub(super) fn values(t: &Tested<'_>) -> Check {
     check
 }
 
-/// Returns `true` if two values for one point are not the same but for rounding.
+/// Returns `true` if two values for one point differ by more than rounding.
 fn apart(a: Point, b: Point) -> bool {
     a.distance(b) > 1e-12 * (1.0 + a.to_vec2().hypot())
 }
@@ -81,17 +81,17 @@ fn differences(t: &Tested<'_>) -> Vec<[Vec2; 2]> {
 /// The entries of a Jacobian, by columns.
 const ENTRIES: [&str; 4] = ["∂x'/∂x", "∂y'/∂x", "∂x'/∂y", "∂y'/∂y"];
 
-/// Derivatives that a map gives beside those found by differences.
+/// The derivatives that a map gives, compared with differences.
 #[derive(Default)]
 struct Slopes {
     compared: usize,
-    /// The largest difference, in parts of the slope.
+    /// The largest difference, as a share of the slope.
     largest: f64,
-    /// For every entry, the number of places where it is wrong, and the first of these.
+    /// For every entry, the number of points where it is wrong, and a description of the first one.
     wrong: [(usize, Option<String>); 4],
-    /// Places where they would be wrong if they were transposed, too.
+    /// The number of points where the derivatives would be wrong if they were transposed, too.
     not_transposed: usize,
-    /// Places around which all images lie on one curve, or at one point.
+    /// The number of points around which all images lie on one curve, or at one point.
     flat: usize,
     mirrored: usize,
 }
@@ -113,7 +113,7 @@ impl Slopes {
         self.mirrored += usize::from(dx.cross(dy) < 0.0);
     }
 
-    /// Describes what is wrong; `own` says that the map gives derivatives itself.
+    /// Describes the faults; `own` is `true` if the map gives derivatives itself.
     fn faults(&self, own: bool) -> Vec<String> {
         if self.compared > 0 && self.flat == self.compared {
             return vec!["sends all points to one, or to one curve, so artwork has no area after it".to_owned()];
@@ -133,7 +133,7 @@ impl Slopes {
     }
 }
 
-/// Tells of images whose coordinates are rounded, while their places have all digits.
+/// Describes coordinates of images that are rounded although the points have all digits.
 fn rounding(t: &Tested<'_>) -> Option<String> {
     let aside = Vec2::new(t.frame.width(), t.frame.height()) * (0.01 / PI);
     let places: Vec<Point> = t.samples.iter().map(|p| *p + aside).filter(|p| t.contains(*p)).collect();

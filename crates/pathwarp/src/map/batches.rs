@@ -1,4 +1,4 @@
-//! Maps whose calls are expensive, such as those of another program: a cache in front of them, and ways to invert them in few calls.
+//! Batches of points for maps whose calls are expensive, such as those of another program: a cache, and ways to invert maps in few calls.
 
 use super::{Class, Creases, Enclosure, Jet, Map, RationalBezier};
 use crate::budget::Budget;
@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Cost<'a> {
     /// The cost of one evaluation, relative to that of a bicubic net: 1 or more.
     pub work: f64,
-    /// The cost of a single jet, as Newton's method asks for it. With many parts, a jet takes longer alone than in a batch.
+    /// The cost of a single jet, as Newton's method asks for it. For maps of many parts, a jet takes longer alone than in a batch.
     pub jet: f64,
     /// Set if each call is expensive and each point cheap, as when another program is asked.
     pub batches: Option<&'a dyn Batches>,
@@ -24,7 +24,7 @@ pub struct Cost<'a> {
 
 /// A map that searches for its values.
 pub trait Searches {
-    /// The same map, which charges to `budget` what its searches take beyond [`Cost::work`], and finds nothing once that is used up.
+    /// This map, with the cost of its searches beyond [`Cost::work`] charged to `budget`. They find nothing once the budget is used up.
     fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map>;
 }
 
@@ -40,9 +40,9 @@ impl<'a> Cost<'a> {
     }
 
     setters! {
-        /// The same cost for a map that should be asked in batches.
+        /// This cost for a map that should be asked in batches.
         batched(by: &'a dyn Batches) => batches: Some(by);
-        /// The same cost for a map that searches.
+        /// This cost for a map that searches.
         searching(by: &'a dyn Searches) => searches: Some(by);
     }
 }
@@ -56,8 +56,8 @@ impl fmt::Debug for Cost<'_> {
 /// Points, and a slot for the result at each.
 pub type Images<'a, T> = (&'a [Point], &'a mut [T]);
 
-/// A map whose calls are expensive and whose points are cheap. Its [`cost`](Map::cost) says so, and callers then collect the points they
-/// need.
+/// A map whose calls are expensive and whose points are cheap. If its [`cost`](Map::cost) has [`batches`](Cost::batches), callers collect
+/// the points that they need.
 pub trait Batches: Map {
     /// Maps some points and computes the jets at others, in one call where possible.
     fn points_and_jets(&self, (ps, images): Images<'_, Point>, (qs, jets): Images<'_, Jet>) {
@@ -79,12 +79,12 @@ pub trait Batches: Map {
     fn prepare(&self, _points: &[Point], _jets: &[Point]) {}
 }
 
-/// Results kept before the cache is cleared: about 40 MB.
+/// The number of results kept before the cache is cleared, for about 40 MB.
 const MAX_CACHED: usize = 1 << 19;
 
 /// A map with a cache of its values and jets, for maps that [prefer batches](Batches).
 ///
-/// Announced points ([`Batches::prepare`]) are computed in one call. Results are those of the map behind the cache.
+/// Announced points ([`Batches::prepare`]) are computed in one call. Results equal those of the map behind the cache.
 pub struct Gathered<'a> {
     map: &'a dyn Map,
     points: Mutex<Cache<Point>>,
@@ -108,7 +108,7 @@ fn key(p: Point) -> Key {
     Key(p.x.to_bits(), p.y.to_bits())
 }
 
-/// A hash of coordinates. The points are computed here, so nobody can choose them to collide.
+/// A hash of coordinates. The points are computed, so they cannot be chosen to collide.
 #[derive(Default)]
 struct Mixer(u64);
 
@@ -267,9 +267,9 @@ impl Batches for Gathered<'_> {
 
 // Many computations at once, each of which asks a map for one jet after another. Every round restarts the unfinished ones with the jets
 // known so far and stops each at the first unknown jet; then one call fetches all the missing jets. Repeating the work is cheap next to a
-// call, and the results are the same as when each computation asks by itself.
+// call, and the results are as if each computation asked alone.
 
-/// Rounds after which the remaining computations ask by themselves: they are few, or endless.
+/// Rounds after which the remaining computations ask alone: they are few, or endless.
 const MAX_ROUNDS: usize = 100;
 
 /// The jets known so far, and the unknown ones asked for in this round.
@@ -277,7 +277,7 @@ const MAX_ROUNDS: usize = 100;
 struct Replay {
     known: Cache<Jet>,
     missing: Mutex<Vec<Point>>,
-    /// The current computation has asked for an unknown jet. Its result and its further questions mean nothing.
+    /// `true` once the current computation has asked for an unknown jet. Its result and its further questions mean nothing.
     stopped: AtomicBool,
 }
 
@@ -327,7 +327,7 @@ const MAX_STEPS: usize = 12;
 /// A step must shrink the residual to less than this share.
 const SHRINKAGE: f64 = 0.7;
 
-/// A point to be inverted, with a place near its preimage and the map's jet there.
+/// A point to be inverted, with a point near its preimage and the map's jet there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub(super) q: Point,
@@ -351,7 +351,7 @@ impl BroydenSearch {
         self.inverse[0] * v.x + self.inverse[1] * v.y
     }
 
-    /// Steps to a place whose image is known. Returns `false`, and stays, if the residual does not shrink enough.
+    /// Steps to a point whose image is known. Returns `false`, and stays, if the residual does not shrink enough.
     fn step(&mut self, to: Point, image: Point) -> bool {
         let residual = self.q - image;
         // Also false where the map is undefined and the residual NaN.
@@ -373,7 +373,7 @@ impl BroydenSearch {
     }
 }
 
-/// For each target, a place whose image is within `enough` of its point, if one is found.
+/// For each target, a point whose image is at most `enough` from it, if one is found.
 pub(super) fn broyden(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
     let mut found = vec![None; targets.len()];
     let search = |(index, target): (usize, &Option<Target>)| {
@@ -494,7 +494,7 @@ mod tests {
         }
     }
 
-    /// The bend as a program without derivatives gives it; counts the values.
+    /// The bend computed by a program without derivatives; counts the values.
     struct Slow {
         differences: bool,
         values: AtomicUsize,

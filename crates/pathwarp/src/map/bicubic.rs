@@ -1,9 +1,9 @@
-//! Bicubic nets: the maps of the plane given by 16 control points.
+//! Bicubic nets: maps of the plane given by 16 control points.
 //!
 //! > F(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ
 //!
 //! (Koppinen, *A plane transformation from 16 control points*, equation 3), with (u,v) an affine function of the source point.
-//! Evaluated in power form, in which a completed net loses its four highest terms.
+//! They are evaluated in power form, in which a completed net loses its four highest terms.
 
 use super::rational_bezier::Scaled;
 use super::{AffineMap, Class, Jet, Map, Polynomials, RationalBezier, RationalDegree};
@@ -17,7 +17,7 @@ pub type Net = [[Point; 4]; 4];
 #[must_use]
 pub(crate) fn complete_net(mut p: Net) -> Net {
     let v = |r: usize, s: usize, p: &Net| p[r][s].to_vec2();
-    // Each inner point from its nearest corner, the neighbours of that corner in its row and column, and the far sides. The four
+    // Each inner point follows from its nearest corner, the neighbours of that corner in its row and column, and the far sides. The four
     // formulas are mirror images of one.
     for (r, s) in [(1, 1), (1, 2), (2, 1), (2, 2)] {
         let (cr, cs) = (if r == 1 { 0 } else { 3 }, if s == 1 { 0 } else { 3 });
@@ -32,7 +32,7 @@ pub(crate) fn complete_net(mut p: Net) -> Net {
 
 /// Terms below this share of the net's size are rounding noise: sixteen terms, each off by a few units in the last place.
 const NOISE: f64 = 1e-13;
-/// Share of the net's distance from the origin that counts as size, because its coordinates are rounded to that: about four
+/// The share of the net's distance from the origin that counts as size, because its coordinates are rounded to that: about four
 /// units in the last place when multiplied by [`NOISE`].
 const ROUNDING: f64 = 1e-2;
 
@@ -52,11 +52,11 @@ const ROUNDING: f64 = 1e-2;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct BicubicNet {
-    /// (u, v) from the source point.
+    /// The affine function from the source point to (u, v).
     pre: Affine,
     /// `c[j][i]` is the coefficient of uⁱ vʲ.
     c: [[Vec2; 4]; 4],
-    /// The terms uⁱvʲ with i, j ≥ 2 vanish.
+    /// `true` if the terms uⁱvʲ with i, j ≥ 2 vanish.
     completed: bool,
 }
 
@@ -150,7 +150,7 @@ impl Map for BicubicNet {
         }
     }
 
-    /// Substituting a curve of degree n gives one of degree 4n for a completed net (degree three in one variable times one in the
+    /// The image of a curve of degree n has degree 4n for a completed net (each term has degree 3 in one variable and 1 in the
     /// other) and 6n for a general net, or less if terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let curve = AffineMap(self.pre).image(curve)?;

@@ -1,13 +1,13 @@
 //! Uniform clamped B-splines over [0, 1]: knots, Greville abscissae, and conversion to Bézier form by blossoming.
 //!
 //! A clamped knot vector of degree d with c cells is 0 (d+1 times), 1/c, 2/c, …, 1 (d+1 times); it has d + c control points.
-//! With one cell the spline is a Bézier curve. Neighbouring pieces agree in d − 1 derivatives.
+//! With one cell the spline is a Bézier curve. Adjacent pieces agree in d − 1 derivatives.
 //!
 //! The Bézier points of a cell \[a, b\] are blossom values f(a,…,a,b,…,b) (L. Ramshaw, *Blossoms are polar forms*, CAGD 6,
 //! 1989), the result of inserting each knot until it has multiplicity d (W. Boehm, *Inserting new knots into B-spline
 //! curves*, CAD 12, 1980).
 
-/// The knot vector.
+/// The clamped knot vector.
 fn knots(degree: usize, cells: usize) -> Vec<f64> {
     let inner = (1..cells).map(|k| k as f64 / cells as f64);
     let (zeros, ones) = (std::iter::repeat_n(0.0, degree + 1), std::iter::repeat_n(1.0, degree + 1));
@@ -56,8 +56,8 @@ pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
 }
 
 /// The Bézier pieces of a uniform spline of this degree over control points of any dimension, which share their ends: clamped with
-/// `points.len()` − degree cells, or periodic with `points.len()` cells, the first of which begins at the first point (or, of an even
-/// degree, half a cell after it). The handles of a skeleton become those of its pieces as the points do.
+/// `points.len()` − degree cells, or periodic with `points.len()` cells, the first of which begins at the first point (or, if the
+/// degree is even, half a cell after it). The handles of a skeleton are converted in the same way as its points.
 #[must_use]
 pub fn pieces<const K: usize>(degree: usize, points: &[[f64; K]], closed: bool) -> Vec<Vec<[f64; K]>> {
     let n = points.len();
@@ -78,18 +78,18 @@ pub fn pieces<const K: usize>(degree: usize, points: &[[f64; K]], closed: bool) 
     out
 }
 
-/// The cubic Bézier pieces of the C² spline through points of any dimension, whose parameters are these `widths` apart: one width fewer
-/// than points and no curvature at the ends, or, closed, as many.
+/// The cubic Bézier pieces of the C² spline through points of any dimension, whose parameters are these `widths` apart. An open spline has
+/// one width fewer than points and no curvature at the ends; a closed one has as many widths as points.
 #[must_use]
 pub fn through<const K: usize>(points: &[[f64; K]], widths: &[f64], closed: bool) -> Vec<Vec<[f64; K]>> {
-    /// Sweeps, each of which halves the error at least.
+    /// The number of sweeps, each of which at least halves the error.
     const SWEEPS: usize = 60;
     let (n, m) = (points.len(), widths.len());
     let chord = |i: usize, k: usize| points[(i + 1) % n][k] - points[i][k];
     let mut slopes = vec![[0.0; K]; n];
     for _ in 0..SWEEPS {
         for i in 0..n {
-            // The pieces before and after a point; at an open end there is one.
+            // The pieces before and after a point; an end of an open spline has only one.
             let before = if closed { Some((i + n - 1) % n) } else { i.checked_sub(1) };
             let sides = [before.map(|b| (b, b)), (i < m).then_some((i, (i + 1) % n))];
             let weight: f64 = sides.iter().flatten().map(|(piece, _)| 2.0 / widths[*piece]).sum();
@@ -118,13 +118,13 @@ pub fn centripetal(distances: &[f64]) -> Vec<f64> {
     distances.iter().map(|d| d.sqrt() / sum).collect()
 }
 
-/// The first control point with influence at `s`, and the values of the basis functions from there on.
+/// The index of the first control point with influence at `s`, and the values of the basis functions from there on.
 #[must_use]
 pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
     basis_on(&extraction(degree, cells), s)
 }
 
-/// The [`basis`] of cells with these matrices.
+/// The [`basis`] of cells whose matrices are known.
 pub(crate) fn basis_on(cells: &[Vec<Vec<f64>>], s: f64) -> (usize, Vec<f64>) {
     let at = s * cells.len() as f64;
     let cell = (at.max(0.0) as usize).min(cells.len() - 1);

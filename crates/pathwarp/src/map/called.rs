@@ -1,4 +1,4 @@
-//! Maps whose values come from elsewhere, many points at a time: from another program, or a function of another language.
+//! Maps whose values come from another program or from a function of another language, many points at a time.
 
 use super::{Batches, Cost, Creases, Images, Jet, Map};
 use crate::Error;
@@ -29,21 +29,21 @@ impl Ask {
 
 /// A program or function that gives the values of a map.
 pub trait Callee: Send + Sync {
-    /// Answers for some points, all of which are finite: [`Ask::numbers`] numbers for each. Only what its [`Abilities`] name is asked.
+    /// Answers for some points, all of them finite: [`Ask::numbers`] numbers for each. Only questions within its [`Abilities`] are asked.
     ///
     /// # Errors
-    /// The callee failed. The map is undefined everywhere from then on, and its failure is this error.
+    /// Any [`Error`] by which the callee fails. The map is undefined everywhere from then on, and reports this error.
     fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error>;
 
     /// Answers for the values at `points` and the jets at `others`, neither of them empty.
     ///
     /// # Errors
-    /// The callee failed.
+    /// Any [`Error`] by which the callee fails.
     fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
         Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, others)?])
     }
 
-    /// Returns the error that an answer for `at`, within the domain, is not finite.
+    /// Returns the error for an answer at `at`, within the domain, that is not finite.
     fn not_finite(&self, at: Point) -> Error;
 
     /// Returns the work of asking for one point, in evaluations of a net.
@@ -52,14 +52,14 @@ pub trait Callee: Send + Sync {
     }
 }
 
-/// The abilities of a [`Callee`], and what is known of its map.
+/// The abilities of a [`Callee`], and the known properties of its map.
 #[derive(Debug, Clone, Default)]
 pub struct Abilities {
-    /// It answers [`Ask::Jets`]. Without them, derivatives are differences of values.
+    /// `true` if it answers [`Ask::Jets`]. Otherwise derivatives are differences of values.
     pub jacobian: bool,
-    /// It answers [`Ask::Inverse`].
+    /// `true` if it answers [`Ask::Inverse`].
     pub inverse: bool,
-    /// It may answer NaN where its map is undefined.
+    /// `true` if it may answer NaN where its map is undefined.
     pub partial: bool,
     /// The creases of its map.
     pub creases: Creases,
@@ -67,7 +67,7 @@ pub struct Abilities {
     pub detail: Option<f64>,
 }
 
-/// The map of a [`Callee`]. Once that has failed, all values are NaN.
+/// The map of a [`Callee`]. Once the callee has failed, all values are NaN.
 #[derive(Clone)]
 pub struct Called {
     callee: Arc<dyn Callee>,
@@ -99,7 +99,7 @@ impl Called {
         self.failed.get().cloned()
     }
 
-    /// Returns `true` if the map may be undefined at places that only its values tell.
+    /// Returns `true` if the map may be undefined at points that are known only by their values.
     #[must_use]
     pub fn is_partial(&self) -> bool {
         self.abilities.partial
@@ -114,7 +114,7 @@ impl Called {
         answers(self.callee.as_ref()).map_err(|error| self.failed.set(error)).ok()
     }
 
-    /// Writes the answers for the finite points among `ps`. The others stay undefined, as do all once the callee has failed.
+    /// Writes the answers for the finite points among `ps`. The others stay undefined, as do all points once the callee has failed.
     fn write<const N: usize, T: Clone>(
         &self,
         ask: Ask,
@@ -141,7 +141,7 @@ impl Called {
         }
     }
 
-    /// Returns the map as it is on the side of `inside` of every crease.
+    /// Returns the map on the side of `inside` of every crease.
     fn beside(&self, inside: Point) -> Beside {
         Beside { map: self.clone(), inside }
     }
@@ -159,7 +159,7 @@ fn jet(&[x, y, xx, xy, yx, yy]: &[f64; 6]) -> Jet {
 
 const UNDEFINED: Point = Point::new(f64::NAN, f64::NAN);
 
-/// The finite points. The callee is not asked for others.
+/// Returns the finite points, the only ones that the callee is asked for.
 fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     if ps.iter().all(|p| p.is_finite()) {
         Cow::Borrowed(ps)
@@ -168,14 +168,14 @@ fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     }
 }
 
-/// Returns the jet at a point by a batch of one.
+/// Returns the jet at a point, by a batch of one.
 fn single_jet(map: &impl Map, p: Point) -> Jet {
     let mut out = [Jet::UNDEFINED];
     map.jets(&[p], &mut out);
     out[0]
 }
 
-/// Returns the image of a point by a batch of one.
+/// Returns the image of a point, by a batch of one.
 fn single_point(map: &impl Map, p: Point) -> Point {
     let mut out = [p];
     map.points(&[p], &mut out);
@@ -260,7 +260,7 @@ struct Beside {
 }
 
 impl Beside {
-    /// Distance within which rounding may put a point on either side of a crease, as a fraction of the frame.
+    /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal.
     const NEAR: f64 = 1e-11;
 
     fn moved(&self, p: Point) -> Point {
@@ -268,7 +268,7 @@ impl Beside {
         if near { p + (self.inside - p).normalize() * (4.0 * Self::NEAR * self.map.size) } else { p }
     }
 
-    /// Returns `true` if no crease lies between `p` and `inside`, seen along the straight line.
+    /// Returns `true` if `p` is on the side of `inside` of every crease.
     fn is_on_its_side(&self, p: Point) -> bool {
         self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
     }
@@ -339,7 +339,7 @@ impl Map for Beside {
 
 impl Batches for Beside {}
 
-/// The inverse that a callee gives. Its derivatives are those of the map, inverted.
+/// The inverse by the callee's answers. Its derivatives are the inverted Jacobians of the map.
 struct Inverse(Called);
 
 impl Map for Inverse {
@@ -379,10 +379,10 @@ impl Batches for Inverse {}
 /// which truncation and rounding each contribute an error of 10⁻¹². The others are for waves of a hundredth and a thousandth of the frame.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
 
-/// Step of one-sided differences beside a crease, as a fraction of the frame's diagonal.
+/// The step of one-sided differences beside a crease, as a fraction of the frame's diagonal.
 const ONE_SIDED_STEP: f64 = 2e-4;
 
-/// Estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens of
+/// An estimate of the relative error that is good enough. Where the third derivative happens to be small, the error is a few tens of
 /// times the estimate; tangents need half as many digits.
 const GOOD: f64 = 3e-11;
 
@@ -436,7 +436,7 @@ fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point]))
 
 /// A power of two near `h`, so that p ± h is exact more often; larger if the coordinates are large.
 fn step(p: Point, h: f64) -> f64 {
-    /// Smallest step as a fraction of the coordinates, which have 53 bits.
+    /// The smallest step as a fraction of the coordinates, which have 53 bits.
     const MIN_STEP: f64 = 1e-8;
     let min = MIN_STEP * p.x.abs().max(p.y.abs());
     h.max(min).max(f64::MIN_POSITIVE).log2().round().exp2()
@@ -458,7 +458,7 @@ mod tests {
     use super::*;
     use crate::map::{Crease, CreaseKind, Level};
 
-    /// Waves from a tenth of the frame to a thousandth: exact to the digits that their steps can have.
+    /// Waves from a tenth of the frame to a thousandth: derivatives are exact to the digits that the steps allow.
     #[test]
     fn the_error_is_under_control() {
         for (length, most) in [(300.0, 1e-10), (10.0, 1e-9), (1.0, 1e-7), (0.1, 1e-6)] {
@@ -479,7 +479,7 @@ mod tests {
         }
     }
 
-    /// A map that is folded along x = 50: the derivatives beside and on the fold are those of the side.
+    /// A map that is folded along x = 50: the derivatives beside and on the fold belong to the side of `inside`.
     #[test]
     fn differences_cross_no_crease() {
         struct Fold;

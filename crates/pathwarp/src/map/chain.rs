@@ -8,7 +8,7 @@ use crate::budget::Budget;
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// A composition of maps, the first applied first. Neighbouring affine and projective steps fold into one.
+/// A composition of maps, the first applied first. Adjacent affine and projective steps fold into one.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -25,7 +25,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Composes `steps`, folding neighbours where possible.
+    /// Composes `steps`, folding adjacent ones where possible.
     #[must_use]
     pub fn new(steps: impl IntoIterator<Item = Arc<dyn Map>>) -> Self {
         let mut chain = Self::default();
@@ -58,7 +58,7 @@ impl Chain {
         }
     }
 
-    /// The same chain with one more step.
+    /// Returns the chain with one more step.
     ///
     /// ```
     /// use pathwarp::kurbo::{Affine, Point};
@@ -73,8 +73,8 @@ impl Chain {
         self
     }
 
-    /// The inverse over `area`, a box in the plane of the source: of each step in closed form where there is one ([`Map::inverse`]), or else
-    /// by Newton's method over the box of the area's image.
+    /// The inverse over `area`, a box in the plane of the source: the closed form of each step that has one ([`Map::inverse`]), Newton's
+    /// method over the box of the area's image for the others.
     ///
     /// ```
     /// use pathwarp::kurbo::{Affine, Point, Rect};
@@ -102,7 +102,7 @@ impl Chain {
         &self.steps
     }
 
-    /// The same chain with its searches charged to `budget`.
+    /// Returns the chain with its searches charged to `budget`.
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         Self { steps: self.steps.iter().map(|s| s.within(budget).unwrap_or_else(|| Arc::clone(s))).collect() }
     }
@@ -142,7 +142,7 @@ impl Field for (Level, Chain) {
         self.0.at(self.1.point(p))
     }
 
-    /// `None` behind steps that only estimate: a crossing must not be missed.
+    /// `None` behind steps that only estimate their enclosures: a crossing must not be missed.
     fn enclose(&self, along: [Enclosure; 2]) -> Option<Enclosure> {
         let step = |at: [Enclosure; 2], m: &Arc<dyn Map>| match m.detail(Enclosure::area(&at)) {
             Some(_) => None,
@@ -270,8 +270,8 @@ impl Map for Chain {
         self.steps.iter().try_fold(along, |along, m| m.enclose(along))
     }
 
-    /// Where one of several steps states its detail, the least of all of them, each as far as the steps before it stretch: enclosures
-    /// through several estimates would tell of features that no step has.
+    /// If a step states its detail, the least detail of all steps, divided by the stretch of the steps before: enclosures through several
+    /// estimates would show features that no step has.
     fn detail(&self, area: Rect) -> Option<f64> {
         if let [only] = self.steps.as_slice() {
             return only.detail(area);

@@ -62,14 +62,14 @@ pub struct Sides {
     pub left: Side,
 }
 
-/// Distance of the outer creases from the box, relative to its size, so that rounding does not split artwork that touches the
+/// The distance of the outer creases from the box, relative to its size, so that rounding does not split artwork that touches the
 /// edge of the box. Between the edge and the crease the map deviates by the square of this.
 const OUTSIDE: f64 = 1e-9;
 
-/// Ends closer than this share of a curve's extent are the same.
+/// Ends closer than this share of a curve's extent coincide.
 const SAME: f64 = 1e-12;
 
-/// The net, or the affine map if it is one.
+/// Returns the net, as an affine map if it is one.
 fn simplest(net: BicubicNet) -> Arc<dyn Map> {
     match net.class() {
         Class::Affine(m) => Arc::new(AffineMap(m)),
@@ -100,7 +100,7 @@ impl Coons {
         &self.cut.sides
     }
 
-    /// The same map in its simplest form: as one net or an affine map if possible.
+    /// Returns this map in its simplest form: as one net or an affine map if possible.
     #[must_use]
     pub fn simplest(self) -> Arc<dyn Map> {
         match self.net([0; 4]) {
@@ -115,7 +115,7 @@ impl Coons {
         [s.bottom.piece(u), s.right.piece(v), s.top.piece(u), s.left.piece(v)]
     }
 
-    /// The jet at a source point, on given pieces.
+    /// The jet at a source point, on the given pieces of the sides.
     fn on(&self, [b, r, t, l]: Cell, p: Point) -> Jet {
         let Point { x: u, y: v } = self.pre * p;
         let s = self.sides();
@@ -129,7 +129,7 @@ impl Coons {
         Jet { p: value, dx: du * a + dv * bb, dy: du * c + dv * d }
     }
 
-    /// The point of [`on`](Self::on).
+    /// The value at a source point, on the given pieces of the sides.
     fn point_on(&self, [b, r, t, l]: Cell, p: Point) -> Point {
         let Point { x: u, y: v } = self.pre * p;
         let s = self.sides();
@@ -141,7 +141,7 @@ impl Coons {
     /// F(u,v), from the points of the bottom, right, top and left side.
     fn blend(&self, [b, r, t, l]: [Point; 4], u: f64, v: f64) -> Point {
         let [p00, p10, p01, p11] = self.corners();
-        // Sums of differences between nearby points round less.
+        // Written as a sum of differences between nearby points, which rounds less.
         b + (t - b) * v + ((l - p00.lerp(p01, v)) * (1.0 - u) + (r - p10.lerp(p11, v)) * u)
     }
 
@@ -183,8 +183,8 @@ impl Coons {
         let left = points(s.left.cubic(l, v0, v1)?);
         let right = points(s.right.cubic(r, v0, v1)?);
         let [p00, p10, p01, p11] = self.corners().map(Point::to_vec2);
-        // The Bernstein coefficients of degree 3 of a linear function are its values at thirds, and every term is the product of
-        // one factor in u and one in v.
+        // The Bernstein coefficients of degree 3 of a linear function are its values at thirds, and every term is the product of one factor
+        // in u and one in v.
         let third = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / 3.0;
         let net = std::array::from_fn(|j| {
             let v = third(v0, v1, j);
@@ -247,7 +247,7 @@ impl Map for Coons {
     }
 }
 
-/// The inverse where verticals (or horizontals) are kept: (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))).
+/// The inverse of a map that keeps verticals (or horizontals): (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))).
 struct AxisInverse {
     whole: Coons,
     upright: bool,
@@ -256,7 +256,7 @@ struct AxisInverse {
 }
 
 impl AxisInverse {
-    /// The parameter of a point along the even axis.
+    /// The parameter of a point along the axis on which it runs at even steps.
     fn share(&self, q: Point) -> f64 {
         let (s, Point { x, y }) = (self.whole.sides(), q);
         let [a, b] = if self.upright { s.bottom.ends().map(|p| p.x) } else { s.left.ends().map(|p| p.y) };

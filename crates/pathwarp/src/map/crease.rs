@@ -17,27 +17,27 @@ use std::sync::Arc;
 #[derive(Clone)]
 #[non_exhaustive]
 pub enum Level {
-    /// a·x + b·y + c: a straight crease, crossed exactly.
+    /// A straight crease a·x + b·y + c = 0, crossed exactly.
     Line {
-        /// Coefficient of x.
+        /// The coefficient of x.
         a: f64,
-        /// Coefficient of y.
+        /// The coefficient of y.
         b: f64,
-        /// Constant term.
+        /// The constant term.
         c: f64,
     },
     /// The part of a straight line inside a box. Outside the box, the map is smooth across the line.
     Stretch {
-        /// Coefficient of x.
+        /// The coefficient of x.
         a: f64,
-        /// Coefficient of y.
+        /// The coefficient of y.
         b: f64,
-        /// Constant term.
+        /// The constant term.
         c: f64,
         /// The box.
         within: Rect,
     },
-    /// A circle: the distance from its centre less the radius, or, for a negative radius, −radius less the distance.
+    /// A circle: the distance from its centre minus the radius, or, for a negative radius, −radius minus the distance.
     Circle {
         /// The centre.
         center: Point,
@@ -48,13 +48,13 @@ pub enum Level {
     Field(Arc<dyn Field>),
 }
 
-/// A continuous function on the plane. A closure from a point to a number is one.
+/// A continuous function on the plane. Closures from a point to a number implement it.
 pub trait Field: Send + Sync {
     /// The value at a point.
     fn at(&self, p: Point) -> f64;
 
-    /// What the function does along a curve, given what its coordinates do. `None` if it cannot tell: crossings are then looked for
-    /// between samples alone.
+    /// Encloses the function along a curve whose coordinates are enclosed. `None` if there are no bounds: crossings are then found
+    /// from samples alone.
     fn enclose(&self, _along: [Enclosure; 2]) -> Option<Enclosure> {
         None
     }
@@ -77,14 +77,14 @@ impl fmt::Debug for Level {
     }
 }
 
-/// Samples per segment when crossings of a field are bracketed.
+/// The number of samples per segment when crossings of a field are bracketed.
 const SAMPLES: u32 = 64;
 
-/// Work of an enclosure, in evaluations.
+/// The work of an enclosure, in evaluations.
 const ENCLOSURE_WORK: usize = 8;
 
 impl Level {
-    /// What the function does along a curve; see [`Field::enclose`].
+    /// Encloses the function along a curve; see [`Field::enclose`].
     #[must_use]
     pub fn enclose(&self, [x, y]: [Enclosure; 2]) -> Option<Enclosure> {
         match self {
@@ -94,7 +94,7 @@ impl Level {
         }
     }
 
-    /// The value of the function; for a [`Level::Stretch`], that of the whole line.
+    /// The value of the function; for a [`Level::Stretch`], outside its box too.
     #[must_use]
     pub fn at(&self, p: Point) -> f64 {
         match self {
@@ -105,11 +105,11 @@ impl Level {
     }
 
     /// Adds the parameters in (0, 1) where `seg` goes from one side of the zero set to the other. A segment that touches it, up to
-    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed. Returns the evaluations that this took beyond the
-    /// usual ones.
+    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed. Returns the number of additional
+    /// evaluations.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) -> usize {
         let within = if let Self::Stretch { within, .. } = self {
-            // Wider by the rounding error of a crossing.
+            // Inflated by the rounding error of a crossing.
             let room = 1e-9 * (within.width() + within.height());
             Some(within.inflate(room, room))
         } else {
@@ -134,7 +134,7 @@ impl Level {
     }
 
     /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; the size of its rounding errors; and the
-    /// evaluations beyond the usual ones. Empty if it has no zero on the segment.
+    /// number of evaluations beyond the usual ones. Empty if it has no zero on the segment.
     fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64, usize) {
         let f = |t: f64| (t, self.at(seg.eval(t)));
         match self {
@@ -154,9 +154,9 @@ impl Level {
         }
     }
 
-    /// The ends of parts of a segment on which the function has at most one zero, as its enclosures tell; `None` if they do not.
+    /// The ends of parts of a segment on which the function has at most one zero, by its enclosures; `None` if they do not suffice.
     fn enclosed(&self, seg: &Seg, f: &impl Fn(f64) -> (f64, f64)) -> Option<Vec<(f64, f64)>> {
-        /// Parts at most, and the length of the shortest: where the function touches zero, there is no end to halving.
+        /// Limits for the number of parts and their length: where the function touches zero, there is no end to halving.
         const MAX_PARTS: usize = 20_000;
         const SHORTEST: f64 = 1e-7;
         let (mut knots, mut ends) = (vec![f(0.0)], vec![f(1.0)]);
@@ -172,7 +172,7 @@ impl Level {
             }
             let e = self.enclose(along)?;
             let stays = e.lo > 0.0 || e.hi < 0.0 || stays(e.d[0]);
-            // The slope differs from the mean slope by less than that.
+            // The slope differs from the mean slope by less than the bound of the second derivative.
             let goes_one_way = (to.1 - from.1).abs() > 2.0 * e.d[1];
             let undefined = from.1.is_nan() || to.1.is_nan();
             if stays || goes_one_way || undefined || to.0 - from.0 < SHORTEST {
@@ -218,7 +218,7 @@ fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg
             let [d0, d1, d2] = [s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2].map(along);
             solve_quadratic(d0, 2.0 * (d1 - d0), d2 - 2.0 * d1 + d0).to_vec()
         }
-        // Within its circle: the centre's level, plus or minus the largest change.
+        // Up to rounding, the level on an arc differs from the centre's by at most this hypotenuse.
         Seg::Arc(s) if level(s.center).abs() > 1.000_001 * along(s.a).hypot(along(s.b)) => return Vec::new(),
         Seg::Arc(s) => {
             let first = along(s.b).atan2(along(s.a));
@@ -247,11 +247,11 @@ fn sampled(f: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
     knots
 }
 
-/// The place between `from` and `to` where a function that is smallest at the sample `least` comes nearest to zero, or crosses it. `None`
-/// if its rise to the neighbouring samples shows that it stays away.
+/// The parameter between `from` and `to` at which a function that is smallest at the sample `least` comes nearest to zero, or crosses it.
+/// `None` if its rise to the neighbouring samples shows that it stays away.
 fn dip(f: impl Fn(f64) -> (f64, f64), least: (f64, f64), [from, to]: [f64; 2], rise: f64) -> Option<(f64, f64)> {
     const GOLDEN: f64 = 0.381_966_011_250_105;
-    /// Largest fall between samples, as a multiple of the rise to the neighbouring ones.
+    /// The largest fall between samples, as a multiple of the rise to the neighbouring ones.
     const FALL: f64 = 2.0;
     const STEPS: usize = 40;
     let sign = if least.1 < 0.0 { -1.0 } else { 1.0 };
@@ -294,7 +294,7 @@ pub enum CreaseKind {
 pub struct Crease {
     /// The level set.
     pub level: Level,
-    /// The behaviour of the map at it.
+    /// The behaviour of the map there.
     pub kind: CreaseKind,
 }
 
@@ -318,7 +318,7 @@ pub struct Creases {
     items: Vec<Crease>,
 }
 
-/// Work of finding the crossings of a segment with a straight crease, in evaluations of a net.
+/// The work of finding the crossings of a segment with a straight crease, in evaluations of a net.
 const STRAIGHT_WORK: f64 = 1.0;
 
 impl Creases {
@@ -356,7 +356,7 @@ impl Creases {
         self.splits_and_work(seg).0
     }
 
-    /// As [`splits`](Self::splits), with the evaluations that took beyond [`splits_work`](Self::splits_work).
+    /// Returns [`splits`](Self::splits), and the number of evaluations beyond [`splits_work`](Self::splits_work).
     pub(crate) fn splits_and_work(&self, seg: &Seg) -> (Vec<f64>, usize) {
         /// A shorter part would be lost in rounding.
         const APART: f64 = 1e-9;
@@ -392,7 +392,7 @@ mod tests {
     use super::*;
     use kurbo::{CubicBez, Line, ParamCurve, QuadBez};
 
-    /// A long segment may go through a small field between two samples, beside its end or not.
+    /// A long segment may go through a small field between two samples, beside the segment's end or elsewhere.
     #[test]
     fn a_field_is_found_between_samples() {
         let disc = Level::Field(Arc::new(|p: Point| p.to_vec2().hypot() - 40.0));

@@ -1,15 +1,15 @@
-//! Curves as the boundaries of maps, with a choice of parameter.
+//! Boundary curves of maps, with a choice of parameter.
 
 use crate::outline::Seg;
 use kurbo::{CubicBez, Line, ParamCurve, Point, Vec2};
 use std::array::from_fn;
 use std::f64::consts::PI;
 
-/// Steps of an iteration; as many bisections exhaust double precision.
+/// The number of steps of an iteration; as many bisections exhaust double precision.
 const MAX_STEPS: usize = 60;
 
 /// Finds the root of an increasing function between `lo` and `hi`, from `start`, by Newton iteration that halves the bracket where a step
-/// would leave it. `f` returns the value and the slope; `is_close` is asked with the place, the value there and the next step.
+/// would leave it. `f` returns the value and the slope; `is_close` gets the argument, the value there and the next step.
 pub(crate) fn increasing_root(
     (mut lo, mut hi): (f64, f64),
     start: f64,
@@ -41,15 +41,15 @@ pub(crate) fn increasing_root(
 // Practice*, 2013, chapters 2–4 and 19). A span on which one of the series does not converge is halved. A lookup is one binary search and
 // one polynomial, and its slope is exactly 1/|C'(u)|.
 
-/// Terms of a series.
+/// The number of terms of a series.
 const TERMS: usize = 16;
-/// Largest magnitude of the last terms of a converged series: the error of the parameter, which runs from 0 to 1.
+/// The largest magnitude of the last terms of a converged series: the error of the parameter, which runs from 0 to 1.
 const TAIL: f64 = 2e-14;
-/// Largest magnitude of the last terms of the integrated speed, relative to the whole length.
+/// The largest magnitude of the last terms of the integrated speed, relative to the whole length.
 const INTEGRATION_TOLERANCE: f64 = 1e-14;
-/// Nested halvings, enough to resolve a cusp to double precision.
+/// The number of nested halvings, enough to resolve a cusp to double precision.
 const MAX_DEPTH: usize = 48;
-/// Spans of a curve.
+/// The number of spans of a curve.
 const MAX_SPANS: usize = 2000;
 
 /// The inverse of a curve's arc length.
@@ -60,17 +60,17 @@ pub(crate) struct ArcLength {
 
 #[derive(Debug, Clone)]
 struct Span {
-    /// Distances along the curve at the ends.
+    /// The distances along the curve at the ends of the span.
     s0: f64,
     s1: f64,
-    /// u over [s0, s1] by powers of t = −1…1. Series that converge within so few terms are as exact in this basis.
+    /// The coefficients of u over [s0, s1] in powers of t = −1…1. Series that converge within so few terms are as exact in this basis.
     u: [f64; TERMS],
 }
 
 impl ArcLength {
     /// Tabulates a curve over [0, 1] with speed |C'|.
     pub(crate) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
-        /// Equal parts from which the length is estimated.
+        /// The number of equal parts from which the length is estimated.
         const PARTS: u32 = 4;
         let points = Points::new();
         let part =
@@ -124,7 +124,7 @@ impl ArcLength {
 
 /// The Chebyshev points tₖ = cos(π(k + ½)/n) of the first kind.
 struct Points {
-    /// cos(πm/2n): Tⱼ(tₖ) = cos(πj(2k + 1)/2n) is one of them.
+    /// The values cos(πm/2n), among them all Tⱼ(tₖ) = cos(πj(2k + 1)/2n).
     cosines: [f64; 4 * TERMS],
 }
 
@@ -133,7 +133,7 @@ impl Points {
         Self { cosines: from_fn(|m| (PI * m as f64 / (2 * TERMS) as f64).cos()) }
     }
 
-    /// Tⱼ(tₖ).
+    /// The value Tⱼ(tₖ).
     fn value(&self, j: usize, k: usize) -> f64 {
         self.cosines[j * (2 * k + 1) % (4 * TERMS)]
     }
@@ -152,7 +152,7 @@ struct Speed {
     middle: f64,
     half: f64,
     speed: [f64; TERMS],
-    /// The length from a.
+    /// The series of the length from a.
     length: [f64; TERMS + 1],
 }
 
@@ -160,7 +160,7 @@ impl Speed {
     fn new(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, points: &Points) -> Self {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let v = points.series(&from_fn(|k| speed(middle + half * points.value(1, k)) * half));
-        // ∫T₀ = T₁ and, for j > 0, ∫Tⱼ = Tⱼ₊₁/2(j + 1) − Tⱼ₋₁/2(j − 1); the constant makes the length 0 at t = −1.
+        // The integrals are ∫T₀ = T₁ and, for j > 0, ∫Tⱼ = Tⱼ₊₁/2(j + 1) − Tⱼ₋₁/2(j − 1); the constant makes the length 0 at t = −1.
         let mut length: [f64; TERMS + 1] = from_fn(|j| match j {
             0 => 0.0,
             1 => v[0] - 0.5 * v[2],
@@ -185,22 +185,22 @@ impl Speed {
         points.series(&from_fn(|k| self.middle + self.half * self.at(0.5 * whole * (1.0 + points.value(1, k)), whole)))
     }
 
-    /// The t whose distance from the start is `wanted` of `whole`; the middle of a span without length.
+    /// The t at the share `wanted / whole` of the span's length; the middle of a span without length.
     fn at(&self, wanted: f64, whole: f64) -> f64 {
         if whole <= 0.0 {
             return 0.0;
         }
         let start = 2.0 * wanted / whole - 1.0;
         let off = |t: f64| (sum(&self.length, t) - wanted, sum(&self.speed, t));
-        // Stop at the exact length, too: where the curve nearly stands still, the parameter converges later.
+        // The exact length ends the iteration, too: where the curve nearly stands still, the parameter converges later.
         let is_close = |_, off: f64, step: f64| step.abs() <= 2.0 * f64::EPSILON || off.abs() <= f64::EPSILON * whole;
         increasing_root((-1.0, 1.0), start, off, is_close)
     }
 }
 
-/// The coefficients of a Chebyshev series by powers of t.
+/// The coefficients in powers of t of a Chebyshev series.
 fn powers(series: &[f64; TERMS]) -> [f64; TERMS] {
-    // T₀ = 1, T₁ = t, Tⱼ₊₁ = 2t·Tⱼ − Tⱼ₋₁.
+    // By the recurrence T₀ = 1, T₁ = t, Tⱼ₊₁ = 2t·Tⱼ − Tⱼ₋₁.
     let (mut before, mut now) = ([0.0; TERMS], [0.0; TERMS]);
     (before[0], now[1]) = (1.0, 1.0);
     let mut out: [f64; TERMS] = from_fn(|k| series[0] * before[k] + series[1] * now[k]);
@@ -233,7 +233,7 @@ fn sum(series: &[f64], t: f64) -> f64 {
 // A side of an envelope: consecutive curve segments with one parameter from 0 to 1.
 //
 // The parameter is proportional to arc length, to the parameters of the segments, or to the distance along an axis. Outside [0, 1]
-// a Bézier segment with its own parameter continues as the same polynomial; everything else continues along its end tangent.
+// a Bézier segment at the pace of its parameter continues as a polynomial; everything else continues along its end tangent.
 
 /// The meaning of equal steps of a side's parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -241,7 +241,7 @@ fn sum(series: &[f64], t: f64) -> f64 {
 pub enum Pace {
     /// Equal distances along the curve.
     Length,
-    /// Equal steps of each segment's own parameter; segments share the side in proportion to their lengths.
+    /// Equal steps of each segment's parameter; segments share the side in proportion to their lengths.
     Parameter,
     /// Equal horizontal steps, for a curve that never turns back from left to right; it may be vertical at single points.
     Width,
@@ -253,7 +253,7 @@ pub enum Pace {
 #[derive(Debug, Clone)]
 pub struct Side {
     pieces: Vec<SidePiece>,
-    /// Parameters at the ends of the pieces: 0, …, 1.
+    /// The parameters at the ends of the pieces: 0, …, 1.
     knots: Vec<f64>,
     length: f64,
 }
@@ -267,11 +267,11 @@ struct SidePiece {
 
 /// Speeds below this share of the piece's length count as zero, and the direction is taken further inside the piece.
 const MIN_SPEED: f64 = 1e-9;
-/// Distance of that point, in the parameter of the segment.
+/// The distance of that inner point from the end, in the parameter of the segment.
 const INWARD: f64 = 1e-5;
 /// A curve that runs against an axis by less than this share of its speed does so by rounding.
 const BACKWARDS: f64 = 1e-9;
-/// Beyond its ends, a curve at a pace along an axis runs on no steeper than this: it may be vertical there.
+/// The steepest slope with which a curve at a pace along an axis continues beyond its ends, where it may be vertical.
 const STEEPEST: f64 = 4.0;
 /// Pieces shorter than this share of the side are dropped.
 const MIN_LENGTH: f64 = 1e-12;
@@ -318,7 +318,7 @@ impl Side {
         Self { pieces: vec![SidePiece { seg, table, pace: Pace::Parameter }], knots: vec![0.0, 1.0], length }
     }
 
-    /// The meaning of equal steps.
+    /// The meaning of equal steps of the parameter.
     pub(crate) fn pace(&self) -> Pace {
         self.pieces[0].pace
     }
@@ -352,13 +352,13 @@ impl Side {
         self.joints().partition_point(|k| *k <= u)
     }
 
-    /// Point and derivative at `u`.
+    /// The point and derivative at `u`.
     #[must_use]
     pub fn at(&self, u: f64) -> (Point, Vec2) {
         self.on(self.piece(u), u)
     }
 
-    /// As [`Side::at`] on a given piece, continued beyond its ends.
+    /// The point and derivative at `u` on a given piece, continued beyond its ends.
     #[must_use]
     pub(crate) fn on(&self, piece: usize, u: f64) -> (Point, Vec2) {
         let (from, to) = (self.knots[piece], self.knots[piece + 1]);
@@ -366,7 +366,7 @@ impl Side {
         (p, v / (to - from))
     }
 
-    /// The point of [`Side::on`].
+    /// The point at `u` on a given piece, continued beyond its ends.
     #[must_use]
     pub(crate) fn point_on(&self, piece: usize, u: f64) -> Point {
         let (from, to) = (self.knots[piece], self.knots[piece + 1]);
@@ -393,7 +393,7 @@ impl Side {
     /// The largest distance of the side from its chord, and the point where it occurs.
     #[must_use]
     pub(crate) fn off_straight(&self) -> (f64, Point) {
-        /// Samples per piece.
+        /// The number of samples per piece.
         const SAMPLES: u32 = 64;
         let [a, b] = self.ends();
         let chord = b - a;
@@ -416,7 +416,7 @@ fn runs_along(s: &Seg, along: impl Fn(Vec2) -> f64, extent: f64) -> bool {
 }
 
 impl SidePiece {
-    /// A line is polynomial at any pace, a Bézier curve at its own.
+    /// Returns `true` if the piece is a polynomial: a line at any pace, or a Bézier curve at the pace of its parameter.
     fn is_polynomial(&self) -> bool {
         match self.seg {
             Seg::Line(_) => true,
@@ -425,7 +425,7 @@ impl SidePiece {
         }
     }
 
-    /// Point and derivative at `t`, which runs from 0 to 1 over the piece.
+    /// The point and derivative at `t`, which runs from 0 to 1 over the piece.
     fn at(&self, t: f64) -> (Point, Vec2) {
         let inside = t.clamp(0.0, 1.0);
         let Some(u) = self.parameter(inside) else { return (self.seg.eval(t), self.seg.deriv(t)) };
@@ -455,7 +455,7 @@ impl SidePiece {
         if self.pace == Pace::Width { Vec2::new(v.x, limited(v.y)) } else { Vec2::new(limited(v.x), v.y) }
     }
 
-    /// The point of [`at`](Self::at).
+    /// The point at `t`, which runs from 0 to 1 over the piece.
     fn point(&self, t: f64) -> Point {
         if !(0.0..=1.0).contains(&t) {
             return self.at(t).0;
@@ -463,7 +463,7 @@ impl SidePiece {
         self.seg.eval(self.parameter(t).unwrap_or(t))
     }
 
-    /// The segment's parameter at `t` in [0, 1]; `None` if that is `t` itself, beyond the ends as well.
+    /// The segment's parameter at `t` in [0, 1]; `None` if it equals `t`, inside and beyond the ends.
     fn parameter(&self, t: f64) -> Option<f64> {
         match (self.pace, self.seg) {
             (Pace::Parameter, _) | (_, Seg::Line(_)) => None,
@@ -491,7 +491,7 @@ impl SidePiece {
 pub(crate) enum Along {
     /// Proportional to arc length.
     ArcLength,
-    /// The segments' own parameters, each segment with an equal share of [0, 1].
+    /// The parameters of the segments, each of which has an equal share of [0, 1].
     Parameter,
 }
 
@@ -505,10 +505,10 @@ pub(crate) struct Guide {
 #[derive(Debug, Clone)]
 pub(in crate::map) struct GuidePiece {
     seg: Seg,
-    /// Parameters at the ends.
+    /// The parameters u at the ends.
     from: f64,
     to: f64,
-    /// Inverse arc length; `None` if u is proportional to the segment's own parameter.
+    /// The inverse of arc length; `None` if u is proportional to the segment's parameter.
     table: Option<ArcLength>,
 }
 
@@ -565,7 +565,7 @@ impl Guide {
 }
 
 impl GuidePiece {
-    /// Point and derivative with respect to u.
+    /// The point and the derivative with respect to u.
     pub(in crate::map) fn at(&self, u: f64) -> (Point, Vec2) {
         let share = self.share(u);
         let (t, dt) = match &self.table {
@@ -581,7 +581,7 @@ impl GuidePiece {
         (self.seg.eval(t), self.seg.deriv(t) * (dt / (self.to - self.from)))
     }
 
-    /// The point of [`at`](Self::at).
+    /// The point at `u`.
     pub(in crate::map) fn point(&self, u: f64) -> Point {
         let share = self.share(u);
         match &self.table {
@@ -591,7 +591,7 @@ impl GuidePiece {
         }
     }
 
-    /// The share of the piece that is before u.
+    /// The parameter of `u` within the piece, from 0 to 1.
     fn share(&self, u: f64) -> f64 {
         (u - self.from) / (self.to - self.from)
     }
@@ -633,7 +633,7 @@ mod tests {
         }
     }
 
-    /// |C'| = 2u·c for C = c·u² along a line: u = √(s/c), with an infinite slope at the start.
+    /// Speed 2u·c for C = c·u² along a line: u = √(s/c), with an infinite slope at the start.
     #[test]
     fn a_start_from_rest_and_a_cusp() {
         let table = ArcLength::new(&|u| 20.0 * u);
@@ -645,7 +645,7 @@ mod tests {
         assert!(cusp.spans.len() < 300 && (cusp.parameter(0.5 * cusp.length()) - 0.5).abs() < 1e-6);
     }
 
-    /// Every span, kept or halved, asks for the speed at its points once; the halved ones are fewer than the kept.
+    /// The speed is evaluated once at the points of every span, kept or halved; there are fewer halved spans than kept ones.
     #[test]
     fn a_hairpin_takes_few_evaluations() {
         let c = CubicBez::new((0.0, 0.0), (9.0, 90.0), (9.0, -90.0), (1.0, 1.0));

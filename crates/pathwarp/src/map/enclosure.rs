@@ -1,7 +1,7 @@
-//! Enclosures: what a formula can do along a stretch of a curve.
+//! Enclosures: bounds for a formula along a piece of a curve.
 //!
-//! A number along a stretch is a function f of a parameter τ from 0 to 1. An [`Enclosure`] holds a range of its values and bounds
-//! for its Taylor coefficients |f⁽ᵏ⁾|/k! everywhere on the stretch. Sums and products of functions have the sums and Cauchy products of
+//! A number along a piece of a curve is a function f of a parameter τ from 0 to 1. An [`Enclosure`] holds a range of its values and
+//! bounds for its Taylor coefficients |f⁽ᵏ⁾|/k! for all τ. Sums and products of functions have the sums and Cauchy products of
 //! the bounds, and g ∘ f has Σ gₖ·(f₁τ + f₂τ² + …)ᵏ, with bounds gₖ for the coefficients of g on f's range (R. E. Moore, *Methods and
 //! Applications of Interval Analysis*, SIAM 1979, chapter 3).
 
@@ -12,7 +12,7 @@ use kurbo::{Point, Rect};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Derivatives that are bounded.
+/// The number of derivatives that are bounded.
 const ORDER: usize = 6;
 
 /// 1/k!, k from 1.
@@ -20,8 +20,8 @@ const FACTORIALS: [f64; ORDER] = [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 1
 
 /// A function of a parameter from 0 to 1: a range of its values, and bounds for its derivatives.
 ///
-/// It computes like a number, so that every [`Formula`](super::Formula) runs on it. What it says may be infinite, or no number, where a
-/// formula has no derivative.
+/// It computes like a number, so that every [`Formula`](super::Formula) runs on it. Its bounds are infinite, or NaN, where a formula has no
+/// derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Enclosure {
     /// The least and the largest value.
@@ -32,23 +32,23 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Derivatives that are bounded.
+    /// The number of derivatives that are bounded.
     pub(crate) const ORDER: usize = ORDER;
 
     /// The largest product of the distances from six neighbouring samples between them, in steps; see [`resolved`](Self::resolved).
     pub(crate) const LAST_SPREAD: f64 = 4.0;
 
-    /// What is known of v + hτ or v − hτ, for every v at most so far from the middle.
+    /// Encloses v + hτ and v − hτ, for every v at most `far` from the middle.
     pub(crate) fn slope(middle: f64, [far, h]: [f64; 2]) -> Self {
         let mut d = [0.0; ORDER];
         d[0] = h;
         Self { lo: middle - far, hi: middle + far, d }
     }
 
-    /// What is known of a polynomial a₀ + a₁τ + a₂τ² + a₃τ³.
+    /// Encloses a polynomial a₀ + a₁τ + a₂τ² + a₃τ³.
     #[must_use]
     pub fn cubic([a0, a1, a2, a3]: [f64; 4]) -> Self {
-        // The values lie between the Bernstein coefficients; likewise those of the derivatives.
+        // The values lie between the Bernstein coefficients, and the derivatives between theirs.
         let b = [a0, a0 + a1 / 3.0, a0 + (2.0 * a1 + a2) / 3.0, a0 + a1 + a2 + a3];
         let mut d = [0.0; ORDER];
         d[0] = a1.abs().max((a1 + a2).abs()).max((a1 + 2.0 * a2 + 3.0 * a3).abs());
@@ -58,13 +58,13 @@ impl Enclosure {
         Self { lo, hi, d }
     }
 
-    /// What is known of a + (b − a)τ.
+    /// Encloses a + (b − a)τ.
     #[must_use]
     pub fn between(a: f64, b: f64) -> Self {
         Self::cubic([a, b - a, 0.0, 0.0])
     }
 
-    /// The box of the values of two coordinates.
+    /// The box that contains the curve.
     #[must_use]
     pub fn area([x, y]: &[Self; 2]) -> Rect {
         Rect::new(x.lo, y.lo, x.hi, y.hi)
@@ -79,24 +79,24 @@ impl Enclosure {
         [image + middle.x, image + middle.y]
     }
 
-    /// Returns `true` if samples at `intervals` equal steps tell both coordinates of a curve: if what is interpolated between them is at
+    /// Returns `true` if samples at `intervals` equal steps determine both coordinates of a curve: if interpolation between them is at
     /// most `by` from the curve.
     #[must_use]
     pub fn resolved([x, y]: &[Self; 2], intervals: usize, by: f64) -> bool {
         /// The largest product of the distances from k neighbouring samples, in steps: between the middle ones, or, for higher k, a little
-        /// nearer to the ends, where the samples' end has its derivative too.
+        /// nearer to the ends, where the derivative at the curve's end counts as a sample too.
         const SPREAD: [f64; ORDER] = [0.5, 0.25, 0.385, 1.0, 2.0, Enclosure::LAST_SPREAD];
         let step = 1.0 / intervals as f64;
         let mut power = 1.0;
         let by_order = |k: usize| {
             power *= step;
-            // Also false for what is no number.
+            // Also false for NaN.
             SPREAD[k] * power * (x.d[k] + y.d[k]) <= by
         };
         (0..ORDER).any(by_order) || (x.hi - x.lo) + (y.hi - y.lo) <= by
     }
 
-    /// The size of the smallest feature of a curve, as a share of it.
+    /// The size of the smallest feature of a curve, as a share of its parameter range.
     pub(crate) fn finest([x, y]: &[Self; 2]) -> f64 {
         let d = |k: usize| x.d[k] + y.d[k];
         (1..ORDER).map(|k| (d(0) / d(k)).powf(1.0 / k as f64)).fold(f64::INFINITY, f64::min)
@@ -112,14 +112,14 @@ impl Enclosure {
         self.lo.max(-self.hi).max(0.0)
     }
 
-    /// A function of this one, with its range and bounds for its coefficients |g⁽ᵏ⁾|/k! on the range of this one.
+    /// A function g of this one, with its range and bounds for its coefficients |g⁽ᵏ⁾|/k! on the range of this one.
     #[inline(never)]
     fn under(&self, [lo, hi]: [f64; 2], coefficients: [f64; ORDER]) -> Self {
         let mut out = Self { lo, hi, d: [0.0; ORDER] };
         if self.d == out.d {
             return out;
         }
-        // By Horner's rule, with one more term at every step.
+        // Horner's rule, with one more term at every step.
         for (step, coefficient) in coefficients.into_iter().rev().enumerate() {
             for i in (0..=step).rev() {
                 out.d[i] = self.d[i] * coefficient + (0..i).map(|j| self.d[j] * out.d[i - 1 - j]).sum::<f64>();
@@ -161,7 +161,7 @@ impl Enclosure {
         self.under(range, coefficients(coefficient))
     }
 
-    /// The sine, or the cosine, of which the other is the derivative but for the sign.
+    /// The sine or the cosine, with range `own`; `other` is the range of its derivative, but for the sign.
     fn wave(&self, own: [f64; 2], other: [f64; 2]) -> Self {
         let [own_most, most] = [own, other].map(|[lo, hi]| hi.max(-lo));
         let [f1, f2, f3, f4, f5, f6] = FACTORIALS;
@@ -170,7 +170,7 @@ impl Enclosure {
 
     /// The ranges of sine and cosine.
     fn ranges(&self) -> [[f64; 2]; 2] {
-        /// The places of larger angles in the circle are rounding.
+        /// The positions of larger angles in the circle are rounding errors.
         const FAR: f64 = 1e12;
         let known = self.hi - self.lo < TAU && self.most() < FAR;
         if !known {
@@ -187,7 +187,7 @@ impl Enclosure {
     }
 }
 
-/// One for each k from 1.
+/// Bounds for the coefficients of each order, from 1.
 fn coefficients(mut of: impl FnMut(i32) -> f64) -> [f64; ORDER] {
     std::array::from_fn(|k| of(k as i32 + 1))
 }
@@ -215,7 +215,7 @@ impl From<f64> for Enclosure {
     }
 }
 
-// Inlined, they would fill every formula.
+// Not inlined: the code would be repeated in every formula.
 operators! { #[inline(never)] Enclosure:
     Add add Self: |a, b| Self { lo: a.lo + b.lo, hi: a.hi + b.hi, d: std::array::from_fn(|k| a.d[k] + b.d[k]) };
     Sub sub Self: |a, b| a + -b;
@@ -358,7 +358,7 @@ mod tests {
         ]
     }
 
-    /// Values and slopes at many places are within the enclosure; so are differences of order two to six, which are means of derivatives.
+    /// Values and slopes at many parameters are within the enclosure; so are differences of order 2 to 6, which are means of derivatives.
     #[test]
     fn enclosures_hold() {
         for w in [1e-3, 0.02, 0.1, 0.4, 1.2] {
@@ -390,7 +390,7 @@ mod tests {
         }
     }
 
-    /// A wave is resolved by a few samples to its length, and not by as many as it has waves, whatever their spacing.
+    /// A wave is resolved by forty samples for each period, but not by seventeen samples of many periods.
     #[test]
     fn samples_resolve_a_wave_where_they_show_it() {
         let wave = |n: f64| {

@@ -1,4 +1,4 @@
-//! The short way to write a map: one formula, generic over the number type.
+//! Maps from one formula, generic over the number type, and from closures.
 
 use super::{Class, Cost, Creases, Dual, Enclosure, Jet, Map, RationalBezier, Real, estimated};
 use kurbo::{Point, Rect, Vec2};
@@ -6,7 +6,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A map given by a formula. Every `Formula` is a [`Map`]: its values come from running the formula on `f64`, its derivatives
-/// from running it on [`Dual`] numbers, and [what it can do between two samples](Map::enclose) from running it on an [`Enclosure`].
+/// from running it on [`Dual`] numbers, and [bounds between samples](Map::enclose) from running it on an [`Enclosure`].
 ///
 /// ```
 /// use pathwarp::map::{Formula, Map, Real};
@@ -66,12 +66,12 @@ pub trait Formula: Send + Sync {
         Cost::NET
     }
 
-    /// See [`Map::detail`]; for a formula whose enclosures say little, since it subtracts nearly equal numbers.
+    /// See [`Map::detail`]. For formulas with wide enclosures, because they subtract nearly equal numbers.
     fn detail(&self, _area: Rect) -> Option<f64> {
         None
     }
 
-    /// [`Map::jet`], which pointers to maps forward, as the methods below.
+    /// See [`Map::jet`]. Pointers to maps forward this method and those below.
     #[doc(hidden)]
     #[inline]
     fn dual(&self, p: Point) -> Jet {
@@ -134,9 +134,9 @@ impl<F: Formula> Map for F {
     forward_common!(self => Formula, self);
 }
 
-/// A map from a closure that gives the image of a point. Its derivatives are differences of values, good to nine digits or so where the map
-/// varies over lengths of a hundredth of a drawing and more, and they cost eight calls each; [`from_fn_with`] takes exact ones, and a
-/// [`Formula`] has them by itself. A point without an image maps to NaN.
+/// A map from a closure that returns the image of a point, or NaN where there is none. Its derivatives are differences of values, which
+/// cost eight calls each and have about nine digits where the map varies over lengths of a hundredth of a drawing and more.
+/// [`from_fn_with`] takes exact derivatives, and a [`Formula`] computes them.
 ///
 /// ```
 /// use pathwarp::{Outline, kurbo::Point, map, refit};
@@ -194,13 +194,13 @@ impl<F, J> fmt::Debug for FromFnWith<F, J> {
     }
 }
 
-/// Step of the differences at the origin. It grows with the square root of the coordinates, a compromise between their rounding and the
-/// map's bends.
+/// The step of the differences at the origin. It grows with the square root of the coordinates, a compromise between their rounding and
+/// the map's bends.
 const STEP: f64 = 1.0 / 4096.0;
 
 impl<F: Fn(Point) -> Point + Send + Sync> FromFn<F> {
-    /// The derivative along the unit vector `axis`: fourth-order central differences, or second-order ones to one side where the map has no
-    /// value on the other.
+    /// The derivative along the unit vector `axis`: fourth-order central differences, or second-order one-sided ones where the map is
+    /// undefined on the other side.
     fn slope(&self, p: Point, image: Point, axis: Vec2) -> Vec2 {
         let size = p.x.abs().max(p.y.abs()).max(1.0).sqrt();
         // A power of two, so that the steps are exact.

@@ -6,7 +6,7 @@ use kurbo::{Affine, Point, Vec2};
 ///
 /// The matrix acts on coordinates relative to a point near the artwork, so that no digits are lost where coordinates are large.
 ///
-/// Defined where W > 0, on one side of its horizon W = 0. Artwork that crosses the horizon is an error.
+/// The map is defined where W > 0, on one side of its horizon W = 0. Artwork that crosses the horizon is an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Homography {
     /// The matrix, row by row.
@@ -32,7 +32,7 @@ impl Homography {
     /// on a line, or if one is convex and the other is not: the horizon would run between the points.
     #[must_use]
     pub fn from_points(from: [Point; 4], to: [Point; 4]) -> Option<Self> {
-        // Through a projective basis, which needs no convexity: the matrix whose columns are three of the points, scaled so
+        // By way of a projective basis, which needs no convexity: the matrix whose columns are three of the points, scaled so
         // that their sum is the fourth.
         let basis = |q: [Point; 4]| -> Option<[[f64; 3]; 3]> {
             let q = q.map(|p| p - q[0]);
@@ -49,7 +49,7 @@ impl Homography {
 
     /// Sets the perspective part to zero if it is rounding noise over `at`, so that parallelograms give affine maps.
     fn tidied(mut self, at: [Point; 4]) -> Self {
-        /// Rounding error of the two 3×3 solves, with a margin.
+        /// The rounding error of the two 3×3 solves, with a margin.
         const NOISE: f64 = 1e-13;
         let varies = at.iter().map(|p| (self.m[2][0] * (p.x - at[0].x) + self.m[2][1] * (p.y - at[0].y)).abs());
         if varies.fold(0.0, f64::max) < NOISE {
@@ -94,7 +94,7 @@ impl Homography {
         [0, 1].map(|k| Vec2::new((m[0][k] - x * r * m[2][k]) * r, (m[1][k] - y * r * m[2][k]) * r))
     }
 
-    /// `self ∘ first`.
+    /// The composition `self ∘ first`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         let gap = first.to - self.from;
@@ -102,14 +102,14 @@ impl Homography {
         Self { m: mul(&mul(&self.m, &shift), &first.m), from: first.from, to: self.to }
     }
 
-    /// `m` after this map.
+    /// The composition `m ∘ self`.
     #[must_use]
     pub(crate) fn then_affine(&self, m: Affine) -> Self {
         let [a, b, c, d, ..] = m.as_coeffs();
         Self { m: mul(&[[a, c, 0.0], [b, d, 0.0], [0.0, 0.0, 1.0]], &self.m), from: self.from, to: m * self.to }
     }
 
-    /// This map after `m`, which can be inverted.
+    /// The composition `self ∘ m` with an invertible `m`.
     #[must_use]
     pub(crate) fn after_affine(&self, m: Affine) -> Self {
         let near = m.inverse() * self.from;
@@ -120,7 +120,7 @@ impl Homography {
         Self { m: mul(&self.m, &[[a, c, gap.x], [b, d, gap.y], [0.0, 0.0, 1.0]]), from: near, to: self.to }
     }
 
-    /// The same map as an affine one, if it is affine.
+    /// Returns this map as an affine one, if it is affine.
     #[must_use]
     pub(crate) fn as_affine(&self) -> Option<Affine> {
         let [[a, c, e], [b, d, f], [g, h, w]] = self.m;
@@ -212,7 +212,7 @@ mod tests {
         assert!((dx - j.dx).hypot() < 1e-7 && (dy - j.dy).hypot() < 1e-7);
     }
 
-    /// At 3.67e7 as at the origin, alone, back, and in a chain, up to the rounding of the coordinates.
+    /// Far from the origin, at 3.67e7, a map, its inverse and a chain are as exact as near it, up to the rounding of the coordinates.
     #[test]
     fn far_from_the_origin_no_digits_are_lost() {
         let far = Vec2::new(3.67e7, -1.2e8);

@@ -1,14 +1,14 @@
-//! Joints of strips F = C + v·S (+ w·T in space): the conditions of Y.-K. Chang and A. Rockwood, *A generalized de Casteljau approach to 3D
-//! free-form deformation* (SIGGRAPH 1994), equations 4 and 5.
+//! Joints of strips F = C + v·S (+ w·T in space), checked by equations 4 and 5 of Y.-K. Chang and A. Rockwood, *A generalized de Casteljau
+//! approach to 3D free-form deformation* (SIGGRAPH 1994).
 
-/// A joint of a skeleton's pieces, and the turns of lines beside the skeleton there.
+/// A joint between pieces of a skeleton, and the kinks there of the skeleton and of lines beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     place: String,
-    /// The angles (radians) of the skeleton's kink, and of the worst beside it.
+    /// The angles (radians) of the skeleton's kink, and of the worst kink beside it.
     on: f64,
     beside: f64,
-    /// Derivatives are continuous, not only directions.
+    /// `true` if derivatives are continuous, not only directions.
     even: bool,
 }
 
@@ -16,8 +16,8 @@ impl Joint {
     /// Below this angle a kink is invisible.
     const UNSEEN: f64 = 5e-3;
 
-    /// Compares derivatives along lines before and after a joint: `lines` has those of the skeleton, then those beside it. A line that
-    /// runs backwards is on a fold, a fault of its own, and left out.
+    /// Compares derivatives along lines before and after a joint. `lines` begins with the skeleton, followed by lines beside it; lines
+    /// that run backwards lie on a fold and are left out.
     #[must_use]
     pub fn new<const D: usize>(place: String, lines: &[[[f64; D]; 2]]) -> Self {
         let dot = |p: &[f64; D], q: &[f64; D]| p.iter().zip(q).map(|(a, b)| a * b).sum::<f64>();

@@ -3,7 +3,7 @@
 //! > X(s,t) = Σⱼ Σᵢ Nᵢ(s) Nⱼ(t) wᵢⱼ (xᵢⱼ, yᵢⱼ, 1),  s = (x − x₀)/(x₁ − x₀),  t = (y − y₀)/(y₁ − y₀)
 //!
 //! (T. W. Sederberg, S. R. Parry, *Free-form deformation of solid geometric models*, SIGGRAPH 1986; T. W. Sederberg,
-//! *Computer Aided Geometric Design*, chapter 14). The basis is Bernstein's, or that of uniform clamped B-splines. i counts
+//! *Computer Aided Geometric Design*, chapter 14). The basis consists of Bernstein polynomials or of uniform clamped B-splines. i counts
 //! from the left, j from the top.
 //!
 //! Nothing moves outside the region, so its border is a crease. If the k + 1 outermost rows or columns along a side are in their
@@ -24,9 +24,9 @@ pub struct Lattice {
     region: Rect,
     degree: [usize; 2],
     cells: [usize; 2],
-    /// Regular positions along x and y, from 0 to 1.
+    /// The regular positions along x and y, from 0 to 1.
     places: [Vec<f64>; 2],
-    /// Displacements from the regular positions, row by row.
+    /// The displacements from the regular positions, row by row.
     moves: Vec<Vec2>,
     weights: Vec<f64>,
 }
@@ -42,13 +42,13 @@ impl Lattice {
         Self { region, degree, cells, places, moves: vec![Vec2::ZERO; count], weights: vec![1.0; count] }
     }
 
-    /// Degrees along x and y.
+    /// The degrees along x and y.
     #[must_use]
     pub fn degree(&self) -> [usize; 2] {
         self.degree
     }
 
-    /// Bézier pieces along x and y.
+    /// The numbers of Bézier pieces along x and y.
     #[must_use]
     pub fn cells(&self) -> [usize; 2] {
         self.cells
@@ -60,13 +60,13 @@ impl Lattice {
         self.region
     }
 
-    /// Number of control points along x.
+    /// The number of control points along x.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.places[0].len()
     }
 
-    /// Number of control points along y.
+    /// The number of control points along y.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.places[1].len()
@@ -83,7 +83,7 @@ impl Lattice {
         Point::new(r.x0 + self.places[0][i] * r.width(), r.y0 + self.places[1][j] * r.height())
     }
 
-    /// Control point (i, j).
+    /// The position of control point (i, j).
     #[must_use]
     pub fn point(&self, i: usize, j: usize) -> Point {
         self.regular_point(i, j) + self.moves[self.index(i, j)]
@@ -122,7 +122,7 @@ impl Lattice {
         self.moves[k].hypot() > 1e-12 * size || self.weights[k] != 1.0
     }
 
-    /// The same lattice scaled to another region.
+    /// Returns this lattice scaled to another region.
     #[must_use]
     pub fn on(&self, region: Rect) -> Self {
         let (kx, ky) = (region.width() / self.region.width(), region.height() / self.region.height());
@@ -187,7 +187,7 @@ impl Lattice {
         }
     }
 
-    /// The lattice as an affine map, if its points are an affine image of the regular ones and all weights are equal.
+    /// Returns the lattice as an affine map, if its points are an affine image of the regular ones and all weights are equal.
     fn as_affine(&self) -> Option<Affine> {
         let (m, n, r) = (self.columns() - 1, self.rows() - 1, self.region);
         if self.weights.iter().any(|w| *w != self.weights[0]) {
@@ -232,14 +232,14 @@ pub struct LatticeMap {
     /// The region, enlarged by rounding: curves that end on the border or touch it belong to the inside.
     inside: Rect,
     cells: [usize; 2],
-    /// Row by row.
+    /// The patches of the cells, row by row.
     patches: Vec<Arc<Patch>>,
-    /// The outermost pieces continue beyond the region.
+    /// `true` if the outermost pieces continue beyond the region.
     extended: bool,
     affine: Option<Affine>,
 }
 
-/// Distance from the border, relative to the coordinates, within which outside points count as inside.
+/// The distance from the border, relative to the coordinates, within which outside points count as inside.
 const ROUNDING: f64 = 1e-12;
 
 impl LatticeMap {
@@ -265,7 +265,7 @@ impl LatticeMap {
         }
     }
 
-    /// The cell at `p`; `None` outside the region, where nothing moves.
+    /// The index of the cell at `p`; `None` outside the region, where nothing moves.
     #[inline]
     fn cell(&self, p: Point) -> Option<usize> {
         let b = &self.inside;
@@ -378,7 +378,7 @@ impl Map for LatticeMap {
         })
     }
 
-    /// For a curve whose control points, and therefore the whole curve, lie in one cell or on one outer side of the region.
+    /// The image of a curve whose control points, and therefore the whole curve, lie in one cell or on one outer side of the region.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         if self.extended && self.patches.len() == 1 {
             return self.patches[0].image(curve);
@@ -395,7 +395,7 @@ impl Map for LatticeMap {
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         let mut all: Vec<Point> = self.cell(q).is_none().then_some(q).into_iter().collect();
         for (c, patch) in self.patches.iter().enumerate() {
-            // Points on a border count on both sides of it.
+            // Points on a border count on both its sides.
             let (i, j, near) = (c % self.cells[0], c / self.cells[0], 1e3 * (self.inside.x1 - self.region.x1));
             let b = patch.rect().inflate(near, near);
             let within = |v: f64, lo: f64, hi: f64, at: usize, n: usize| {
@@ -416,7 +416,7 @@ impl Map for LatticeMap {
         self.patches[0].detail(area)
     }
 
-    /// By Newton's method over the region, or up to half its size outside if the map is extended; see [`NewtonInverse`].
+    /// The inverse by Newton's method over the region, or up to half its size outside if the map is extended; see [`NewtonInverse`].
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         if let Some(m) = self.affine {
             return AffineMap(m).inverse();
@@ -440,11 +440,11 @@ impl LatticeInverse {
             (true, 1) => (0.5, map.patches[0].clone()),
             (true, _) => (0.5, Arc::new(map.clone())),
             (false, 1) => (0.0, map.patches[0].clone()),
-            // Newton steps may leave the region on their way and must not meet the identity there.
+            // Newton steps may leave the region on their way, and must not meet the identity there.
             (false, _) => (0.0, Arc::new(LatticeMap { extended: true, affine: None, ..map.clone() })),
         };
         let domain = r.inflate(beyond * r.width(), beyond * r.height());
-        // Reach further than the margin within which points count as inside, so that no gap remains.
+        // Reaches further than the margin within which points count as inside, so that no gap remains.
         let reach = 1e3 * (map.inside.x1 - r.x1);
         Self { map: map.clone(), inner: Arc::new(NewtonInverse::with_core(pieces, r, domain, reach, map.cells)) }
     }

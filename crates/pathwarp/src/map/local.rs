@@ -1,13 +1,13 @@
 //! A map restricted to a convex polygon; nothing moves outside.
 //!
-//! The sides of the polygon are creases, crossed exactly. The map inside determines whether it meets the identity there.
+//! The sides of the polygon are creases, crossed exactly. Whether the map is continuous there depends on the map inside.
 
 use super::{AffineMap, Class, Cost, Crease, Creases, Jet, Level, Map, NewtonInverse, RationalBezier, Searches};
 use crate::budget::Budget;
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
-/// Distance from a side, relative to the coordinates, within which outside points count as inside: curves that end on a side or
+/// The distance from a side, relative to the coordinates, within which outside points count as inside: curves that end on a side or
 /// touch it belong to the inside.
 const ROUNDING: f64 = 1e-12;
 
@@ -91,7 +91,7 @@ impl Map for Local {
         })
     }
 
-    /// For a curve whose control points, and therefore the whole curve, lie inside, or beyond one side.
+    /// The image of a curve whose control points, and therefore the whole curve, lie inside, or beyond one side.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let points = curve.hull()?;
         if points.iter().all(|p| self.contains(*p)) {
@@ -106,7 +106,7 @@ impl Map for Local {
         Some(inside.chain((!self.contains(q)).then_some(q)).collect())
     }
 
-    /// The inverse of the map inside where its answers lie inside, and the identity outside.
+    /// The inverse of the map inside, for points whose preimage lies inside, and the identity for others.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let back = match self.inside.inverse().filter(|m| m.cost().searches.is_none()) {
             Some(closed) => InnerInverse::Closed(closed),
@@ -120,7 +120,7 @@ impl Map for Local {
     }
 }
 
-/// The method that inverts the map inside.
+/// The method that inverts the map inside the polygon.
 #[derive(Clone)]
 enum InnerInverse {
     Closed(Arc<dyn Map>),
@@ -135,7 +135,7 @@ struct LocalInverse {
 }
 
 impl LocalInverse {
-    /// The preimage inside the polygon, or outside by at most `beyond`.
+    /// The preimage inside the polygon, or at most `beyond` outside.
     fn preimage(&self, q: Point, beyond: f64) -> Option<Jet> {
         let accept = |p: Point| self.of.depth(p) >= -beyond;
         match &self.back {
@@ -199,7 +199,7 @@ impl Searches for LocalInverse {
     }
 }
 
-/// The branch of a [`LocalInverse`] that leads inside.
+/// The branch of a [`LocalInverse`] whose values lie inside the polygon.
 struct InsideInverse(LocalInverse);
 
 impl Map for InsideInverse {
@@ -265,7 +265,7 @@ mod tests {
         let mut creases = Creases::default();
         m.creases(&mut creases);
         let seg = crate::outline::Seg::Line(kurbo::Line::new((-1.0, 1.0), (9.0, 1.0)));
-        // Enters at the left side and leaves at the slanting one. The lines of the sides do not count outside the sides.
+        // The segment enters at the left side and leaves at the slanting one. The lines of the sides do not count outside the sides.
         let at = creases.splits(&seg);
         assert!(at.len() == 2 && (at[0] - 0.1).abs() < 1e-15 && (at[1] - 0.4).abs() < 1e-15, "{at:?}");
         let below = crate::outline::Seg::Line(kurbo::Line::new((6.0, -1.0), (6.0, 9.0)));

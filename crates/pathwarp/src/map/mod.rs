@@ -1,7 +1,7 @@
-//! Maps of the plane: the result of a deformation once its parameters are known.
+//! Maps of the plane, which deformations build from their parameters.
 //!
-//! A [`Map`] takes every point of the drawing to a new place and knows its derivatives there. [`warp_path`] samples a map along a
-//! path and fits Bézier curves to the image. Bitmaps ask the inverse map for the source of each pixel.
+//! A [`Map`] takes every point of the drawing to its image and knows the derivatives there. [`warp_path`] samples a map along a
+//! path and fits Bézier curves to the image. To map a bitmap, the inverse map gives the source of each pixel.
 //!
 //! # Writing a map
 //!
@@ -152,7 +152,7 @@ pub(crate) use tiled::{TileRow, Tiled};
 /// Only [`Map::jet`] is required. [`point`](Map::point), [`points`](Map::points) and [`jets`](Map::jets) are faster ways to the
 /// same values; the other methods tell the refitter where the map is not smooth and what is known about it exactly.
 pub trait Map: Send + Sync {
-    /// Value and both partial derivatives at `p`. On a crease, those of either side.
+    /// The value and both partial derivatives at `p`. On a crease, the derivatives on either side.
     fn jet(&self, p: Point) -> Jet;
 
     /// The value alone.
@@ -174,17 +174,16 @@ pub trait Map: Send + Sync {
         }
     }
 
-    /// The class of the map. Affine and projective maps need no refitting, and neighbours fold into one in a
-    /// [`Chain`].
+    /// The class of the map. Affine and projective maps need no refitting, and adjacent ones fold into one in a [`Chain`].
     fn class(&self) -> Class {
         Class::Smooth
     }
 
-    /// Adds the places where the map is not smooth, and the boundary of its domain.
+    /// Adds the lines along which the map is not smooth, and the boundary of its domain.
     fn creases(&self, _out: &mut Creases) {}
 
-    /// For a map with creases: the smooth map that agrees with this one on the piece of the plane, cut at the creases, that
-    /// contains `inside`. On the boundary of that piece it gives the limit from inside. `None`: the map itself is smooth.
+    /// For a map with creases: the smooth map that agrees with this one on the piece of the plane, cut at the creases, that contains
+    /// `inside`. On the boundary of that piece it gives the limit from inside. `None` if the map is smooth.
     fn branch(&self, _inside: Point) -> Option<Arc<dyn Map>> {
         None
     }
@@ -205,8 +204,8 @@ pub trait Map: Send + Sync {
         None
     }
 
-    /// All points of the plane that the map takes to `q`, in any order, among them perhaps points where it is not defined. `None` if the map
-    /// cannot tell, or if there are infinitely many. See [`preimages`].
+    /// All points of the plane that the map takes to `q`, in any order, perhaps with points where it is not defined. `None` if they are
+    /// not known, or if there are infinitely many. See [`preimages`].
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         match self.class() {
             Class::Affine(_) | Class::Projective(_) => Some(vec![self.inverse()?.point(q)]),
@@ -214,14 +213,14 @@ pub trait Map: Send + Sync {
         }
     }
 
-    /// The cost of an evaluation, for [`budget`](crate::budget). A map whose work grows with its number of parts says so here.
+    /// The cost of an evaluation, for [`budget`](crate::budget). Maps whose work grows with their number of parts override this.
     #[doc(hidden)]
     fn cost(&self) -> Cost<'_> {
         Cost::NET
     }
 
-    /// What the map does along a curve, given what its coordinates do: the refitter accepts a piece only if nothing can hide between its
-    /// samples. By default estimated from the [`detail`](Self::detail). `None` if the map cannot tell; reports then say
+    /// Encloses the image of a curve whose coordinates are enclosed: the refitter accepts a piece only if nothing can hide between its
+    /// samples. By default estimated from the [`detail`](Self::detail). `None` if there are no bounds; the fit is then reported as
     /// [sampled](bezierfit::Assurance::Sampled).
     fn enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
         let area = Enclosure::area(&along);
@@ -236,15 +235,15 @@ pub trait Map: Send + Sync {
     }
 }
 
-/// What a map of a known [detail](Map::detail) does along a curve in a box.
+/// An estimate of the image of a curve in a box, under a map of known [detail](Map::detail).
 fn estimated(map: &(impl Map + ?Sized), along: [Enclosure; 2], area: Rect, detail: f64) -> [Enclosure; 2] {
     let mut jets = [Jet::default(); 3];
     map.jets(&middle_and_corners(area), &mut jets);
-    // With a margin for what three places do not show.
+    // The factor 2 is a margin for what three points do not show.
     Enclosure::estimated(along, jets[0].p, 2.0 * most_stretched(&jets), detail)
 }
 
-/// The places in a box that stand for all of it: its middle and two opposite corners.
+/// Three points that stand for a whole box: its middle and two opposite corners.
 fn middle_and_corners(area: Rect) -> [Point; 3] {
     [area.center(), area.origin(), Point::new(area.x1, area.y1)]
 }
@@ -254,7 +253,7 @@ fn most_stretched(jets: &[Jet]) -> f64 {
     jets.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max)
 }
 
-/// The size of the smallest feature of a map in a box: what it states, or what its enclosures tell of the lines through the middle. With
+/// The size of the smallest feature of a map in a box: what it states, or what its enclosures show on the lines through the middle. With
 /// no feature smaller than r, coefficient k is at most the first one times r¹⁻ᵏ.
 pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
     let told = || {
@@ -278,7 +277,7 @@ impl dyn Map + '_ {
         self.cost().work
     }
 
-    /// The same map with its searches charged to `budget`; `None` if it does not search.
+    /// This map with its searches charged to `budget`; `None` if it does not search.
     #[doc(hidden)]
     #[must_use]
     pub fn within(&self, budget: &Arc<Budget>) -> Option<Arc<dyn Map>> {
@@ -311,8 +310,8 @@ impl<M: Map + ?Sized> Map for Arc<M> {
     forward!(jet point jets points enclose);
 }
 
-/// A reference or a box is a map by being a formula: any crate may implement [`Formula`] for those of its own types, which rules out that
-/// they are maps beside it.
+/// References and boxes are maps by way of [`Formula`]. They cannot implement [`Map`] directly: another crate may implement [`Formula`] for
+/// references to its types, and the implementations would overlap.
 impl<M: Map + ?Sized> Formula for &M {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         S::image(*self, [x, y])
@@ -388,8 +387,7 @@ impl Jet {
     }
 }
 
-/// The class of a map. Affine and projective maps need no refitting, and neighbours fold into one in a
-/// [`Chain`].
+/// The class of a map. Affine and projective maps need no refitting, and adjacent ones fold into one in a [`Chain`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Class {
     /// Control points map exactly.

@@ -1,7 +1,7 @@
 //! The inverse of any smooth map over a box, by Newton's method, with a test that each answer is a solution.
 //!
 //! A grid of starting points covers the box. To invert a point q, the cells whose images come near q are tried: damped Newton
-//! steps x ← x + J⁻¹(q − F(x)) run from the center of the cell until they stop changing x. The answer is accepted if
+//! steps x ← x + J⁻¹(q − F(x)) run from the center of the cell until they no longer change x. The answer is accepted if
 //!
 //! 1. the residual |F(x) − q| is at rounding level,
 //! 2. x lies in the box, or outside by less than the stated reach,
@@ -21,19 +21,19 @@ use kurbo::{Point, Rect, Vec2};
 use std::fmt;
 use std::sync::Arc;
 
-/// Fewest starting points along a side of the box.
+/// The smallest number of starting points along a side of the box.
 const MIN_STARTS: usize = 12;
-/// Most starting points along a side of the box.
+/// The largest number of starting points along a side of the box.
 const MAX_STARTS: usize = 96;
-/// Starting points along a side for every piece of the map.
+/// The number of starting points along a side for every piece of the map.
 const STARTS_PER_PIECE: usize = 4;
-/// Newton steps from one starting point.
+/// The number of Newton steps from one starting point.
 const MAX_STEPS: usize = 40;
-/// A Newton step is halved down to this share before it is given up.
+/// The share to which a Newton step is halved before it is given up.
 const MIN_DAMPING: f64 = 1e-4;
-/// Starting points tried for one point.
+/// The number of starting points tried for one point.
 const MAX_TRIES: usize = 16;
-/// Cost of comparing a starting point with those already tried, as a multiple of looking at it.
+/// The cost of comparing a starting point with those already tried, as a multiple of the cost of looking at it.
 const COMPARED: usize = 6;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
@@ -49,14 +49,14 @@ pub struct NewtonInverse {
     orientation: f64,
     reach: f64,
     starts: Arc<[StartingPoint]>,
-    /// Size of a starting point's cell.
+    /// The size of a starting point's cell.
     cell: Vec2,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
     buckets: Arc<[Vec<u32>]>,
     bounds: Rect,
     side: usize,
     lipschitz: f64,
-    /// Rounding error of an image coordinate.
+    /// The rounding error of an image coordinate.
     rounding: f64,
     map_work: f64,
     /// The work of one of the map's jets in a search.
@@ -94,7 +94,7 @@ impl NewtonInverse {
         Self::with_core(map, domain, domain, reach, pieces)
     }
 
-    /// As [`NewtonInverse::new`], with a core smaller than the box.
+    /// The inverse of `map` over `domain`, with a `core` smaller than that box; see [`NewtonInverse::new`].
     #[must_use]
     pub(crate) fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
         let [nx, ny] = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
@@ -121,7 +121,7 @@ impl NewtonInverse {
             }
         }
 
-        // Each starting point with a box around the image of its cell: the first-order image, enlarged by half.
+        // Each starting point gets a box around the image of its cell: the first-order image, enlarged by half.
         let mut starts = Vec::with_capacity(centers.len());
         let mut boxes = Vec::with_capacity(centers.len());
         for (at, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
@@ -168,7 +168,7 @@ impl NewtonInverse {
         out
     }
 
-    /// The same inverse with its searches charged to `budget`.
+    /// Returns this inverse with its searches charged to `budget`.
     #[must_use]
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         // The map may be an inverse itself.
@@ -188,13 +188,13 @@ impl NewtonInverse {
         self.solve_where(q, |_| true)
     }
 
-    /// As [`NewtonInverse::solve`], but considers only preimages that `accept` accepts.
+    /// The first preimage of `q` that `accept` accepts, and the derivatives of the inverse there.
     #[must_use]
     pub(crate) fn solve_where(&self, q: Point, accept: impl Fn(Point) -> bool) -> Option<Jet> {
         self.charged(self.search(q, accept))
     }
 
-    /// As [`NewtonInverse::solve_where`], with the work done, for callers that charge it themselves.
+    /// The first preimage of `q` that `accept` accepts, and the work done, for callers that charge it themselves.
     #[must_use]
     pub(crate) fn search(&self, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         self.search_by(&*self.map, q, accept)
@@ -206,7 +206,7 @@ impl NewtonInverse {
         found
     }
 
-    /// The next starting point for `q` in its bucket: those in the core first, then in the order of their images' distances from q.
+    /// The next starting point for `q` in its bucket: starting points in the core first, then by the distance of their images from q.
     fn next_start(&self, q: Point, tried: &[u32]) -> Option<u32> {
         let (i, j) = self.bucket(q);
         let key = |k: u32| {
@@ -220,7 +220,7 @@ impl NewtonInverse {
         })
     }
 
-    /// As [`NewtonInverse::search`], with the jets of `map`: this inverse's map, or a cache of it.
+    /// The result of [`NewtonInverse::search`], with the jets of `map`: this inverse's map, or a cache of it.
     fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         let mut search = Search::default();
         let found = self.solve_by(map, q, accept, &mut search);
@@ -259,8 +259,8 @@ impl NewtonInverse {
         best.map(|b| b.1)
     }
 
-    /// For each point, a place in the core near its first starting point, found from values alone: where Newton's method ends too, up to
-    /// rounding.
+    /// For each point, its preimage found from values alone, if it is near the first starting point and in the core: up to rounding, the
+    /// point where Newton's method ends too.
     fn places_by_values(&self, qs: &[Point]) -> Vec<Option<Point>> {
         let target = |q: &Point| {
             let start = self.starts.get(self.next_start(*q, &[])? as usize).filter(|_| q.is_finite())?;
@@ -278,7 +278,7 @@ impl NewtonInverse {
         found
     }
 
-    /// The jets of the inverse at `qs` from places found by values alone, or by Newton's method where there is none.
+    /// The jets of the inverse at `qs`, at preimages found from values alone, or by Newton's method where that fails.
     fn jets_by_values(&self, qs: &[Point]) -> Vec<Jet> {
         let places = self.places_by_values(qs);
         let known: Vec<Point> = places.iter().flatten().copied().collect();
@@ -299,12 +299,12 @@ impl NewtonInverse {
 
     /// The jets of the inverse at `qs` by Newton's method for all of them at once.
     fn jets_by_rounds(&self, qs: &[Point]) -> Vec<Jet> {
-        // Each round repeats a search from its start; only the last time is charged.
+        // Each round repeats a search from its start; only the last search is charged.
         let found = by_rounds(&*self.map, qs, |map, q| self.search_by(map, *q, |_| true));
         found.into_iter().map(|f| self.charged(f).unwrap_or(Jet::UNDEFINED)).collect()
     }
 
-    /// Distance from the core along the axis where it is larger; 0 inside.
+    /// The distance from the core along the axis where it is larger; 0 inside.
     fn distance_from_core(&self, p: Point) -> f64 {
         let c = &self.core;
         (c.x0 - p.x).max(p.x - c.x1).max(c.y0 - p.y).max(p.y - c.y1).max(0.0)
@@ -350,7 +350,7 @@ impl NewtonInverse {
         None
     }
 
-    /// Checks the three conditions above.
+    /// Checks the three conditions in the module's text.
     fn accepted(&self, x: Point, jet: &Jet, residual: Vec2) -> Option<Jet> {
         let b = self.domain.inflate(self.reach, self.reach);
         let det = jet.det();
@@ -371,8 +371,8 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
-/// Work of one point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a preimage.
-/// Searches charge what they take beyond this.
+/// The work of one point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a preimage.
+/// Searches charge the rest.
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
@@ -403,7 +403,7 @@ impl Map for NewtonInverse {
         Some(self.map.clone())
     }
 
-    /// That of the map, as far as the inverse shrinks it: by its least stretch, and once more by the ratio of the stretches.
+    /// The detail of the map, as far as the inverse shrinks it: by its least stretch, and once more by the ratio of the stretches.
     fn detail(&self, area: Rect) -> Option<f64> {
         let jet = self.solve(area.center())?;
         let square = jet.dx.hypot2() + jet.dy.hypot2();
@@ -421,7 +421,7 @@ impl Searches for NewtonInverse {
     }
 }
 
-// The inverse of a map with creases: its creases are the images of the map's, with a smooth branch on either side.
+// The inverse of a map with creases has creases along their images, with a smooth branch on either side.
 
 /// The inverse of a map over `area`, a box in its source: in closed form if there is one ([`Map::inverse`]), or else by Newton's method,
 /// whose answers may lie a quarter of the box's diagonal outside, as strokes and handles do. It has the creases of the map.
@@ -430,7 +430,7 @@ pub fn inverse_over(map: impl Map + 'static, area: Rect) -> Arc<dyn Map> {
     inverse_of(&(Arc::new(map) as Arc<dyn Map>), area)
 }
 
-/// As [`inverse_over`], of a map that is shared already.
+/// Returns [`inverse_over`] for a map that is already shared.
 pub(crate) fn inverse_of(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
     const REACH: f64 = 0.25;
     let by_newton = || CreasedInverse::of(map, NewtonInverse::over(Arc::clone(map), area, REACH));
@@ -447,7 +447,7 @@ pub(super) fn kinks_through<M: Map + Clone + 'static>(inverse: &M, map: &dyn Map
     }
 }
 
-/// Newton's inverse of a map in smooth pieces.
+/// Newton's inverse of a map that consists of smooth pieces.
 pub(crate) struct CreasedInverse {
     whole: Arc<NewtonInverse>,
     map: Arc<dyn Map>,
@@ -510,18 +510,18 @@ impl Searches for CreasedInverse {
     }
 }
 
-/// The inverse of one branch of the map, searched from where the inverse of the whole map leads.
+/// The inverse of one branch of the map. The search starts where the inverse of the whole map leads.
 struct OnBranch {
     whole: Arc<NewtonInverse>,
     map: Arc<dyn Map>,
-    /// The map's creases with their values in the branch.
+    /// The map's creases, with the values of their functions in the branch.
     sides: Vec<(Level, f64)>,
 }
 
 impl OnBranch {
-    /// Returns `true` if `p` is in the branch, or at its boundary.
+    /// Returns `true` if `p` is in the branch or on its boundary.
     fn holds(&self, p: Point) -> bool {
-        /// Rounding, as a share of the value inside.
+        /// The rounding error, as a share of the value inside.
         const NOISE: f64 = 1e-9;
         self.sides.iter().all(|(level, inside)| level.at(p) * inside.signum() >= -NOISE * inside.abs())
     }
@@ -533,7 +533,7 @@ impl Map for OnBranch {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        // Where the ends of a closed strip meet, a point has preimages at both.
+        // Where the ends of a closed strip meet, a point has preimages at both ends.
         let near = self.whole.solve(q).filter(|near| self.holds(near.p));
         let near = near.or_else(|| self.whole.solve_where(q, |p| self.holds(p))).or_else(|| self.whole.solve(q));
         let Some(near) = near else { return Jet::UNDEFINED };
@@ -578,13 +578,13 @@ mod tests {
                 assert!((there.dy - Vec2::new(0.0, 1.0)).hypot() < 1e-12);
             }
         }
-        // No preimage at all; one outside the box.
+        // One point without a preimage, and one whose preimage is outside the box.
         assert!(inv.point(Point::new(-1.0, 0.0)).is_nan());
         assert!(inv.point(Fold.point(Point::new(0.4, 0.0))).is_nan());
         assert!(inv.point(Fold.point(Point::new(2.0, 2.5))).is_nan());
     }
 
-    /// Counts its jets.
+    /// A map that counts its jets.
     #[derive(Default)]
     struct Counting(AtomicU64);
     impl Map for Counting {
@@ -624,7 +624,7 @@ mod tests {
         assert!(Fold.point(p).distance(Fold.point(Point::new(0.3, 0.2))) < 1e-14);
     }
 
-    /// y + |x| / 2, and its smooth halves.
+    /// The map y + |x| / 2, with its smooth halves as branches.
     struct Roof;
     struct Half(f64);
 
@@ -667,7 +667,7 @@ mod tests {
         }
     }
 
-    /// A strip around a circle, whose ends meet, in two halves.
+    /// A strip around a circle, in two halves, whose ends meet.
     struct Ring;
 
     impl Formula for Ring {

@@ -2,7 +2,7 @@
 //!
 //! > F(s,t) = Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ Pᵢⱼ / Σⱼ Σᵢ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ
 //!
-//! with s, t running from 0 to 1 across a box. Evaluated in powers of u = 2s − 1 and v = 2t − 1: about the center of the box the
+//! with s, t running from 0 to 1 across a box. It is evaluated in powers of u = 2s − 1 and v = 2t − 1: about the center of the box the
 //! change of basis amplifies rounding errors by at most 2ᵐ·2ⁿ (3ᵐ·3ⁿ, with cancellation, in powers of s and t), and its
 //! coefficients are exact. A polynomial patch is stored as the displacement F(p) − p, so that points that do not move are not
 //! rounded. Horner's scheme runs on a whole batch of points.
@@ -12,10 +12,10 @@ use super::{Class, Cost, Crease, Creases, Jet, Level, Map, Polynomials, Rational
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
 
-/// Points in a batch: two AVX registers of four, or four SSE2 registers of two.
+/// The number of points in a batch: two AVX registers of four, or four SSE2 registers of two.
 const WIDTH: usize = 8;
 
-/// Jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
+/// The number of jets evaluated together: with three results for each coordinate, half as many as points fit the registers.
 const JET_WIDTH: usize = WIDTH / 2;
 /// Coefficients below this share of the largest are rounding noise.
 const NOISE: f64 = 1e-15;
@@ -27,19 +27,19 @@ pub(crate) struct Patch {
     /// u = (x − center.x)·k.x, v = (y − center.y)·k.y.
     center: Point,
     k: Vec2,
-    /// Terms in a row: powers of u.
+    /// The number of terms in a row: powers of u.
     width: usize,
-    /// Rows: powers of v.
+    /// The number of rows: powers of v.
     height: usize,
     /// Coefficients, row by row: of the displacement for a polynomial patch, else of X relative to the center.
     x: Vec<f64>,
-    /// The same for the other coordinate.
+    /// Coefficients of Y, row by row, likewise.
     y: Vec<f64>,
     /// Coefficients of W; empty for a polynomial patch.
     w: Vec<f64>,
-    /// The denominator may vanish inside the box.
+    /// `true` if the denominator may vanish inside the box.
     may_vanish: bool,
-    /// The patch is used only inside its box.
+    /// `true` if the patch is used only inside its box.
     bounded: bool,
 }
 
@@ -127,7 +127,7 @@ impl Patch {
         !self.is_polynomial() && (self.may_vanish || !self.bounded)
     }
 
-    /// (u, v) of L points.
+    /// The coordinates (u, v) of L points.
     #[inline(always)]
     fn local<const L: usize>(&self, p: [Point; L]) -> [[f64; L]; 2] {
         let mut out = [[0.0; L]; 2];
@@ -293,7 +293,7 @@ fn regular_point(rect: Rect, degree: [usize; 2], i: usize, j: usize) -> Point {
 }
 
 impl Map for Patch {
-    /// Proportional to the number of terms; a bicubic net has sixteen.
+    /// The cost is proportional to the number of terms; a bicubic net has sixteen.
     fn cost(&self) -> Cost<'_> {
         Cost::new((self.width * self.height) as f64 / 16.0)
     }
@@ -356,7 +356,7 @@ impl Map for Patch {
         }
     }
 
-    /// Substituting a curve of degree d gives one of degree d·(m+n), or less if the highest terms vanish.
+    /// The image of a curve of degree d has degree d·(m+n), or less if the highest terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let (c, k) = (self.center, self.k);
         let local = |f: &dyn Fn(&[f64; 3]) -> f64| Scaled::new(curve.points.iter().map(f));
@@ -378,7 +378,7 @@ impl Map for Patch {
 
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         let pre = Affine::scale_non_uniform(self.k.x, self.k.y) * Affine::translate(-self.center.to_vec2());
-        // About the center, so that no digits are lost far from the origin.
+        // Computed about the center, so that no digits are lost far from the origin.
         let mut terms = self.terms();
         let c = self.center;
         terms.iter_mut().for_each(|(_, _, [x, y, w])| (*x, *y) = (*x - c.x * *w, *y - c.y * *w));

@@ -5,14 +5,14 @@
 //! plane. In each, both polynomials are subdivided in Bernstein form, whose coefficients bound them: a square on which one of them, or of
 //! their combinations by the inverse Jacobian, has coefficients of one sign has no zero; one on which the Jacobian of these combinations
 //! is diagonally dominant has at most one, which Newton's method finds (E. Sherbrooke, N. Patrikalakis, *Computation of the solutions of
-//! nonlinear polynomial systems*, CAGD 10, 1993). Nothing is missed but for rounding.
+//! nonlinear polynomial systems*, CAGD 10, 1993). Up to rounding, no preimage is missed.
 
 use super::{Creases, Map, NewtonInverse};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::cell::LazyCell;
 use std::sync::Arc;
 
-/// Preimages closer than this share of their coordinates are one.
+/// Preimages closer than this share of their coordinates coincide.
 const SAME: f64 = 1e-7;
 /// Zeros further than this from the center, in units of the polynomials' variables, count as lying at infinity.
 const FAR: f64 = 1e6;
@@ -23,9 +23,9 @@ const MAX_SQUARES: usize = 20_000;
 
 /// A map as X, Y and W in powers of u and v.
 pub(crate) struct Polynomials {
-    /// (u, v) from the source point.
+    /// The affine function from the source point to (u, v).
     pub(crate) pre: Affine,
-    /// Added to (X, Y)/W.
+    /// The origin of the image: added to (X, Y)/W.
     pub(crate) origin: Point,
     /// The coefficients of uⁱvʲ as (i, j, [X, Y, W]).
     pub(crate) terms: Vec<(usize, usize, [f64; 3])>,
@@ -94,8 +94,8 @@ fn distinct(mut points: Vec<Point>, center: Point, size: f64) -> Vec<Point> {
     out
 }
 
-/// For each point, all points that `map` takes to it ([`Map::preimages`]) or, if it cannot tell, those that its inverse and Newton's method
-/// find over `area` and half its size around it. In the order of their abscissae, without those at which the map is not defined.
+/// For each point, its preimages under `map`: all of them if they are known ([`Map::preimages`]), or else those that the map's inverse and
+/// Newton's method find over `area` and half its size around it. Sorted by abscissa, without points where the map is not defined.
 #[must_use]
 pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>> {
     let mut creases = Creases::default();
@@ -145,7 +145,7 @@ fn transposed(rows: &[Vec<Vec2>]) -> Vec<Vec<Vec2>> {
     (0..rows[0].len()).map(|i| rows.iter().map(|r| r[i]).collect()).collect()
 }
 
-/// A square of the plane of (u, v), with 1/u or 1/v for those that are `far`.
+/// Coordinates for a square of the (u, v) plane. Where `far` is `true`, 1/u or 1/v takes the place of u or v.
 struct Chart<'a> {
     of: &'a Polynomials,
     far: [bool; 2],
@@ -160,7 +160,7 @@ impl Chart<'_> {
         self.of.pre.inverse() * Point::from(<(f64, f64)>::from(self.turned(at)))
     }
 
-    /// Returns `true` if W is more than rounding: at a base point, which is nobody's preimage, all three polynomials vanish.
+    /// Returns `true` if W exceeds its rounding error. At a base point, which is no preimage, all three polynomials vanish.
     fn is_regular(&self, at: [f64; 2]) -> bool {
         let [u, v] = self.turned(at);
         let terms = self.of.terms.iter().map(|(i, j, c)| c[2] * u.powi(*i as i32) * v.powi(*j as i32));
@@ -197,7 +197,7 @@ impl Square {
     }
 
     fn has_no_zero(&self) -> bool {
-        /// Rounding of the coefficients, as a share of the largest.
+        /// The rounding error of the coefficients, as a share of the largest.
         const NOISE: f64 = 1e-14;
         let one_sign = |row: Vec2| {
             let noise = NOISE * self.all().map(|g| (row.x * g.x).abs() + (row.y * g.y).abs()).fold(0.0, f64::max);
@@ -244,7 +244,7 @@ impl Square {
         let rows = if k == 0 { self.g } else { transposed(&self.g) };
         let (mut first, mut second) = (Vec::new(), Vec::new());
         for mut row in rows {
-            // De Casteljau's algorithm: its left side is the first half, its right side the second.
+            // In de Casteljau's triangle, the left side is the first half, the right side the second.
             let mut left = vec![row[0]];
             for n in (1..row.len()).rev() {
                 (0..n).for_each(|i| row[i] = (row[i] + row[i + 1]) * 0.5);
@@ -283,7 +283,7 @@ mod tests {
         casteljau(points.iter().map(|row| casteljau(row.clone(), s)).collect(), t)
     }
 
-    /// A polynomial map of degree m×n takes 2mn complex points to one, and complex ones come in pairs.
+    /// A polynomial map of degree m×n takes 2mn complex points to each point, and complex preimages come in pairs.
     #[test]
     fn every_preimage_is_one_the_known_one_is_among_them_and_their_number_is_even() {
         let mut state = 5;
@@ -310,7 +310,7 @@ mod tests {
         }
     }
 
-    /// x² + y² and x·y: the four points with x² + y² = 5, x·y = 2; on the fold x = y two of them meet.
+    /// The map (x² + y², x·y): four points satisfy x² + y² = 5, x·y = 2; on the fold x = y two preimages meet.
     #[test]
     fn folds_and_whole_curves() {
         let map = super::super::from_fn(|p| Point::new(p.x * p.x + p.y * p.y, p.x * p.y));
@@ -324,7 +324,7 @@ mod tests {
         let fold = squares.preimages(&map, Point::new(2.0, 1.0)).unwrap();
         assert_eq!(fold.len(), 2, "{fold:?}");
         assert!(fold[1].distance(Point::new(1.0, 1.0)) < 1e-6, "{fold:?}");
-        // A line that shrinks to a point: infinitely many.
+        // A line that shrinks to a point has infinitely many preimages.
         let terms = vec![(1, 0, [1.0, 0.0, 0.0]), (1, 1, [0.0, 1.0, 0.0]), (0, 0, [0.0, 0.0, 1.0])];
         let pinch = Polynomials { pre: Affine::IDENTITY, origin: Point::ZERO, terms };
         let map = super::super::from_fn(|p| Point::new(p.x, p.x * p.y));

@@ -2,8 +2,8 @@
 //!
 //! > F(x, y) = (X, Y)/W,  X = Σ cᵢⱼ aⁱ bʲ, similarly Y and W,  (a, b) an affine function of (x, y)
 //!
-//! Evaluated by Horner's scheme. A polynomial map is stored as the displacement F(p) − p, so that points that do not move are
-//! not rounded. A curve of degree d has an image of degree d·n, n being the total degree, by substitution in Bernstein form. A
+//! Polynomials are evaluated by Horner's scheme. A polynomial map is stored as the displacement F(p) − p, so that points that do not
+//! move are not rounded. Substitution in Bernstein form maps a curve of degree d to one of degree d·n, where n is the total degree. A
 //! map of degree one reports itself as affine or projective ([`Map::class`]).
 
 use super::rational_bezier::Scaled;
@@ -17,9 +17,9 @@ use std::sync::Arc;
 /// A map of the plane whose coordinates are quotients of polynomials with one denominator.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Quotient {
-    /// (a, b) from the source point.
+    /// The affine function from (x, y) to (a, b).
     pre: Affine,
-    /// Added to (X, Y)/W; unused by a polynomial map.
+    /// The origin of the image: added to (X, Y)/W; unused by a polynomial map.
     origin: Point,
     /// X and Y; the displacement for a polynomial map.
     x: Plane,
@@ -29,11 +29,11 @@ pub(crate) struct Quotient {
     /// A second condition on the domain besides W > 0: positive where the map is defined.
     guard: Option<Plane>,
     degree: usize,
-    /// Known to have no pole in its domain of use.
+    /// `true` if the map is known to have no pole in its domain of use.
     without_poles: bool,
     /// The box over which the inverse is sought.
     domain: Rect,
-    /// The inverse, if it is known and a quotient too.
+    /// The inverse, if it is known and is a quotient too.
     pub(crate) back: Option<Box<Self>>,
 }
 
@@ -81,7 +81,7 @@ impl Quotient {
         self.w.is_zero()
     }
 
-    /// A map of degree one as a matrix, about the source point at which a = b = 0, so that no digits are lost far from the origin.
+    /// Returns a map of degree one as a matrix, about the source point at which a = b = 0, so that no digits are lost far from the origin.
     fn matrix(&self) -> Option<Homography> {
         if self.degree > 1 {
             return None;
@@ -101,7 +101,7 @@ impl Quotient {
         Some(Homography::about([x, y, w], from, self.origin))
     }
 
-    /// The same map in its simplest form.
+    /// Returns this map in its simplest form: affine, projective or a quotient.
     #[must_use]
     pub(crate) fn simplest(self) -> Arc<dyn Map> {
         match Formula::class(&self) {
@@ -119,7 +119,7 @@ pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
 }
 
 impl Formula for Quotient {
-    /// Proportional to the number of terms of a polynomial.
+    /// The cost is proportional to the number of terms of a polynomial.
     fn cost(&self) -> Cost<'_> {
         const TERMS: f64 = 32.0;
         let terms = (self.degree + 1) * (self.degree + 2) / 2;
@@ -212,7 +212,7 @@ impl Formula for Quotient {
         Polynomials { pre: self.pre, origin: self.origin, terms: terms.collect() }.preimages(self, q)
     }
 
-    /// In closed form if that is known, by the matrix for degree one, by Newton's method over the domain otherwise.
+    /// The inverse in closed form if that is known, by the matrix for degree one, by Newton's method over the domain otherwise.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         if let Some(back) = &self.back {
             let own = Self { back: None, ..self.clone() };

@@ -30,7 +30,7 @@ impl RationalBezier {
         })
     }
 
-    /// An arc as a rational quadratic with middle weight cos(Δ/2). Its parameter is not proportional to the angle.
+    /// An arc as a rational quadratic with middle weight cos(Δ/2), where Δ is its sweep. Its parameter is not proportional to the angle.
     fn from_arc(arc: &EllipticArc) -> Option<Self> {
         /// The middle weight is 0 at a half turn, and badly conditioned just below it.
         const MAX_SWEEP: f64 = 0.9 * std::f64::consts::PI;
@@ -92,7 +92,7 @@ impl RationalBezier {
     /// Returns this curve with as few control points as its homogeneous coordinates allow: a degree that was raised is lowered again.
     #[must_use]
     pub fn reduced(mut self) -> Self {
-        /// Rounding of the leading coefficient, as a share of its terms.
+        /// The rounding error of the leading coefficient, as a share of its terms.
         const NOISE: f64 = 1e-13;
         while self.points.len() > 2 {
             let n = self.points.len() - 1;
@@ -105,7 +105,7 @@ impl RationalBezier {
             if !(0..3).all(vanishes) {
                 break;
             }
-            // Each half from its own end, where the recurrence is stable: P̂ᵢ = (i·P̂ᵢ₋₁ + (n − i)·P̂ᵢ)/n of the lower degree.
+            // Each half is computed from its end, where the recurrence is stable: P̂ᵢ = (i·P̂ᵢ₋₁ + (n − i)·P̂ᵢ)/n of the lower degree.
             let (p, mut low) = (&self.points, vec![[0.0; 3]; n]);
             for k in 0..3 {
                 for i in 0..n.div_ceil(2) {
@@ -122,7 +122,7 @@ impl RationalBezier {
         self
     }
 
-    /// This curve written with degree `n`, if that is higher than its own.
+    /// This curve written with degree `n`, if that is higher than its degree.
     #[must_use]
     pub fn raised(&self, n: usize) -> Self {
         let mut points = self.points.clone();
@@ -179,8 +179,8 @@ pub fn exact_images(map: &dyn Map, seg: &Seg) -> Option<Vec<RationalBezier>> {
 
 // Polynomials in Bernstein form over [0, 1], for exact images of curves.
 //
-// Coefficients are stored *scaled* (multiplied by their binomials), so that products are plain convolutions. See Farouki &
-// Rajan, *Algorithms for polynomials in Bernstein form* (1988).
+// Coefficients are stored *scaled* (multiplied by their binomials), so that products are plain convolutions (R. T. Farouki,
+// V. T. Rajan, *Algorithms for polynomials in Bernstein form*, CAGD 5, 1988).
 
 /// A polynomial by its scaled Bernstein coefficients cᵢ·C(n,i).
 #[derive(Debug, Clone, PartialEq)]
@@ -233,7 +233,7 @@ impl Scaled {
     }
 }
 
-/// C(n, 0..=n).
+/// The binomials C(n, k) for k from 0 to n.
 fn binomials(n: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(n + 1);
     let mut b = 1.0;

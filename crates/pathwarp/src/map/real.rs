@@ -24,8 +24,8 @@ pub trait Real:
     + Div<f64, Output = Self>
     + From<f64>
 {
-    /// The value without derivatives, to branch on between expressions that agree where they meet. Of an
-    /// [`Enclosure`](super::Enclosure), a value in the middle.
+    /// The value without derivatives, to branch on between expressions that agree where they meet. For an
+    /// [`Enclosure`](super::Enclosure), the middle of its range.
     fn value(self) -> f64;
     /// √x.
     fn sqrt(self) -> Self;
@@ -35,7 +35,7 @@ pub trait Real:
     fn cos(self) -> Self;
     /// eˣ.
     fn exp(self) -> Self;
-    /// Natural logarithm.
+    /// The natural logarithm.
     fn ln(self) -> Self;
     /// The angle of the vector (x, self) in radians, in (−π, π].
     fn atan2(self, x: Self) -> Self;
@@ -49,7 +49,7 @@ pub trait Real:
     fn abs(self) -> Self {
         if self.value() < 0.0 { -self } else { self }
     }
-    /// The smaller of two.
+    /// The smaller of two numbers.
     fn smaller(self, other: Self) -> Self {
         if self.value() <= other.value() { self } else { other }
     }
@@ -58,11 +58,11 @@ pub trait Real:
         let v = self.value();
         Self::from(if v == 0.0 { 0.0 } else { v.signum() })
     }
-    /// The largest integer that is not larger; without derivatives.
+    /// The largest integer that is not larger than the number; without derivatives.
     fn floor(self) -> Self {
         Self::from(self.value().floor())
     }
-    /// The image under a map that is no formula; without derivatives, unless the type asks the map for them.
+    /// The image of a point under a map that is not a formula; without derivatives, unless the number type asks the map for them.
     #[doc(hidden)]
     fn image<M: Map + ?Sized>(map: &M, at: [Self; 2]) -> (Self, Self) {
         let p = map.point(Point::new(at[0].value(), at[1].value()));
@@ -70,7 +70,7 @@ pub trait Real:
     }
 }
 
-/// Implements operators of a type, one a line.
+/// Implements operators of a type, one on each line.
 macro_rules! operators {
     (#[$inline:meta] $type:ty: $($operator:ident $method:ident $other:ty: |$a:ident, $b:ident| $result:expr;)*) => {$(
         impl $operator<$other> for $type {
@@ -113,11 +113,11 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// f(self), given the value and slope of f there.
+    /// f(self), given the value and slope of f at `self`.
     #[inline]
     fn chain(self, value: f64, slope: f64) -> Self {
         if slope.is_infinite() {
-            // At the tip of √(x² + y²), as in `hypot`.
+            // Where both derivatives vanish, so does the result, even if the slope is infinite, as at the tip of √(x² + y²).
             let by = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
             return Self { v: value, x: by(self.x), y: by(self.y) };
         }

@@ -1,7 +1,7 @@
 //! Tiled maps: rows of smooth maps, each responsible for a rectangle of the source plane.
 //!
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
-//! vertical stretches within a row. Neighbours need not agree there; a path across a gap is connected by a straight line.
+//! vertical stretches within a row. Adjacent maps need not agree there; a path across a gap is connected by a straight line.
 
 use super::curves::{Guide, GuidePiece};
 use super::newton::kinks_through;
@@ -32,18 +32,18 @@ pub(crate) struct Tiled {
     work: f64,
 }
 
-/// Extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
+/// The extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
 const REACH: f64 = 1e3;
-/// Margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
+/// The margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
 /// their rounding.
 const MARGIN: f64 = 1e-9;
-/// Tiles usually searched for a point.
+/// The number of tiles usually searched for a point.
 const USUAL_TILES: usize = 2;
-/// Distance beyond the region over which the inverse searches, as a multiple of its size.
+/// The distance beyond the region over which the inverse searches, as a multiple of its size.
 const INVERSE_REACH: f64 = 0.5;
 
 impl Tiled {
-    /// Rows over `region`, divided at the ordinates `cuts`. A single tile gives its map itself. `None` if there are no rows, or
+    /// The map of these rows over `region`, divided at the ordinates `cuts`. A single tile gives its map. `None` if there are no rows, or
     /// if the number of cuts does not fit.
     #[must_use]
     pub(crate) fn over(region: Rect, cuts: Vec<f64>, rows: Vec<TileRow>) -> Option<Arc<dyn Map>> {
@@ -60,7 +60,7 @@ impl Tiled {
         }
     }
 
-    /// Row and column of the tile at `p`.
+    /// The row and column of the tile at `p`.
     fn index(&self, p: Point) -> (usize, usize) {
         let j = self.cuts.partition_point(|c| *c < p.y);
         (j, self.rows[j].cuts.partition_point(|c| *c < p.x))
@@ -93,7 +93,7 @@ impl Tiled {
         b
     }
 
-    /// Rows and columns of all tiles.
+    /// The rows and columns of all tiles.
     fn tiles(&self) -> impl Iterator<Item = (usize, usize)> {
         self.rows.iter().enumerate().flat_map(|(j, r)| (0..r.maps.len()).map(move |i| (j, i)))
     }
@@ -149,7 +149,7 @@ impl Map for Tiled {
         Some(tile.branch(inside).unwrap_or_else(|| tile.clone()))
     }
 
-    /// For a curve whose control points, and therefore the whole curve, lie in one tile.
+    /// The image of a curve whose control points, and therefore the whole curve, lie in one tile.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let points = curve.hull()?;
         let (j, i) = self.index(*points.first()?);
@@ -166,7 +166,7 @@ impl Map for Tiled {
         Some(all?.into_iter().flatten().collect())
     }
 
-    /// By Newton's method in every tile, up to half the size of the region beyond it.
+    /// The inverse by Newton's method in every tile, up to half the size of the region beyond it.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         Some(Arc::new(TiledInverse::new(self)))
     }
@@ -258,10 +258,10 @@ impl Searches for TiledInverse {
 //
 // > F(u, v) = (1 − v)·T(u) + v·B(u)
 //
-// with u and v from 0 to 1 over a box of the source. u is proportional to arc length along a guide, or the guide's own
-// parameter with an equal share for every segment. The vertical lines through the joints of either guide are creases.
+// with u and v from 0 to 1 over a box of the source. u is proportional to arc length along a guide, or to the parameter of its
+// segments, each with an equal share. The vertical lines through the joints of either guide are creases.
 //
-// On a strip between creases on which both guides are polynomials in u, the map is a bicubic net. Being linear in v, its rows
+// On a strip between creases on which both guides are polynomials in u, the map is a bicubic net. It is linear in v, so its rows
 // divide the lines between the guides evenly.
 
 /// The ruled map that takes the upper side of `frame` to `top` and its lower side to `bottom`, as a row of tiles between creases.
@@ -288,7 +288,7 @@ fn unit(frame: Rect, u0: f64, u1: f64) -> Affine {
     Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -(frame.x0 + u0 * frame.width()) / w, -frame.y0 / h])
 }
 
-/// The map over one strip.
+/// Returns the map over one strip.
 fn strip(frame: Rect, top: &Guide, bottom: &Guide, u0: f64, u1: f64) -> Arc<dyn Map> {
     let middle = 0.5 * (u0 + u1);
     let (top, bottom) = (top.piece(middle), bottom.piece(middle));
@@ -378,7 +378,7 @@ mod tests {
         }
     }
 
-    /// u is the share of the arc length, measured by an independent integration.
+    /// The parameter u is the share of the arc length, measured by an independent integration.
     #[test]
     fn arc_length_is_the_share_of_the_length() {
         let c = CubicBez::new((0.0, 0.0), (10.0, 60.0), (20.0, -30.0), (120.0, 10.0));
@@ -389,7 +389,7 @@ mod tests {
             let u = c.subsegment(0.0..t).arclen(1e-12) / total;
             assert!(g.eval(u).distance(c.eval(t)) < 1e-8, "{t}");
         }
-        // Segments share [0, 1] by length, so one without length has no share.
+        // Segments share [0, 1] in proportion to their lengths, so one without length has no share.
         let g = guide("M0,0 L30,0 L30,0 L30,10", Along::ArcLength);
         assert_eq!(g.joints().collect::<Vec<_>>(), [0.75]);
         assert!(g.eval(0.875).distance((30.0, 5.0).into()) < 1e-12);

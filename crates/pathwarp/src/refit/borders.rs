@@ -1,8 +1,8 @@
 //! Borders that shapes share, simplified once for all of them.
 //!
-//! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, those that several
-//! outlines have counted once. Between junctions, outlines that share a segment share all of them: what stands in their place is found in
-//! one direction, from the segments alone, so that it is the same for all.
+//! Segments are cut at nodes of others that lie on them. A node is a *junction* unless exactly two segments meet there, counting segments
+//! of several outlines once. Outlines that share a segment share the whole chain of segments up to the next junctions. A chain is replaced
+//! in one direction, from its segments alone, so that the result is the same for all outlines.
 
 use super::limits::ARCS;
 use super::options::Options;
@@ -14,7 +14,7 @@ use kurbo::{BezPath, Line, ParamCurve, Point};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-/// Distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
+/// The distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
 const ON: f64 = 1e-2;
 
 /// The borders of a drawing.
@@ -25,7 +25,7 @@ pub struct Borders {
 }
 
 impl Borders {
-    /// The borders among outlines whose subpaths have these tolerances; without, all have `tolerance`.
+    /// The borders among outlines whose subpaths have these tolerances, or `tolerance` if none are given.
     #[must_use]
     pub fn among<'a>(outlines: &[(&'a Outline, &'a [f64])], tolerance: f64) -> Self {
         let nodes = Nodes::new(outlines.iter().map(|(o, _)| *o), ON * tolerance);
@@ -34,7 +34,7 @@ impl Borders {
         Self { nodes, shared }
     }
 
-    /// The parts of a cut subpath between junctions, in their order; the first of a closed one begins at a junction, if it has one.
+    /// The parts of a cut subpath between junctions, in order. In a closed one, the first begins at a junction, if there is one.
     fn chains(&self, s: &Subpath) -> Vec<Vec<Seg>> {
         let mut segs = s.segs.clone();
         if s.closed
@@ -58,7 +58,7 @@ impl Borders {
 struct Nodes {
     cell: f64,
     within: f64,
-    /// Each with the number of the subpath that has it; `None` for several.
+    /// The nodes in each cell, with the number of the only subpath that has them, or `None` for several.
     cells: HashMap<[i64; 2], Vec<(Point, Option<usize>)>>,
 }
 
@@ -88,9 +88,9 @@ impl Nodes {
         [p.x, p.y].map(|v| (v / self.cell).floor() as i64)
     }
 
-    /// The nodes that lie on a line, in their order, but for those that only its own subpath has.
+    /// The nodes that lie on a line, in order, without those of the subpath `own` alone.
     fn on(&self, line: Line, own: Option<usize>) -> Vec<Point> {
-        /// Longer lines, in cells, are not cut: what ends on them is far smaller.
+        /// The length in cells beyond which lines are not cut: anything that ends on them is far smaller.
         const MOST_CELLS: f64 = 1e5;
         let (along, length) = (line.p1 - line.p0, line.p0.distance(line.p1));
         let steps = (length / self.cell).ceil();
@@ -116,7 +116,7 @@ impl Nodes {
                     }
                 }
             }
-            // Those of the last places only come again.
+            // Only cells near the last ones can come again.
             let old = seen.len().saturating_sub(24);
             seen.drain(..old);
         }
@@ -146,12 +146,12 @@ impl Nodes {
     }
 }
 
-/// Gives the subpaths of an outline the fewest nodes within a tolerance. `contours` holds their tolerances; those beyond its end have
-/// `options.tolerance`. [`Options::borders`] become the same in all outlines that share them. Corners are joints that turn by more than `corner`, in radians;
-/// `None`: those for which no smooth curve can stand within the tolerance, see [`bezierfit::Options::corner`].
+/// Gives the subpaths of an outline the fewest nodes within a tolerance. `contours` holds their tolerances; subpaths beyond its end have
+/// `options.tolerance`. [`Options::borders`] get the same curves in all outlines that share them. Corners are joints that turn by more
+/// than `corner`, in radians; `None` chooses joints where no smooth curve is within the tolerance, see [`bezierfit::Options::corner`].
 ///
 /// # Errors
-/// A coordinate is not finite.
+/// [`GeometryError::NotFinite`] for a coordinate, [`GeometryError::Tolerance`] for a tolerance that is not positive and finite.
 pub fn simplified(
     outline: &Outline,
     corner: Option<f64>,
@@ -200,7 +200,7 @@ pub fn simplified(
     Ok(RefittedPath { path, spans: Vec::new(), report })
 }
 
-/// The segments in the direction that all outlines with them agree on, and `true` if that is the other one.
+/// Returns the segments in the direction that all outlines with them agree on, and `true` if it is the reverse of the given one.
 fn directed(segs: Vec<Seg>) -> (Vec<Seg>, bool) {
     let turned = is_turned(&segs);
     (if turned { segs.iter().rev().map(Seg::reversed).collect() } else { segs }, turned)

@@ -1,20 +1,20 @@
-//! The image of any one curve under a map.
+//! The image of a curve of any kind under a map.
 
 use crate::map::{Creases, Level, Map};
 use bezierfit::{Error, Fitted, Lane, Lanes, Source};
 use kurbo::{Point, Vec2};
 
-/// Samples of a curve between which its crossings with creases are looked for.
+/// The number of samples of a curve between which its crossings with creases are sought.
 const SAMPLES: usize = 256;
 
-/// Fits the image of a curve under a map: of a closure from a parameter, 0 to 1, to a point and a derivative, of kurbo's curves as
-/// [`Segment`](bezierfit::Segment), [`PathSource`](bezierfit::PathSource) and [`Kurbo`](bezierfit::Kurbo), or of any other [`Source`].
+/// Fits the image of a curve under a map. The curve is a closure from a parameter, 0 to 1, to a point and a derivative, a curve of kurbo
+/// as [`Segment`](bezierfit::Segment), [`PathSource`](bezierfit::PathSource) or [`Kurbo`](bezierfit::Kurbo), or any other [`Source`].
 ///
-/// Creases are found where the curve crosses them, unless it does so twice within a 256th of its parameter. Paths and segments, which
-/// [`warp_path`](super::warp_path) takes as outlines, need no such care there.
+/// Crossings with a crease are missed if two of them lie within a 256th of the curve's parameter. To avoid this, pass paths and segments
+/// as outlines to [`warp_path`](super::warp_path).
 ///
 /// # Errors
-/// As [`bezierfit::fit`]; places are those in the source.
+/// The errors of [`bezierfit::fit`], such as [`Error::NotFinite`] and [`Error::NotMet`]. Points in them belong to the source.
 ///
 /// ```
 /// use pathwarp::{deform::Swirl, fit::{Options, Segment}, kurbo::{CubicBez, PathSeg, Point, Vec2}, refit::warp_curve};

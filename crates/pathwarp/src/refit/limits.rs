@@ -1,17 +1,17 @@
-//! Thresholds of the refit of paths; those of the fit are in the crate `bezierfit`. Entries say what `bezierfit`'s say.
+//! Thresholds of the refit of paths. Figures are explained in the `limits` of the crate `bezierfit`, with the thresholds of the fit.
 
-/// Segments refitted as one chunk. Memory for the jets and samples of a chunk is released after it.
+/// The number of segments refitted as one chunk. Memory for the jets and samples of a chunk is released after it.
 pub(super) const CHUNK: usize = 1024;
 
 /// Joints of the source that turn by more than this (as a tangent, ten degrees) are corners at which a chunk may end.
 pub(super) const CHUNK_CORNER: f64 = 0.18;
 
-/// Segments of a subpath for which several threads are started: two milliseconds of work.
+/// The number of segments of a subpath for which several threads are started: two milliseconds of work.
 #[cfg(feature = "parallel")]
 pub(super) const WORTH_THREADS: usize = 4 * CHUNK;
 
 /// A contour that an affine map moves keeps its nodes, unless it has more than this many times as many as it needs. 1: letters beside a
-/// swirl lose nodes that nobody asked to move; without a limit, outlines of dashes there have twice as many pieces as elsewhere.
+/// swirl lose nodes; without a limit, outlines of dashes there have twice as many pieces as elsewhere.
 /// Test: `few_nodes::what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many` (at 1 and 1000).
 pub(super) const MANY_NODES: usize = 2;
 
@@ -22,7 +22,7 @@ pub(super) const MANY_NODES: usize = 2;
 pub(super) const POINT_SIZE: f64 = 1e-15;
 
 /// Two sides of a crease closer than this share of the tolerance are joined, which spends that share; a wider gap is a tear and
-/// is bridged by a line, which adds a piece. No figure is recorded.
+/// is bridged by a line, which adds a piece.
 /// Test: `limits::a_tear_is_bridged_by_a_line_unless_it_is_rounding` (at 0 and 1e9).
 pub(super) const TEAR: f64 = 0.01;
 
@@ -32,47 +32,47 @@ pub(super) const TEAR: f64 = 0.01;
 /// Tests: *figures* (at 0.2 and 7); `random::within_the_tolerance_under_bicubic_maps` (at 7).
 pub(super) const MAX_RATIONAL_SWEEP: f64 = 2.2;
 
-/// … if both derivatives are above this share of their segment's chord, times the size of the Jacobian: far above
+/// Derivatives above this share of their segment's chord, times the size of the Jacobian, decide whether a joint is smooth. Far above
 /// `VANISHING_DERIVATIVE`, below which one-sided tangents decide. Unchanged at 0 and 1e9: the sample has no joint in between.
 pub(super) const CLEAR_DERIVATIVE: f64 = 1e-6;
 
-/// Segments of the longest run whose shape is remembered: some letters in one stroke.
+/// The number of segments of the longest run whose shape is remembered: some letters in one stroke.
 pub(super) const MAX_SHAPE: usize = 64;
 
-/// Shapes of runs that are remembered, in case they come again: two or three for each letter of an alphabet.
+/// The number of shapes of runs that are remembered, in case they come again: two or three for each letter of an alphabet.
 pub(super) const MAX_SHAPES: usize = 256;
 
-/// Ways that are remembered for a shape: a map magnifies some places more than others, which then need more pieces.
+/// The number of ways that are remembered for a shape: a map magnifies some sites more than others, which then need more pieces.
 pub(super) const MAX_WAYS: usize = 3;
 
-/// Where no cubics can be carried, a known shape is searched each time this many such places have come, in case there is a better way
-/// by now. Text under a gentle flag: 2: −1.1 % pieces, +7 % work; but where the map changes much along a line, twice the time.
+/// Where no cubics can be carried, a known shape is searched at one of this many sites, in case there is a better way by now. Text under a
+/// gentle flag: 2: −1.1 % pieces, +7 % work; but where the map changes much along a line, twice the time.
 pub(super) const SEARCH_AGAIN: usize = 8;
 
 /// Control points of runs of the same shape differ by less than this share of the tolerance; letters are placed in single precision.
 pub(super) const SAME_SHAPE: f64 = 0.05;
 
-/// Ways of a shape that are remembered with their cubics, each for one Jacobian of the map.
+/// The number of ways of a shape that are remembered with their cubics, each for one Jacobian of the map.
 pub(super) const MAX_CARRIED: usize = 24;
 
-/// Sites from which cubics are carried to another, one after the other, until they suffice there.
+/// The number of sites from which cubics are carried to another, one after the other, until they suffice there.
 pub(super) const CARRY_TRIALS: usize = 3;
 
-/// Cubics are carried to another place if lengths there are at most this many times as long, in every direction …
+/// Cubics are carried to another site if lengths there are at most this many times as long, in every direction …
 pub(super) const CARRY_UP: f64 = 2.0;
 
-/// … and at least this many times: where they are shorter, fewer cubics may do. 0.8: fewer places are alike, pieces unchanged.
+/// … and at least this many times: where they are shorter, fewer cubics may do. 0.8: fewer sites are similar, pieces unchanged.
 pub(super) const CARRY_DOWN: f64 = 0.5;
 
-/// Tangents of a carried cubic may turn by this much (as a tangent) beside the change of the map where the run begins.
+/// The turn (as a tangent) that tangents of a carried cubic may have beyond the change of the map where the run begins.
 pub(super) const CARRIED_TURN: f64 = 0.2;
 
-/// Factor from the largest difference at the samples of a carried cubic to that between them, a smooth function. 1: 5 % fewer runs are
+/// The assumed ratio of the largest difference between the samples of a carried cubic to that at the samples. 1: 5 % fewer runs are
 /// fitted anew.
 pub(super) const CARRY_MARGIN: f64 = 2.0;
 
-/// Share of the tolerance by which an image may be off what its samples predict between them, as its enclosure tells.
+/// The share of the tolerance by which an image may differ from the interpolation of its samples, by its enclosure.
 pub(super) const HIDDEN: f64 = 0.25;
 
-/// Share of the tolerance spent on turning arcs into cubics before an edit.
+/// The share of the tolerance spent on turning arcs into cubics before an edit.
 pub(crate) const ARCS: f64 = 0.05;

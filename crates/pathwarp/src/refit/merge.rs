@@ -1,7 +1,7 @@
 //! Fewer pieces across smooth joints of the source.
 //!
-//! A drawing often has more nodes than its shape needs. Smoothly joined segments are one curve to the fitter, which searches for the
-//! fewest cubics that cover it. They are used only if they are fewer than the segments' own pieces and every one has passed its check.
+//! A drawing often has more nodes than its shape needs. The fitter treats smoothly joined segments as one curve and searches for the
+//! fewest cubics that cover it. They are used only if they are fewer than the segments' pieces and every one has passed its check.
 
 use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
 use super::options::Options;
@@ -19,7 +19,7 @@ use bezierfit::{Assurance, Nodes, NotFinite, Piece, Quotient, Report, Source};
 use kurbo::{Point, Vec2};
 use std::sync::Arc;
 
-/// Work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
+/// The work of a trial with its share of the checks, in evaluations of the map. The samples themselves are fewer.
 const TRIAL_WORK: f64 = 40.0;
 
 /// State reused from one subpath to the next.
@@ -30,12 +30,12 @@ pub(super) struct MergeMemory {
 }
 
 impl MergeMemory {
-    /// Begins with the shapes of other paths.
+    /// Starts with the shapes of other paths.
     pub(super) fn new(known: Arc<Shapes>) -> Self {
         Self { repeats: Repeats::new(known), ..Self::default() }
     }
 
-    /// The shapes it began with.
+    /// The shapes of other paths that it started with.
     pub(super) fn known(&self) -> Arc<Shapes> {
         Arc::clone(&self.repeats.known)
     }
@@ -50,7 +50,7 @@ impl MergeMemory {
 pub(super) struct Merger<'a> {
     fitter: &'a SegmentFitter<'a>,
     parts: &'a [Part],
-    /// They are a closed subpath without corners.
+    /// `true` if the parts are a closed subpath without corners.
     ring: bool,
     pieces: Vec<Piece>,
     report: Report,
@@ -98,7 +98,7 @@ pub(super) fn joins(before: &Part, after: &Part) -> bool {
     !torn && may_be_smooth([&before.seg, &after.seg], [&before.jets[1], &after.jets[0]])
 }
 
-/// Announces the samples of all segments of `runs` that may be merged, and the places where pieces may end, to a map that prefers
+/// Announces the samples of all segments of `runs` that may be merged, and the points where pieces may end, to a map that prefers
 /// batches and knows the jets at the joints.
 pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
     let mut sources = Vec::new();
@@ -153,7 +153,7 @@ impl<'a> Merger<'a> {
 
     /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
     fn joined(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
-        // The whole path is refused then.
+        // The budget is used up, and the whole path will be refused.
         if self.fitter.options.budget.left() <= 0.0 {
             return self.single(start);
         }
@@ -175,7 +175,7 @@ impl<'a> Merger<'a> {
         Ok(run.segments.len())
     }
 
-    /// As [`joined`](Self::joined), with nodes where the options want them.
+    /// Appends the pieces of the first segments from `start` up to `end`, with nodes where the options want them; returns their number.
     fn placed(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
         let options = self.fitter.options;
         let mut run = self.run(start, end)?;
@@ -246,7 +246,7 @@ impl<'a> Merger<'a> {
         Ok(run)
     }
 
-    /// A segment of a run. `None` if it cannot be in one, having no length, or slow spots and not being `alone`.
+    /// Prepares a segment for a run. `None` if it cannot be in one: it has no length, or it has slow spots and is not `alone`.
     fn run_segment(&self, part: &'a Part, alone: bool) -> Option<RunSegment<SourceCurve<'a>>> {
         let options = self.fitter.options;
         let source = part.source(self.fitter, &part.seg);
@@ -262,7 +262,7 @@ impl<'a> Merger<'a> {
         let hides = |between: [f64; 2], samples: usize| {
             form.is_none() && source.resolved(between, samples, options.tolerance) == Some(false)
         };
-        // Enclosures of shorter parts are tighter.
+        // The enclosures of shorter parts are tighter.
         let quarter = |i: u8| [0.25 * f64::from(i), 0.25 * f64::from(i + 1)];
         if hides([0.0, 1.0], samples) && (0..4).any(|i| hides(quarter(i), samples / 4)) {
             return None;
@@ -326,7 +326,7 @@ impl<'a> Merger<'a> {
     }
 }
 
-/// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` stands for the segments' own.
+/// The first of the ways for other runs of the same shape that takes no more pieces here. The inner `None` means the segments' pieces.
 fn repeated<'w>(
     ways: impl Iterator<Item = &'w Way>,
     reaches: &mut Reaches<'_, SourceCurve<'_>, impl FitOwn>,

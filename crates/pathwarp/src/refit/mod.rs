@@ -2,11 +2,10 @@
 //!
 //! [`warp_path`] works segment by segment. Affine maps move control points; projective maps keep lines (`path`). Each other segment is
 //! taken in a canonical direction (`source`), so that shared edges come out identical, and cut where the map has creases (`segment`).
-//! The image of each part is a source for the crate `bezierfit`, which fits it. If asked for, fewer pieces are looked for
-//! across smooth joints (`merge`); those of shapes that come again are carried from one place to the next (`repeats`).
+//! The crate `bezierfit` fits the image of each part. If asked for, fewer pieces are searched across smooth joints (`merge`); pieces of
+//! shapes that come again, such as letters, are carried along (`repeats`).
 //!
-//! [`simplified`] gives outlines the fewest nodes as they are, and borders that shapes share the same in all (`borders`).
-//!
+//! [`simplified`] gives outlines the fewest nodes without a map, and shared borders the same curves in all outlines (`borders`).
 //! `docs/refitting.md` derives the method.
 
 pub(crate) mod borders;
@@ -38,19 +37,18 @@ use repeats::Shapes;
 use shared::SharedEdges;
 use std::sync::Arc;
 
-/// Returns the image of `outline` under `map`, within `options.tolerance`, or what the options say of its parts.
+/// Returns the image of `outline` under `map`, within `options.tolerance`, or the tolerances of its [spans](Options::spans).
 ///
-/// Subpaths keep their order, direction and closedness. With [`Nodes::Source`], source nodes remain nodes; a closed smooth subpath
-/// with nodes of another place begins at the one nearest to its start. Smooth joints
-/// remain smooth. Affine maps move control points, and arcs become cubics within the tolerance; under projective maps lines
-/// remain lines.
+/// Subpaths keep their order, direction and closedness, and smooth joints remain smooth. With [`Nodes::Source`], source nodes remain
+/// nodes; with [`Nodes::Auto`] and [`Nodes::Extremes`], a closed smooth subpath begins at the node nearest to its start. Affine maps move
+/// control points, and arcs become cubics within the tolerance; under projective maps lines remain lines.
 ///
 /// Sets [`PathReport::resolution`] if coordinates are so large that their rounding exceeds the tolerance.
 ///
 /// # Errors
-/// [`GeometryError::Tolerance`] if a tolerance is not a positive, finite number, [`GeometryError::Infinity`] if the path meets a point at which the map is undefined or not finite, and
-/// [`GeometryError::NotFinite`] if the path itself has such coordinates. They call the shape "path"; see
-/// [`GeometryError::on_shape`].
+/// [`GeometryError::Tolerance`] if a tolerance is not a positive, finite number; [`GeometryError::NotFinite`] if the path has coordinates
+/// that are not finite; [`GeometryError::Infinity`] if it meets a point at which the map is undefined or not finite;
+/// [`GeometryError::Limit`] if the budget is exceeded. They call the shape "path"; see [`GeometryError::on_shape`].
 ///
 /// ```
 /// use pathwarp::{Outline, map::Formula, map::Real, refit};
@@ -83,21 +81,21 @@ pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<
 }
 
 /// Shapes that come again in a drawing, with the cubics that merge them. Paths that are refitted with this knowledge need not search
-/// for those again, and none waits for another.
+/// for these cubics again, and no thread waits for another.
 ///
-/// It saves time alone: every path keeps its tolerance, and has the same image whatever the number of threads.
+/// It only saves time: every path keeps its tolerance, and has the same image whatever the number of threads.
 #[doc(hidden)]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KnownShapes(Arc<Shapes>);
 
 impl KnownShapes {
-    /// The shapes of one outline among many: of the largest that has at most a share of 1/32 of all segments. None are known if
-    /// there is no such outline, if it is small, or if nothing is to be merged.
+    /// The shapes of one outline among many: the largest that has at most 1/32 of all segments. Empty if there is no such outline, if it
+    /// is small, or if nothing is to be merged.
     #[must_use]
     pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>, map: &dyn Map, options: &Options) -> Self {
-        /// The share of all work that this may take once more.
+        /// The least ratio of all segments to the outline's, whose work is done twice.
         const SHARE: usize = 32;
-        /// Fewer segments are not worth it: a line of text.
+        /// The least number of segments for which this pays: a line of text.
         const LEAST: usize = 400;
         if options.nodes != Nodes::Fewest || map.prefers_batches() || matches!(map.class(), Class::Affine(_)) {
             return Self::default();
@@ -105,20 +103,20 @@ impl KnownShapes {
         let sized: Vec<(usize, &Outline)> = outlines.into_iter().map(|o| (o.segs().count(), o)).collect();
         let all: usize = sized.iter().map(|(n, _)| n).sum();
         let candidates = sized.into_iter().filter(|(n, _)| *n >= LEAST && n * SHARE <= all);
-        // The first of equals, whatever follows.
+        // Among equals, the first one.
         let Some((_, outline)) = candidates.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
             return Self::default();
         };
-        // A path that cannot be refitted says so when it is its turn.
+        // A path that cannot be refitted is reported when its turn comes.
         let mut memory = MergeMemory::default();
         let _ = refit(outline, map, options, &mut memory);
         Self(Arc::new(memory.into_shapes()))
     }
 
-    /// As [`warp_path`], with this knowledge.
+    /// Returns the image of `outline`, refitted with this knowledge; see [`warp_path`].
     ///
     /// # Errors
-    /// See there.
+    /// The errors of [`warp_path`].
     pub fn warp_path(
         &self,
         outline: &Outline,
@@ -148,7 +146,7 @@ fn refit(
         map.creases(&mut creases);
         let announced = path::announce_short(outline, map, &creases, options);
         for sub in &outline.subpaths {
-            // A map that searches is undefined once nothing is left.
+            // A map that searches is undefined once the budget is used up.
             let limit = |e| options.budget.exceeded().map_or(e, GeometryError::Limit);
             path::subpath(sub, map, &creases, (options, announced), memory, &mut out).map_err(limit)?;
         }
@@ -160,10 +158,10 @@ fn refit(
     Ok(out)
 }
 
-/// An image that is so many times as far away as the outline is near a pole.
+/// The ratio of the largest coordinates of image and outline above which the image lies near a pole.
 const FAR_AWAY: f64 = 1e4;
 
-/// The size of coordinates whose rounding is that of the outline, amplified by the map.
+/// The size of coordinates that have the same rounding error as the outline's, amplified by the map.
 fn amplified(outline: &Outline, map: &dyn Map) -> f64 {
     let places = |s: &Seg| (0..=64).map(|i| s.eval(f64::from(i) / 64.0)).collect::<Vec<Point>>();
     let points: Vec<Point> = outline.segs().flat_map(places).collect();

@@ -19,26 +19,26 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Largest allowed Hausdorff distance between the true image and the output, in root user units.
+    /// The largest allowed Hausdorff distance between the true image and the output, in root user units.
     pub tolerance: f64,
-    /// Prove the error bound where the map allows it, instead of estimating it by dense sampling.
+    /// `true` to prove the error bound where the map allows it, instead of estimating it by dense sampling.
     pub certify: bool,
-    /// Where nodes are. Joints that turn by up to half a degree are smooth, since drawings round their coordinates.
+    /// The placement of nodes. Joints that turn by up to half a degree count as smooth, since drawings round their coordinates.
     pub nodes: Nodes,
-    /// Edges that become the same in all outlines that share them, so that neighbouring shapes stay watertight.
+    /// Edges that get the same curves in all outlines that share them, so that neighbouring shapes stay watertight.
     pub shared: Arc<SharedEdges>,
     /// Borders that [`simplified`](super::simplified) gives the same curves in all outlines that share them.
     pub borders: Arc<Borders>,
-    /// Hold small contours to what [`suited`] finds for them, too, instead of to `tolerance` alone. A contour is a subpath here.
+    /// `true` to hold small contours to the tolerance that [`suited`] finds for them. A contour is a subpath here.
     pub suited: bool,
-    /// Tolerances of consecutive segments, over all subpaths. None: `tolerance`, or what suits each subpath, for all.
+    /// Tolerances of consecutive segments, over all subpaths. If empty, `tolerance`, or the suited one of each subpath, holds for all.
     pub spans: Arc<[Span]>,
-    /// Counts evaluations of the map and segments.
+    /// The budget for evaluations of the map and for segments.
     pub budget: Arc<Budget>,
 }
 
 impl Options {
-    /// Checked by dense sampling against `tolerance`, with the fewest nodes, as the fitter's own options.
+    /// Options with this tolerance, checked by dense sampling, and the fewest nodes, which are also the fitter's defaults.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
@@ -56,14 +56,14 @@ impl Options {
     /// Checks the tolerances.
     ///
     /// # Errors
-    /// One is not positive, or not finite.
+    /// [`GeometryError::Tolerance`] if a tolerance is not positive, or not finite.
     pub fn check(&self) -> Result<(), GeometryError> {
         let mut all = [self.tolerance].into_iter().chain(self.spans.iter().map(|s| s.tolerance));
         let wrong = |t: &f64| !(t.is_finite() && *t > 0.0);
         all.find(wrong).map_or(Ok(()), |t| Err(GeometryError::Tolerance(t)))
     }
 
-    /// The tolerance of a contour: [`Options::tolerance`], or with [`Options::suited`] what suits it.
+    /// The tolerance of a contour: [`Options::tolerance`], or, with [`Options::suited`], the one that suits its diagonal.
     #[must_use]
     pub fn of_contour(&self, contour: &Subpath) -> f64 {
         if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
@@ -94,7 +94,7 @@ impl Options {
 /// than a thousandth of it. With the usual 1e-4 of the drawing's diagonal, contours larger than a twentieth of the drawing are held to
 /// `tolerance`, and none to less than 1e-7 of its diagonal.
 ///
-/// Diagonals are those of what is painted, with strokes. A contour is a subpath, or a letter with its holes.
+/// Diagonals are measured on the painted area, with strokes. A contour is a subpath, or a letter with its holes.
 ///
 /// ```
 /// use pathwarp::refit::suited;

@@ -1,25 +1,25 @@
-//! What a map does all over a part of the plane, found once: short pieces of a path then need no enclosures of their own.
+//! Bounds for a map over a part of the plane, computed once, so that short pieces of a path need no enclosures.
 
 use crate::map::{Enclosure, Map};
 use crate::outline::Seg;
 use kurbo::{Point, Rect, Vec2};
 
-/// Segments for each cell, at least.
+/// The least number of segments for each cell.
 const SEGMENTS: usize = 12;
 
 /// Bounds for the Taylor coefficients of a map, in square cells of a box.
 ///
-/// In a cell of side h, aₘ bounds the coefficient m of the image of p + h·(σ, σ), for each sign of the coordinates and all places p in the
+/// In a cell of side h, aₘ bounds the coefficient m of the image of p + h·(σ, σ), for each sign of the coordinates and all points p in the
 /// cell and one side around it. The coefficients k of a cubic's coordinates are at most h·s·θᵏ⁻¹ for some s and θ, so that those of
-/// s·τ/(1 − θτ) bound it in σ, and Σ aₘ·sᵐ·θ⁶⁻ᵐ·(5 over m−1) bounds coefficient 6 of its image. An enclosure of the cubic itself has none
-/// larger, since it computes the same on smaller ranges: what is told here is what that would tell.
+/// s·τ/(1 − θτ) bound it in σ, and Σ aₘ·sᵐ·θ⁶⁻ᵐ·(5 over m−1) bounds coefficient 6 of its image. Enclosing the cubic itself would yield
+/// the same or smaller bounds, since the same is computed on smaller ranges.
 #[derive(Debug)]
 pub(super) struct Overview {
     origin: Point,
     side: f64,
     columns: usize,
     rows: usize,
-    /// Row by row, the sums of both coordinates' bounds.
+    /// The sums of both coordinates' bounds for each cell, row by row.
     cells: Vec<[f64; Enclosure::ORDER]>,
 }
 
@@ -46,9 +46,9 @@ impl Overview {
         Some(out)
     }
 
-    /// Returns `true` if it is known that samples at `intervals` equal steps tell the image of a cubic p + aτ + bτ² + cτ³ to `by`.
+    /// Returns `true` if samples at `intervals` equal steps are known to determine the image of a cubic p + aτ + bτ² + cτ³ to `by`.
     pub(super) fn resolves(&self, p: Point, way: [Vec2; 3], intervals: usize, by: f64) -> bool {
-        /// 5 over m − 1.
+        /// The binomials 5 over m − 1.
         const WAYS: [f64; Enclosure::ORDER] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
         let scale = 1.0 / self.side;
         let [a, b, c] = way.map(|v| v.x.abs().max(v.y.abs()) * scale);
@@ -77,7 +77,7 @@ mod tests {
     use crate::map::along;
     use crate::param::{Args, Frame};
 
-    /// Where an overview tells something, so does an enclosure of the curve; and it tells it of nearly all short pieces under gentle maps.
+    /// Pieces that an overview resolves are resolved by their enclosures too; and nearly all short pieces under gentle maps are.
     #[test]
     fn an_overview_tells_what_enclosures_tell() {
         const TOLERANCE: f64 = 0.01;

@@ -1,10 +1,10 @@
-//! Whole paths, subpath by subpath, long ones in chunks on several threads.
+//! Whole paths, subpath by subpath; long ones in chunks on several threads.
 //!
-//! **Announced samples.** For maps of which each call is expensive, such as those of another program: the fitter asks for eight values or
-//! one jet at a time, but most of its questions are known long before: the jets at all nodes and sixteen samples of each segment, the samples of
-//! a run to be merged, and those of all parts of a stretch once its break points are placed. They are announced to the memory in front of the
-//! map (`map::Gathered`), which asks for them in one batch. The points are the ones that the fitter asks for, bit by bit, so that the result
-//! is the same as without; what was not announced is asked singly.
+//! **Announced samples.** Calls of some maps are expensive, such as those of another program, but the fitter asks for eight values or one
+//! jet at a time. Most of the points are known long before: the nodes and sixteen samples of each segment, the samples of a run to be
+//! merged, and those of all parts of a stretch once its break points are placed. They are announced to the cache in front of the map
+//! (`map::Gathered`), which asks for them in one batch. They equal the points that the fitter asks for bit by bit, so the result does not
+//! depend on the cache. Points that were not announced are asked for singly.
 
 #[cfg(feature = "parallel")]
 use super::limits::WORTH_THREADS;
@@ -83,7 +83,7 @@ fn affine_segment(
     Ok(())
 }
 
-/// The options' spans of the next subpath to be written.
+/// The spans of the next subpath to be written, from the options.
 fn spans_of(sub: &Subpath, options: &Options, out: &RefittedPath) -> Vec<Span> {
     let mut left = sub.segs.len();
     let own = options.spans.iter().skip(out.spans.len()).take_while(|s| {
@@ -94,7 +94,7 @@ fn spans_of(sub: &Subpath, options: &Options, out: &RefittedPath) -> Vec<Span> {
     own.copied().collect()
 }
 
-/// The runs of one tolerance, with the index of their span, in a part of a subpath whose first segment is `from`.
+/// The runs of equal tolerance, with the index of their span, in a part of a subpath whose first segment is `from`.
 fn runs<'s>(spans: &[Span], all: f64, from: usize, segs: &'s [Seg]) -> Vec<(usize, f64, &'s [Seg])> {
     if spans.is_empty() {
         return vec![(0, all, segs)];
@@ -130,7 +130,7 @@ pub(super) fn subpath(
     }
     let projective = matches!(map.class(), Class::Projective(_));
     let work = map.work();
-    // Values at the nodes.
+    // The values at the nodes.
     options.budget.spend(work * sub.segs.len() as f64).map_err(GeometryError::Limit)?;
     let spans = spans_of(sub, options, out);
     let refitted = |from: usize, segs: &[Seg], memory: &mut MergeMemory| {
@@ -192,8 +192,8 @@ pub(super) fn subpath(
     Ok(())
 }
 
-/// Announces everything about a path at once, if it is short. A longer one is announced chunk by chunk.
-/// Returns `true` if nothing is left to be announced.
+/// Announces the samples of a whole path, if it is short. A longer one is announced chunk by chunk. Returns `true` if nothing is left to
+/// be announced.
 pub(super) fn announce_short(outline: &Outline, map: &dyn Map, creases: &Creases, options: &Options) -> bool {
     if !map.prefers_batches() {
         return true;
@@ -206,7 +206,7 @@ pub(super) fn announce_short(outline: &Outline, map: &dyn Map, creases: &Creases
     is_short
 }
 
-/// Announces what the refit of these runs of segments is going to ask, to a map that prefers batches.
+/// Announces the samples for the refit of these runs of segments, to a map that prefers batches.
 fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options) {
     announce_segments(runs.iter().copied().flatten(), map, options);
     if options.nodes.merges() && creases.items().iter().all(|c| c.kind == CreaseKind::Edge) {
@@ -227,8 +227,8 @@ fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> R
     Ok((pieces, report))
 }
 
-/// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted on their own, in one direction.
-/// `ring`: they are a whole closed subpath.
+/// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted separately, in one direction. `ring` is
+/// `true` if the segments are a whole closed subpath.
 fn merged(
     fitter: &SegmentFitter<'_>,
     (segs, ring): (&[Seg], bool),
@@ -261,7 +261,7 @@ fn merged(
                     own.reverse();
                     own.iter_mut().for_each(Part::reverse);
                 }
-                // What other paths have may be known here, and not on the other side.
+                // The shapes of other paths may be known here, but not on the other side of the chain.
                 merged_parts(fitter, (own, false), &mut MergeMemory::default())?
             }
         };
@@ -280,7 +280,7 @@ fn merged(
     Ok((pieces, report))
 }
 
-/// Merges the parts of a closed subpath from its first corner on, so that its start need not be a node; it begins at the node nearest to that.
+/// Merges the parts of a closed subpath from its first corner on: its start need not be a node. The result begins at the nearest node.
 fn ringed(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemory) -> Refitted {
     let start = parts[0].jets[0].p;
     let before = |i: usize| if i == 0 { parts.len() } else { i } - 1;
@@ -298,7 +298,7 @@ fn ringed(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemo
 
 fn merged_parts(fitter: &SegmentFitter<'_>, (parts, ring): (&[Part], bool), memory: &mut MergeMemory) -> Refitted {
     let found = Merger::new(fitter, (parts, ring), memory).merged().map_err(lost)?;
-    // What a map moves as it is keeps its control points, unless it has many more than it needs: flattened curves, outlines of dashes.
+    // Affine images keep their control points, unless these are far too many: flattened curves, outlines of dashes.
     if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {
         let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
         parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(lost)?;
@@ -307,8 +307,8 @@ fn merged_parts(fitter: &SegmentFitter<'_>, (parts, ring): (&[Part], bool), memo
     Ok(found)
 }
 
-/// Cuts a long subpath into chunks that are refitted on their own: of [`CHUNK`] segments, or up to the next corner after them if
-/// pieces are merged. Each with the index of its first segment.
+/// Cuts a long subpath into chunks that are refitted separately: of [`CHUNK`] segments, or up to the next corner after them if
+/// pieces are merged. Each comes with the index of its first segment.
 fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let is_corner = |w: &[Seg]| {
         let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
@@ -332,7 +332,7 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
 /// The jets at the ends of one segment after the other.
 struct Nodes<'a> {
     fitter: &'a SegmentFitter<'a>,
-    /// Those at the last two nodes; each segment's last is the next one's first.
+    /// The jets at the last two nodes; each segment's last jet is the next one's first.
     jets: [Jet; 2],
     /// The last node.
     at: Point,
@@ -340,12 +340,12 @@ struct Nodes<'a> {
 }
 
 impl<'a> Nodes<'a> {
-    /// From the node `at` on, which has this jet.
+    /// Starts at the node `at`, which has this jet.
     fn new(fitter: &'a SegmentFitter<'a>, at: Point, jet: Jet) -> Self {
         Self { fitter, jets: [jet; 2], at, odd: false }
     }
 
-    /// From the first of `segs` on.
+    /// Starts at the first of `segs`.
     fn inside(fitter: &'a SegmentFitter<'a>, segs: &[Seg]) -> Self {
         let at = segs.first().map_or(Point::ORIGIN, Seg::start);
         Self::new(fitter, at, fitter.map.jet(at))
@@ -374,7 +374,7 @@ impl<'a> Nodes<'a> {
     }
 }
 
-/// Name of a shape in errors, until its owner replaces it.
+/// The name of a shape in errors, until its owner replaces it.
 const PATH: &str = "path";
 
 fn finite(seg: &Seg) -> Result<(), GeometryError> {
@@ -404,7 +404,7 @@ pub(super) fn announce_segments<'a>(segs: impl Iterator<Item = &'a Seg>, map: &d
     map.prepare(&points, &jets);
 }
 
-/// Applies `f` to each chunk with the index of its first item; the first error in their order ends it.
+/// Applies `f` to each chunk with the index of its first item. Returns the first error, in the chunks' order.
 pub(super) fn in_parallel<T: Sync, R: Send, E: Send>(
     chunks: &[(usize, &[T])],
     f: impl Fn(usize, &[T]) -> Result<R, E> + Sync,

@@ -1,11 +1,11 @@
-//! Runs of the same shape at different places, as the letters of a text: the cubics of one are carried to the next, or the legs that
-//! merged it are tried first.
+//! Repeated shapes: runs of smoothly joined segments that come again at other sites of a drawing, like the letters of a text.
 //!
-//! Cubics carried to another place where the same segments come again, as the letters of a text do.
+//! A *way* divides a run into legs, each covered by one cubic or by a segment's pieces. The cubics of one site are carried to the
+//! next; if that fails, the ways that were the best at other sites are tried before a search.
 //!
-//! From one place to the other a map changes little but its size and direction. A cubic of one place is given the ends and tangents of
-//! the other, and handles longer by as much as the image is. Its error then differs from that of the first by a smooth amount, as
-//! images of one curve under two smooth maps do, so that a few samples measure the difference: no fit, and no check of all samples.
+//! Between two sites, a map differs little but in size and direction. A carried cubic gets the ends and tangents of the new site, and
+//! handles scaled like the image. Its error then differs from the old one by a smooth amount, as images of one curve under two smooth
+//! maps do, so that a few samples measure the difference, without a fit or a check of all samples.
 
 use super::limits::{
     CARRIED_TURN, CARRY_DOWN, CARRY_MARGIN, CARRY_TRIALS, CARRY_UP, MAX_CARRIED, MAX_SHAPES, MAX_WAYS, SAME_SHAPE,
@@ -20,14 +20,14 @@ use bezierfit::{Lanes, Piece, Report, Source};
 use kurbo::{Point, Vec2};
 use std::sync::Arc;
 
-/// A way through the places of a run.
+/// A division of a run into legs.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Way {
-    /// Number of segments.
+    /// The number of segments.
     pub(super) segments: usize,
-    /// `None`: the segments' own pieces.
+    /// The legs; `None` if every segment keeps its pieces.
     pub(super) legs: Option<Vec<Leg>>,
-    /// Number of pieces.
+    /// The number of pieces.
     pub(super) pieces: usize,
 }
 
@@ -36,32 +36,32 @@ pub(super) struct Way {
 pub(super) struct CarriedWay {
     /// The partial derivatives of the map at its start.
     pub(super) jacobian: [Vec2; 2],
-    /// Distance of its control points from those of the shape.
+    /// The distance of its control points from the shape's.
     pub(super) off: f64,
     pub(super) segments: usize,
     pub(super) pieces: usize,
-    /// Cubics of merged legs. `None`: the segments' own pieces.
+    /// The legs, with cubics for those that are merged; `None` if every segment keeps its pieces.
     pub(super) legs: Option<Vec<(Leg, Option<Carried>)>>,
 }
 
 /// A shape of runs that were searched.
 #[derive(Debug, Clone, PartialEq)]
 struct Shape {
-    /// Control points relative to the first.
+    /// The control points relative to the first.
     points: Vec<Vec2>,
-    /// Ways that were the best somewhere, those of the fewest pieces first.
+    /// Ways that were the best at some site, those of the fewest pieces first.
     ways: Vec<Way>,
     carried: Vec<CarriedWay>,
-    /// How often cubics could not be carried to this shape.
+    /// The number of times that cubics could not be carried to this shape.
     uses: usize,
     /// Its index among the shapes known before, and the distance between the control points.
     known: Option<(usize, f64)>,
 }
 
-/// What tells most shapes apart at a glance.
+/// A summary that distinguishes most shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Glance {
-    /// Number and kinds of the segments.
+    /// A hash of the number and kinds of the segments.
     kinds: u64,
     /// The first of the control points.
     first: Vec2,
@@ -80,7 +80,7 @@ impl Glance {
 /// Shapes that were searched.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Shapes {
-    /// One for each shape.
+    /// The summary of each shape.
     glances: Vec<Glance>,
     all: Vec<Shape>,
 }
@@ -99,7 +99,7 @@ impl Shapes {
     }
 }
 
-/// The shapes of the last runs, and those of other paths.
+/// The shapes of the last runs, and the known shapes of other paths.
 #[derive(Debug, Default)]
 pub(super) struct Repeats {
     pub(super) own: Shapes,
@@ -141,8 +141,8 @@ impl Repeats {
         if shape.uses.is_multiple_of(SEARCH_AGAIN) { &[] } else { &shape.ways }
     }
 
-    /// Ways with their cubics, from sites much like one with the jet `to` at its start, the most alike first. Each with the distance of
-    /// its control points from those of the shape.
+    /// Ways with their cubics, from the sites whose Jacobian is most similar to that of `to`, the jet at the start, the most similar first.
+    /// Each comes with the distance of its control points from the shape's.
     pub(super) fn nearest(&self, shape: usize, to: &Jet) -> impl Iterator<Item = (&CarriedWay, f64)> {
         let shape = &self.own.all[shape];
         let (known, off) = shape.known.map_or((&[][..], 0.0), |(i, off)| (&self.known.all[i].carried, off));
@@ -184,7 +184,7 @@ fn apart(p: Vec2, q: Vec2) -> f64 {
     (p.x - q.x).abs().max((p.y - q.y).abs())
 }
 
-/// A number that nearly tells the number and kinds of segments.
+/// A hash of the number and kinds of segments.
 fn kinds(segs: &[Part]) -> u64 {
     segs.iter().fold(segs.len() as u64, |hash, part| {
         let kind = match part.seg {
@@ -218,7 +218,7 @@ pub(super) struct Site<'a> {
 /// An end of a cubic.
 struct End {
     p: Point,
-    /// Unit tangent and speed of the image on the side of the cubic.
+    /// The unit tangent and the speed of the image on the side of the cubic.
     tangent: Vec2,
     speed: f64,
 }
@@ -231,7 +231,7 @@ impl<'a> Site<'a> {
         degree.is_some() && !options.certify && !map.prefers_batches()
     }
 
-    /// The image at grid place `k`, seen from the segment after it or before it. `None` if it has no derivative there.
+    /// The image at grid point `k`, seen from the segment after it or before it. `None` if it has no derivative there.
     fn end(&self, k: usize, after: bool) -> Option<End> {
         let (joint, place) = (k / MERGE_GRID, k % MERGE_GRID);
         let i = if after || place > 0 { joint } else { joint.checked_sub(1)? };
@@ -243,7 +243,7 @@ impl<'a> Site<'a> {
             let jet = &part.jets[usize::from(!after)];
             source.end_with(if after { 0.0 } else { 1.0 }, jet.p, jet)
         };
-        // Neighbouring pieces share a joint bit by bit.
+        // Adjacent pieces share a joint bit by bit.
         if let (0, Some(next)) = (place, self.parts.get(joint)) {
             end.p = next.jets[0].p;
         }
@@ -251,7 +251,7 @@ impl<'a> Site<'a> {
         (end.speed > 0.0).then_some(End { p: end.p, tangent, speed: end.speed })
     }
 
-    /// Fits its segments one by one.
+    /// Returns a function that fits the site's segments one by one.
     pub(super) fn own(self) -> impl FitOwn {
         move |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
             self.fitter.fit_inside(&self.parts[i], pieces, report)
@@ -268,14 +268,14 @@ impl<'a> Site<'a> {
         })
     }
 
-    /// Images at eight places, given as segments and their parameters.
+    /// The images of eight points, given as segments and their parameters.
     fn images(&self, at: &[(usize, f64); 8]) -> Lanes {
         let point = |(segment, t): (usize, f64)| self.parts.get(segment).map_or(Point::ORIGIN, |s| s.seg.eval(t));
         images(self.fitter.map, &at.map(point))
     }
 }
 
-/// The change of a map's Jacobian from one place to another: J₁·J₀⁻¹.
+/// The change of a map's Jacobian from one site to another: J₁·J₀⁻¹.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     columns: [Vec2; 2],
@@ -285,7 +285,7 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// `None` unless the change of every length is between [`CARRY_DOWN`] and [`CARRY_UP`].
+    /// Returns the change; `None` unless the change of every length is between [`CARRY_DOWN`] and [`CARRY_UP`].
     pub(super) fn new([dx, dy]: [Vec2; 2], to: &Jet) -> Option<Self> {
         let k = 1.0 / dx.cross(dy);
         let columns = [(to.dx * dy.y - to.dy * dx.y) * k, (to.dy * dx.x - to.dx * dy.x) * k];
@@ -300,31 +300,31 @@ impl Change {
         self.columns[0] * v.x + self.columns[1] * v.y
     }
 
-    /// Returns `true` if a direction is changed into nearly another.
+    /// Returns `true` if the change turns one direction nearly into the other.
     fn turns(&self, from: Vec2, to: Vec2) -> bool {
         let v = self.push(from);
         v.cross(to).abs() <= CARRIED_TURN * v.dot(to)
     }
 
-    /// Factor by which distances from a curve with this unit tangent change.
+    /// The factor by which distances from a curve with this unit tangent change.
     fn across(&self, tangent: Vec2) -> f64 {
         self.det / self.push(tangent).hypot()
     }
 }
 
-/// A cubic that has passed its check, as far as other places need it.
+/// A cubic that has passed its check, with the data needed to carry it to other sites.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Carried {
     /// The partial derivatives of the map at the last joint before it.
     jacobian: [Vec2; 2],
-    /// Unit tangents and speeds of the image at both ends.
+    /// The unit tangents and the speeds of the image at both ends.
     tangents: [Vec2; 2],
     speeds: [f64; 2],
     cubic: MarkedCubic,
 }
 
 impl Carried {
-    /// A cubic from one of the site's legs. `None` if it begins or ends where the image stops.
+    /// A cubic from one of the site's legs. `None` if it begins or ends where the speed of the image is zero.
     pub(super) fn new(site: &Site<'_>, leg: Leg, cubic: MarkedCubic) -> Option<Self> {
         let (from, to) = (site.end(leg.from, true)?, site.end(leg.to, false)?);
         let [Jet { dx, dy, .. }, _] = site.parts.get(leg.from / MERGE_GRID)?.jets;
@@ -332,7 +332,7 @@ impl Carried {
         Some(Self { jacobian: [dx, dy], tangents, speeds, cubic })
     }
 
-    /// The cubic at another place, with a bound of its error. `None` if that may exceed `tolerance`.
+    /// The cubic at another site, with a bound of its error. `None` if the error may exceed `tolerance`.
     pub(super) fn at(&self, site: &Site<'_>, leg: Leg, tolerance: f64) -> Option<(Piece, f64)> {
         let change = Change::new(self.jacobian, &site.parts.get(leg.from / MERGE_GRID)?.jets[0])?;
         let across =

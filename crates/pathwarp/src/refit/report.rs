@@ -5,31 +5,31 @@ use bezierfit::parts::append;
 use bezierfit::{Assurance, Piece, Report};
 use kurbo::{BezPath, PathEl, Point};
 
-/// Rounding relative to the largest coordinate: some hundreds of roundings in double precision. A finer error cannot be measured, as
-/// the fit chases noise.
+/// The rounding error relative to the largest coordinate: some hundreds of roundings in double precision. A finer error cannot be measured,
+/// as the fit chases noise.
 pub const RESOLUTION: f64 = 1e-13;
 
-/// Sums of errors round up.
+/// The relative rounding of sums of errors.
 pub(super) const SUMMED: f64 = 1e-9;
 
-/// Statistics of a refit path.
+/// Statistics of a refitted path.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PathReport {
-    /// Segments in the source, closing lines included.
+    /// The number of segments in the source, closing lines included.
     pub segments_in: usize,
-    /// Segments in the output, closing lines included.
+    /// The number of segments in the output, closing lines included.
     pub segments_out: usize,
-    /// Largest distance between the true image and the output, in root user units.
+    /// The largest distance between the true image and the output, in root user units.
     pub max_error: f64,
-    /// The largest error as a share of the tolerance that holds where it is.
+    /// The largest error as a share of the tolerance that holds there.
     pub share: f64,
-    /// Basis of `max_error`: the weakest of all segments.
+    /// The basis of `max_error`: the weakest of all segments.
     pub assurance: Assurance,
-    /// Places in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
+    /// Points in the source at which the tolerance was not met: the work budget ran out, or rounding is larger.
     pub unresolved: Vec<Point>,
-    /// Resolution of the coordinates, [`RESOLUTION`] times the largest in source or image, if the tolerance is below it. The
-    /// image is then known no better; `max_error` is at least this, and `unresolved` holds a place.
+    /// The resolution of the coordinates, [`RESOLUTION`] times the largest in source or image, if it exceeds the tolerance. The
+    /// image is then known no better; `max_error` is at least this, and `unresolved` holds a point.
     pub resolution: Option<f64>,
 }
 
@@ -48,7 +48,7 @@ impl Default for PathReport {
 }
 
 impl PathReport {
-    /// What the fitter reports, for a part with this tolerance.
+    /// Converts the fitter's report on a part with this tolerance.
     pub(crate) fn fitted(report: &Report, tolerance: f64) -> Self {
         let mut out = Self::default();
         (out.max_error, out.share, out.assurance) = (report.max_error, report.max_error / tolerance, report.assurance);
@@ -56,7 +56,7 @@ impl PathReport {
         out
     }
 
-    /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest one of the image.
+    /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest coordinate of the image.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
@@ -79,7 +79,7 @@ impl PathReport {
         self.resolution = larger(self.resolution, part.resolution);
     }
 
-    /// Adds what is known of some pieces.
+    /// Adds the fitter's report on some pieces.
     pub(super) fn add_pieces(&mut self, part: Report) {
         self.add_error(part.max_error, part.assurance);
         self.unresolved.extend(part.unresolved);
@@ -115,18 +115,18 @@ pub(super) fn extent(path: &BezPath) -> f64 {
 pub struct RefittedPath {
     /// Lines and cubics.
     pub path: BezPath,
-    /// What became of each of the options' [spans](super::Options::spans).
+    /// The results of the options' [spans](super::Options::spans), one each.
     pub spans: Vec<SpanReport>,
     /// Statistics.
     pub report: PathReport,
 }
 
-/// What became of a span.
+/// The result of a span.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpanReport {
-    /// Number of lines and cubics, including a closing line.
+    /// The number of lines and cubics, including a closing line.
     pub pieces: usize,
-    /// Largest distance between the true image and the output, in root user units.
+    /// The largest distance between the true image and the output, in root user units.
     pub max_error: f64,
 }
 

@@ -1,4 +1,4 @@
-//! One segment: its canonical direction, its smooth parts, and their pieces.
+//! Fits a single segment: finds its canonical direction and its smooth parts, and covers each part with pieces.
 
 use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
@@ -13,13 +13,13 @@ use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
 use std::sync::Arc;
 
-/// Creases of one segment that are found by comparing branches with the map.
+/// The number of creases of one segment that are found by comparing branches with the map.
 const MAX_FOUND: usize = 16;
 
 /// Fits the images of single segments.
 pub(super) struct SegmentFitter<'a> {
     pub(super) map: &'a dyn Map,
-    /// The map keeps lines.
+    /// `true` if the map keeps lines.
     pub(super) projective: bool,
     /// The map's degree, if it is a quotient of polynomials.
     pub(super) degree: Option<RationalDegree>,
@@ -31,7 +31,7 @@ pub(super) struct SegmentFitter<'a> {
 }
 
 impl SegmentFitter<'_> {
-    /// Appends the image of one segment, given the jets at its ends. `Err`: a place at which the map is not finite.
+    /// Appends the image of one segment, given the jets at its ends. Fails where the map is not finite.
     pub(super) fn fit(
         &self,
         seg: &Seg,
@@ -68,14 +68,14 @@ impl SegmentFitter<'_> {
         Ok(())
     }
 
-    /// For a proof, arcs are cut: only those of less than half a turn are quotients of polynomials with positive denominators.
+    /// Returns `true` for arcs that are cut for a proof: only arcs of less than half a turn are quotients with positive denominators.
     fn is_long_arc(&self, seg: &Seg) -> bool {
         let long = |a: &EllipticArc| a.sweep.abs() > MAX_RATIONAL_SWEEP;
         self.options.certify && self.degree.is_some() && matches!(seg, Seg::Arc(a) if long(a))
     }
 
     /// Appends the image of a segment in its canonical direction, on which the map is smooth, given the jets at its ends, whose points
-    /// are at most `blur` from the map's own.
+    /// are at most `blur` from the images under this map.
     #[inline(always)]
     fn fit_smooth(
         &self,
@@ -111,12 +111,12 @@ impl SegmentFitter<'_> {
         covered
     }
 
-    /// Counts work. Too much of it is an error of the whole path, which ends by itself: `fit` does no more.
+    /// Counts work. If the budget is exceeded, `fit` stops searching, and the whole path fails at its end.
     pub(super) fn spend(&self, evaluations: f64) {
         let _ = self.options.budget.spend(evaluations);
     }
 
-    /// Appends the image of a part. Where the map tears, a line connects it with its neighbour.
+    /// Appends the image of a part. Where the map tears, a line connects the image with its neighbour.
     pub(super) fn fit_part(&self, part: &Part, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
         pieces.extend(part.bridge(0));
         self.fit_inside(part, pieces, report)?;
@@ -124,7 +124,7 @@ impl SegmentFitter<'_> {
         Ok(())
     }
 
-    /// Appends the image of a part, without what connects it with its neighbours.
+    /// Appends the image of a part, without the lines that connect it with its neighbours.
     pub(super) fn fit_inside(
         &self,
         part: &Part,
@@ -155,7 +155,7 @@ impl SegmentFitter<'_> {
         Ok(())
     }
 
-    /// Appends the parts of a segment, in its own direction. If `whole`, or if the map has no creases but edges, that is itself.
+    /// Appends the parts of a segment, in its direction: the segment itself if `whole`, or if the map has no creases but edges.
     pub(super) fn parts(&self, seg: &Seg, jets: [&Jet; 2], whole: bool, out: &mut Vec<Part>) -> Result<(), NotFinite> {
         let creased = self.creases.items().iter().any(|c| c.kind != CreaseKind::Edge);
         let nothing_left = self.options.budget.left() <= 0.0;
@@ -195,7 +195,7 @@ impl SegmentFitter<'_> {
             let mut sure = true;
             let branch = match self.branch_between(seg, from, t) {
                 Ok(b) => b,
-                // A crease that the map does not tell, or that was missed.
+                // A crease that the map does not state, or that was missed.
                 Err(at) if found < MAX_FOUND => {
                     found += 1;
                     ends.push(from + (t - from) * at);
@@ -237,10 +237,10 @@ impl SegmentFitter<'_> {
         Ok(out)
     }
 
-    /// The branch that is the map between two parameters: that of a point inside, confirmed at others. `Err`: where, as a share of
-    /// the way, another branch begins.
+    /// The branch that agrees with the map between two parameters: the branch of a point inside, confirmed at others. `Err`: the share of
+    /// the way at which another branch begins.
     fn branch_between(&self, seg: &Seg, from: f64, to: f64) -> Result<Option<Arc<dyn Map>>, f64> {
-        /// Places that symmetrical artwork avoids, the one near the middle first.
+        /// Shares of the way that symmetrical artwork avoids, the one near the middle first.
         const PROBES: [f64; 5] = [0.483_7, 0.211_3, 0.788_9, 0.061_1, 0.939_1];
         let place = |s: f64| seg.eval(from + (to - from) * s);
         let at = PROBES.map(place);
@@ -249,7 +249,7 @@ impl SegmentFitter<'_> {
         self.map.points(&at, &mut images[0]);
         let near = |p: Point, q: Point| {
             let far = p.distance(q);
-            // Where the map is not finite, the fit says so.
+            // Where the map is not finite, the fit fails later.
             !(far > TEAR * self.options.tolerance && far > 1e-11 * p.to_vec2().hypot())
         };
         let mut agrees = |b: &Arc<dyn Map>| {
@@ -275,21 +275,21 @@ impl SegmentFitter<'_> {
 #[derive(Clone)]
 pub(super) struct Part {
     pub(super) seg: Seg,
-    /// At its ends. Neighbours share the points bit by bit, unless the map tears.
+    /// The jets at the ends. Adjacent parts share the points bit by bit, unless the map tears.
     pub(super) jets: [Jet; 2],
     cut: Option<Cut>,
 }
 
-/// A part's own map.
+/// The map that holds on a part.
 #[derive(Clone)]
 struct Cut {
-    /// `None`: the whole map.
+    /// The branch of the map; `None` for the whole map.
     branch: Option<Arc<dyn Map>>,
-    /// Distance of the shared points from the branch's own.
+    /// The distance of the shared points from their images under the branch.
     blur: f64,
     /// The neighbour's points at ends where the map tears.
     torn: [Option<Point>; 2],
-    /// The branch was found to be the map.
+    /// `true` if the branch was confirmed to agree with the map.
     sure: bool,
 }
 
@@ -307,7 +307,7 @@ impl Part {
         self.seg = self.seg.reversed();
     }
 
-    /// The image of `seg`, the part's segment in either direction.
+    /// The source curve of `seg`, the part's segment in either direction.
     pub(super) fn source<'a>(&'a self, fitter: &SegmentFitter<'a>, seg: &'a Seg) -> SourceCurve<'a> {
         let certify = fitter.options.certify;
         match self.cut.as_ref().and_then(|c| c.branch.as_ref()) {
@@ -322,7 +322,7 @@ impl Part {
         branch.is_some_and(|b| matches!(b.class(), Class::Affine(_)))
     }
 
-    /// Joins consecutive parts that come from the same side to a tear and leave to it.
+    /// Removes the tear between consecutive parts whose ends have the same image.
     pub(super) fn join(before: &mut Self, after: &mut Self) {
         if let (Some(a), Some(b)) = (&mut before.cut, &mut after.cut)
             && before.jets[1].p == after.jets[0].p
@@ -331,7 +331,7 @@ impl Part {
         }
     }
 
-    /// The line from the neighbour at the start (0), or to that at the end (1), if the map tears there.
+    /// The line to the part from its neighbour at the start (0), or from the part to its neighbour at the end (1), if the map tears there.
     pub(super) fn bridge(&self, end: usize) -> Option<Piece> {
         let (torn, own) = (self.cut.as_ref()?.torn[end]?, self.jets[end].p);
         Some(Piece::Line(if end == 0 { Line::new(torn, own) } else { Line::new(own, torn) }))

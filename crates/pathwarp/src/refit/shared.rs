@@ -1,7 +1,7 @@
 //! Edges that neighbouring shapes share.
 //!
-//! A piece that continued into the segments after an edge would differ on its two sides, as those do, and a gap would open. So edges are
-//! fitted in chains, from one *junction* to the next, each in one direction: that is the same for all shapes that share it.
+//! A piece that crossed the end of an edge would depend on the segments beyond, which differ on the two sides of the edge, and a gap would
+//! open. So edges are fitted in chains, from one *junction* to the next, each in one direction, the same for all shapes that share it.
 
 use super::source;
 use crate::outline::{Outline, Seg, Subpath};
@@ -11,16 +11,15 @@ use std::collections::HashSet;
 /// The segments that occur more than once in a drawing, in either direction, and how closely they are to be followed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SharedEdges {
-    /// Sorted [`fingerprint`]s, each with the smallest tolerance of the contours that have the segment. Two segments with the same
-    /// one are taken for equal: among a million segments that happens by chance once in forty million drawings, and leaves two edges
-    /// unmerged.
+    /// Sorted [`fingerprint`]s, each with the smallest tolerance of the contours that have the segment. Equal fingerprints are taken for
+    /// equal segments: among a million segments that is wrong once in forty million drawings, and leaves two edges unmerged.
     twice: Vec<(u64, f64)>,
-    /// The same for the nodes at which contours of different tolerances meet.
+    /// Sorted hashes of the nodes at which contours of different tolerances meet, each with the smallest tolerance.
     nodes: Vec<(u64, f64)>,
-    /// The nodes on shared segments at which other than two segments meet, those that several contours have counted once; hashed and
-    /// sorted.
+    /// Sorted hashes of the nodes on shared segments at which other than two segments meet, counting a segment of several contours
+    /// once.
     junctions: Vec<u64>,
-    /// The nodes on shared segments at which closed contours begin.
+    /// Sorted hashes of the nodes on shared segments at which closed contours begin.
     starts: Vec<u64>,
 }
 
@@ -31,8 +30,8 @@ impl SharedEdges {
         Self::held(outlines.into_iter().map(|o| (o, &[][..])))
     }
 
-    /// The same for contours with tolerances of their own: one for each subpath of an outline, or none. A contour that comes again as a
-    /// whole, from the same start and with the same tolerance, shares nothing with the first one: both become the same.
+    /// The segments that `outlines` share, each with the tolerances of its subpaths, or none. A contour that comes again as a whole, from
+    /// the same start and with the same tolerance, shares nothing with the first: both get the same curves.
     #[must_use]
     pub fn held<'a>(outlines: impl IntoIterator<Item = (&'a Outline, &'a [f64])>) -> Self {
         let outlines: Vec<(&Outline, &[f64])> = outlines.into_iter().collect();
@@ -69,7 +68,7 @@ impl SharedEdges {
                 let both = [g.start(), g.end()].map(node).into_iter().filter(|p| nodes.contains(p));
                 ends.extend(both.map(|p| (p, fingerprint(g))));
             }
-            // An end of an open path is one of another segment.
+            // Each end of an open path counts as one more segment.
             let own = [s.start, s.end()].map(node).into_iter().filter(|p| nodes.contains(p));
             if s.closed { starts.extend(own.take(1)) } else { ends.extend(own.map(|p| (p, 0))) }
         }
@@ -87,7 +86,7 @@ impl SharedEdges {
 
     /// Returns `true` if two consecutive segments lie on one chain, or if neither is shared.
     pub(super) fn goes_on(&self, before: &Seg, after: &Seg) -> bool {
-        // The two directions of an arc are computed differently.
+        // The two directions of an arc are computed differently, so arcs end a chain.
         let is_arc = |g: &Seg| matches!(g, Seg::Arc(_));
         match [before, after].map(|g| self.contains(g)) {
             [true, true] => {
@@ -124,7 +123,7 @@ impl SharedEdges {
             for g in &s.segs {
                 let (tolerance, to) = (self.tolerance_of(g).map_or(contour, |t| t.min(contour)), at(g.end()));
                 match out[first..].last_mut() {
-                    // A node that others follow more closely stays one.
+                    // A node that other contours follow more closely remains a node.
                     Some(last) if last.tolerance == tolerance && from >= tolerance => {
                         last.segments += 1;
                         last.nodes[1] = to;
@@ -138,14 +137,14 @@ impl SharedEdges {
     }
 }
 
-/// Consecutive segments of one subpath that are followed within the same distance.
+/// Consecutive segments of one subpath with the same tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Number of segments.
+    /// The number of segments.
     pub segments: usize,
-    /// Largest distance of their images from the output.
+    /// The largest distance of their images from the output.
     pub tolerance: f64,
-    /// The smallest tolerance of all that meets at either end, for rounding.
+    /// The smallest tolerance of all contours that meet at either end, for rounding.
     pub nodes: [f64; 2],
 }
 
@@ -155,7 +154,7 @@ fn smallest(mut all: Vec<(u64, f64)>, kept: impl Fn(&[(u64, f64)]) -> bool) -> V
     all.chunk_by(|a, b| a.0 == b.0).filter(|run| kept(run)).map(|run| run[0]).collect()
 }
 
-/// The value of a key.
+/// The value of a key, if it is in the list.
 fn found(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
     sorted.binary_search_by_key(&key, |(k, _)| *k).ok().map(|i| sorted[i].1)
 }
@@ -175,8 +174,7 @@ pub(crate) fn fingerprint(seg: &Seg) -> u64 {
             mixed(&[p, a, b, q])
         }
         Seg::Arc(s) => {
-            // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it
-            // differently.
+            // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it differently.
             let (canonical, _) = source::canonical(seg);
             let m = canonical.eval(0.5);
             let [p, q] = ends(s.p0, s.p1);
@@ -185,16 +183,16 @@ pub(crate) fn fingerprint(seg: &Seg) -> u64 {
     }
 }
 
-/// A hash of a node, whichever signs its zeros have.
+/// A hash of a node, the same for either sign of a zero coordinate.
 fn node(p: Point) -> u64 {
     mixed(&[Point::new(p.x + 0.0, p.y + 0.0)])
 }
 
-/// Returns `true` if all outlines with a chain take it in the other direction.
+/// Returns `true` if the agreed direction of a chain is the reverse of the given one.
 pub(super) fn is_turned(chain: &[Seg]) -> bool {
     let key = |p: Point| (p.x, p.y);
     let (Some(first), Some(last)) = (chain.first(), chain.last()) else { return false };
-    // Where both ends are one node, the nodes beside it decide.
+    // If both ends are one node, the nodes beside it decide.
     let ends = if first.start() == last.end() { [first.end(), last.start()] } else { [first.start(), last.end()] };
     key(ends[1]) < key(ends[0])
 }
@@ -208,7 +206,7 @@ fn mixed(points: &[Point]) -> u64 {
 /// Multiplies a word into a hash and folds the product.
 #[inline(always)]
 fn mixed_in(hash: u64, word: u64) -> u64 {
-    /// 2⁶⁴ divided by the golden ratio, odd.
+    /// The odd number nearest to 2⁶⁴ divided by the golden ratio.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
     let product = u128::from(hash ^ word) * u128::from(FACTOR);
     product as u64 ^ (product >> 64) as u64

@@ -1,5 +1,5 @@
 //! The image of one segment under a map that is smooth on it, sampled eight parameters at a time; the direction in which a segment is
-//! fitted, and the places where its image may be sharp.
+//! fitted; and the points where its image may be sharp.
 
 use super::limits::HIDDEN;
 use super::overview::Overview;
@@ -10,7 +10,7 @@ use bezierfit::{BreakPoint, Lane, Lanes, NotFinite, Quotient, SlowSpots, Source}
 use kurbo::{Point, Vec2};
 use std::cmp::Ordering;
 
-/// The image of a segment under a map of at most this degree, that of a bicubic net, is told by a few samples.
+/// The degree of a bicubic net: under a map of at most this degree, a few samples determine the image of a segment.
 pub(super) const LOW_DEGREE: usize = 6;
 
 /// A source segment in its canonical direction, with the smooth map that holds on it.
@@ -20,19 +20,19 @@ pub(super) struct SourceCurve<'a> {
     pub(super) map: &'a dyn Map,
     /// The map's degree, if it is a quotient of polynomials.
     degree: Option<RationalDegree>,
-    /// Coefficients of the power basis, constant term first; unused for an arc unless `w` is set.
+    /// The coefficients of the power basis, constant term first; unused for an arc unless `w` is set.
     c: [Vec2; 4],
-    /// The derivative at the end: exact, where the power basis has it only up to rounding.
+    /// The derivative at the end: exact, whereas the power basis rounds it.
     last: Vec2,
-    /// Length of the control polygon: the scale against which derivatives are judged.
+    /// The length of the control polygon: the scale against which derivatives are judged.
     size: f64,
-    /// Denominator of an arc in rational form, power basis. If set, `c` holds the numerators relative to the centre.
+    /// The denominator of an arc in rational form, in the power basis. If set, `c` holds the numerators relative to the centre.
     w: Option<[f64; 3]>,
-    /// What is known of the map around the segment.
+    /// Bounds for the map around the segment.
     overview: Option<&'a Overview>,
 }
 
-// Loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
+// The loops over eight lanes run by index through several arrays at once, the form that LLVM vectorises.
 #[allow(clippy::needless_range_loop)]
 impl<'a> SourceCurve<'a> {
     #[inline(always)]
@@ -57,12 +57,12 @@ impl<'a> SourceCurve<'a> {
         Self { seg, map, degree, c, last, size, w: None, overview: None }
     }
 
-    /// The same curve, with what is known of its map.
+    /// Returns this curve with an overview of its map.
     pub(super) fn known_by(self, overview: Option<&'a Overview>) -> Self {
         Self { overview, ..self }
     }
 
-    /// As [`SourceCurve::new`]. If a proof is wanted, turns an arc of less than half a turn into a rational quadratic: the
+    /// The source curve of a segment. If a proof is wanted, an arc of less than half a turn becomes a rational quadratic: the
     /// same curve in another parametrisation.
     #[inline(always)]
     pub(super) fn for_proof(seg: &'a Seg, map: &'a dyn Map, degree: Option<RationalDegree>, proof: bool) -> Self {
@@ -73,7 +73,7 @@ impl<'a> SourceCurve<'a> {
         out
     }
 
-    /// See [`SourceCurve::for_proof`].
+    /// Turns an arc of less than half a turn into a rational quadratic.
     pub(super) fn make_rational(&mut self) {
         let Seg::Arc(a) = self.seg else { return };
         // At half a turn the weight of the middle control point is zero.
@@ -81,7 +81,7 @@ impl<'a> SourceCurve<'a> {
             return;
         }
         // With h half the sweep and s = sin h, c = cos h, the control points in the axes of the middle angle are (c, −s),
-        // (1, 0), (c, s), with weights 1, c, 1. Power basis of the numerators and of the denominator.
+        // (1, 0), (c, s), with weights 1, c, 1. Numerators and denominator are converted to the power basis.
         let (h, mid) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
         let (s, c) = h.sin_cos();
         let (sm, cm) = mid.sin_cos();
@@ -138,7 +138,7 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// The source's derivative.
+    /// The derivative of the source.
     #[inline(always)]
     pub(super) fn deriv(&self, t: f64) -> Vec2 {
         match self.seg {
@@ -152,12 +152,12 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// Length of the control polygon.
+    /// The length of the control polygon.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
 
-    /// Source points at eight parameters.
+    /// The source points at eight parameters.
     #[inline(always)]
     pub(super) fn seg_points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
@@ -187,13 +187,13 @@ impl<'a> SourceCurve<'a> {
         out
     }
 
-    /// The same as points.
+    /// The source points at eight parameters, as points.
     pub(super) fn sampled(&self, t: &Lane) -> [Point; 8] {
         let g = self.seg_points(t);
         std::array::from_fn(|i| Point::new(g.x[i], g.y[i]))
     }
 
-    /// The source's point.
+    /// The source point at a parameter.
     pub(super) fn at(&self, t: f64) -> Point {
         match (self.seg, self.w) {
             (Seg::Arc(a), Some([w0, w1, w2])) if t > 0.0 && t < 1.0 => {
@@ -288,7 +288,7 @@ impl Source for SourceCurve<'_> {
         Some(Quotient { below, weights, ..Quotient::polynomial(image.degree()) })
     }
 
-    /// The map's denominators, times the segment's to the power of the map's degree.
+    /// The denominators of the map, times the segment's denominator to the power of the map's degree.
     fn denominators(&self, t: &Lane) -> Lane {
         let mut out: Lane = self.sampled(t).map(|p| self.map.denominator(p));
         if let Some([w0, w1, w2]) = self.w {

@@ -17,9 +17,9 @@
 //! factor of a row changes nothing. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a
 //! rectangle gives the identity.
 //!
-//! **B-spline rows** are cut into Bézier pieces by knot insertion, each with its own A. Neighbours share the line between them and
-//! its points: the rows of a piece start with the weights with which the rows of the previous piece end. Speeds are chosen so that
-//! both sides of every joint agree in the geometric mean over both rows, with all w₀ₙ·w₁ₙ as near 1 as that allows. Rows
+//! **B-spline rows** are cut into Bézier pieces by knot insertion, each with a point A of its own. Adjacent pieces share the line between
+//! them and its points: the rows of a piece start with the weights with which the rows of the previous piece end. Speeds are chosen so
+//! that both sides of every joint agree in the geometric mean over both rows, with all w₀ₙ·w₁ₙ as near 1 as that allows. Rows
 //! keep their tangents across a joint; the map has a crease there.
 
 mod monoid;
@@ -155,7 +155,7 @@ impl Birational {
     }
 
     /// Returns the net of these points with weights kᵢ·gʲ·wᵢⱼ, all the freedom that leaves the map birational: k₁/k₀ spaces it across
-    /// the rows, g along them. For rows of one Bézier piece; `None` for others, or if a weight is not finite and positive.
+    /// the rows, g along them. `None` if a row has several Bézier pieces, or if a weight is not finite and positive.
     #[must_use]
     pub fn respaced(&self, k: [f64; 2], g: f64) -> Option<Self> {
         let [BirationalPiece { rows: [a, b], .. }] = self.pieces.as_slice() else { return None };
@@ -165,7 +165,7 @@ impl Birational {
             .then(|| Self::from_monoids(self.region, self.rows, vec![pair]))
     }
 
-    /// A, the point in which all lines across the rows of the first piece meet, in homogeneous coordinates: at infinity if they are parallel.
+    /// A, the point in which all lines across the rows of the first piece meet, in homogeneous coordinates; at infinity for parallel lines.
     #[must_use]
     pub fn axis(&self) -> [f64; 3] {
         let Monoid { first, last, .. } = &self.pieces[0].rows[0];
@@ -181,14 +181,14 @@ impl Birational {
     /// and the last pair of points: these lines divide the segment from Q₀ to Q₁ evenly (equations 9 to 12).
     ///
     /// # Errors
-    /// As for [`Monoid::new`].
+    /// The errors of [`Monoid::new`].
     pub fn along(&self, q: [Point; 2]) -> Result<Self, GeometryError> {
         let [a, b] = &self.pieces[0].rows;
         let row = |m: &Monoid| Monoid::new(&m.points, self.axis(), q);
         Ok(Self::from_monoids(self.region, self.rows, vec![[row(a)?, row(b)?]]))
     }
 
-    /// The largest angle in degrees by which curves along the rows turn on a line between two pieces, and its place in the image.
+    /// The largest angle in degrees by which curves along the rows turn on a line between two pieces, and the image point where they do.
     #[must_use]
     pub fn kink(&self) -> Option<(f64, Point)> {
         const SAMPLES: usize = 16;
@@ -281,7 +281,7 @@ impl Map for Birational {
         Some(f64::INFINITY)
     }
 
-    /// A curve of degree d gives one of degree d·(1+n).
+    /// The image of a curve of degree d has degree d·(1+n).
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         match self.pieces.as_slice() {
             [one] => one.patch.image(curve),
@@ -289,7 +289,7 @@ impl Map for Birational {
         }
     }
 
-    /// One in each piece that reaches to the point's line.
+    /// One preimage in each piece that reaches to the point's line.
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         /// Rounding of t: points on the line between two pieces count in both.
         const NEAR: f64 = 1e-9;
@@ -307,9 +307,9 @@ impl Map for Birational {
     }
 }
 
-/// Cost of a candidate piece for the distance of t outside [0, 1], relative to the distance of s from the middle.
+/// The cost of a candidate piece for the distance of t outside [0, 1], relative to the distance of s from the middle.
 const OUTSIDE_COST: f64 = 1e6;
-/// Cost of a candidate piece in which the point lies on the far side of A.
+/// The cost of a candidate piece in which the point lies on the far side of A.
 const BEHIND_COST: f64 = 1e12;
 
 /// The inverse of a [`Birational`], in closed form.
@@ -319,7 +319,7 @@ pub struct BirationalInverse {
 }
 
 impl BirationalInverse {
-    /// (s, t) of a point by the rows of one piece.
+    /// The parameters (s, t) of a point by the rows of one piece.
     fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
         let (alpha, beta) = (-rows[0].last.of(x, y), rows[0].first.of(x, y));
         // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
@@ -348,7 +348,7 @@ impl BirationalInverse {
         ((a.0 * dx + a.1 * dy) / (dx * dx + dy * dy), beta / (alpha + beta))
     }
 
-    /// The piece whose image contains a point.
+    /// The index of the piece whose image contains a point.
     fn piece(&self, p: Point) -> usize {
         let pieces = &self.forward.pieces;
         let last = pieces.len() - 1;
@@ -395,7 +395,7 @@ impl Formula for BirationalInverse {
     }
 
     fn creases(&self, out: &mut Creases) {
-        // The lines between pieces.
+        // The lines between pieces are creases.
         for p in &self.forward.pieces[1..] {
             let l = p.rows[0].first;
             let c = -l.normal.dot(l.through.to_vec2());
@@ -413,7 +413,7 @@ impl Formula for BirationalInverse {
         }
     }
 
-    /// A curve of degree d gives one of degree d·(1+n): (s, t, 1) ~ (χ·f₀, β·(f₀−f₁), χ·(f₀−f₁)), χ = α + β.
+    /// The image of a curve of degree d has degree d·(1+n): (s, t, 1) ~ (χ·f₀, β·(f₀−f₁), χ·(f₀−f₁)), χ = α + β.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [piece] = self.forward.pieces.as_slice() else { return None };
         let line = |l: ImplicitLine, k: f64| {
@@ -469,7 +469,7 @@ impl Formula for BirationalInverse {
     }
 }
 
-// The weights of the rows: general position, and the normalisation over all pieces.
+// The weights of the rows: checks for general position, and the normalisation over all pieces.
 
 /// End lines whose directions differ by less than this are parallel.
 const PARALLEL: f64 = 1e-14;

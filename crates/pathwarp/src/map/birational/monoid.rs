@@ -36,7 +36,7 @@ impl ImplicitLine {
         self.normal.dot(p - self.through)
     }
 
-    /// ℓ·X, generic over the number type.
+    /// ℓ·X for any number type.
     #[inline]
     pub(super) fn of<S: Real>(&self, x: S, y: S) -> S {
         (x - self.through.x) * self.normal.x + (y - self.through.y) * self.normal.y
@@ -89,8 +89,8 @@ pub struct Monoid {
 
 impl Monoid {
     /// The curve with these control points and the multiple point `a`, which is homogeneous, so that it may lie at infinity. The line of
-    /// parameter t joins A and (1 − t)·Q₀ + t·Q₁: they meet the lines from A to the first and to the last control point, and their distances
-    /// from A set the speed of t (equations 9 to 12). The first weight is 1.
+    /// parameter t joins A and (1 − t)·Q₀ + t·Q₁: Q₀ and Q₁ lie on the lines from A to the first and to the last control point, and their
+    /// distances from A set the speed of t (equations 9 to 12). The first weight is 1.
     ///
     /// # Errors
     /// [`GeometryError::AnchorCount`] for fewer than two points; [`GeometryError::Coincident`] if A is an end of the curve, Q₀ or Q₁;
@@ -127,8 +127,8 @@ impl Monoid {
     /// The curve that is the graph of a function of x, proportional to the parameter: A lies at infinity along y (equation 23).
     ///
     /// # Errors
-    /// As for [`Monoid::new`]: no inner point may have the abscissa of an end. Between those of the ends there is no pole if all inner
-    /// points lie there.
+    /// [`GeometryError::WrongSide`] for an inner point with the abscissa of an end, and the other errors of [`Monoid::new`]. If all inner
+    /// abscissae lie between those of the ends, there is no pole.
     pub fn graph(points: &[Point]) -> Result<Self, GeometryError> {
         let end = |p: Option<&Point>| p.copied().unwrap_or_default();
         Self::new(points, [0.0, 1.0, 0.0], [end(points.first()), end(points.last())])

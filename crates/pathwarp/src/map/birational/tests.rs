@@ -15,7 +15,7 @@ fn build(left: &[Point], right: &[Point]) -> Result<Birational, GeometryError> {
     Birational::new(UNIT, Rows::LeftRight, [left, right], None, false, ["--left", "--right"])
 }
 
-/// Equation (7): the weights of degree 1×1.
+/// The condition for the weights of degree 1×1, equation (7).
 fn condition(p: [[Point; 2]; 2]) -> f64 {
     let det = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
     let [[p00, p01], [p10, p11]] = p;
@@ -41,7 +41,7 @@ fn the_papers_quadrilateral() {
         let by_hand = Point::new((3.0 * x - 4.0 * y) / (36.0 - 4.0 * y), 2.0 * y / (20.0 - x));
         assert!(back.point(Point::new(x, y)).distance(by_hand) < 1e-14);
     }
-    // The same points with the default normalisation: other parameters for the same point, and the same condition.
+    // The same points with the default normalisation: a point has other parameters, but the condition holds.
     let own = build(&[p00, p01], &[p10, p11]).unwrap();
     let rows = &own.pieces[0].rows;
     let (w0, w1) = (&rows[0].weights, &rows[1].weights);
@@ -57,7 +57,7 @@ fn a_rectangle_is_the_identity_and_a_parallelogram_affine() {
     assert!(matches!(build(&left, &right).unwrap().class(), Class::Affine(_)));
 }
 
-/// s = f₀/(f₀ − f₁), and the equation of each row vanishes on it.
+/// The closed form s = f₀/(f₀ − f₁), and the equation of each row, which vanishes on it.
 #[test]
 fn the_rows_equations_invert_the_map() {
     let map = bent();
@@ -204,14 +204,14 @@ fn spline_rows_share_the_lines_between_their_pieces() {
             }
         }
     }
-    // Regular rows: the identity.
+    // Regular rows give the identity.
     let regular: Vec<Point> = [0.0, 1.0 / 6.0, 0.5, 5.0 / 6.0, 1.0].iter().map(|y| Point::new(0.0, *y)).collect();
     let facing: Vec<Point> = regular.iter().map(|p| *p + Vec2::new(1.0, 0.0)).collect();
     let map = Birational::new(UNIT, Rows::LeftRight, [&regular, &facing], Some(2), false, ["", ""]).unwrap();
     assert!(map.point(Point::new(0.3, 0.77)).distance(Point::new(0.3, 0.77)) < 1e-15);
 }
 
-/// The bisection of x(t) = x on a rational Bézier row with given weights, and y there.
+/// The value of y where x(t) = x on a rational Bézier row with given weights, by bisection.
 fn graph_by_definition(points: &[Point], weights: &[f64], x: f64) -> f64 {
     let n = points.len() - 1;
     let at = |t: f64| {
