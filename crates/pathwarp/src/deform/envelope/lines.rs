@@ -124,7 +124,7 @@ struct Room<'a> {
     trends: [Trend; 2],
 }
 
-/// The x of a column, and its intervals inside the shape, as [top, bottom].
+/// The x of a column, and its intervals inside the shape, each from its top downwards.
 type Column = (f64, Vec<[f64; 2]>);
 
 /// The interval of a column between two boundaries; `None` if it is empty.
@@ -179,7 +179,7 @@ impl Cuts {
         out
     }
 
-    /// Returns where letters of about `height` may stand: runs of columns, and pairs of runs beside a notch, towards which they may be lower.
+    /// Returns runs of columns in which letters of about `height` may stand, and pairs of runs, which may be lower at a notch between them.
     fn places(&self, height: f64) -> (Vec<Range<usize>>, Vec<[Range<usize>; 2]>) {
         let [low, rest @ ..] = ENDS.map(|e| self.runs(e * height, HIGHEST * height));
         let outer = |x: usize| low.iter().find(|r| r.contains(&x)).cloned().unwrap_or(x..x + 1);
