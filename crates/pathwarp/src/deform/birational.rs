@@ -293,7 +293,7 @@ Give --meet and one row instead of two for verticals that meet in a point: docs/
             &[("top", "0,0 30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100"), ("weight", "0,0:1 1,0:2 1,2:5")],
             (0.0, 1.0),
         ),
-        // Equal weights, and points at the ends of a rectangle's row, change nothing.
+        // Equal weights, and points at the ends of a rectangle's rows, do not change the map.
         Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100"), ("weight", "0,0:2 1,0:2 1,1:2")]),
         Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100"), ("q0", "0,30"), ("q1", "100,30")]),
     ])
@@ -432,7 +432,7 @@ mod tests {
         assert!(kinked.len() == 1 && kinked[0].contains("degrees"), "{kinked:?}");
     }
 
-    /// The lines meet where they are told to, and their weights are those of one row: P(s, t) = A + (1 − s/2)·(P₀(t) − A).
+    /// The lines meet at the given point A, and both rows have the same weights: P(s, t) = A + (1 − s/2)·(P₀(t) − A).
     #[test]
     fn a_row_and_a_point() {
         let built = build(&[("top", "0,0 25,-20 60,15 80,-10"), ("meet", "30,400")]).unwrap();

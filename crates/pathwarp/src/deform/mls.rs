@@ -414,7 +414,7 @@ mod tests {
         let handles: [[(f64, f64); 2]; 3] =
             [[(10.0, 20.0), (10.0, 20.0)], [(50.0, 50.0), (60.0, 45.0)], [(80.0, 10.0), (80.0, 15.0)]];
         let m = build(&[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")]).unwrap().map;
-        // In between, beside a handle, and far away, where everything cancels that can.
+        // Points between handles, beside a handle, and far away, where cancellation is greatest.
         for (v, exact) in [((33.0, 71.0), 1e-12), ((50.0 + 1e-5, 50.0 - 3e-5), 1e-12), ((-4e4, 9e5), 1e-8)] {
             let v = Point::from(v);
             let w = handles.map(|[p, _]| 1.0 / (Point::from(p) - v).hypot2());

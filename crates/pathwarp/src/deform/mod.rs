@@ -68,7 +68,7 @@ pub use wordart::{ShapeBox, TextShape, WordArt};
 
 use std::sync::Arc;
 
-/// The deformations of this crate, in the order `pathwarp list` shows them.
+/// Returns the deformations of this crate, in the order of `pathwarp list`.
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::ENTRY),

@@ -394,7 +394,7 @@ mod tests {
         assert!(segments < 16, "{segments}");
         let (warnings, _) = unroll("M-20,-80 H20 V-40 H-20 Z");
         assert!(warnings.is_empty(), "{warnings:?}");
-        // A circle that starts and ends on the ray: two halves, the way back, and what rounding makes of either end.
+        // A circle that starts and ends on the ray gives two halves, the way back, and short pieces by rounding at both ends.
         let (sin, cos) = 10_f64.to_radians().sin_cos();
         let (x, y) = (50.0 * -sin, 50.0 * cos);
         let (warnings, segments) = unroll(&format!("M{x},{y} A50,50 0 0 1 {},{} A50,50 0 0 1 {x},{y} Z", -x, -y));

@@ -249,7 +249,7 @@ impl Seg {
         }
     }
 
-    /// The first point.
+    /// Returns the first point.
     #[must_use]
     pub fn start(&self) -> Point {
         match self {
@@ -260,7 +260,7 @@ impl Seg {
         }
     }
 
-    /// The last point.
+    /// Returns the last point.
     #[must_use]
     pub fn end(&self) -> Point {
         match self {

@@ -171,7 +171,7 @@ impl Reflection {
         if self.infinite { self.eye.map(|v| -v) } else { minus(self.middle, self.eye) }
     }
 
-    /// A function of a point in space that is positive outside the mirror.
+    /// Returns a number that is positive if the point is outside the mirror.
     fn off(&self, q: Space) -> f64 {
         if let MirrorShape::Sphere(r) = self.mirror.shape {
             return q[0] * q[0] + (q[1] + r).powi(2) + q[2] * q[2] - r * r;

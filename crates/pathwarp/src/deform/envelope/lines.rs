@@ -144,7 +144,7 @@ struct Cuts {
 }
 
 impl Cuts {
-    /// `step` is the width of a column.
+    /// Creates the columns of a band; `step` is their width.
     fn new(all: Vec<Cut>, step: f64) -> Self {
         /// Number of columns on both sides over which a slope is measured.
         const REACH: usize = 3;

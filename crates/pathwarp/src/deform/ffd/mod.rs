@@ -560,7 +560,7 @@ pub(super) enum Change {
 }
 
 impl Change {
-    /// The parameter that makes such a change.
+    /// Returns the name of the parameter for this change.
     pub(super) const fn param(self) -> &'static str {
         match self {
             Self::Place(_) => "at",
