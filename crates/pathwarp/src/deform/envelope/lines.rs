@@ -2,10 +2,9 @@
 //!
 //! > (x, v) ↦ (X(x), t(X) + v·(b(X) − t(X))), X linear in each line, or in both parts of a line that is divided at a notch
 //!
-//! The boundaries between lines are parabolas, which change from the trend of the shape's top to that of its bottom. A band between two
-//! of them, clipped by the outline, ends where it is too low for letters. The levels of the boundaries are chosen to fill the shape best,
-//! about its middle, with letters of similar heights and widths. The top t and the bottom b of a line are splines within its band, so
-//! that no corner of the outline bends a letter.
+//! The boundaries between lines are parabolas, between the trends of the shape's top and its bottom. A band between two boundaries,
+//! clipped by the outline, ends where it is too low for letters. Levels are chosen to fill the shape best, about its middle, with
+//! letters of similar heights and widths. The top t and bottom b of a line are splines, so no corner of the outline bends a letter.
 
 use super::columns::Region;
 use crate::error::Error;
