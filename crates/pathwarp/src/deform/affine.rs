@@ -46,7 +46,7 @@ parameters! {
     }
 }
 
-/// Determinants below this share of their two products count as zero.
+/// A determinant ad − bc below this share of |ad| + |bc| counts as zero.
 const FLAT: f64 = 1e-14;
 
 impl Default for Affine {
@@ -56,7 +56,7 @@ impl Default for Affine {
 }
 
 impl From<Matrix> for Affine {
-    /// The whole map by its matrix; the parts have no effect then.
+    /// Creates the map with this matrix. Scale, skew, rotation and shift have no effect then.
     fn from(matrix: Matrix) -> Self {
         Self { matrix: Some(matrix), ..Self::new() }
     }
@@ -78,7 +78,7 @@ impl Affine {
         shift(by: impl Into<Vec2>) => shift: by.into();
     }
 
-    /// The error for a matrix that leaves no area, naming the parameter to blame.
+    /// Returns the error for a matrix that leaves no area. It names the parameter to blame.
     fn flat(&self, m: Matrix) -> Error {
         let scales = [("scale-x", self.scale.x, "width"), ("scale-y", self.scale.y, "height")];
         let zero = scales.into_iter().find(|(_, scale, _)| self.matrix.is_none() && *scale == 0.0);

@@ -1,12 +1,12 @@
-//! The bilinear map: a rectangle onto four corners, its four sides divided evenly.
+//! The bilinear map of a rectangle onto four corners, which divides all four sides evenly.
 //!
 //! F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S.
-//! Lines along the rectangle's sides stay straight and are divided evenly; other lines become parabolas. A curve of degree n has
-//! an image of degree 2n, exactly.
+//! Lines along the rectangle's sides stay straight and are divided evenly; other lines become parabolas. The image of a curve of
+//! degree n is exactly a curve of degree 2n.
 //!
-//! Inverse: with q = F − P, eliminating v from q − u·a = v·(b + u·c) leaves −(a×c)·u² + (q×c − a×b)·u + q×b = 0. At a solution
-//! twice the leading coefficient times u plus the middle one is −det F', so the root is chosen by the side of the fold that the
-//! corners lie on. G. Wolberg, *Digital Image Warping* (1990), §3.6.
+//! For the inverse, let q = F − P. Eliminating v from q − u·a = v·(b + u·c) leaves k₂u² + k₁u + k₀ = 0 with k₂ = −a×c, k₁ = q×c − a×b and
+//! k₀ = q×b. At a root 2k₂u + k₁ = −det F', so the root is chosen by the side of the fold on which the corners lie. See G. Wolberg,
+//! *Digital Image Warping* (1990), §3.6.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs};
 use crate::anchors::{self, Anchors, FourToFour};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// The bilinear map of a quadrilateral, usually a box, onto four corners, its sides divided evenly.
 ///
-/// F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S, with (u, v) from the base's corners by a projective map.
+/// F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S, where a projective map takes the base's corners to the unit square of (u, v).
 ///
 /// ```
 /// use pathwarp::{deform::Bilinear, kurbo::Point, map::Map};
@@ -43,7 +43,7 @@ impl Bilinear {
     /// Builds the map. A target that is not convex gives a warning, because the artwork folds over itself there.
     ///
     /// # Errors
-    /// [`Error::Geometry`] if points coincide or three lie on a line, or if the base is not convex.
+    /// [`Error::Geometry`] when points coincide or three lie on a line, or when the base is not convex.
     pub fn build(&self) -> Result<Built, Error> {
         let FourToFour { from, to, .. } = self.corners;
         self.corners.check()?;
@@ -118,7 +118,7 @@ struct BilinearMap {
 }
 
 impl BilinearMap {
-    /// The map that takes (0,0), (1,0), (1,1), (0,1) to these points.
+    /// Creates the map that takes (0,0), (1,0), (1,1), (0,1) to these points.
     fn new(q: [Point; 4]) -> Self {
         Self { p: q[0].to_vec2(), a: q[1] - q[0], b: q[3] - q[0], c: (q[0] - q[1]) + (q[2] - q[3]) }
     }
@@ -127,7 +127,7 @@ impl BilinearMap {
         (self.a + self.c * v).cross(self.b + self.c * u)
     }
 
-    /// An affine map if the corners are those of a parallelogram, or else this map.
+    /// Returns an affine map if the corners form a parallelogram, or else this map.
     fn or_affine(self) -> Arc<dyn Map> {
         if self.c.hypot() > 1e-14 * (self.p.hypot() + self.a.hypot() + self.b.hypot()) {
             return Arc::new(self);
@@ -159,7 +159,7 @@ impl Formula for BilinearMap {
         Some(RationalBezier::from_coordinates([&x, &y, &ww], curve.is_polynomial()))
     }
 
-    /// One on each side of the fold.
+    /// Returns up to two preimages, one on each side of the fold.
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         let side = |side: f64| Map::point(&BilinearInverse { of: *self, side }, q);
         Some([1.0, -1.0].map(side).into_iter().filter(|p| p.is_finite()).collect())
@@ -180,7 +180,7 @@ struct BilinearInverse {
 }
 
 impl BilinearInverse {
-    /// The quadratic's coefficients, highest first.
+    /// Returns the coefficients k₂, k₁, k₀.
     fn quadratic<S: Real>(&self, qx: S, qy: S) -> [S; 3] {
         let BilinearMap { a, b, c, .. } = self.of;
         let cross = |v: Vec2| qx * v.y - qy * v.x;
@@ -195,7 +195,7 @@ impl Formula for BilinearInverse {
         let [k2, k1, k0] = self.quadratic(qx, qy);
         // det F' at the solution.
         let det = (k1 * k1 - k2 * k0 * 4.0).sqrt() * self.side;
-        // −k1 and det have one sign near the unit square unless it is bent far: then the other form cancels less.
+        // −k₁ and det have the same sign near the unit square unless it is bent far; then the other form of the root cancels less.
         let u = if (det - k1).value().abs() >= (det + k1).value().abs() {
             k0 * 2.0 / (det - k1)
         } else {
@@ -206,7 +206,7 @@ impl Formula for BilinearInverse {
         (u, v)
     }
 
-    /// Beyond the fold's image there is no source.
+    /// Points beyond the image of the fold have no preimage.
     fn creases(&self, out: &mut Creases) {
         let own = *self;
         out.push(Crease::edge(Level::Field(Arc::new(move |at: Point| {

@@ -1,9 +1,9 @@
 //! Free-form deformation of degree 1×n with a closed-form inverse.
 //!
-//! Two rows of n + 1 freely placed points face each other; P(s,t) = (1−s)·P₀(t) + s·P₁(t), with weights that make the map one
-//! to one and its inverse rational (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*,
-//! CAGD 44, 2016, equations 11-13 and 26): see [`map::Birational`]. Degree 1×1 is T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*,
-//! CAGD 2015.
+//! Two rows of n + 1 freely chosen points face each other; P(s,t) = (1−s)·P₀(t) + s·P₁(t), with weights that make the map one
+//! to one and its inverse rational: see [`map::Birational`]. The weights are those of T. W. Sederberg, R. N. Goldman, X. Wang,
+//! *Birational 2D free-form deformation of degree 1×n*, CAGD 44 (2016), equations 11-13 and 26, to which numbers of equations refer;
+//! for degree 1×1 also of T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*, CAGD 2015.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
@@ -86,8 +86,8 @@ impl Birational {
         Self { rows: Rows::LeftRight, ..Self::top_bottom(region, left, right) }
     }
 
-    /// Gives point `j` of row `i`, both counted from 0, a positive weight; the weights that are not given follow, with the smallest change
-    /// (equation 7). At most three differ from what the others make them.
+    /// Gives point `j` of row `i`, both counted from 0, a positive weight. The weights that are not given follow, with the smallest
+    /// change (equation 7). At most three weights can be chosen freely.
     #[must_use]
     pub fn weight(mut self, i: usize, j: usize, weight: f64) -> Self {
         self.weights.push(([i, j], weight));
@@ -144,7 +144,7 @@ both rows opposite each other, on parallel lines or on lines through one point",
         Ok(built)
     }
 
-    /// The map with the spacing, the points or the weights that are given.
+    /// Returns `map` with the given spacing, points or weights.
     fn spaced(&self, map: map::Birational) -> Result<map::Birational, Error> {
         let Self { spacing, weights, .. } = self;
         let is_spaced = *spacing != 1.0 || !weights.is_empty();
@@ -186,7 +186,7 @@ both rows opposite each other, on parallel lines or on lines through one point",
         map.respaced([k0, k1], g).ok_or_else(|| Error::usage("spacing", "", "leads to weights out of range"))
     }
 
-    /// The map whose lines across divide the segment between two points evenly.
+    /// Returns the map whose lines across divide the segment between two points evenly.
     fn between(&self, map: &map::Birational, q: [Point; 2]) -> Result<map::Birational, Error> {
         let wrong = |name: &str, at: Point, why: &str| Error::usage(&name.to_lowercase(), show(at), why);
         let map = map.along(q).map_err(|e| match e {
@@ -293,7 +293,7 @@ Give --meet and one row instead of two for verticals that meet in a point: docs/
             &[("top", "0,0 30,20 60,-20 100,0"), ("bottom", "0,90 30,90 60,80 100,100"), ("weight", "0,0:1 1,0:2 1,2:5")],
             (0.0, 1.0),
         ),
-        // Equal weights, and points at the ends of a rectangle's row, change nothing.
+        // Equal weights, and points at the ends of a rectangle's rows, do not change the map.
         Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100"), ("weight", "0,0:2 1,0:2 1,1:2")]),
         Law::Identity(&[("top", "0,0 100,0"), ("bottom", "0,100 100,100"), ("q0", "0,30"), ("q1", "100,30")]),
     ])
@@ -432,7 +432,7 @@ mod tests {
         assert!(kinked.len() == 1 && kinked[0].contains("degrees"), "{kinked:?}");
     }
 
-    /// The lines meet where they are told to, and their weights are those of one row: P(s, t) = A + (1 − s/2)·(P₀(t) − A).
+    /// The lines meet at the given point A, and both rows have the same weights: P(s, t) = A + (1 − s/2)·(P₀(t) − A).
     #[test]
     fn a_row_and_a_point() {
         let built = build(&[("top", "0,0 25,-20 60,15 80,-10"), ("meet", "30,400")]).unwrap();

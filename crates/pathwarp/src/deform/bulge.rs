@@ -1,4 +1,4 @@
-//! A bulge, or with a negative amount a pinch: artwork pushed out from a centre, or drawn in, within a disc.
+//! A bulge: artwork within a disc is pushed away from the centre, or towards it by a negative amount (a pinch).
 //!
 //! With q = (r/R)² every point stays on its ray and r' = r·k(q), m = 2^amount being the scale at the centre:
 //!
@@ -110,7 +110,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Bulge::read(s)?.build());
 struct Inner {
     center: Point,
     radius: f64,
-    /// The scale at the centre, as its logarithm.
+    /// ln m, the logarithm of the scale at the centre.
     ln_m: f64,
     sharp: bool,
 }
@@ -144,7 +144,7 @@ impl Formula for Inner {
     }
 }
 
-/// The bulge that ends at the rim.
+/// The bulge inside the disc, and the identity outside.
 #[derive(Debug, Clone, Copy)]
 struct BulgeMap(Inner);
 
@@ -178,7 +178,7 @@ impl Formula for BulgeMap {
 struct SoftInverse(Inner);
 
 impl SoftInverse {
-    /// The point of the disc that goes to `p`.
+    /// Returns the point of the disc that goes to `p`.
     fn source(&self, p: Point) -> Point {
         let Inner { center, radius, ln_m, .. } = self.0;
         let d = p - center;
@@ -207,12 +207,12 @@ impl Map for SoftInverse {
         self.source(p)
     }
 
-    /// A share of the radius that the scale at the centre leaves of it.
+    /// A quarter of the radius, times the scale at the centre if that is below 1.
     fn detail(&self, _: Rect) -> Option<f64> {
         Some(0.25 * self.0.radius * self.0.ln_m.exp().min(1.0))
     }
 
-    /// A few Newton steps with a logarithm each.
+    /// A point takes a few Newton steps with a logarithm each.
     fn cost(&self) -> Cost<'_> {
         Cost::new(INVERSE_WORK)
     }

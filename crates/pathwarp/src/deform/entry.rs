@@ -1,4 +1,4 @@
-//! A deformation as the registry sees it: the trait [`Deformation`] and the data that describes one.
+//! The trait [`Deformation`], which the registry's entries implement, and the data that describe a deformation.
 
 use crate::error::Error;
 use crate::map::Map;
@@ -19,13 +19,13 @@ pub trait Deformation: Send + Sync {
     /// Builds the map for these settings.
     ///
     /// # Errors
-    /// [`Error::Usage`] for values that contradict each other, [`Error::Geometry`] where the anchors allow no such map.
+    /// [`Error::Usage`] for values that contradict each other, [`Error::Geometry`] when the anchors allow no such map.
     fn build(&self, settings: &Settings<'_>) -> Result<Built, Error>;
 
     /// Checks `args` against the parameter table and builds the map.
     ///
     /// # Errors
-    /// As [`Settings::new`] and [`Deformation::build`].
+    /// [`Error::Usage`] for an unknown or repeated parameter, [`Error::Missing`] without a required one, and the errors of [`Self::build`].
     fn build_from(&self, args: &Args, frame: &Frame) -> Result<Built, Error> {
         self.build(&Settings::new(self.info().params, args, frame)?)
     }
@@ -55,7 +55,7 @@ impl Deformation for Entry {
 
 /// The description of a deformation.
 ///
-/// Written as a constant, so that help, recipes, schema and docs all come from one table:
+/// It is written as a constant, from which help, recipes, schema and docs are made:
 ///
 /// ```
 /// use pathwarp::deform::Info;
@@ -70,15 +70,15 @@ impl Deformation for Entry {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Info {
-    /// The name, kebab-case: the subcommand.
+    /// The name in kebab case, which is also the subcommand.
     pub name: &'static str,
     /// One line for the menu.
     pub title: &'static str,
     /// The menu heading.
     pub group: &'static str,
-    /// The effect and the uses of the deformation, for help and docs: plain sentences.
+    /// Sentences on the effect and the uses of the deformation, for help and docs.
     pub about: &'static str,
-    /// The paper or program the mathematics comes from.
+    /// The paper or program that the mathematics comes from.
     pub source: &'static str,
     /// The parameters.
     pub params: &'static [Param],
@@ -90,17 +90,17 @@ pub struct Info {
     pub laws: &'static [Law],
     /// Values known from elsewhere; [`check::entry`](crate::check::entry) tests them.
     pub cases: &'static [Case],
-    /// The parameter that puts a baseline on the deformation's curve, if there is one. While it is not given, a frame around
-    /// lettering takes its baseline from the lettering. The command line looks for [letters](crate::param::Frame::letters) only
-    /// for deformations that have such a parameter, or [ask for them](Self::letters).
+    /// The parameter that puts a baseline on the deformation's curve, if there is one. Without a value, the baseline is that of the
+    /// lettering in the frame. The command line looks for [letters](crate::param::Frame::letters) only for deformations that have
+    /// such a parameter, or [ask for them](Self::letters).
     pub baseline: Option<&'static str>,
-    /// The deformation needs to know the artwork's letters.
+    /// `true` if the deformation needs to know the artwork's letters.
     pub letters: bool,
     /// The presets that a gallery draws one by one, if the deformation has any.
     pub gallery: Option<Gallery>,
-    /// The paths that selected ones stand for where a user selects guides and artwork together.
+    /// The path parameters whose values are selected together with the artwork in a drawing program.
     pub guides: Guides,
-    /// What else a page for bending by hand needs.
+    /// Further data for the editor page, on which handles are dragged.
     pub by_hand: ByHand,
 }
 
@@ -162,35 +162,35 @@ impl Info {
     }
 }
 
-/// The path parameters that selected paths stand for in a drawing program, where cages and artwork are selected together.
+/// The path parameters whose values are selected together with the artwork in a drawing program.
 #[derive(Debug, Clone, Copy)]
 pub struct Guides {
     /// The parameters: the topmost selected path is the value of the first, the next one that of the second.
     pub params: &'static [&'static str],
-    /// The number of paths taken unless the user says otherwise; the rest is artwork.
+    /// The default number of paths taken as guides; the rest is artwork.
     pub usual: usize,
 }
 
-/// What a page for bending by hand needs beyond the parameters.
+/// Data for the editor page, on which handles are dragged, beyond the parameters.
 ///
 /// In values, coordinates of points are percentages of the frame; path data is laid from the box 0,0,100,100 onto it.
 #[derive(Debug, Clone, Copy)]
 pub struct ByHand {
-    /// A label; `None` if the deformation's name will do.
+    /// A label, or `None` for the deformation's name.
     pub label: Option<&'static str>,
     /// Labels of parameters whose names could be misunderstood.
     pub labels: Pairs,
     /// Path parameters with a fixed number of points; others may have any number.
     pub fixed: &'static [&'static str],
-    /// The path parameters are rows of equally many points, the control points of one curve each.
+    /// `true` if every path parameter is a row of control points of one curve, all rows equally long.
     pub rows: bool,
-    /// Initial values, which move nothing and give every handle its place. If there are none, the defaults or [`Info::demo`] serve.
+    /// Initial values, which move nothing and give every handle a position. If empty, the defaults or [`Info::demo`] are used.
     pub neutral: Pairs,
-    /// Values that show the effect, if [`Info::demo`] suits only its own drawing.
+    /// Values that show the effect on any drawing, if [`Info::demo`] does not.
     pub showing: Pairs,
-    /// Other ways to begin.
+    /// Alternative initial values.
     pub variants: &'static [Variant],
-    /// Parameters that take the place of others.
+    /// Parameters that replace others.
     pub instead: &'static [Instead],
 }
 
@@ -208,12 +208,12 @@ impl ByHand {
     };
 }
 
-/// Another way to begin with a deformation.
+/// Alternative initial values, by another parameter than the usual ones.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
     /// Its label.
     pub label: &'static str,
-    /// The parameter that takes the place of the usual ones.
+    /// The parameter that replaces the usual ones.
     pub param: &'static str,
     /// Path data that moves nothing.
     pub neutral: &'static str,
@@ -221,7 +221,7 @@ pub struct Variant {
     pub showing: &'static str,
 }
 
-/// A parameter that takes the place of others.
+/// A parameter that replaces others.
 #[derive(Debug, Clone, Copy)]
 pub struct Instead {
     /// Its name.
@@ -232,7 +232,7 @@ pub struct Instead {
     pub with: Option<(&'static str, &'static str)>,
 }
 
-/// The presets of a deformation, as a gallery draws them: the artwork once under each.
+/// The presets of a deformation, for a gallery that draws the artwork once under each.
 #[derive(Debug, Clone, Copy)]
 pub struct Gallery {
     /// The name of the set, kebab-case; users ask for the set by this name.
@@ -250,7 +250,7 @@ pub struct Gallery {
 /// A command line for help.
 #[derive(Debug, Clone, Copy)]
 pub struct Example {
-    /// A caption: what the command line does.
+    /// A caption: the effect of the command line.
     pub what: &'static str,
     /// The words after `pathwarp`, run from the project's root, `-o out.svg` included.
     pub command: &'static str,
@@ -277,7 +277,7 @@ pub enum Law {
     Area(Pairs, f64),
     /// With these values angles between curves are kept, and nothing is mirrored.
     KeepsAngles(Pairs),
-    /// The second set of values takes every point back to its place before the first.
+    /// The map of the second set of values is the inverse of that of the first.
     Undoes(Pairs, Pairs),
 }
 
@@ -294,7 +294,7 @@ pub struct Case {
     pub tolerance: f64,
 }
 
-/// A deformation with its parameters settled.
+/// The result of building a deformation: its map, and what to report to the user.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Built {
@@ -302,7 +302,7 @@ pub struct Built {
     pub map: Arc<dyn Map>,
     /// Notes, warnings and guides for the user.
     pub explanation: Explanation,
-    /// Copies and letters, which are placed before the map or instead of it.
+    /// Affine maps of the artwork's copies and letters, applied before the map or instead of it.
     pub placement: Placement,
     /// A ray in the image plane where the map brings two edges of the artwork together.
     pub seam: Option<Seam>,
@@ -310,7 +310,7 @@ pub struct Built {
     pub saves: Vec<SavedFile>,
     /// The surface in space that the artwork lies on, for deformations onto surfaces.
     pub space: Option<InSpace>,
-    /// Marks beside the result that say where to look from.
+    /// Marks beside the result that show where to look from.
     pub sight: Option<Box<SightMark>>,
     /// Explains why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
@@ -341,7 +341,7 @@ impl Built {
         }
     }
 
-    /// Wraps the map of a program or function; `nothing` explains a place where it gives no numbers.
+    /// Wraps the map of a program or function; `nothing` explains a point for which it gives no numbers.
     #[must_use]
     pub fn called(map: Called, nothing: &'static str) -> Self {
         let (values, state) = (map.clone(), map.clone());
@@ -417,7 +417,7 @@ pub enum Role {
     Target,
 }
 
-/// Copies and letters. Only the first step of a recipe can have a placement, and its inverse has none.
+/// Affine maps of the artwork's copies and letters. Only the first step of a recipe can have them, and its inverse has none.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placement {
     /// The positions of the artwork's copies in the source plane, the original included. A map gives every point one image, so
@@ -426,9 +426,9 @@ pub struct Placement {
     /// For every letter of the frame, one affine map per copy of the artwork, which replaces the map for that letter. Empty:
     /// the map takes the letters as well.
     pub letters: Vec<Vec<Affine>>,
-    /// They are the places of the frame's [objects](crate::param::Frame::objects), rather than of its letters.
+    /// `true` if `letters` are the maps of the frame's [objects](crate::param::Frame::objects) instead of its letters.
     pub of_objects: bool,
-    /// They are places in the source plane, from which the map takes the letters.
+    /// `true` if `letters` move letters within the source plane, before the map.
     pub before: bool,
 }
 
@@ -451,10 +451,10 @@ pub struct SavedFile {
     pub text: String,
 }
 
-/// Marks beside the result that say where to look from, in the plane of the result.
+/// Marks beside the result that show where to look from, in the plane of the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SightMark {
-    /// Lines: the place of the eye or an arrow towards it, and the foot of a mirror.
+    /// Lines: the position of the eye or an arrow towards it, and the foot of a mirror.
     pub path: BezPath,
     /// The middle of the baseline of a line of text, and the text.
     pub label: (Point, String),
@@ -462,7 +462,7 @@ pub struct SightMark {
     pub size: f64,
 }
 
-/// Takes a point of the source to a place in space: x right, y down, z away, user units. `None` if there is none.
+/// Takes a point of the source to a point in space (x right, y down, z away, user units), if it has one.
 pub type Place = Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>;
 
 /// The surface in space that the artwork lies on.
@@ -489,6 +489,6 @@ pub struct SpaceFile {
     pub param: &'static str,
     /// Its name as the user gave it.
     pub name: String,
-    /// Filled shapes as a mesh, rather than outlines as polylines.
+    /// `true` for filled shapes as a mesh, `false` for outlines as polylines.
     pub filled: bool,
 }

@@ -1,8 +1,8 @@
-//! Any formula for x' and y'.
+//! Maps given by formulas for x' and y'.
 //!
-//! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers: the derivatives are
-//! exact, as for every formula in this crate. Kinks of abs, min and max, and jumps of sign and floor, are creases: a level set each. A
-//! branch is the list with every side resolved.
+//! The text becomes a list of operations ([`formula`](crate::formula)), which runs on plain and on dual numbers, so that derivatives
+//! are exact. Each kink of abs, min or max, and each jump of sign or floor, is a crease, given by a level set. In a branch, the list has
+//! every such operation replaced by the side on which the branch lies.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -12,11 +12,11 @@ use crate::param::{Kind, Param};
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
-/// Any formula for x' and y', with exact derivatives.
+/// A map given by formulas for x' and y', with exact derivatives.
 ///
 /// Formulas use numbers, `+ - * / ^`, brackets, the functions sin cos tan asin acos atan atan2 sinh cosh tanh asinh sqrt exp ln abs sign
-/// floor ceil round mod min max pow hypot smoothstep noise, and the names x, y (the point), u, v (the same within the box, 0 to 1), w, h,
-/// cx, cy (the box), pi, tau, e.
+/// floor ceil round mod min max pow hypot smoothstep noise, and the names x, y (the point), u, v (its position in the box, 0 to 1), w, h
+/// (the size of the box), cx, cy (its centre), pi, tau, e.
 ///
 /// `mod(a, b)` = a − b·⌊a/b⌋, `smoothstep(a, b, c)` = t²(3 − 2t) with t = (c − a)/(b − a) cut off at 0 and 1. `noise(a, b)` is smooth, with
 /// hills one unit wide: 2/16 of the sum of the sines of π(1 + {ip})(a·cos π{ig} + b·sin π{ig}) + 2π{iq}, i from 1 to 16, with {} the
@@ -59,7 +59,7 @@ impl Expr {
         self
     }
 
-    /// Gives a value a name, for the formulas after it.
+    /// Defines a name by a formula, for use in the formulas after it.
     #[must_use]
     pub fn define(mut self, name: &str, formula: &str) -> Self {
         self.definitions.push(format!("{name}={formula}"));
@@ -69,7 +69,7 @@ impl Expr {
     /// Parses the formulas and builds the map.
     ///
     /// # Errors
-    /// [`Error::Missing`] without any formula, [`Error::Usage`] for a syntax error, with a caret below it.
+    /// [`Error::Missing`] without any formula, [`Error::Usage`] for a syntax error, which a caret marks.
     pub fn build(&self) -> Result<Built, Error> {
         if self.x.is_none() && self.y.is_none() {
             return Err(Error::missing("x", "a formula for x, y or both, such as 'x + 4*sin(y/16)'"));
@@ -103,7 +103,7 @@ impl Expr {
         let mut built = Built::new(Arc::new(map.clone()));
         let texts =
             [("x", &self.x), ("y", &self.y)].map(|(name, text)| text.clone().unwrap_or_else(|| name.to_owned()));
-        // Constants are folded when a formula is read, which may leave no operation to blame.
+        // Constants are folded when a formula is read, so there may be no operation to blame.
         let whole = move |p: Point| {
             let image = map.point(p);
             let blamed = if image.x.is_finite() { &texts[1] } else { &texts[0] };
@@ -252,7 +252,7 @@ impl ExprMap {
     }
 }
 
-/// Operations of a formula that take as long as a bicubic net.
+/// Number of operations that take as long as a bicubic net.
 const OPERATIONS: f64 = 8.0;
 
 impl Map for ExprMap {
@@ -343,7 +343,7 @@ mod tests {
         ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
     }
 
-    /// Every function's value and derivatives, through the parser.
+    /// Checks the value and the derivatives of every function, through the parser.
     #[test]
     fn functions_and_their_derivatives() {
         let p = Point::new(0.6, 0.3);
@@ -381,7 +381,7 @@ mod tests {
         }
     }
 
-    /// The sum that the documentation gives, and that it is as large as it says.
+    /// Checks noise against the sum in the documentation, and its stated size.
     #[test]
     fn noise_is_the_documented_sum() {
         let noise = build(&[("x", "noise(x, y)")]).unwrap();
@@ -400,7 +400,7 @@ mod tests {
         assert!((0.8..1.3).contains(&largest), "{largest}");
     }
 
-    /// Every jump becomes a vertical line, and nothing else does; that of sign, which is 0 in the middle, two.
+    /// Every jump becomes a vertical line, and nothing else does. The jump of sign, which is 0 in the middle, becomes two.
     #[test]
     fn jumps_are_creases() {
         let line = crate::Outline::from_svg("M0.25,0 H9.75").unwrap();

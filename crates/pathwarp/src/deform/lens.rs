@@ -1,4 +1,4 @@
-//! Changes of lens, as fisheye pictures are made and straightened.
+//! Changes of lens, which make fisheye pictures and straighten them.
 //!
 //! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle:
 //!
@@ -10,9 +10,9 @@
 //! | equisolid (areas to scale) | 2·sin(θ/2) | θ < 180° |
 //! | orthographic | sin θ | θ < 90° |
 //!
-//! r' = f'·ρ'(ρ⁻¹(r/f)), directions kept. The inverse is the same with the lenses exchanged. The five projections are in
-//! Kannala & Brandt, *A generic camera model and calibration method for conventional, wide-angle, and fish-eye lenses*, IEEE
-//! PAMI 28 (2006), equations (1)–(5).
+//! The change from the lens ρ to the lens ρ' takes the distance r to r' = f'·ρ'(ρ⁻¹(r/f)) and keeps directions. The inverse exchanges
+//! the lenses. The five projections are in Kannala & Brandt, *A generic camera model and calibration method for conventional,
+//! wide-angle, and fish-eye lenses*, IEEE PAMI 28 (2006), equations (1)–(5).
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -54,7 +54,7 @@ parameters! {
 
 impl Lens {
     /// Creates the change from a rectilinear to an equisolid lens that looks at the middle of the artwork's box and keeps the
-    /// corners in place. (Rectilinear and orthographic lenses see less than 180 degrees.)
+    /// corners fixed. (Rectilinear and orthographic lenses see less than 180 degrees.)
     #[must_use]
     pub fn new(frame: Rect) -> Self {
         Self::defaults(frame)
@@ -184,19 +184,19 @@ impl LensModel {
     }
 }
 
-/// The map.
+/// The change of lens as a map.
 #[derive(Debug, Clone, Copy)]
 struct LensMap {
     center: Point,
     from: LensModel,
     to: LensModel,
-    /// Focal lengths.
+    /// The focal lengths f and f'.
     f: f64,
     f1: f64,
 }
 
 impl LensMap {
-    /// Returns the distance from the centre at which either lens ends; infinite if neither does.
+    /// Returns the distance from the centre up to which both lenses see; infinite if it has no limit.
     fn reach(&self) -> f64 {
         let limit = self.from.max_angle().min(self.to.max_angle());
         let ends = match self.from {
@@ -210,7 +210,7 @@ impl LensMap {
 
 impl Formula for LensMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        /// ρ and ρ⁻¹ are r·(1 + O(r²)): closer to the middle the scale is f'/f to the last bit.
+        /// ρ and ρ⁻¹ are r·(1 + O(r²)): below this r the scale is f'/f to the last bit.
         const TINY: f64 = 1e-9;
         let (u, v) = (x - self.center.x, y - self.center.y);
         let r = u.hypot(v) / self.f;
@@ -237,7 +237,7 @@ impl Formula for LensMap {
         }
     }
 
-    /// A quarter of the focal length, or of what is left to the rim: angles are analytic functions of the distance within those.
+    /// A quarter of the focal length or of the distance to the rim, within which angles are analytic functions of the distance.
     fn detail(&self, area: Rect) -> Option<f64> {
         let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x0, area.y1), (area.x1, area.y1)];
         let far = corners.into_iter().map(|p| self.center.distance(p.into())).fold(0.0, f64::max);

@@ -1,16 +1,16 @@
-//! Moving least squares: points of the artwork are moved, everything else follows as stiffly as asked.
+//! Moving least squares: the user moves points of the artwork, and everything else follows, more or less stiffly.
 //!
 //! S. Schaefer, T. `McPhail`, J. Warren, *Image deformation using moving least squares*, SIGGRAPH 2006. At a point v the handles
-//! pᵢ → qᵢ weigh wᵢ = 1/|pᵢ − v|^(2α); p*, q* are the weighted means, p̂ᵢ = pᵢ − p*, q̂ᵢ = qᵢ − q*, and F(v) = M·(v − p*) + q*, M
-//! being the best (weighted least squares)
+//! pᵢ → qᵢ have the weights wᵢ = 1/|pᵢ − v|^(2α). With the weighted means p*, q*, and p̂ᵢ = pᵢ − p*, q̂ᵢ = qᵢ − q*, the image is
+//! F(v) = M·(v − p*) + q*, where M is the best approximation, by weighted least squares, among
 //!
-//! - affine map: M = (Σ wᵢ q̂ᵢp̂ᵢᵀ)(Σ wᵢ p̂ᵢp̂ᵢᵀ)⁻¹ (equation 5),
-//! - similarity: in complex numbers M = Σ wᵢ q̂ᵢ·conj(p̂ᵢ) / Σ wᵢ|p̂ᵢ|² (equation 6),
-//! - rigid motion: the same sum divided by its length (Theorem 2.1 and equation 8).
+//! - affine maps: M = (Σ wᵢ q̂ᵢp̂ᵢᵀ)(Σ wᵢ p̂ᵢp̂ᵢᵀ)⁻¹ (equation 5),
+//! - similarities: in complex numbers M = Σ wᵢ q̂ᵢ·conj(p̂ᵢ) / Σ wᵢ|p̂ᵢ|² (equation 6),
+//! - rigid motions: M = Σ wᵢ q̂ᵢ·conj(p̂ᵢ) / |Σ wᵢ q̂ᵢ·conj(p̂ᵢ)| (Theorem 2.1 and equation 8).
 //!
-//! Numerically: weights only matter up to a common factor, so they are taken as (d²/|pᵢ − v|²)^α with d the distance to the
-//! nearest handle k, held fixed; and means are counted from pₖ, so that nothing cancels near it. *At* pₖ, M is made from the
-//! other handles alone, since p̂ₖ there is of second order: F(pₖ) = qₖ with that M for derivative (for α ≥ 1).
+//! Weights only matter up to a common factor. They are computed as (d²/|pᵢ − v|²)^α, where d, the distance to the nearest handle k,
+//! counts as constant. Means are relative to pₖ, so that nothing cancels near it. At pₖ itself, M comes from the other handles
+//! alone, since p̂ₖ is of second order there: F(pₖ) = qₖ, and the derivative is that M (for α ≥ 1).
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use crate::anchors;
@@ -50,8 +50,7 @@ parameters! {
 }
 
 impl Mls {
-    /// Creates the map that takes the first point of each pair to the second; equal points stay in place. At most 1000
-    /// pairs, whose first points are distinct.
+    /// Creates the map that takes the first point of each pair to the second. At most 1000 pairs, whose first points are distinct.
     pub fn new(pairs: impl IntoIterator<Item = (impl Into<Point>, impl Into<Point>)>) -> Self {
         let handles: Vec<(Point, Point)> = pairs.into_iter().map(|(p, q)| (p.into(), q.into())).collect();
         let points = handles.iter().flat_map(|h| [h.0, h.1]).map(|p| Rect::from_points(p, p));
@@ -62,7 +61,8 @@ impl Mls {
     /// Builds the map.
     ///
     /// # Errors
-    /// No pairs or too many, first points that coincide, or all on one line for [`Stiffness::Affine`].
+    /// [`Error::Missing`] without pairs, [`Error::Usage`] for too many pairs or an exponent out of range, [`GeometryError::Coincident`] for
+    /// equal first points, and [`GeometryError::Collinear`] when they lie on one line with [`Stiffness::Affine`].
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let Self { handles, stiffness, alpha, .. } = self;
@@ -173,7 +173,7 @@ it can, similar also lets them grow and shrink, affine lets them shear as well (
 
 const THREE: Pairs = &[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")];
 
-/// Limit on handles: every point of the artwork visits all of them.
+/// Limit on handles: the image of a point depends on all of them.
 const MAX_HANDLES: usize = 1000;
 
 /// Reads the deformation from text.
@@ -232,11 +232,11 @@ fn crosses(points: impl Iterator<Item = Point>, size: f64) -> BezPath {
     out
 }
 
-/// The map, for two handles or more.
+/// The map of two or more handles.
 #[derive(Debug, Clone)]
 struct MlsMap {
     handles: Vec<(Point, Point)>,
-    /// For every handle, the squared distance of its nearest neighbour.
+    /// For every handle, the squared distance to its nearest neighbour.
     apart: Vec<f64>,
     stiffness: Stiffness,
     alpha: f64,
@@ -245,7 +245,7 @@ struct MlsMap {
 /// A 2×2 matrix, row by row.
 type Matrix<S> = [[S; 2]; 2];
 
-/// Weighted sums over the handles, whose places p and q are relative to those of the nearest one.
+/// Weighted sums over the handles, with p and q relative to those of the nearest handle.
 struct Moments<S> {
     /// Σw.
     w: S,
@@ -275,8 +275,8 @@ impl<S: Real> Moments<S> {
         m
     }
 
-    /// The means p* and q*, and the sums relative to them: Σwp̂p̂ᵀ = Σwppᵀ − p*(Σwp)ᵀ. Little cancels, as the nearest handle, whose weight
-    /// is the largest, is the origin.
+    /// Returns the means p* and q*, and the sums relative to them: Σwp̂p̂ᵀ = Σwppᵀ − p*(Σwp)ᵀ. Little cancels, because the origin is the
+    /// nearest handle, which has the largest weight.
     fn centred(self) -> ([S; 2], [S; 2], [S; 3], Matrix<S>) {
         let Self { w, p: [px, py], q, pp, qp } = self;
         let (mx, my) = (px / w, py / w);
@@ -327,7 +327,7 @@ impl MlsMap {
     }
 }
 
-/// Handles that take as long as a bicubic net.
+/// Number of handles that take as long as a bicubic net.
 const HANDLES: f64 = 4.0;
 
 impl Formula for MlsMap {
@@ -335,7 +335,7 @@ impl Formula for MlsMap {
         Cost::new(1.0 + self.handles.len() as f64 / HANDLES)
     }
 
-    /// The weights change over the distance to the next handle, or, further away, over that from the handles.
+    /// The weights vary on the scale of the distance between handles, or, far away, of the distance from them.
     fn detail(&self, area: Rect) -> Option<f64> {
         let from = |p: Point| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)).distance(p);
         let sizes = self.handles.iter().zip(&self.apart).map(|((p, _), apart)| apart.sqrt().max(from(*p)));
@@ -343,7 +343,7 @@ impl Formula for MlsMap {
     }
 
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        /// Squared distance below which a point counts as on the handle, relative to that of the next handle.
+        /// Squared distance below which a point lies on the handle, relative to the squared distance between the handle and its neighbour.
         const ON: f64 = 1e-28;
         let (k, d2) = self.nearest(Point::new(x.value(), y.value()));
         let (nearest, scale) = (self.handles[k], self.apart[k]);
@@ -386,7 +386,7 @@ mod tests {
         ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
     }
 
-    /// Continuous and finite with its derivative on, and next to, every handle.
+    /// The map and its derivative are finite and continuous on every handle and next to it.
     #[test]
     fn handles_are_no_holes() {
         for kind in ["rigid", "similar", "affine"] {
@@ -408,13 +408,13 @@ mod tests {
         }
     }
 
-    /// The definition, straight from the paper, as a program that knows nothing of scaling and shifting.
+    /// Compares the map with the paper's definition, without scaled weights or shifted origins.
     #[test]
     fn agrees_with_the_definition() {
         let handles: [[(f64, f64); 2]; 3] =
             [[(10.0, 20.0), (10.0, 20.0)], [(50.0, 50.0), (60.0, 45.0)], [(80.0, 10.0), (80.0, 15.0)]];
         let m = build(&[("pin", "10,20"), ("pair", "50,50:60,45"), ("pair", "80,10:80,15")]).unwrap().map;
-        // In between, beside a handle, and far away, where everything cancels that can.
+        // Points between handles, beside a handle, and far away, where cancellation is greatest.
         for (v, exact) in [((33.0, 71.0), 1e-12), ((50.0 + 1e-5, 50.0 - 3e-5), 1e-12), ((-4e4, 9e5), 1e-8)] {
             let v = Point::from(v);
             let w = handles.map(|[p, _]| 1.0 / (Point::from(p) - v).hypot2());

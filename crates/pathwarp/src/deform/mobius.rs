@@ -1,15 +1,15 @@
 //! Möbius maps: w = (a·z + b)/(c·z + d) in complex numbers, ad ≠ bc.
 //!
-//! Circles and lines become circles and lines, angles are kept. The map is given by its pole, by three points and their images,
-//! or by the coefficients.
+//! Circles and lines become circles and lines, and angles are kept. The map is given by its pole, by three points and their
+//! images, or by its coefficients.
 //!
-//! - By the pole P: w = z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)) leaves z₀ and a small neighbourhood of it as they are.
-//! - By three points: with H(z) = (z − p₁)(p₂ − p₃)/((z − p₃)(p₂ − p₁)), which takes p₁, p₂, p₃ to 0, 1, ∞, and K the same for their images, the map is
-//!   K⁻¹ ∘ H (the cross-ratio is kept).
+//! - By the pole P: w = z₀ + (z − z₀)/(1 − (z − z₀)/(P − z₀)) keeps the middle z₀ of the box, and has the derivative 1 there.
+//! - By three points: H(z) = (z − p₁)(p₂ − p₃)/((z − p₃)(p₂ − p₁)) takes p₁, p₂, p₃ to 0, 1, ∞. With K the corresponding map for their
+//!   images, the map is K⁻¹ ∘ H, which keeps the cross-ratio.
 //!
-//! With z = Z/W a rational Bézier curve in homogeneous form, w = (aZ + bW)·conj(cZ + dW) / |cZ + dW|²: the image of degree n is
-//! rational of degree 2n, exactly. The inverse is (d·w − b)/(a − c·w). Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3;
-//! Needham, *Visual Complex Analysis* (1997), chapter 3.
+//! For a rational Bézier curve z = Z/W of degree n, w = (aZ + bW)·conj(cZ + dW) / |cZ + dW|² is exactly a rational curve of degree 2n.
+//! The inverse is (d·w − b)/(a − c·w). See Ahlfors, *Complex Analysis* (3rd ed. 1979), §3.3, and Needham, *Visual Complex Analysis*
+//! (1997), chapter 3.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Overlay, Role};
 use crate::anchors;
@@ -43,7 +43,7 @@ pub struct Mobius {
 }
 
 impl Mobius {
-    /// Creates the map that takes `pole` to infinity and leaves the middle of the artwork's box as it is.
+    /// Creates the map that takes `pole` to infinity and keeps the middle of the artwork's box, with the derivative 1 there.
     pub fn by_pole(frame: Rect, pole: impl Into<Point>) -> Self {
         let (z0, pole): (Point, Point) = (frame.center(), pole.into());
         Self { frame, m: by_pole(pole - z0), from: z0, to: z0, param: "pole", overlays: Vec::new() }
@@ -74,7 +74,7 @@ impl Mobius {
     /// Builds the map. It is undefined within 2 % of the box's diagonal from the pole.
     ///
     /// # Errors
-    /// [`Error::Usage`] if ad = bc: points that coincide, or a pole in the middle of the box.
+    /// [`Error::Usage`] when ad = bc, as for points that coincide, or a pole in the middle of the box.
     pub fn build(&self) -> Result<Built, Error> {
         let Self { frame, m, from, to, .. } = *self;
         let [a, b, c, d] = m;
@@ -200,7 +200,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     mobius.build()
 });
 
-/// The three distinct anchors of a path.
+/// Returns the three distinct anchors of a path.
 fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
     let a = anchors::only_subpath(path, "three")?.anchors();
     let [p, q, r] = a[..] else {
@@ -220,12 +220,12 @@ fn div(a: Vec2, b: Vec2) -> Vec2 {
 
 const ONE: Vec2 = Vec2::new(1.0, 0.0);
 
-/// z/(1 − z/P), multiplied out, for points relative to the middle.
+/// Returns the coefficients of z/(1 − z/P), for points relative to the middle.
 fn by_pole(pole: Vec2) -> [Vec2; 4] {
     [pole, Vec2::ZERO, -ONE, pole]
 }
 
-/// K⁻¹ ∘ H.
+/// Returns the coefficients of K⁻¹ ∘ H.
 fn by_points(p: [Vec2; 3], q: [Vec2; 3]) -> [Vec2; 4] {
     let h = |[p1, p2, p3]: [Vec2; 3]| [p2 - p3, -mul(p1, p2 - p3), p2 - p1, -mul(p3, p2 - p1)];
     let ([a, b, c, d], [e, f, g, i]) = (h(q), h(p));
@@ -276,7 +276,7 @@ impl Formula for MobiusMap {
         Some(image.mapped(|[x, y, w]| [x + self.to.x * w, y + self.to.y * w, w]))
     }
 
-    /// |F − a/c|·|z − pole| is the same everywhere: points far out in the source are those near the inverse's pole.
+    /// |F − a/c|·|z − pole| is constant, so points near the inverse's pole a/c come from points far away.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let [a, b, c, d] = self.m;
         let product = ((mul(a, d) - mul(b, c)).hypot()) / c.hypot2();
@@ -293,7 +293,7 @@ mod tests {
     use crate::outline::{EllipticArc, Seg};
     use crate::param::Args;
 
-    /// At 9e8 as at the origin, up to the rounding of the coordinates.
+    /// A map around 9e8 agrees with the one around the origin, up to the rounding of the coordinates.
     #[test]
     fn far_from_the_origin_no_digits_are_lost() {
         let far = Vec2::new(9e8, -9e8);

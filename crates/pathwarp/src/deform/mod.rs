@@ -5,7 +5,7 @@
 //! units, angles are degrees, clockwise on the screen, and boxes named `frame` are the artwork's.
 //!
 //! The [`Registry`] holds the same deformations as entries ([`Deformation`]) that read their parameters from text, as the command
-//! line and recipes do. Programs add their own with [`Registry::with`].
+//! line and recipes do. Programs add further entries with [`Registry::with`].
 //!
 //! To add one to this crate, run `cargo xtask new-deformation NAME`, which writes `NAME.rs` and three lines here.
 
@@ -68,7 +68,7 @@ pub use wordart::{ShapeBox, TextShape, WordArt};
 
 use std::sync::Arc;
 
-/// The deformations of this crate, in the order `pathwarp list` shows them.
+/// Returns the deformations of this crate, in the order of `pathwarp list`.
 pub(crate) fn builtin() -> Vec<Arc<dyn Deformation>> {
     vec![
         Arc::new(shaper::ENTRY),

@@ -1,16 +1,16 @@
-//! Polar coordinates: a rectangle bent into a sector of a ring, or into the whole ring.
+//! Polar coordinates: a rectangle is bent into a sector of a ring, or into the whole ring.
 //!
-//! Verticals become rays and horizontals become circles. With κ = sweep / width and x counted from the artwork's middle, the angle
-//! from the vertical is φ = κ·x, and with y counted upwards from the inner edge the radius is
+//! Verticals become rays and horizontals become circles. With κ = sweep / width and x measured from the artwork's middle, the angle
+//! from the vertical is φ = κ·x. With y measured upwards from the inner edge, the radius is
 //!
-//! - even: r = ρ + g·y, verticals are divided evenly; g = 1 unless both radii are given,
-//! - conformal: r = ρ·exp(κ·y), the complex exponential: angles are kept, heights grow with the radius.
+//! - even: r = ρ + g·y, which divides verticals evenly; g = 1 unless both radii are given,
+//! - conformal: r = ρ·exp(κ·y), the complex exponential, which keeps angles; heights grow with the radius.
 //!
 //! With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
-//! inner one. F = C + r·(sin φ, −cos φ) is computed from the image O of the artwork's middle, F = O + (r·sin φ, r(yₘ) − r +
-//! 2r·sin²(φ/2)), which loses nothing where the sweep is small and C far away. Inverse: r and φ from the distance to C and the
-//! direction, exact up to the ray opposite the middle. A whole turn meets itself there; artwork that crosses it is cut and joined
-//! by a straight line, and the recipe warns of it. Elementary.
+//! inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the artwork's middle, at height yₘ, as
+//! F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the centre C far away. The inverse
+//! takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn meets itself: artwork that
+//! crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
 use crate::error::{Error, show};
@@ -188,29 +188,29 @@ const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"),
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Polar::read(s)?.build());
 
-/// A turn is whole if it lacks less than this share.
+/// A sweep that falls short of a whole turn by less than this share counts as one.
 const WHOLE: f64 = 1e-9;
 
-/// The map.
+/// The ring as a map.
 #[derive(Debug, Clone, Copy)]
 struct PolarMap {
     conformal: bool,
     /// +1 for an arch, −1 for a smile.
     up: f64,
-    /// The whole angle, radians, positive.
+    /// The absolute value of the sweep, in radians.
     sweep: f64,
-    /// κ, radians per unit of x.
+    /// κ, in radians per unit of x.
     k: f64,
     /// ρ, negative for a smile.
     radius: f64,
-    /// Radius per unit of height.
+    /// g, the gain of radius per unit of height.
     gain: f64,
-    /// The inner edge's y.
+    /// The y of the inner edge.
     edge: f64,
-    /// The artwork's middle and its image.
+    /// The artwork's middle, and its image O.
     middle: Point,
     to: Point,
-    /// The unit vector that the x direction is turned to.
+    /// The image of the x direction under the additional turn, a unit vector.
     turn: Vec2,
 }
 
@@ -219,7 +219,7 @@ impl PolarMap {
         Vec2::new(v.x * self.turn.x - v.y * self.turn.y, v.x * self.turn.y + v.y * self.turn.x)
     }
 
-    /// Returns r at a height.
+    /// Returns r at the ordinate `y` of the artwork.
     fn radius_at<S: Real>(&self, y: S) -> S {
         let h = -(y - self.edge);
         if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
@@ -246,7 +246,7 @@ impl Formula for PolarMap {
         (a * t.x - b * t.y + self.to.x, a * t.y + b * t.x + self.to.y)
     }
 
-    /// The horizontal that becomes the centre.
+    /// Adds the horizontal that becomes the centre.
     fn creases(&self, out: &mut Creases) {
         if !self.conformal {
             let c = self.up * (self.radius + self.gain * self.edge);
@@ -263,7 +263,7 @@ impl Formula for PolarMap {
 #[derive(Debug, Clone, Copy)]
 struct PolarInverse {
     ring: PolarMap,
-    /// In a branch of a whole turn, the sign of the angles in this half, edges included.
+    /// The sign of the angles in this half, edges included, for a branch of a whole turn.
     half: Option<f64>,
 }
 
@@ -293,8 +293,8 @@ impl Formula for PolarInverse {
         (angle / m.k + m.middle.x, -h + m.edge)
     }
 
-    /// Undefined on the ray opposite the middle: each end extends over half of the angle that the sweep leaves free. A whole turn
-    /// leaves none, so that the value jumps there; the whole line divides it into halves with definite ends.
+    /// The inverse ends at the ray opposite the middle: each end of the ring extends over half of the angle that the sweep leaves
+    /// free. A whole turn leaves none, so that the value jumps there; a line through the centre divides it into halves with definite ends.
     fn creases(&self, out: &mut Creases) {
         let own = *self;
         if own.ring.is_whole() {
@@ -365,7 +365,7 @@ mod tests {
         }
     }
 
-    /// A square across the ray opposite the middle, and one that is not, unrolled from a ring about 0,0.
+    /// Unrolls two squares from a ring about 0,0: one lies across the ray opposite the middle, the other does not.
     #[test]
     fn a_whole_turn_is_cut_where_it_meets_itself_and_warns() {
         let pairs = [("sweep", "360"), ("inner", "20"), ("outer", "90"), ("center", "0,0"), ("turn", "-10")];
@@ -394,7 +394,7 @@ mod tests {
         assert!(segments < 16, "{segments}");
         let (warnings, _) = unroll("M-20,-80 H20 V-40 H-20 Z");
         assert!(warnings.is_empty(), "{warnings:?}");
-        // A circle that starts and ends on the ray: two halves, the way back, and what rounding makes of either end.
+        // A circle that starts and ends on the ray gives two halves, the way back, and short pieces by rounding at both ends.
         let (sin, cos) = 10_f64.to_radians().sin_cos();
         let (x, y) = (50.0 * -sin, 50.0 * cos);
         let (warnings, segments) = unroll(&format!("M{x},{y} A50,50 0 0 1 {},{} A50,50 0 0 1 {x},{y} Z", -x, -y));

@@ -36,7 +36,7 @@ impl Projective {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Geometry`] if points coincide or three lie on a line, or if only one of the quadrilaterals is convex.
+    /// [`Error::Geometry`] when points coincide or three lie on a line, or when only one of the quadrilaterals is convex.
     pub fn build(&self) -> Result<Built, Error> {
         let FourToFour { from, to, frame } = self.corners;
         self.corners.check()?;
@@ -86,7 +86,7 @@ unless --base-as-drawn or --target-as-drawn say otherwise.")
         Law::Area(&[("target", "0,200 200,200 200,0 0,0")], 4.0),
     ])
     .cases(&[
-        // The diagonals' crossing goes to the diagonals' crossing: here a symmetric trapezoid, diagonals (0,100)-(75,0), (100,100)-(25,0).
+        // The crossing of the diagonals goes to that of a symmetric trapezoid: (0,100)-(75,0) and (100,100)-(25,0).
         Case {
             args: &[("target", "0,100 100,100 75,0 25,0")],
             at: (50.0, 50.0),

@@ -1,10 +1,10 @@
-//! The registry: the deformations that a program knows, by name.
+//! The registry of deformations, by name.
 
 use super::entry::Deformation;
 use std::fmt;
 use std::sync::Arc;
 
-/// The deformations that a program knows.
+/// The deformations that a program offers, in menu order.
 #[derive(Clone)]
 pub struct Registry {
     entries: Vec<Arc<dyn Deformation>>,
@@ -37,7 +37,7 @@ impl Registry {
         self
     }
 
-    /// Returns this registry with the entries of another whose names it lacks.
+    /// Returns this registry followed by those entries of `other` whose names are new to it.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         let lacks = |e: &&Arc<dyn Deformation>| self.get(e.info().name).is_none();
@@ -57,7 +57,7 @@ impl Registry {
     }
 }
 
-/// The registry is complete and consistent: every file in `src/deform/` is an entry, and names are unique.
+/// Every file in `src/deform/` is an entry, and names are unique.
 #[cfg(test)]
 mod tests {
     use super::Registry;
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(names.len(), all);
     }
 
-    /// `pathwarp list` is a menu: its headings in a sensible order, each once; lines that say what one does with it, all different.
+    /// The menu that `pathwarp list` prints: every heading appears once, in the expected order, and all titles differ.
     #[test]
     fn the_list_reads_like_a_menu() {
         let registry = Registry::builtin();
@@ -115,7 +115,7 @@ mod tests {
             "Formulas",
             "Basics",
         ];
-        // A heading of its own, for a deformation that fits under none of these, comes at the end.
+        // New headings come at the end.
         assert_eq!(headings[..expected.len()], expected);
         let mut titles: Vec<&str> = infos.iter().map(|i| i.title).collect();
         titles.sort_unstable();

@@ -36,7 +36,7 @@ impl Similitude {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`GeometryError::Coincident`] if both points of a pair are the same.
+    /// [`GeometryError::Coincident`] when the points `from` are equal, or the points `to`.
     pub fn build(&self) -> Result<Built, Error> {
         anchors::distinct("base", &self.from)?;
         anchors::distinct("target", &self.to)?;

@@ -1,4 +1,4 @@
-//! A swirl: artwork turned about a centre, by an angle that falls off with the distance.
+//! A swirl: artwork is turned about a centre, by an angle that decreases with the distance.
 //!
 //! In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), with one of
 //!
@@ -6,8 +6,8 @@
 //! - sharp: f(ρ) = 1 − ρ inside, 0 outside; the slope jumps at the rim,
 //! - endless: f(ρ) = exp(−2ρ²), smooth everywhere.
 //!
-//! r is kept, so areas are kept (the map is a shear in r²/2 and θ) and the inverse is the same swirl with −α. Elementary; the
-//! twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius for the axis.
+//! The map keeps r and areas, being a shear in r²/2 and θ; the inverse is the swirl by −α. It is the twist of A. Barr, *Global and
+//! local deformations of solid primitives*, SIGGRAPH 1984, with the radius in the role of the axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -148,7 +148,7 @@ impl Formula for Inner {
     }
 }
 
-/// The swirl that ends at the rim.
+/// The swirl inside the disc, and the identity outside.
 #[derive(Debug, Clone, Copy)]
 struct SwirlMap(Inner);
 

@@ -1,13 +1,13 @@
-//! A sine wave: artwork pushed to and fro across the direction the wave runs in, or along it.
+//! A sine wave: artwork is pushed to and fro across the direction in which the wave runs, or along it.
 //!
 //! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from the start of
 //! the artwork,
 //!
 //! shear: F(p) = p + a(s)·sin(2π·s/λ + φ)·n,  push: F(p) = p + a(s)·sin(2π·s/λ + φ)·d,
 //!
-//! a(s) = h·(1 − g + g·s/S), S the artwork's extent along d: with g = 1 the wave grows from nothing, like a flag at its pole.
-//! The shear leaves s alone: its determinant is 1, and its inverse is the same wave with −h. Both are elementary; waves of this
-//! kind are in A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, as profiles of offsets along an axis.
+//! with a(s) = h·(1 − g + g·s/S), where S is the artwork's extent along d. With g = 1 the wave grows from nothing, like a flag at its
+//! pole. The shear keeps s: its determinant is 1, and its inverse is the wave with −h. A. Barr, *Global and local deformations of
+//! solid primitives*, SIGGRAPH 1984, has such waves as profiles of offsets along an axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -132,20 +132,20 @@ stay straight, and no area changes. With --grow the wave starts flat and reaches
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Wave::read(s)?.build());
 
-/// The map.
+/// The wave as a map.
 #[derive(Clone)]
 struct WaveMap {
-    /// Unit vector the wave runs along.
+    /// The unit vector d along the wave.
     d: Vec2,
-    /// Unit vector points are moved along.
+    /// The unit vector along which points move: n or d.
     to: Vec2,
-    /// p·d at the start of the artwork.
+    /// o·d, the position of the artwork's start along the wave.
     origin: f64,
-    /// Radians per unit.
+    /// 2π/λ.
     wave: f64,
     phase: f64,
     height: f64,
-    /// Height at the start, and its gain per unit, as shares of `height`.
+    /// The height at the start, and its growth per unit of s, as shares of `height`.
     initial: f64,
     grow: f64,
 }
@@ -162,7 +162,7 @@ impl Formula for WaveMap {
         if self.height == 0.0 { Class::Affine(Affine::IDENTITY) } else { Class::Smooth }
     }
 
-    /// If points move across the wave, s is kept and the offset can be subtracted again.
+    /// A shear keeps s, so its offset can be subtracted again.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let across = self.d.dot(self.to) == 0.0;
         across.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)

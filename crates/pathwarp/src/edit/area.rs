@@ -1,4 +1,4 @@
-//! Areas: what outlines enclose, and what several areas make together.
+//! Areas enclosed by outlines, with their union, intersection and difference.
 
 use super::known;
 use crate::error::GeometryError;
@@ -7,12 +7,12 @@ use crate::refit::ARCS;
 use bezierfit::union_even_odd;
 use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _};
 
-/// Share of the width of a gap within which outlines that close it are fitted.
+/// Tolerance of outlines that close a gap, as a share of its width.
 const FITTED: f64 = 0.1;
-/// The same within which they follow lines and arcs of the sources.
+/// Distance within which outlines that close a gap follow lines and arcs of the sources, as a share of its width.
 const SNAPPED: f64 = 0.8;
 
-/// Where segments of outlines that close gaps are compared with what they come from.
+/// Parameters at which segments of outlines that close gaps are compared with the original outlines.
 const PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 /// An area of the plane, with outlines that meet neither themselves nor each other.
@@ -31,22 +31,22 @@ const PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 pub struct Area(Outline);
 
 impl Area {
-    /// The area of a fill, within `tolerance`. Open subpaths are closed.
+    /// Returns the area of a fill, within `tolerance`. Open subpaths are closed.
     ///
     /// # Errors
-    /// A coordinate is not finite, or it is not found how edges cross; so in all that follows.
+    /// [`GeometryError::NotFinite`] for a coordinate that is not finite, [`GeometryError::Crossings`] when edges' crossings are not found.
     pub fn of(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Self, GeometryError> {
         let fine = ARCS * tolerance;
         let unite = if even_odd { union_even_odd } else { bezierfit::union };
         Ok(Self(Outline::from(&unite(&outline.to_bez_path(fine), tolerance - fine)?)))
     }
 
-    /// What lies in any of the areas.
+    /// Returns the union of the areas.
     ///
     /// # Errors
-    /// As [`Area::of`].
+    /// [`GeometryError::Crossings`] when crossings of edges are not found.
     pub fn union<'a>(all: impl IntoIterator<Item = &'a Self>, tolerance: f64) -> Result<Self, GeometryError> {
-        // The outlines of each turn around it in one direction.
+        // All outlines turn around their area in the same direction, so their union is that of one path.
         let mut areas = all.into_iter().filter(|a| !a.is_empty()).map(Self::path);
         let Some(mut path) = areas.next() else { return Ok(Self::default()) };
         let alone = path.elements().len();
@@ -55,18 +55,18 @@ impl Area {
         Ok(Self(Outline::from(&if is_alone { path } else { bezierfit::union(&path, tolerance)? })))
     }
 
-    /// What lies in both areas.
+    /// Returns the intersection of both areas.
     ///
     /// # Errors
-    /// As [`Area::of`].
+    /// [`GeometryError::Crossings`] when crossings of edges are not found.
     pub fn intersection(&self, other: &Self, tolerance: f64) -> Result<Self, GeometryError> {
         Ok(Self(Outline::from(&bezierfit::intersection(&self.path(), &other.path(), tolerance)?)))
     }
 
-    /// What lies in this area and not in the other.
+    /// Returns this area without the other.
     ///
     /// # Errors
-    /// As [`Area::of`].
+    /// [`GeometryError::Crossings`] when crossings of edges are not found.
     pub fn difference(&self, other: &Self, tolerance: f64) -> Result<Self, GeometryError> {
         if self.is_empty() || other.is_empty() {
             return Ok(self.clone());
@@ -74,38 +74,38 @@ impl Area {
         Ok(Self(Outline::from(&bezierfit::difference(&self.path(), &other.path(), tolerance)?)))
     }
 
-    /// Whether there is no area.
+    /// Returns `true` if the area is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The outlines, of lines and cubics.
+    /// Returns the outlines, of lines and cubics.
     #[must_use]
     pub fn outline(&self) -> &Outline {
         &self.0
     }
 
-    /// The outlines, with the circular arcs of the sources where they follow those within `tolerance`.
+    /// Returns the outlines, with circular arcs of the sources where the outlines follow them within `tolerance`.
     #[must_use]
     pub fn with_arcs_of(&self, sources: &Outline, tolerance: f64) -> Outline {
         known::with_edges(self.0.clone(), sources, (0.0, false, 0.0), tolerance)
     }
 
-    /// The numbers of islands and of holes.
+    /// Returns the numbers of islands and of holes.
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {
         let outer = outer(&self.0, 1.0).count();
         [outer, self.0.subpaths.len() - outer]
     }
 
-    /// The outlines around the islands.
+    /// Returns the outlines around the islands.
     pub(super) fn islands(&self) -> Vec<Subpath> {
         outer(&self.0, 1.0).cloned().collect()
     }
 
-    /// The area without gaps and holes narrower than `width`, where closing them joins or fills something. Lines and circular arcs of the
-    /// sources stay exact. Where it is not found how outlines so close cross, gaps stay.
+    /// Returns the area with gaps and holes narrower than `width` closed, where that joins islands or fills holes. Lines and circular arcs
+    /// of the sources stay exact. Gaps stay where the crossings of outlines so close are not found.
     #[must_use]
     pub fn with_gaps_closed(&self, width: f64, sources: &Outline) -> Self {
         let boxes: Vec<Rect> = self.0.subpaths.iter().map(|s| s.bounding_box().inflate(width, width)).collect();
@@ -128,10 +128,10 @@ impl Area {
             return None;
         }
         let closed = Outline::from(&moved(&grown, -0.5 * width)?);
-        // Lines go on across gaps.
+        // Lines may continue across gaps.
         let exact =
             known::with_edges(closed, sources, (0.0, false, f64::INFINITY), SNAPPED * width).to_bez_path(ARCS * width);
-        // It runs along the outlines that it comes from.
+        // The result must run along the original outlines.
         let own: Vec<(Rect, PathSeg)> =
             self.path().segments().map(|s| (s.bounding_box().inflate(width, width), s)).collect();
         let is_near = |p: Point| {
@@ -141,7 +141,7 @@ impl Area {
         (follows && exact.area().abs() >= self.path().area().abs()).then(|| Outline::from(&exact))
     }
 
-    /// Whether segments that do not follow one another are nearer than `width`.
+    /// Returns `true` if segments without a common end are nearer than `width`.
     fn has_gap(&self, width: f64) -> bool {
         let mut segs: Vec<(Rect, PathSeg)> = self.path().segments().map(|s| (s.bounding_box(), s)).collect();
         segs.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
@@ -158,7 +158,7 @@ impl Area {
     }
 }
 
-/// Whether two segments are nearer than `width`, or a little more.
+/// Returns `true` if two segments are nearer than `width`, or slightly more.
 fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
     let [around, other] = [a, b].map(kurbo::Shape::bounding_box);
     let [m, n] = [around, other].map(|b| b.size().max_side());
@@ -173,14 +173,14 @@ fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
     [0.0..0.5, 0.5..1.0].into_iter().any(|half| are_near(&long.subsegment(half), short, width))
 }
 
-/// The subpaths that go around islands rather than holes.
+/// Returns the subpaths around islands, not those around holes.
 fn outer(outline: &Outline, fine: f64) -> impl Iterator<Item = &Subpath> {
     let areas: Vec<f64> = outline.subpaths.iter().map(|s| path(s, fine).area()).collect();
     let all: f64 = areas.iter().sum();
     outline.subpaths.iter().zip(areas).filter_map(move |(s, area)| (area * all > 0.0).then_some(s))
 }
 
-/// The outlines of an area, without those that lie inside of another. Arcs become cubics within `fine`.
+/// Returns the outlines of an area that lie in no other. Arcs become cubics within `fine`.
 pub(super) fn outermost(outline: &Outline, fine: f64) -> Outline {
     let islands: Vec<(&Subpath, Rect, BezPath)> =
         outer(outline, fine).map(|s| (s, s.bounding_box(), path(s, fine))).collect();
@@ -194,12 +194,12 @@ fn path(subpath: &Subpath, fine: f64) -> BezPath {
     Outline { subpaths: vec![subpath.clone()] }.to_bez_path(fine)
 }
 
-/// The numbers of boxes in groups, ordered as their first boxes are: lines along the axes lie between any two groups.
+/// Divides boxes into groups, separated by lines along the axes. Returns the indices of each group, in the order of their first boxes.
 pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
-    /// Limit on the cuts one after the other, across and along by turns. Only staircases take as many.
+    /// Limit on the depth of alternate cuts along x and y. Only staircases need as many.
     const MAX_CUTS: usize = 64;
     let spans: [fn(&Rect) -> [f64; 2]; 2] = [|b| [b.x0, b.x1], |b| [b.y0, b.y1]];
-    // Groups, with the cuts so far and how many of the last ones had no effect.
+    // Groups, with the number of cuts so far and the number of the last ones that had no effect.
     let (mut open, mut done) = (vec![((0..boxes.len()).collect::<Vec<usize>>(), 0, 0)], Vec::new());
     while let Some((mut group, cuts, vain)) = open.pop() {
         if vain == spans.len() || cuts == MAX_CUTS || group.len() < 2 {
@@ -229,7 +229,7 @@ pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
 /// Returns the area of a fill as outlines that meet neither themselves nor each other, within `tolerance`; `None` if that holds already.
 ///
 /// # Errors
-/// A coordinate is not finite.
+/// [`GeometryError::NotFinite`] for a coordinate that is not finite, [`GeometryError::Crossings`] when edges' crossings are not found.
 ///
 /// ```
 /// use pathwarp::{Outline, edit::united};
@@ -246,7 +246,7 @@ pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Optio
     let unite = if even_odd { union_even_odd } else { bezierfit::union };
     let area = unite(&path, tolerance - fine)?;
     let united = Outline::from(&area);
-    // Overlaps change the area or the number of outlines. Only closed ones enclose it.
+    // Overlaps change the area or the number of outlines. An open outline has no area.
     let room = tolerance * path.perimeter(tolerance);
     let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
     let simple = closed && united.subpaths.len() == outline.subpaths.len();

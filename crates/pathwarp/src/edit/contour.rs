@@ -1,4 +1,4 @@
-//! One line around an area, at a distance.
+//! Lines around an area, at a distance.
 
 use super::area::{Area, outermost};
 use super::offset::{Moved, Offset, OpenPaths, Side, moved};
@@ -8,33 +8,33 @@ use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::{ARCS, Options, PathReport};
 use kurbo::{Join, Point, Rect};
 
-/// A line around an area.
+/// The settings of a line around an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contour {
-    /// Its distance from the area in user units; inside of it if that is below zero.
+    /// Distance from the area in user units; below zero, the line is inside.
     pub by: f64,
-    /// Holes that are left of the area get a line, too.
+    /// `true` if remaining holes get a line, too.
     pub holes: bool,
-    /// Necks as wide as the distance bridge what is further apart than twice the distance.
+    /// `true` if necks as wide as the distance join islands that are further apart than twice the distance.
     pub join: bool,
 }
 
-/// What [`around`] finds.
+/// The result of [`around`].
 #[derive(Debug, Clone)]
 pub struct Around {
     /// Lines, arcs and curves.
     pub outline: Outline,
-    /// The number of islands, each with a line of its own.
+    /// The number of islands, each with one line around it.
     pub islands: usize,
-    /// The number of nodes, and how far they are off.
+    /// The numbers of nodes, and the error.
     pub report: PathReport,
 }
 
-/// The line around an area, round where it goes around corners. Each of its points has the distance from the area, within
+/// Draws the line around an area, with arcs around corners. Every point of the line has the given distance from the area, within
 /// `options.tolerance`, unless it lies on a neck.
 ///
 /// # Errors
-/// A coordinate is not finite, it is not found how edges cross, or there are too many islands to join.
+/// [`GeometryError::Crossings`] when crossings of edges are not found, [`GeometryError::Limit`] for too many islands to join.
 ///
 /// ```
 /// use pathwarp::edit::{Area, Contour, around};
@@ -69,25 +69,25 @@ pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Aroun
     Ok(Around { outline, islands, report })
 }
 
-/// Places on an island, and their box.
+/// Points on the outline of an island, and its box.
 struct Island(Vec<Point>, Rect);
 
 impl Island {
     fn of(subpath: &Subpath) -> Self {
-        /// Places on each segment.
+        /// Number of points on each segment.
         const EACH: u32 = 16;
         let on = |s: &Seg| (0..EACH).map(|i| s.eval(f64::from(i) / f64::from(EACH))).collect::<Vec<_>>();
         Self(subpath.segs.iter().flat_map(on).collect(), subpath.bounding_box())
     }
 
-    /// The shortest way to another.
+    /// Returns the ends of the shortest way to another island.
     fn way(&self, other: &Self) -> Option<[Point; 2]> {
         let pairs = self.0.iter().flat_map(|p| other.0.iter().map(move |q| [*p, *q]));
         pairs.min_by(|a, b| a[0].distance_squared(a[1]).total_cmp(&b[0].distance_squared(b[1])))
     }
 }
 
-/// Necks of a width that join all islands of an area, over the shortest ways.
+/// Returns necks of a width that join all islands of an area along the shortest ways.
 fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, GeometryError> {
     let islands: Vec<Island> = area.islands().iter().map(Island::of).collect();
     let places: usize = islands.iter().map(|i| i.0.len()).sum();
@@ -96,7 +96,7 @@ fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, Geomet
         let gap = |p: f64, q: f64| p.max(q).max(0.0);
         gap(a.x0 - b.x1, b.x0 - a.x1).hypot(gap(a.y0 - b.y1, b.y0 - a.y1))
     };
-    // The way to each island from those that are joined; the first is.
+    // The shortest way to each island from those already joined, at first only island 0.
     let mut ways: Vec<Option<[Point; 2]>> = vec![None; islands.len()];
     let mut left: Vec<usize> = (1..islands.len()).collect();
     let (mut last, mut out) = (0, Vec::new());
@@ -116,7 +116,7 @@ fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, Geomet
         };
         last = left.swap_remove(next);
         if let Some([p, q]) = ways[last].filter(|[p, q]| p.distance(*q) > 0.0) {
-            // The ends reach into the islands, which curve away beside them.
+            // The ends reach into the islands, whose outlines may curve away beside the neck.
             let along = (q - p).normalize() * (0.5 * width);
             let across = kurbo::Vec2::new(-along.y, along.x);
             let corners = [p - along + across, q + along + across, q + along - across, p - along - across];

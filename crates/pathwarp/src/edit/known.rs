@@ -1,6 +1,6 @@
-//! Exact edges of an offset: beside lines run lines, beside arcs and around corners run arcs, which a fit only approximates.
+//! Exact edges of an offset: lines beside lines, and arcs beside arcs and around corners, which a fit only approximates.
 //!
-//! Pieces of a fitted contour that follow such an edge give way to it. Neighbouring edges meet where they cross or touch.
+//! An edge replaces the pieces of a fitted contour that follow it. Neighbouring edges meet where they cross or touch.
 
 use crate::outline::{EllipticArc, Outline, Seg, Subpath};
 use kurbo::{Line, ParamCurve as _, ParamCurveArclen as _, PathSeg, Point, Vec2};
@@ -8,22 +8,22 @@ use std::f64::consts::TAU;
 
 /// Limit on comparisons of pieces with edges.
 const MOST: usize = 2_000_000;
-/// Parameters at which a piece is compared.
+/// Parameters at which a piece is compared with an edge.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Rounding, as a share of a radius: nearer than this, edges touch.
+/// Distance at which edges touch, as a share of a radius.
 const TOUCH: f64 = 1e-6;
 
-/// An edge beside the source.
+/// An exact edge at a distance from the source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Edge {
-    /// Beside a line, which is this long.
+    /// An edge beside a line of the same length.
     Line(Line),
-    /// Beside an arc, or around a corner, from an angle over a positive sweep.
+    /// An edge beside an arc or around a corner, from an angle over a positive sweep.
     Arc { center: Point, radius: f64, start: f64, sweep: f64 },
 }
 
 impl Edge {
-    /// The largest distance of a piece from the edge; `None` if it does not run along it. `reach` is how far lines go on beyond their ends.
+    /// Returns the largest distance of a piece from the edge; `None` if it does not run along it. Lines extend by `reach` at both ends.
     fn distance(&self, piece: &PathSeg, within: f64, reach: f64) -> Option<f64> {
         let each = SAMPLES.map(|t| {
             let p = piece.eval(t);
@@ -35,7 +35,7 @@ impl Edge {
                     is_beside.then(|| along.cross(p - l.p0).abs())
                 }
                 Self::Arc { center, radius, start, sweep } => {
-                    // What touches an arc leaves it slowly.
+                    // A curve tangent to an arc leaves it slowly.
                     let slack = (2.0 * within / radius).sqrt();
                     let turn = ((p - center).angle() - start + slack).rem_euclid(TAU);
                     (turn <= sweep + 2.0 * slack).then(|| (p.distance(center) - radius).abs())
@@ -46,7 +46,7 @@ impl Edge {
         (most <= within).then_some(most)
     }
 
-    /// The nearest point of the line or circle.
+    /// Returns the nearest point of the line or circle.
     fn foot(&self, p: Point) -> Point {
         match *self {
             Self::Line(l) => {
@@ -57,7 +57,7 @@ impl Edge {
         }
     }
 
-    /// The point near `p` in which the lines or circles meet.
+    /// Returns the point near `p` at which the lines or circles meet.
     fn meeting(&self, other: &Self, p: Point) -> Option<Point> {
         match (*self, *other) {
             (Self::Line(a), Self::Line(b)) => a.crossing_point(b),
@@ -74,7 +74,7 @@ impl Edge {
                 if apart <= TOUCH * r {
                     return None;
                 }
-                // The distance from the first center to the line through both meetings.
+                // The distance from the first center to the line through both intersections.
                 let to = (apart * apart + r * r - s * s) / (2.0 * apart);
                 let (foot, across) = (c + between * (to / apart), Vec2::new(-between.y, between.x) / apart);
                 let side = if across.dot(p - foot) < 0.0 { -1.0 } else { 1.0 };
@@ -84,7 +84,7 @@ impl Edge {
     }
 }
 
-/// Half the chord of a circle at a distance from its center: 0 where it only touches, `None` beyond.
+/// Returns half the chord of a circle at a distance from its center: 0 for a tangent, `None` outside the circle.
 fn half_chord(distance: f64, radius: f64) -> Option<f64> {
     let rest = radius - distance;
     if rest.abs() <= TOUCH * radius {
@@ -93,7 +93,7 @@ fn half_chord(distance: f64, radius: f64) -> Option<f64> {
     (rest > 0.0).then(|| (rest * (radius + distance)).sqrt())
 }
 
-/// The edges at a distance from the closed subpaths of a source, on both sides.
+/// Returns the edges at a distance from the closed subpaths of a source, on both sides.
 fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
     let mut out = Vec::new();
     for subpath in source.subpaths.iter().filter(|s| s.closed) {
@@ -134,7 +134,7 @@ fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
     out
 }
 
-/// Two segments that are one line or one circular arc.
+/// Joins two segments into one line or circular arc, if they are one.
 fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
     match (a, b) {
         (Seg::Line(k), Seg::Line(l)) => {
@@ -154,19 +154,19 @@ fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
     }
 }
 
-/// What a contour is made of.
+/// A part of a contour: a fitted piece, or several that one edge replaces.
 #[derive(Debug, Clone)]
 struct Run {
-    /// A fitted piece, or an edge in place of pieces from the first to the last point.
+    /// The fitted piece; for several, a line from their first to their last point.
     piece: PathSeg,
     edge: Option<Edge>,
-    /// The middle of what the edge stands for, and the angle it has swept around its center.
+    /// The middle of the first piece, and the angle that all replaced pieces sweep around the edge's center.
     middle: Point,
     sweep: f64,
 }
 
-/// The outline with exact edges in place of fitted pieces that are within `tolerance` of them: `by` beside lines and circular arcs of the
-/// source, and around its corners if joins are `round`; else lines go on by `reach` to their miters.
+/// Returns the outline with exact edges instead of fitted pieces within `tolerance` of them. Edges lie at the distance `by` beside lines
+/// and circular arcs of the source, and around its corners if joins are `round`; otherwise lines extend by `reach` to their miters.
 pub(super) fn with_edges(
     outline: Outline,
     source: &Outline,
@@ -186,11 +186,11 @@ pub(super) fn with_edges(
     Outline { subpaths: subpaths.collect() }
 }
 
-/// A closed contour of edges, as far as it follows some. `None` if they do not meet where the contour has its nodes. `starts` are those of
-/// the source.
+/// Returns a closed contour with edges instead of the pieces that follow them. `None` if edges do not meet near the contour's nodes.
+/// `starts` are the first points of the source's subpaths.
 fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, tolerance: f64) -> Option<Subpath> {
     let mut runs: Vec<Run> = subpath.segs.iter().map(|s| run(s, edges, reach, tolerance)).collect();
-    // Bits between two edges are left from the sweep.
+    // Fitting leaves short bits between two edges.
     let is_bit = |i: usize| {
         let [before, after] = [i + runs.len() - 1, i + 1].map(|k| &runs[k % runs.len()]);
         runs[i].edge.is_none()
@@ -217,7 +217,7 @@ fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, 
     if let [first, .., last] = joined.as_slice()
         && goes_on(last, first)
     {
-        // The seam is inside of an edge.
+        // The contour begins inside an edge.
         let last = joined.pop()?;
         joined[0].sweep += last.sweep;
         joined[0].piece = PathSeg::Line(Line::new(last.piece.start(), joined[0].piece.end()));
@@ -240,7 +240,7 @@ fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, 
     Some(Subpath { start: nodes[0], segs: segs.collect::<Option<_>>()?, closed: true })
 }
 
-/// A piece with the edge that it follows most closely.
+/// Returns a piece with the edge that it follows most closely, if any.
 fn run(seg: &Seg, edges: &[Edge], reach: f64, tolerance: f64) -> Run {
     let piece = match *seg {
         Seg::Line(l) => PathSeg::Line(l),
@@ -273,9 +273,9 @@ fn goes_on(a: &Run, b: &Run) -> bool {
     }
 }
 
-/// A contour that is one circle. It begins in the direction of one of `starts` that is near to where it did.
+/// Returns a contour that is a whole circle. It begins in the direction of the point of `starts` nearest to its first point, if near.
 fn whole_circle(run: &Run, starts: &[Point]) -> Option<Subpath> {
-    /// Directions nearer than this are meant to be the same, in radians.
+    /// Largest difference, in radians, of directions that count as the same.
     const NEAR: f64 = 0.1;
     let Some(Edge::Arc { center, radius, .. }) = run.edge else { return None };
     let is_whole = (run.sweep.abs() - TAU).abs() < 1.0;
@@ -289,7 +289,7 @@ fn whole_circle(run: &Run, starts: &[Point]) -> Option<Subpath> {
 }
 
 impl Run {
-    /// The run between two nodes. `None` if it turns round on the way, or strays from what it stands for.
+    /// Returns the segment of the run between two nodes. `None` if it runs backwards, or strays from the pieces that it replaces.
     fn between(&self, p0: Point, p1: Point, tolerance: f64) -> Option<Seg> {
         let chord = self.piece.end() - self.piece.start();
         match self.edge {
@@ -300,7 +300,7 @@ impl Run {
                 let sweep = if self.sweep > 0.0 { turn } else { turn - TAU };
                 let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
                 let arc = EllipticArc::new(center, a, b, from, sweep);
-                // The middle lies on the arc, and not across.
+                // The middle must lie on the arc, not opposite.
                 let place = ((self.middle - center).angle() - from) * sweep.signum();
                 let is_on = place.rem_euclid(TAU) <= sweep.abs();
                 (is_on && (sweep - self.sweep).abs() < 1.0).then_some(Seg::Arc(EllipticArc { p0, p1, ..arc }))
@@ -334,7 +334,7 @@ mod tests {
         moved(&Outline::from_svg(path).unwrap(), &offset, &Options::new(0.05), &[]).unwrap().outline
     }
 
-    /// Rectangles with rounded corners come back, with corners where their arcs collapse.
+    /// Offsets of rectangles with rounded corners are such rectangles, with sharp corners where arcs collapse.
     #[test]
     fn lines_and_arcs_stay_exact() {
         let path = "M20,10H80A10,10 0 0 1 90,20V60A10,10 0 0 1 80,70H20A10,10 0 0 1 10,60V20A10,10 0 0 1 20,10Z";
@@ -358,7 +358,7 @@ mod tests {
         }
     }
 
-    /// A mirror turns the axes of arcs round.
+    /// Mirroring reverses the axes of arcs.
     #[test]
     fn mirrored_arcs_stay_arcs() {
         let path = "M60,20H80A8,8 0 0 1 80,36H60A8,8 0 0 1 60,20Z";

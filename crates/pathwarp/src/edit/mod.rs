@@ -1,4 +1,4 @@
-//! Edits of outlines that are not maps: offsets, areas that unite, and lines around them.
+//! Edits of outlines that are not maps: offsets, operations on areas, and lines around areas.
 
 mod area;
 mod contour;

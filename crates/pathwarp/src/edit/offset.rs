@@ -8,10 +8,10 @@ use crate::refit::{ARCS, Options, PathReport, RefittedPath};
 use bezierfit::{Fitted, union_even_odd};
 use kurbo::{BezPath, Join, Line, Rect};
 
-/// How far the miters of an offset reach at most, in distances.
+/// Largest reach of an offset's miters, in multiples of its distance.
 const MITERS: f64 = 4.0;
 
-/// Share of the tolerance that cubics in place of arcs may take.
+/// Share of the tolerance for the cubics that replace arcs.
 const ACCEPTED: f64 = 0.99;
 
 /// The side to which [`moved`] moves outlines.
@@ -21,11 +21,11 @@ pub enum Side {
     Outside,
     /// Areas shrink; open paths move to their left.
     Inside,
-    /// Both at once.
+    /// Both, as a stroke does.
     Both,
 }
 
-/// What [`moved`] does with open subpaths.
+/// The treatment of open subpaths by [`moved`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OpenPaths {
     /// They stay as they are.
@@ -36,37 +36,37 @@ pub enum OpenPaths {
     Close,
 }
 
-/// How far [`moved`] moves outlines, and in which direction.
+/// The distance and the direction in which [`moved`] moves outlines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// The join at corners that open; miters reach up to four times the distance, where those of areas are cut off.
+    /// The join at corners that open. Miters reach up to four times the distance; those of areas are cut off there.
     pub join: Join,
-    /// The side.
+    /// The side to which outlines move.
     pub side: Side,
-    /// Closed subpaths enclose an area by the even-odd rule, instead of the nonzero rule.
+    /// `true` if closed subpaths enclose an area by the even-odd rule instead of the nonzero rule.
     pub even_odd: bool,
-    /// Open subpaths.
+    /// The treatment of open subpaths.
     pub open: OpenPaths,
 }
 
 /// The result of [`moved`].
 #[derive(Debug, Clone)]
 pub struct Moved {
-    /// Lines and arcs beside those of the source, and curves.
+    /// The offset, with exact lines and arcs beside lines and arcs of the source.
     pub outline: Outline,
-    /// The same with cubics for arcs, and what was done.
+    /// The offset with cubics instead of arcs, and a report.
     pub path: RefittedPath,
 }
 
-/// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an area,
-/// which grows or shrinks, and vanishes where it is too narrow; loops are removed. What runs beside lines and circular arcs, or around
-/// corners, is exact. Closed subpaths begin near to where the source does. `contours` holds tolerances of the subpaths; those beyond
-/// its end have that of the options. What lies close together has the smallest of them.
+/// Offsets an outline: each point of the result has the given distance from it, within `options.tolerance`. Closed subpaths enclose an
+/// area, which grows or shrinks, and vanishes where it is too narrow; loops are removed. The result is exact beside lines and circular
+/// arcs and around corners. Closed subpaths begin near the first points of the source. `contours` holds tolerances of the subpaths;
+/// others have the tolerance of the options. Subpaths close together have the smallest of their tolerances.
 ///
 /// # Errors
-/// A coordinate is not finite.
+/// [`GeometryError::NotFinite`] for a coordinate that is not finite, [`GeometryError::Crossings`] when crossings of edges are not found.
 ///
 /// ```
 /// use pathwarp::edit::{Offset, OpenPaths, Side, moved};
@@ -110,7 +110,7 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[
     Ok(Moved { outline: out, path: RefittedPath { path, spans: Vec::new(), report } })
 }
 
-/// The subpaths that move, and those that stay.
+/// Returns the subpaths that move, and those that stay.
 fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
     let (mut moving, mut staying) = (outline.clone(), Outline::default());
     match open {
@@ -130,7 +130,7 @@ fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
     (moving, staying)
 }
 
-/// Offsets subpaths together, to each side that is wanted.
+/// Offsets subpaths together, to each of the wanted sides.
 fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec<Fitted>, GeometryError> {
     let fine = ARCS * tolerance;
     let fitter = bezierfit::Options::new(tolerance - fine);
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
     use crate::edit::united;
 
-    /// The miter of a tip of 31° reaches 3.7 times the distance, into a bar that lies three times the distance away.
+    /// The miter of a tip of 31° reaches 3.7 times the distance, into a bar at three times the distance.
     #[test]
     fn miters_unite_with_what_they_reach() {
         let outline = Outline::from_svg("M0,0L36,10L0,20ZM39,0H49V20H39Z").unwrap();

@@ -1,6 +1,6 @@
-//! Detects folds: places at which a map turns the plane over, so that the artwork overlaps itself.
+//! Detects folds, at which a map turns the plane over, so that the artwork overlaps itself.
 //!
-//! The Jacobian determinant is the local area scale. It is negative if the map mirrors the neighbourhood of a point. A map that
+//! The Jacobian determinant is the local scale of areas, negative where the map mirrors the neighbourhood of a point. A map that
 //! mirrors everything folds nothing; a map whose determinant changes sign on the artwork folds it.
 //!
 //! A [`Survey`] first tries to prove for the whole artwork that the determinant keeps its sign (`sign.rs`). If that succeeds, as it does
@@ -14,7 +14,7 @@ use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, boundary};
 use kurbo::{Affine, Point, Rect};
 
-/// Examines one shape: a [`Survey`] of its own.
+/// Returns the orientation of one shape, by a [`Survey`] of this shape alone.
 #[must_use]
 pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientation {
     Survey::new(map, outline.bounding_box(), outline.segs().count()).orientation(outline, filled)
@@ -24,7 +24,7 @@ pub fn orientation(outline: &Outline, filled: bool, map: &dyn Map) -> Orientatio
 const PER_SEGMENT: usize = 16;
 /// Samples in each direction over the bounding box of a filled shape.
 const GRID: usize = 24;
-/// Samples that a proof may always take: as many as two filled shapes.
+/// Samples that a proof may always take, as many as for two filled shapes.
 const MIN_PROOF_SAMPLES: usize = 2 * GRID * GRID;
 
 /// Examines the shapes of a drawing for folds of one map.
@@ -38,7 +38,7 @@ pub struct Survey<'a> {
 /// Signs known before any shape is sampled.
 #[derive(Debug)]
 enum Knowledge {
-    /// The map is affine and folds nothing.
+    /// The map is affine, and folds nothing.
     Affine,
     /// The determinant has this sign, 1 or −1, on all of the artwork.
     Sign(f64),
@@ -46,8 +46,8 @@ enum Knowledge {
 }
 
 impl<'a> Survey<'a> {
-    /// Prepares the survey of artwork with this bounding box and this number of segments. The more segments it has, the more
-    /// effort goes into proving for the whole box that the map does not fold.
+    /// Prepares the survey of artwork with this bounding box and number of segments. The more segments there are, the more
+    /// samples may be taken to prove for the whole box that the map does not fold.
     #[must_use]
     pub fn new(map: &'a dyn Map, bounds: Option<Rect>, segments: usize) -> Self {
         let mut creases = Creases::default();
@@ -63,7 +63,7 @@ impl<'a> Survey<'a> {
         Self { map, creases, knowledge }
     }
 
-    /// Returns `true` if shapes must be sampled: the map is not known to keep its orientation on the whole artwork.
+    /// Returns `true` if shapes must be sampled, because nothing is known about the map's orientation on the whole artwork.
     #[must_use]
     pub fn samples(&self) -> bool {
         matches!(self.knowledge, Knowledge::Nothing)
@@ -72,11 +72,11 @@ impl<'a> Survey<'a> {
     /// Charges the work of sampling `copies` copies of `shapes` outlines with `segments` segments in all.
     ///
     /// # Errors
-    /// The work exceeds the limit.
+    /// [`GeometryError::Limit`] when the work exceeds the limit.
     pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
-        /// Work of a sample, which is taken in a batch.
+        /// Work of a sample taken in a batch, as a share of a single one.
         const SAMPLE: f64 = 0.25;
-        /// Share of the grid over a shape's box that lies inside the shape, with the work of finding that out.
+        /// Share of the grid over a shape's box that lies inside the shape, with the work of finding these points.
         const FILLED: f64 = 0.5;
         let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
         let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
@@ -100,7 +100,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Returns the orientation of all copies of a shape, at `places`; of the shape itself if there are none.
+    /// Returns the orientation of all copies of a shape, its images under `places`; of the shape itself if `places` is empty.
     #[must_use]
     pub fn orientation_of_copies(&self, outline: &Outline, places: &[Affine], filled: bool) -> Orientation {
         match (places, &self.knowledge) {
@@ -143,7 +143,7 @@ impl<'a> Survey<'a> {
         out
     }
 
-    /// As [`Self::sampled`], with one call of the map for all samples.
+    /// Samples a shape with one call of the map.
     fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
         let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
         let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
@@ -166,12 +166,12 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// The samples of a segment.
+/// Returns the samples of a segment.
 fn along(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
     std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64))
 }
 
-// The orientation of a shape under a map: signs of the Jacobian determinant.
+// The orientation of a shape under a map.
 
 /// Signs of the Jacobian determinant over samples of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -190,7 +190,7 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// `count` samples of the same sign, beginning at `first`.
+    /// Returns the orientation of `count` samples with the same sign, the first of them at `first`.
     fn uniform(sign: f64, count: usize, first: Option<Point>) -> Self {
         let first = first.filter(|_| count > 0);
         if sign > 0.0 {
@@ -200,7 +200,7 @@ impl Orientation {
         }
     }
 
-    /// Adds neighbouring samples.
+    /// Adds a row of neighbouring samples.
     fn add(&mut self, points: &[Point], jets: &[Jet]) {
         let mut last = 0.0;
         for (p, j) in points.iter().zip(jets) {
@@ -222,7 +222,7 @@ impl Orientation {
         }
     }
 
-    /// The samples of both orientations together.
+    /// Returns the orientation of the samples of both.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {
@@ -234,8 +234,8 @@ impl Orientation {
         }
     }
 
-    /// The orientation to compare the shapes of the artwork with, whose samples these are: that of most of them, unless the map turns most
-    /// of the artwork over and leaves the corners of the artwork's box, `bounds`, as they were.
+    /// Returns the orientation against which shapes are compared, from the samples of all artwork: the orientation of most samples, unless
+    /// the map turns over most of the artwork but not the corners of the artwork's box, `bounds`.
     #[must_use]
     pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
         let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
@@ -246,21 +246,21 @@ impl Orientation {
         *self
     }
 
-    /// A point of this shape that is turned over relative to the majority of the artwork's samples, `all`.
+    /// Returns a point of this shape that is turned over relative to most samples of the artwork, `all`.
     #[must_use]
     pub fn folded_against(&self, all: &Self) -> Option<Point> {
         if all.positive >= all.negative { self.first_negative } else { self.first_positive }
     }
 }
 
-/// Flattening tolerance, relative to the diagonal of the outline: far below the spacing of any grid.
+/// Flattening tolerance, relative to the diagonal of the outline, far below the spacing of the grid.
 const FLATNESS: f64 = 1e-3;
 
 /// Returns the points of an `n` × `n` grid over `bounds` that lie inside the outline by the nonzero rule, row by row. Open subpaths
 /// are closed by a line, as SVG fills them.
 ///
-/// Every line of the flattened outline is visited once and recorded in the rows it crosses. The cost is the number of lines
-/// plus crossings, where a winding number for each point would cost segments times points.
+/// Every line of the flattened outline is visited once and recorded in the rows that it crosses. The cost is the number of lines and
+/// crossings, whereas a winding number for each point would cost segments times points.
 fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
     let mut rows = Rows { bounds, n, crossings: vec![Vec::new(); n] };
     let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
@@ -268,7 +268,7 @@ fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
     rows.points()
 }
 
-/// The crossings of each row: abscissa, and 1 for downwards or −1 for upwards.
+/// The crossings of each row: the abscissa, and 1 for downwards or −1 for upwards.
 struct Rows {
     bounds: Rect,
     n: usize,
@@ -284,13 +284,13 @@ impl Rows {
         self.bounds.y0 + self.bounds.height() * (k as f64 + 0.5) / self.n as f64
     }
 
-    /// The first row at or below `y`.
+    /// Returns the first row at or below `y`.
     fn first_from(&self, y: f64) -> usize {
         let k = ((y - self.bounds.y0) / self.bounds.height() * self.n as f64 - 0.5).ceil();
         k.clamp(0.0, self.n as f64) as usize
     }
 
-    /// Records where the line crosses rows.
+    /// Records the crossings of a line with rows.
     fn add(&mut self, a: Point, b: Point) {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
         if top.y < bottom.y {
@@ -301,7 +301,7 @@ impl Rows {
         }
     }
 
-    /// The points of every row at which the winding number is not 0.
+    /// Returns the points of every row at which the winding number is not 0.
     fn points(mut self) -> Vec<Vec<Point>> {
         let mut out = Vec::with_capacity(self.n);
         for k in 0..self.n {
@@ -348,13 +348,13 @@ mod tests {
         let right = Outline::from_svg("M5,0 H10 V10 H5 Z").unwrap();
         let o = orientation(&right, true, &Fold);
         assert!(o.negative == 0 && o.folded_against(&o).is_none());
-        // Entirely on the mirrored side: no fold alone, but one relative to artwork that is not mirrored.
+        // A shape entirely on the mirrored side folds only relative to artwork that is not mirrored.
         let left = Outline::from_svg("M-6,0 H-5 V1 H-6 Z").unwrap();
         let l = orientation(&left, true, &Fold);
         assert!(l.folded_against(&l).is_none() && l.folded_against(&l.and(&o).and(&o)).is_some());
     }
 
-    /// A net over the unit square that pulls its middle by `by`.
+    /// Returns a net over the unit square whose middle is pulled by `by`.
     fn net(by: f64) -> BicubicNet {
         let mut net: Net = std::array::from_fn(|r| std::array::from_fn(|s| Point::new(s as f64 / 3.0, r as f64 / 3.0)));
         for row in &mut net[1..3] {
@@ -363,7 +363,7 @@ mod tests {
         BicubicNet::new(&net, Affine::IDENTITY)
     }
 
-    /// The same map, without its algebra.
+    /// A net that hides its algebra, so that nothing can be proven.
     struct Hidden(BicubicNet);
     impl Map for Hidden {
         fn jet(&self, p: Point) -> Jet {
@@ -396,7 +396,7 @@ mod tests {
         assert_eq!(proven.positive, 2 * 4 * (PER_SEGMENT + 1));
     }
 
-    /// The middle is turned over, which is the larger part.
+    /// The middle, which is the larger part of the artwork, is turned over.
     #[test]
     fn what_is_turned_over_folds_though_it_is_the_larger_part() {
         struct Middle;
@@ -414,7 +414,7 @@ mod tests {
             (all.negative > all.positive, each.iter().map(|o| o.folded_against(&usual).is_some()).collect::<Vec<_>>())
         };
         assert_eq!(folds(&shapes, Rect::new(-5.0, 0.0, 5.0, 1.0)), (true, vec![true, true, false]));
-        // The artwork ends where the map turns it over: most of it is as it should be.
+        // In artwork that ends where the map turns it over, the larger part is not turned over.
         assert_eq!(folds(&shapes[..2], Rect::new(-5.0, 0.0, 3.0, 1.0)), (true, vec![true, false]));
     }
 
@@ -431,7 +431,7 @@ mod tests {
         assert!(o.positive == 0 && o.negative > 500 && o.folded_against(&o).is_none(), "{o:?}");
     }
 
-    /// kurbo's winding number, computed point by point from the curves, agrees except on the outline itself.
+    /// The sweep agrees with kurbo's winding numbers, computed point by point from the curves, except on the outline.
     #[test]
     fn the_sweep_agrees_with_winding_numbers() {
         const N: usize = 24;

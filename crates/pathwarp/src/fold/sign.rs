@@ -1,29 +1,28 @@
-//! Proof that det J keeps its sign on a box, for maps made of quotients of polynomials.
+//! Proof that the Jacobian determinant det J keeps its sign on a box, for maps made of quotients of polynomials.
 //!
-//! With F = (X, Y)/W of degree d, W³·det J is the determinant of (X, Y, W) and their two partial derivatives: a polynomial of degree
-//! 3(d − 1), or 2(d − 1) if W = 1. Its values at sufficiently many Chebyshev nodes determine its coefficients in Chebyshev
-//! polynomials Tᵢ(s)·Tⱼ(t), and because |Tᵢ| ≤ 1, it has no zero if
+//! For F = (X, Y)/W of degree d, W³·det J is the determinant of (X, Y, W) and their two partial derivatives: a polynomial of degree
+//! 3(d − 1), or 2(d − 1) if W = 1. Its values at sufficiently many Chebyshev nodes determine its coefficients cᵢⱼ for the products
+//! of Chebyshev polynomials Tᵢ(s)·Tⱼ(t). Because |Tᵢ| ≤ 1, it has no zero if
 //!
 //! > |c₀₀| > Σ |cᵢⱼ|, (i, j) ≠ (0, 0)
 //!
-//! A box for which that fails is divided into four. Two values of different signs end the attempt.
+//! A box for which this fails is divided into four. Two values of different signs end the attempt.
 
 use crate::map::{Crease, Creases, Jet, Level, Map, RationalBezier, RationalDegree};
 use kurbo::{Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Highest degree of the determinant: above it, one box would take more samples than most drawings.
+/// Highest degree of the determinant. Above it, one box would take more samples than most drawings.
 const MAX_DEGREE: usize = 24;
-/// Divisions of a box into four. Near a zero of det J every division fails; the sixth has boxes of a 64th.
+/// Limit on successive divisions of a box into four. Near a zero of det J every division fails.
 const DEPTH: usize = 6;
-/// Rounding errors of the values and their sums, relative to the largest product in det J. They are some hundred units in the last
-/// place (2⁻⁵²).
+/// Bound for rounding errors of the values and their sums, relative to the largest product in det J. They are some hundred times 2⁻⁵².
 const ROUNDING: f64 = 1e-10;
 
 /// Returns the sign that det J has in all of `bounds`, as 1 or −1, if it can be proven with at most `samples` jets.
 ///
-/// The map may have creases parallel to the axes; at others, and where a denominator vanishes, nothing is proven.
+/// The map may have creases parallel to the axes. With other creases, or where a denominator vanishes, nothing is proven.
 pub(super) fn proven(map: &dyn Map, bounds: Rect, samples: usize) -> Option<f64> {
     let mut left = samples;
     let mut all = None;
@@ -91,7 +90,7 @@ fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_
     Some(out)
 }
 
-/// The degree of a smooth map as a quotient of polynomials, as declared or as the exact image of a line shows.
+/// Returns the degree of a smooth map as a quotient of polynomials, which the map declares or the exact image of a line shows.
 fn algebra(map: &dyn Map, bounds: Rect) -> Option<RationalDegree> {
     map.rational_degree().or_else(|| {
         let diagonal = [bounds.origin(), Point::new(bounds.x1, bounds.y1)];
@@ -112,7 +111,7 @@ struct Proof<'a> {
 impl<'a> Proof<'a> {
     fn new(map: &'a dyn Map, bounds: Rect, left: &'a mut usize) -> Option<Self> {
         let RationalDegree { degree, rational } = algebra(map, bounds)?;
-        // The nodes serve for W as well, whose degree is d.
+        // The nodes are also used for W, whose degree is d.
         let below = degree.saturating_sub(1);
         let degree = if rational { below.checked_mul(3)?.max(degree) } else { below.checked_mul(2)? };
         (degree <= MAX_DEGREE).then(|| Self { map, rational, basis: Chebyshev::new(degree), left })
@@ -160,7 +159,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| f64::max(m, v.abs()))
 }
 
-/// Interpolation at Chebyshev nodes: exact for polynomials of the degree in each variable.
+/// Interpolation at n × n Chebyshev nodes, exact for polynomials of degree n − 1 in each variable.
 struct Chebyshev {
     /// cos(π(k + ½)/n).
     nodes: Vec<f64>,
@@ -179,8 +178,8 @@ impl Chebyshev {
         Self { nodes: (0..n).map(|k| angle(k).cos()).collect(), rows: (0..n).flat_map(row).collect() }
     }
 
-    /// Returns the sign of the polynomial with these `values`, row by row, if it has no zero in the square. Rounding errors are
-    /// a small share of `size`.
+    /// Returns the sign of the polynomial with these `values`, row by row, if the inequality shows that it has no zero in the square.
+    /// Rounding errors are a small share of `size`.
     fn sign(&self, values: &[f64], size: f64) -> Option<f64> {
         let n = self.nodes.len();
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };

@@ -2,8 +2,8 @@
 //!
 //! > P(θ) = c + cos θ · a + sin θ · b
 //!
-//! If a ⟂ b, these are the principal axes of the ellipse. An affine map takes c, a and b to their images and leaves θ unchanged,
-//! so nested SVG transforms cost no accuracy.
+//! If a ⟂ b, these are the principal axes of the ellipse. An affine map takes c, a and b to their images and keeps θ, so nested SVG
+//! transforms lose no accuracy.
 
 use kurbo::{Affine, CubicBez, Point, Rect, Vec2};
 use std::f64::consts::{PI, TAU};
@@ -28,7 +28,7 @@ pub struct EllipticArc {
 }
 
 impl EllipticArc {
-    /// The arc of an ellipse from the angle `start` over the angle `sweep`, in radians.
+    /// Creates the arc of an ellipse from the angle `start` over the angle `sweep`, in radians.
     #[must_use]
     pub fn new(center: Point, a: Vec2, b: Vec2, start: f64, sweep: f64) -> Self {
         let (start, sweep) = (on_grid(start), on_grid(sweep));
@@ -39,8 +39,8 @@ impl EllipticArc {
         Self { p0, p1, center, a, b, start, sweep }
     }
 
-    /// The arc of SVG's `A` command, converted as in the SVG 2 specification, §B.2.4 and §B.2.5. `None` if the command draws a
-    /// straight line (a zero radius) or nothing (coincident ends).
+    /// Creates the arc of SVG's `A` command, converted as in the SVG 2 specification, §B.2.4 and §B.2.5. `None` if the command draws
+    /// a straight line (a zero radius) or nothing (coincident ends).
     #[must_use]
     pub fn from_svg(
         p0: Point,
@@ -50,8 +50,7 @@ impl EllipticArc {
         sweep: bool,
         p1: Point,
     ) -> Option<Self> {
-        // Always computed from the lexicographically smaller end, so that the arc drawn from either end is the same to the last
-        // bit.
+        // The computation starts at the lexicographically smaller end, so that arcs drawn from either end are equal to the last bit.
         if (p0.x, p0.y) > (p1.x, p1.y) {
             return Self::from_svg(p1, radii, x_rotation_degrees, large, !sweep, p0).map(|a| a.reversed());
         }
@@ -83,7 +82,7 @@ impl EllipticArc {
         if !sweep {
             delta -= TAU;
         }
-        // The ends differ, so a sweep near 0 or a full turn is a rounding error: of a half turn if the radii were scaled up.
+        // The ends differ, so a sweep near 0 or a full turn is a rounding error. If the radii were scaled up, it is a half turn.
         if delta.abs() < 1e-12 || (delta.abs() - TAU).abs() < 1e-12 {
             delta = if lambda >= 1.0 { PI.copysign(delta) } else { return None };
         }
@@ -98,8 +97,8 @@ impl EllipticArc {
         })
     }
 
-    /// The circular arc that a cubic was written for: its handles are within `near` of those of the usual approximation. `None` for other
-    /// cubics, and for arcs of more than a quarter and a half.
+    /// Returns the circular arc that a cubic approximates, if its handles are within `near` of the usual approximation's. `None` for other
+    /// cubics, and for arcs of more than 135°.
     #[must_use]
     pub fn of_cubic(c: &CubicBez, near: f64) -> Option<Self> {
         let (u, v, chord) = (c.p1 - c.p0, c.p3 - c.p2, c.p3 - c.p0);
@@ -116,16 +115,16 @@ impl EllipticArc {
         (usual.p1.distance(c.p1) <= near && usual.p2.distance(c.p2) <= near).then_some(arc)
     }
 
-    /// Returns `true` for an arc of a circle, but for rounding.
+    /// Returns `true` for an arc of a circle, up to rounding.
     #[must_use]
     pub fn is_circular(&self) -> bool {
-        /// Rounding, as a share of a radius.
+        /// Allowance for rounding, as a share of a radius.
         const SLACK: f64 = 1e-6;
         let (size, slack) = (self.a.hypot(), SLACK * self.a.hypot());
         (size - self.b.hypot()).abs() <= slack && self.a.dot(self.b).abs() <= slack * size
     }
 
-    /// The point at `t` in [0, 1]. The ends are exact.
+    /// Returns the point at `t` in [0, 1]. The ends are exact.
     #[inline]
     #[must_use]
     pub fn eval(&self, t: f64) -> Point {
@@ -139,7 +138,7 @@ impl EllipticArc {
         self.center + self.a * c + self.b * s
     }
 
-    /// The derivative with respect to `t`.
+    /// Returns the derivative with respect to `t`.
     #[inline]
     #[must_use]
     pub fn deriv(&self, t: f64) -> Vec2 {
@@ -147,13 +146,13 @@ impl EllipticArc {
         (self.b * c - self.a * s) * self.sweep
     }
 
-    /// The same arc in the opposite direction.
+    /// Returns the arc in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self { p0: self.p1, p1: self.p0, start: self.start + self.sweep, sweep: -self.sweep, ..*self }
     }
 
-    /// The image under an affine map, exact.
+    /// Returns the exact image under an affine map.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
         let linear = |v: Vec2| {
@@ -170,12 +169,12 @@ impl EllipticArc {
         }
     }
 
-    /// Half the width and height of the whole ellipse.
+    /// Returns half the width and height of the whole ellipse.
     pub(super) fn reach(&self) -> Vec2 {
         Vec2::new(self.a.x.hypot(self.b.x), self.a.y.hypot(self.b.y))
     }
 
-    /// The bounding box.
+    /// Returns the bounding box.
     #[must_use]
     pub fn bounding_box(&self) -> Rect {
         let mut r = Rect::from_points(self.p0, self.p1);
@@ -191,7 +190,7 @@ impl EllipticArc {
         r
     }
 
-    /// The part between `t0` and `t1`.
+    /// Returns the part between `t0` and `t1`.
     #[must_use]
     pub fn subsegment(&self, t0: f64, t1: f64) -> Self {
         Self {
@@ -203,8 +202,8 @@ impl EllipticArc {
         }
     }
 
-    /// The cubic with the end points and end tangents of the arc and handles of (4/3)·tan(Δ/4): good for sweeps up to about a
-    /// quarter turn.
+    /// Returns the cubic with the end points and end tangents of the arc, and handles of (4/3)·tan(Δ/4) for the sweep Δ. It is close
+    /// for sweeps up to about a quarter turn.
     #[must_use]
     pub fn to_cubic(&self) -> CubicBez {
         // Clamped because the tangent has a pole at a full turn. `to_cubics` cuts such arcs.
@@ -213,15 +212,15 @@ impl EllipticArc {
         CubicBez::new(self.p0, self.p0 + d0 * k, self.p1 - d1 * k, self.p1)
     }
 
-    /// The major semi-axis of the ellipse: the larger singular value of the matrix (a b).
+    /// Returns the major semi-axis of the ellipse, the larger singular value of the matrix (a b).
     #[must_use]
     pub fn major(&self) -> f64 {
         let (aa, bb, ab) = (self.a.hypot2(), self.b.hypot2(), self.a.dot(self.b));
         (0.5 * (aa + bb) + (0.5 * (aa - bb)).hypot(ab)).sqrt()
     }
 
-    /// The largest distance between the arc and `n` cubics for equal parts of it. A cubic for the sweep φ deviates from the unit
-    /// circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and from an
+    /// Returns a bound for the distance between the arc and `n` cubics for equal parts of it. A cubic for the sweep φ deviates from the
+    /// unit circle by (2/27)·sin⁶(φ/4)/cos²(φ/4) (Goldapp, *Approximation of circular arcs by cubic polynomials*, 1991), and from an
     /// affine image of the circle by at most the major semi-axis times that.
     #[must_use]
     pub(crate) fn cubics_error(&self, n: usize) -> f64 {
@@ -229,10 +228,10 @@ impl EllipticArc {
         2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
     }
 
-    /// The number of cubics needed to stay within `tolerance` of the arc: at least one per quarter turn.
+    /// Returns the number of cubics that stay within `tolerance` of the arc, at least one per quarter turn.
     #[must_use]
     pub(crate) fn cubics_needed(&self, tolerance: f64) -> usize {
-        /// Enough for an error of 1e-16 of the radius.
+        /// Limit on cubics, enough for an error of 1e-16 of the radius.
         const MAX_CUBICS: usize = 1000;
         let mut n = ((self.sweep.abs() / (PI / 2.0) - 1e-9).ceil().max(1.0) as usize).min(MAX_CUBICS);
         while n < MAX_CUBICS && self.cubics_error(n) > tolerance {
@@ -241,7 +240,7 @@ impl EllipticArc {
         n
     }
 
-    /// Cubics within `tolerance` of the arc.
+    /// Returns cubics within `tolerance` of the arc.
     pub fn to_cubics(&self, tolerance: f64) -> impl Iterator<Item = CubicBez> + '_ {
         let n = self.cubics_needed(tolerance);
         (0..n).map(move |i| self.subsegment(i as f64 / n as f64, (i + 1) as f64 / n as f64).to_cubic())
@@ -265,8 +264,8 @@ impl EllipticArc {
     }
 }
 
-/// Rounds an angle to a multiple of 2⁻⁴⁸ (3.6e-15, a few units in the last place of a full turn). Sums of such angles are exact, so
-/// that an arc reversed twice is the same to the last bit.
+/// Rounds an angle to a multiple of 2⁻⁴⁸ (3.6e-15, a few times the rounding of a full turn). Sums of such angles are exact, so that
+/// an arc reversed twice is the same to the last bit.
 fn on_grid(angle: f64) -> f64 {
     const PER_RADIAN: f64 = (1u64 << 48) as f64;
     (angle * PER_RADIAN).round() / PER_RADIAN

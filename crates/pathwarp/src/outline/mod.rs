@@ -4,9 +4,9 @@
 //! arcs. Read one from SVG path data with [`Outline::from_svg`], convert a [`kurbo::BezPath`] with `From`, or draw one with a
 //! [`Builder`].
 //!
-//! [`BezPath`] has no arcs. Converting a circle to cubics before warping it would spend part of the tolerance, or many
-//! nodes, before the warp begins. Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error
-//! counts from the shape that was drawn.
+//! [`BezPath`] has no arcs. Converting a circle to cubics before it is warped would take part of the tolerance, or many nodes.
+//! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was
+//! drawn.
 
 mod arc;
 mod stroke;
@@ -32,7 +32,7 @@ pub struct Subpath {
 }
 
 impl Subpath {
-    /// The anchors: the first points of all segments and, for an open subpath, the last point.
+    /// Returns the anchors: the first points of all segments and, for an open subpath, the last point.
     #[must_use]
     pub fn anchors(&self) -> Vec<Point> {
         let mut out: Vec<Point> = self.segs.iter().map(Seg::start).collect();
@@ -44,8 +44,8 @@ impl Subpath {
         out
     }
 
-    /// The anchors as drawing programs store them: incoming handle, anchor, outgoing handle. The handles of lines coincide with their
-    /// anchors, and arcs become cubics.
+    /// Returns the anchors as drawing programs store them: incoming handle, anchor, outgoing handle. The handles of lines coincide with
+    /// their anchors, and arcs become cubics.
     #[must_use]
     pub fn with_handles(&self) -> Vec<[Point; 3]> {
         let cubics: Vec<CubicBez> = self
@@ -70,13 +70,13 @@ impl Subpath {
         out
     }
 
-    /// The last point.
+    /// Returns the last point.
     #[must_use]
     pub fn end(&self) -> Point {
         self.segs.last().map_or(self.start, Seg::end)
     }
 
-    /// The bounding box.
+    /// Returns the bounding box.
     #[must_use]
     pub fn bounding_box(&self) -> Rect {
         let point = |p: Point| Rect::from_points(p, p);
@@ -85,13 +85,13 @@ impl Subpath {
         self.segs.iter().fold(ends, |b, g| g.extend(b))
     }
 
-    /// The diagonal of the bounding box.
+    /// Returns the diagonal of the bounding box.
     #[must_use]
     pub fn diagonal(&self) -> f64 {
         self.bounding_box().size().to_vec2().hypot()
     }
 
-    /// The same curve in the opposite direction.
+    /// Returns the subpath in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self { start: self.end(), segs: self.segs.iter().rev().map(Seg::reversed).collect(), closed: self.closed }
@@ -106,7 +106,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// An open polyline through `points`, or a closed polygon.
+    /// Creates an open polyline through `points`, or a closed polygon.
     #[must_use]
     pub fn from_points(points: &[Point], closed: bool) -> Self {
         let Some(&start) = points.first() else { return Self::default() };
@@ -118,17 +118,17 @@ impl Outline {
         Self { subpaths: vec![Subpath { start, segs, closed }] }
     }
 
-    /// The [anchors](Subpath::anchors) of all subpaths.
+    /// Returns the [anchors](Subpath::anchors) of all subpaths.
     pub(crate) fn anchors(&self) -> Vec<Point> {
         self.subpaths.iter().flat_map(Subpath::anchors).collect()
     }
 
-    /// All segments in drawing order.
+    /// Returns all segments in drawing order.
     pub fn segs(&self) -> impl Iterator<Item = &Seg> {
         self.subpaths.iter().flat_map(|s| &s.segs)
     }
 
-    /// The largest magnitude of coordinates; see [`Seg::extent`].
+    /// Returns the largest magnitude of coordinates; see [`Seg::extent`].
     #[must_use]
     pub fn extent(&self) -> f64 {
         self.segs().map(Seg::extent).fold(0.0, f64::max)
@@ -140,7 +140,7 @@ impl Outline {
         self.subpaths.is_empty()
     }
 
-    /// The union of the images under all of `places`; the outline itself if there are none.
+    /// Returns the images under all of `places` as one outline; the outline itself if `places` is empty.
     #[must_use]
     pub fn repeated(&self, places: &[Affine]) -> Self {
         if places.is_empty() {
@@ -149,7 +149,7 @@ impl Outline {
         Self { subpaths: places.iter().flat_map(|m| self.transformed(*m).subpaths).collect() }
     }
 
-    /// The image under an affine map, exact.
+    /// Returns the exact image under an affine map.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
         let subpaths = self
@@ -164,7 +164,7 @@ impl Outline {
         Self { subpaths }
     }
 
-    /// The bounding box; `None` for an empty path.
+    /// Returns the bounding box; `None` for an empty path.
     #[must_use]
     pub fn bounding_box(&self) -> Option<Rect> {
         let ends = self.subpaths.iter().flat_map(|s| s.segs.iter().map(Seg::end).chain([s.start]));
@@ -173,7 +173,7 @@ impl Outline {
         Some(self.segs().fold(ends, |b, g| g.extend(b)))
     }
 
-    /// Converts to a [`BezPath`], each arc to cubics within `tolerance` of it.
+    /// Converts to a [`BezPath`], with cubics within `tolerance` of each arc.
     #[must_use]
     pub fn to_bez_path(&self, tolerance: f64) -> BezPath {
         let mut out = BezPath::new();
@@ -225,7 +225,7 @@ impl From<PathSeg> for Seg {
 }
 
 impl Seg {
-    /// The point at `t` in [0, 1]. The ends are exact.
+    /// Returns the point at `t` in [0, 1]. The ends are exact.
     #[inline]
     #[must_use]
     pub fn eval(&self, t: f64) -> Point {
@@ -237,7 +237,7 @@ impl Seg {
         }
     }
 
-    /// The derivative with respect to `t`.
+    /// Returns the derivative with respect to `t`.
     #[inline]
     #[must_use]
     pub fn deriv(&self, t: f64) -> Vec2 {
@@ -249,7 +249,7 @@ impl Seg {
         }
     }
 
-    /// The first point.
+    /// Returns the first point.
     #[must_use]
     pub fn start(&self) -> Point {
         match self {
@@ -260,7 +260,7 @@ impl Seg {
         }
     }
 
-    /// The last point.
+    /// Returns the last point.
     #[must_use]
     pub fn end(&self) -> Point {
         match self {
@@ -271,7 +271,7 @@ impl Seg {
         }
     }
 
-    /// The same segment in the opposite direction.
+    /// Returns the segment in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         match self {
@@ -282,7 +282,7 @@ impl Seg {
         }
     }
 
-    /// The part of a line or Bézier curve between two parameters, exactly the same segment for (0, 1); `None` for arcs.
+    /// Returns the part of a line or Bézier curve between two parameters, which is equal to the segment for (0, 1); `None` for arcs.
     #[must_use]
     pub fn part(&self, t0: f64, t1: f64) -> Option<Self> {
         let whole = t0 == 0.0 && t1 == 1.0;
@@ -295,7 +295,7 @@ impl Seg {
         }
     }
 
-    /// The image under an affine map, exact for every kind.
+    /// Returns the image under an affine map, exact for every kind.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
         match self {
@@ -306,7 +306,7 @@ impl Seg {
         }
     }
 
-    /// The bounding box.
+    /// Returns the bounding box.
     #[must_use]
     pub fn bounding_box(&self) -> Rect {
         match self {
@@ -333,8 +333,8 @@ impl Seg {
         if inside { b } else { b.union(self.bounding_box()) }
     }
 
-    /// The segment as one cubic: exact for lines, quadratics and cubics. For an arc of sweep Δ, the cubic with its end tangents
-    /// and handles of length (4/3)·tan(Δ/4) times the conjugate radius (radial error 2.7e-4 of the radius for a quarter circle).
+    /// Converts the segment to one cubic, exactly for lines, quadratics and cubics. An arc of sweep Δ becomes the cubic with its end
+    /// tangents and handles of (4/3)·tan(Δ/4) times the conjugate radius (radial error 2.7e-4 of the radius for a quarter circle).
     #[must_use]
     pub fn to_cubic(&self) -> CubicBez {
         match self {
@@ -345,7 +345,7 @@ impl Seg {
         }
     }
 
-    /// The largest magnitude of a control point's coordinates; for an arc, an upper bound of its coordinates.
+    /// Returns the largest magnitude of a control point's coordinates; for an arc, an upper bound for its coordinates.
     #[must_use]
     pub fn extent(&self) -> f64 {
         let all = |points: &[Point]| points.iter().fold(0.0, |max: f64, p| max.max(p.x.abs()).max(p.y.abs()));
@@ -372,7 +372,7 @@ impl Seg {
 }
 
 /// Flattens a path within `tolerance` and calls `line` with the ends of every line, in order. Open subpaths are closed by a line, as
-/// they are when SVG fills them. Some lines may have no length.
+/// SVG fills them. Some lines may have no length.
 pub fn boundary(path: impl IntoIterator<Item = PathEl>, tolerance: f64, mut line: impl FnMut(Point, Point)) {
     let (mut start, mut at) = (Point::ORIGIN, Point::ORIGIN);
     kurbo::flatten(path, tolerance, |element| match element {

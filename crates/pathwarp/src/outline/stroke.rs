@@ -5,18 +5,18 @@ use bezierfit::parts::{Edge, EdgeCurve, contours, drawn_dashes};
 use bezierfit::{NotFinite, Piece};
 use kurbo::{Stroke, Vec2};
 
-/// Share of the tolerance spent on turning arcs into cubics, whose error falls with the sixth power of their number.
+/// Share of the tolerance for converting arcs to cubics, whose error falls with the sixth power of their number.
 const ARCS: f64 = 0.05;
 
-/// The same for dashed paths. Cubics that run beside an arc at this distance are longer by as much per radian, which shifts the dashes.
+/// Share of the tolerance for converting arcs of dashed paths. Cubics at a distance from an arc differ in length, which shifts dashes.
 const DASHED_ARCS: f64 = 0.01;
 
 impl Outline {
-    /// The area that a stroke along this path covers, within `tolerance`, to be filled by the nonzero rule. Joints whose sides are less
-    /// than `gap` apart get no join, which adds up to half of `gap` to the error. If `clipped`, miters beyond their limit are cut off there.
+    /// Returns the area that a stroke along this path covers, within `tolerance`, to be filled by the nonzero rule. Joints whose sides are
+    /// less than `gap` apart get no join, which adds up to half of `gap` to the error. If `clipped`, miters are cut off at their limit.
     ///
     /// # Errors
-    /// The path is not finite.
+    /// [`NotFinite`] when a coordinate of the path is not finite.
     pub fn stroked(&self, style: &Stroke, clipped: bool, [tolerance, gap]: [f64; 2]) -> Result<Self, NotFinite> {
         let arcs = if style.dash_pattern.is_empty() { ARCS } else { DASHED_ARCS } * tolerance;
         let contours = contours(&self.to_bez_path(arcs), style, clipped, gap)?;
@@ -30,8 +30,8 @@ impl Outline {
         Ok(Self { subpaths: contours.iter().map(subpath).collect::<Result<_, NotFinite>>()? })
     }
 
-    /// An upper bound for the number of dashes that [`stroked`](Self::stroked) draws; 0 if there are none, or so many that it draws a solid
-    /// line instead.
+    /// Returns an upper bound for the number of dashes that [`stroked`](Self::stroked) draws; 0 if there are none, or so many that it draws
+    /// a solid line.
     #[must_use]
     pub fn drawn_dashes(&self, pattern: &[f64]) -> f64 {
         drawn_dashes(self.segs().map(Seg::to_cubic), pattern)

@@ -1,5 +1,5 @@
-//! Builds outlines from drawing commands, SVG path data and kurbo's shapes. svgtypes parses path data; this module makes its commands
-//! absolute.
+//! Builds outlines from drawing commands, SVG path data and kurbo's shapes. svgtypes parses the path data; its commands become absolute
+//! here.
 
 use super::{EllipticArc, Outline, Seg, Subpath};
 use crate::error::Error;
@@ -14,7 +14,7 @@ use svgtypes::{PathParser, PathSegment};
 #[error(transparent)]
 pub struct PathDataError(svgtypes::Error);
 
-/// Becomes [`Error::Input`] with `path data` as its place.
+/// Converts to an [`Error::Input`] whose `place` is `path data`.
 impl From<PathDataError> for Error {
     fn from(e: PathDataError) -> Self {
         Self::input("path data", e.to_string())
@@ -25,7 +25,7 @@ impl Outline {
     /// Reads SVG path data (the `d` attribute), with arcs kept as arcs.
     ///
     /// # Errors
-    /// The data is malformed. SVG renderers draw such paths up to the error; use [`Outline::from_svg_lossy`] for that.
+    /// [`PathDataError`] for malformed data. SVG renderers draw such paths up to the error; use [`Outline::from_svg_lossy`] for that.
     pub fn from_svg(data: &str) -> Result<Self, PathDataError> {
         parse(data).map_err(|(e, _)| e)
     }
@@ -37,7 +37,7 @@ impl Outline {
     }
 }
 
-/// As [`Outline::from_svg`].
+/// Reads SVG path data, with arcs kept as arcs.
 impl FromStr for Outline {
     type Err = PathDataError;
 
@@ -46,8 +46,8 @@ impl FromStr for Outline {
     }
 }
 
-/// SVG path data with absolute commands, which reads back as the same outline: to the last bit, but for the radii and angles of arcs, which
-/// are rounded.
+/// Writes SVG path data with absolute commands. It reads back as the same outline to the last bit, except for the radii and angles of
+/// arcs, which are rounded.
 ///
 /// ```
 /// use pathwarp::Outline;
@@ -67,7 +67,7 @@ impl fmt::Display for Outline {
                     Seg::Line(l) => write!(f, " L{}", Pair(l.p1))?,
                     Seg::Quad(q) => write!(f, " Q{} {}", Pair(q.p1), Pair(q.p2))?,
                     Seg::Cubic(c) => write!(f, " C{} {} {}", Pair(c.p1), Pair(c.p2), Pair(c.p3))?,
-                    // The command draws at most a turn less than a whole one.
+                    // A single command cannot draw a whole turn.
                     Seg::Arc(a) if a.sweep.abs() > 1.5 * PI => {
                         write_arc(&a.subsegment(0.0, 0.5), f)?;
                         write_arc(&a.subsegment(0.5, 1.0), f)?;
@@ -96,7 +96,7 @@ fn write_arc(a: &EllipticArc, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     write!(f, " A{} {turn} {large} {sweep} {}", Pair(radii.to_point()), Pair(a.p1))
 }
 
-/// The path, or the error and the part before it.
+/// Returns the path, or the error and the part of the path before it.
 fn parse(data: &str) -> Result<Outline, (PathDataError, Outline)> {
     let mut b = Builder::default();
     // The handles that smooth commands reflect.
@@ -209,7 +209,7 @@ impl Builder {
         }
     }
 
-    /// The current point.
+    /// Returns the current point.
     #[must_use]
     pub fn at(&self) -> Point {
         self.at
@@ -235,19 +235,19 @@ impl From<Rect> for Outline {
     }
 }
 
-/// Arcs stay arcs.
+/// Draws the circle with arcs.
 impl From<Circle> for Outline {
     fn from(c: Circle) -> Self {
         Self::from(Ellipse::new(c.center, (c.radius, c.radius), 0.0))
     }
 }
 
-/// Arcs stay arcs.
+/// Draws the ellipse with arcs.
 impl From<Ellipse> for Outline {
     fn from(e: Ellipse) -> Self {
         let (radii, turn) = e.radii_and_rotation();
         let (a, b) = (Vec2::from_angle(turn) * radii.x, Vec2::from_angle(turn + FRAC_PI_2) * radii.y);
-        // Quarters, as SVG draws a circle.
+        // The ellipse has four arcs, as a circle in SVG.
         let quarter = |i: i32| EllipticArc::new(e.center(), a, b, f64::from(i) * FRAC_PI_2, FRAC_PI_2);
         let mut arcs = [0, 1, 2, 3].map(quarter);
         for i in 0..4 {
@@ -259,7 +259,7 @@ impl From<Ellipse> for Outline {
 }
 
 impl Outline {
-    /// A shape of kurbo. Lines, rectangles, paths and circles are taken as they are, others as curves within `tolerance` of them.
+    /// Converts a shape of kurbo. Lines, rectangles, paths and circles are exact, others become curves within `tolerance` of them.
     ///
     /// ```
     /// use pathwarp::{Outline, kurbo::{Circle, RoundedRect}};
@@ -298,7 +298,7 @@ impl From<&BezPath> for Outline {
 mod tests {
     use super::*;
 
-    /// An independent reference: the simplifier of svgtypes, which makes everything absolute and converts arcs to curves.
+    /// Compares paths with an independent reference, the simplifier of svgtypes, which makes commands absolute and converts arcs to curves.
     #[test]
     fn agrees_with_the_simplified_form() {
         let d =
@@ -320,7 +320,7 @@ mod tests {
         }
     }
 
-    /// Arcs of every kind, also mirrored and sheared, go where they went; everything else is the same to the last bit.
+    /// Arcs of every kind, also mirrored and sheared, read back as the same curves; everything else is the same to the last bit.
     #[test]
     fn what_is_written_reads_back() {
         let rest = "M0.1,2 L3,4e-7 Q5,6 7,8 C1,2 3,4 5,6 Z M9,9 M1,1 L1,1 Z M0,0 L5,0 L5,5 Z";

@@ -1,13 +1,13 @@
 //! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`,
 //! `spiral:turns=3,inner=20mm,outer=80mm`.
 //!
-//! The centre is that of the frame, unless `cx` and `cy` give it, as lengths; percentages of them count from the left and top of
-//! the frame, those of radii refer to its width; `%page` means the page instead of the frame. Angles count clockwise on the screen from the right (three o'clock); an arc runs
-//! from `from` to `to`, clockwise if `to` is larger. Circles and arcs are true arcs.
+//! The lengths `cx` and `cy` give the centre, which is the frame's by default. Their percentages count from the left and top of the
+//! frame; percentages of radii refer to its width; `%page` refers to the page instead. Angles are clockwise on the screen from the
+//! right (three o'clock). An arc runs from `from` to `to`, clockwise if `to` is larger. Circles and arcs are true arcs.
 //!
-//! A spiral is Archimedean, r = inner + (outer − inner)·φ/(360°·turns): it begins at the angle `from`, by default 180°, at the
-//! inner radius, and runs outwards, clockwise (`cw`) or counter-clockwise (`ccw`). Its cubics are within
-//! [`SPIRAL_WITHIN`]·outer of it.
+//! A spiral is Archimedean, r = inner + (outer − inner)·φ/(360°·turns). It begins at the inner radius, at the angle `from`, by
+//! default 180°, and runs outwards, clockwise (`cw`) or counter-clockwise (`ccw`). Its cubics are within [`SPIRAL_WITHIN`]·outer
+//! of the exact curve.
 
 use super::value::{self, ValueError};
 use super::{Axis, Frame};
@@ -18,9 +18,9 @@ use std::ops::Range;
 
 /// Distance of a spiral's cubics from the true curve, relative to its outer radius.
 const SPIRAL_WITHIN: f64 = 1e-7;
-/// Limit on the turns of a spiral: the work grows with them, and letters on more would be illegible.
+/// Limit on the turns of a spiral. The work grows with them, and letters on more turns would be illegible.
 const MAX_TURNS: f64 = 100.0;
-/// The angle at which a spiral begins: lettering there begins at the left and goes over the top.
+/// The default angle at which a spiral begins, so that lettering runs from the left over the top.
 const LEFT: f64 = 180.0;
 
 /// Returns `true` if a path reference is a circle, an arc or a spiral.
@@ -33,14 +33,14 @@ pub(crate) fn is_spiral(text: &str) -> bool {
     split(text).is_some_and(|(word, _)| word == "spiral")
 }
 
-/// The word before the colon, and the values after it.
+/// Returns the word before the colon, and the values after it.
 fn split(text: &str) -> Option<(&str, &str)> {
-    // A circle without a colon is the shape of that name.
+    // Without a colon, `circle` is the shape of that name.
     let split = text.trim().split_once(':').or_else(|| Some((text.trim(), "")).filter(|(word, _)| *word != "circle"));
     split.filter(|(word, _)| matches!(*word, "circle" | "arc" | "spiral"))
 }
 
-/// A complete reference that begins with this word.
+/// Returns an example of a reference that begins with this word.
 fn example(word: &str) -> &'static str {
     match word {
         "arc" => "arc:r=60mm,from=180,to=360",
@@ -49,13 +49,13 @@ fn example(word: &str) -> &'static str {
     }
 }
 
-/// Reads a circle, an arc or a spiral; `None` if the text is none of them. The error continues a sentence about the text.
+/// Reads a circle, an arc or a spiral; `None` for other texts. The error continues a sentence about the text.
 pub(super) fn circle(text: &str, frame: &Frame) -> Option<Result<Outline, String>> {
     let (word, values) = split(text)?;
     Some(Values::new(word, values, frame).and_then(|t| if word == "spiral" { t.spiral() } else { t.arc() }))
 }
 
-/// The values as typed.
+/// The values of a reference, as typed.
 struct Values<'a> {
     word: &'a str,
     given: Vec<(&'a str, &'a str)>,
@@ -64,7 +64,7 @@ struct Values<'a> {
 
 impl<'a> Values<'a> {
     fn new(word: &'a str, values: &'a str, frame: &'a Frame) -> Result<Self, String> {
-        /// The name under which a direction is kept.
+        /// The name under which the direction of a spiral is stored.
         const DIRECTION: &str = "direction";
         let names: &[&str] = match word {
             "arc" => &["r", "from", "to", "cx", "cy"],
@@ -106,7 +106,7 @@ impl<'a> Values<'a> {
         self.length(name, Axis::X).map(|(length, _)| length)
     }
 
-    /// Reads a length, and the box that it is a share of, if it is one.
+    /// Reads a length; for a percentage, also returns the box to which it refers.
     fn length(&self, name: &str, axis: Axis) -> Result<(f64, Option<Rect>), String> {
         let of_page = self.text(name).and_then(|t| t.strip_suffix("page")).filter(|t| t.ends_with('%'));
         let of_frame = self.text(name).is_some_and(|t| t.ends_with('%')).then_some(self.frame.rect);
@@ -118,7 +118,7 @@ impl<'a> Values<'a> {
     }
 
     fn centre(&self) -> Result<Point, String> {
-        // A percentage is a place in the frame, a length one on the page.
+        // Percentages count from the box to which they refer, lengths from the drawing's origin.
         let place = |name: &str, axis, start: fn(Rect) -> f64, middle: f64| -> Result<f64, String> {
             if self.text(name).is_none() {
                 return Ok(middle);
@@ -160,7 +160,7 @@ impl<'a> Values<'a> {
         let sweep = if self.text("direction") == Some("ccw") { -turns * TAU } else { turns * TAU };
         let spiral = Spiral { centre: self.centre()?, inner, growth: outer - inner, from: from.to_radians(), sweep };
         let mut path = BezPath::new();
-        // Fits of a whole turn or more would fail anyway.
+        // A fit of a whole turn or more would fail.
         let parts = (QUARTERS * turns).ceil() as u32;
         for i in 0..parts {
             let at = |i: u32| f64::from(i) / f64::from(parts);
@@ -171,7 +171,7 @@ impl<'a> Values<'a> {
     }
 }
 
-/// Parts of a turn that are fitted separately.
+/// Number of parts of a turn, which are fitted separately.
 const QUARTERS: f64 = 4.0;
 
 /// An Archimedean spiral, at constant angular speed from t = 0 to 1.
@@ -221,7 +221,7 @@ mod tests {
     fn circles_and_arcs_have_their_measures() {
         let inch = read("circle:r=1in").unwrap();
         let b = inch.bounding_box().unwrap();
-        // An inch is 96 px, and a px two units.
+        // An inch is 96 px, and a px is two units.
         assert!((b.width() - 384.0).abs() < 1e-9 && b.center().distance(Point::new(200.0, 25.0)) < 1e-9, "{b:?}");
         assert!(inch.subpaths[0].closed && matches!(inch.subpaths[0].segs[..], [Seg::Arc(_)]));
         let arc = read("arc: r=10%, from=180, to=1.5PI, cx=25%, cy=7");
@@ -266,7 +266,7 @@ mod tests {
             let mut last = 0.0;
             let mut worst: f64 = 0.0;
             for p in sub.segs.iter().flat_map(|s| (0..40).map(|i| s.eval(f64::from(i) / 40.0))) {
-                // The nearest point of the true spiral, from the place of the last one on.
+                // The nearest point of the exact spiral, sought from the last one on.
                 let near = (0..200)
                     .map(|i| last + f64::from(i) * 1e-4)
                     .min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p)));

@@ -32,7 +32,7 @@ pub enum Kind {
     Path,
     /// One of these words.
     Choice(&'static [&'static str]),
-    /// Text that the deformation parses itself, with its notation, such as `I,J:DX,DY`.
+    /// Text that the deformation parses, with its notation for help, such as `I,J:DX,DY`.
     Text(&'static str),
     /// One of these words, or another spelling that the deformation knows, or a file whose text it reads. A value with a dot or a
     /// slash names a file.
@@ -44,7 +44,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Returns the kind's name in lists of parameters and in the entries of plug-ins, such as `name-or-file`.
+    /// Returns the name of the kind, such as `name-or-file`, in lists of parameters and the entries of plug-ins.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl Kind {
 /// One parameter of a deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Param {
-    /// The name in kebab case: the option on the command line and the key in recipes.
+    /// The name in kebab case, which is the option on the command line and the key in recipes.
     pub name: &'static str,
     /// The kind of value.
     pub kind: Kind,
@@ -78,9 +78,9 @@ pub struct Param {
     pub needed: bool,
     /// `true` if the parameter may be given several times.
     pub repeat: bool,
-    /// The range of legal values, both ends included: numbers, lengths in user units, angles in degrees, counts.
+    /// The range of legal values, both ends included, for numbers, lengths in user units, angles in degrees and counts.
     pub range: (f64, f64),
-    /// The range of an editor's slider.
+    /// The range of a slider in an editor.
     pub ui: (f64, f64),
     /// Help of one or more sentences, the first of which stands alone.
     pub help: &'static str,
@@ -90,43 +90,43 @@ pub struct Param {
 const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 impl Param {
-    /// A parameter without a default or limits.
+    /// Declares a parameter without a default or limits.
     #[must_use]
     pub const fn new(name: &'static str, kind: Kind, help: &'static str) -> Self {
         Self { name, kind, default: None, needed: false, repeat: false, range: ANY, ui: (0.0, 1.0), help }
     }
 
-    /// A switch.
+    /// Declares a switch.
     #[must_use]
     pub const fn flag(name: &'static str, help: &'static str) -> Self {
         Self::new(name, Kind::Flag, help)
     }
 
-    /// A path reference.
+    /// Declares a path reference.
     #[must_use]
     pub const fn path(name: &'static str, help: &'static str) -> Self {
         Self::new(name, Kind::Path, help)
     }
 
-    /// A length.
+    /// Declares a length.
     #[must_use]
     pub const fn length(name: &'static str, axis: Axis, help: &'static str) -> Self {
         Self::new(name, Kind::Length(axis), help)
     }
 
-    /// A number.
+    /// Declares a number.
     #[must_use]
     pub const fn number(name: &'static str, help: &'static str) -> Self {
         Self::new(name, Kind::Number, help)
     }
 
-    /// An angle.
+    /// Declares an angle.
     #[must_use]
     pub const fn angle(name: &'static str, help: &'static str) -> Self {
         Self { ui: (-180.0, 180.0), ..Self::new(name, Kind::Angle, help) }
     }
 
-    /// One of two words, the first of which is the default.
+    /// Declares a choice of two words, the first of which is the default.
     #[must_use]
     pub(crate) const fn either(name: &'static str, words: &'static [&'static str; 2], help: &'static str) -> Self {
         Self::new(name, Kind::Choice(words), help).default(words[0])
@@ -154,7 +154,7 @@ impl Param {
         Self { repeat: true, ..self }
     }
 
-    /// The placeholder of the value in help, such as `PATHREF`.
+    /// Returns the placeholder of the value in help, such as `PATHREF`.
     #[must_use]
     pub fn value_name(&self) -> String {
         match self.kind {
@@ -176,7 +176,7 @@ impl Param {
         }
     }
 
-    /// Names that the value may have; there may be others.
+    /// Returns known names for the value; others may be legal.
     #[must_use]
     pub fn names(&self) -> &'static [&'static str] {
         match self.kind {

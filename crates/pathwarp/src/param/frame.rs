@@ -4,22 +4,22 @@ use super::{Axis, Letter};
 use kurbo::{Point, Rect};
 use std::sync::Arc;
 
-/// The box to which percentages refer: the bounding box of the artwork, the view box, or a box named by the user. Root user
-/// units, y down.
+/// The box to which percentages refer: the bounding box of the artwork, the view box, or a box named by the user. Coordinates are in
+/// root user units, y down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// The box.
     pub rect: Rect,
-    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve place it on the curve by
+    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve put it on the curve by
     /// default.
     pub baseline: Option<f64>,
     /// User units per px along x and y: 1 unless the drawing's `viewBox` scales it. Lengths with units refer to px.
     pub units_per_px: [f64; 2],
     /// The known letters of the artwork. Empty if there are none, or if their baseline is not horizontal.
     pub letters: Arc<[Letter]>,
-    /// The objects of the artwork as if they were letters, without outlines, from left to right. Empty if they are not known.
+    /// The objects of the artwork from left to right, as letters without outlines. Empty if they are not known.
     pub objects: Arc<[Letter]>,
-    /// Points along the artwork, for deformations that ask for [letters](Self::letters): where distortion is visible. Empty if
+    /// Points along the artwork, at which distortion is visible, for deformations that ask for [letters](Self::letters). Empty if
     /// they are not known.
     pub ink: Arc<[Point]>,
     /// The page of the drawing, to which circles and arcs may refer (`cx=50%page`); `None` if there is none.
@@ -27,7 +27,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame without lettering.
+    /// Creates a frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl Frame {
         with_page(page: Rect) => page: Some(page);
     }
 
-    /// The length of a px along `axis`, in user units. Along the diagonal: as SVG defines it, the root mean square.
+    /// Returns the length of a px along `axis`, in user units; along the diagonal, the root mean square, as in SVG.
     #[must_use]
     pub fn px(&self, axis: Axis) -> f64 {
         let [x, y] = self.units_per_px;
@@ -69,7 +69,7 @@ impl Frame {
         Self { baseline: Some(y), ..self }
     }
 
-    /// The length of 100 % along `axis`, in user units.
+    /// Returns the length of 100 % along `axis`, in user units.
     #[must_use]
     pub fn extent(&self, axis: Axis) -> f64 {
         match axis {
@@ -79,7 +79,7 @@ impl Frame {
         }
     }
 
-    /// The four corners: bottom left, bottom right, top right, top left as seen on the screen.
+    /// Returns the four corners as seen on the screen: bottom left, bottom right, top right, top left.
     #[must_use]
     pub fn corners(&self) -> [Point; 4] {
         let r = self.rect;

@@ -1,34 +1,34 @@
-//! Letters of the artwork, for deformations that place lettering letter by letter.
+//! Letters of the artwork, for deformations that set them one by one.
 
 use crate::outline::Outline;
 use kurbo::Point;
 
-/// A letter: a glyph, or several that belong together, on a horizontal baseline. Root user units.
+/// A letter: a glyph, or several that belong together, on a horizontal baseline. Coordinates are in root user units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Letter {
-    /// The characters, to name the letter in messages.
+    /// The characters, for messages.
     pub name: String,
     /// The origin on the baseline.
     pub origin: Point,
-    /// The advance: the distance to the origin of the next letter, to the right.
+    /// The advance, the distance to the origin of the next letter on the right.
     pub advance: f64,
     /// The shape.
     pub outline: Outline,
 }
 
 impl Letter {
-    /// The middle of the advance, on the baseline.
+    /// Returns the middle of the advance, on the baseline.
     #[must_use]
     pub fn middle(&self) -> Point {
         Point::new(self.origin.x + 0.5 * self.advance, self.origin.y)
     }
 }
 
-/// Returns the width of a word space between `letters`: the smallest gap between words, or half the mean advance if there is one
-/// word only. `None` if there are no letters.
+/// Returns the width of a word space between `letters`: the smallest gap between words, or half the mean advance for a single word.
+/// `None` if there are no letters.
 #[must_use]
 pub(crate) fn word_space(letters: &[Letter]) -> Option<f64> {
-    /// Gaps of more than this share of the mean advance are word spaces; kerning and letter spacing leave less.
+    /// Least word space, as a share of the mean advance. Kerning and letter spacing leave smaller gaps.
     const MIN_SPACE: f64 = 0.25;
     /// The word space of most fonts, as a share of the mean advance.
     const USUAL: f64 = 0.5;

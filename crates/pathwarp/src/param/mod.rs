@@ -1,7 +1,7 @@
-//! Parameters of deformations, declared once: the command line, recipes, help, the schema and editors all follow from one table.
+//! Parameters of deformations, declared in one table for the command line, recipes, help, the schema and editors.
 //!
-//! A deformation declares a table of [`Param`]s: name, [`Kind`], default, range, help. A caller collects values as text in
-//! [`Args`]. [`Settings`] brings the two together in a [`Frame`], the box that gives percentages a meaning, and returns typed and
+//! A deformation declares a table of [`Param`]s: name, [`Kind`], default, range and help. A caller collects values as text in
+//! [`Args`]. [`Settings`] combines the two with a [`Frame`], the box to which percentages refer, and returns typed and
 //! range-checked values:
 //!
 //! ```
@@ -20,8 +20,8 @@
 //! # Ok::<(), pathwarp::Error>(())
 //! ```
 //!
-//! Values remain text until the deformation is built, so that a saved recipe means the same on other artwork. Lengths become user
-//! units, angles degrees. Errors name parameters without dashes.
+//! Values remain text until the deformation is built, so that a recipe can be applied to other artwork. Lengths become user
+//! units, angles become degrees. Errors name parameters without dashes.
 
 mod circle;
 mod declaration;
@@ -48,7 +48,7 @@ pub use value::{Length, LengthError, LengthUnit};
 
 pub(crate) use circle::is_spiral;
 
-/// A path referred to by a value.
+/// A path to which a value refers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPath {
     /// The reference as typed, for messages.
@@ -57,10 +57,10 @@ pub struct NamedPath {
     pub outline: Outline,
 }
 
-/// A file named by a value.
+/// A file that a value names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedText {
-    /// The file as typed, for messages.
+    /// The file's name as typed, for messages.
     pub name: String,
     /// The text of the file.
     pub text: String,
@@ -75,7 +75,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// No values.
+    /// Creates an empty list of values.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -91,7 +91,7 @@ impl Args {
         self.typed.insert(name.to_owned(), values);
     }
 
-    /// Values from pairs of name and value.
+    /// Creates values from pairs of name and value.
     #[must_use]
     pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {
         let mut a = Self::new();
@@ -101,22 +101,22 @@ impl Args {
         a
     }
 
-    /// The values given for `name`.
+    /// Returns the values given for `name`.
     #[must_use]
     pub fn get(&self, name: &str) -> &[String] {
         self.typed.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// All values, by name.
+    /// Returns all values, by name.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &[String])> {
         self.typed.iter().map(|(n, v)| (n.as_str(), v.as_slice()))
     }
 
     /// Looks up every path reference that is not inline (`M …`, `x,y …`) with `look_up`, so that building a deformation needs no
-    /// files. `look_up` returns `None` to leave a reference to a later call; references already looked up are kept.
+    /// files. `look_up` returns `None` to leave a reference to a later call. References already looked up are kept.
     ///
     /// # Errors
-    /// The errors of `look_up`.
+    /// The first [`Error`] that `look_up` returns.
     pub fn resolve_paths(
         &mut self,
         params: &[Param],
@@ -135,9 +135,9 @@ impl Args {
         Ok(())
     }
 
-    /// The number of segments of all paths, looked up or typed.
+    /// Returns the number of segments of all paths, looked up or typed.
     pub(crate) fn path_segments(&self) -> usize {
-        /// Shorter texts hold few segments.
+        /// Length of texts that are counted; shorter ones have few segments.
         const LONG: usize = 2000;
         let typed = self.typed.values().flatten().filter(|text| text.len() > LONG && is_inline(text));
         let typed: usize = typed.map(|text| Outline::from_svg_lossy(text).segs().count()).sum();
@@ -147,7 +147,7 @@ impl Args {
     /// Reads every file that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names, with `read`.
     ///
     /// # Errors
-    /// The errors of `read`.
+    /// The first [`Error`] that `read` returns.
     pub fn resolve_files(
         &mut self,
         params: &[Param],
@@ -174,7 +174,7 @@ impl Args {
     }
 }
 
-/// Returns `true` if a path reference is the path itself, as path data, points, a circle, an arc or a spiral, and not a name.
+/// Returns `true` if a path reference contains the path, as path data, points, a circle, an arc or a spiral, and is not a name.
 #[must_use]
 pub fn is_inline(text: &str) -> bool {
     is_path_data(text) || is_circle(text) || value::looks_like_points(text)

@@ -9,21 +9,21 @@ use kurbo::{Point, Rect};
 /// A number out of range that is at least this large may be meant as a percentage.
 const LIKELY_PERCENT: f64 = 5.0;
 
-/// The parameters of a deformation with their values, from which it is built.
+/// The parameters of a deformation with their values and the frame, from which it is built.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
     params: &'a [Param],
     args: &'a Args,
     frame: &'a Frame,
-    /// Numbers may be out of range.
+    /// `true` if numbers may be out of range.
     any_range: bool,
 }
 
 impl<'a> Settings<'a> {
-    /// Checks that `args` has only declared names, repeats only what may be repeated, and lacks nothing that is needed.
+    /// Creates settings after a check of the names in `args`.
     ///
     /// # Errors
-    /// [`Error::Usage`] or [`Error::Missing`], naming the parameter.
+    /// [`Error::Usage`] for an unknown parameter or one given too often, [`Error::Missing`] without a required one.
     pub fn new(params: &'a [Param], args: &'a Args, frame: &'a Frame) -> Result<Self, Error> {
         for (name, values) in args.iter() {
             let Some(p) = params.iter().find(|p| p.name == name) else {
@@ -46,11 +46,11 @@ impl<'a> Settings<'a> {
         Ok(Self { params, args, frame, any_range: false })
     }
 
-    /// Checks the values that can be read without knowing the artwork: numbers, counts, angles, points, words and switches, and the
-    /// notation of lengths.
+    /// Checks the values that do not depend on the artwork: numbers, counts, angles, points, words and switches, and the notation of
+    /// lengths.
     ///
     /// # Errors
-    /// [`Error::Usage`], naming the parameter.
+    /// [`Error::Usage`] for a value that is not of its kind or out of range.
     pub fn check_values(&self) -> Result<(), Error> {
         for (name, values) in self.args.iter() {
             let kind = self.params.iter().find(|p| p.name == name).map(|p| p.kind);
@@ -71,12 +71,12 @@ impl<'a> Settings<'a> {
         Ok(())
     }
 
-    /// The defaults alone, whether or not the frame makes lengths of them that are in range. `args` is empty.
+    /// Creates settings with the defaults alone. Lengths may be out of range in this frame. `args` must be empty.
     pub(crate) fn defaults(params: &'a [Param], args: &'a Args, frame: &'a Frame) -> Self {
         Self { params, args, frame, any_range: true }
     }
 
-    /// The box to which percentages refer.
+    /// Returns the box to which percentages refer.
     #[must_use]
     pub fn frame(&self) -> &'a Frame {
         self.frame
@@ -91,7 +91,7 @@ impl<'a> Settings<'a> {
     /// Returns `true` if a flag is set.
     ///
     /// # Errors
-    /// The value is neither true nor false.
+    /// [`Error::Usage`] when the value is neither true nor false.
     pub fn flag(&self, name: &str) -> Result<bool, Error> {
         match self.text(name).map(|(t, _)| t) {
             None | Some("false") => Ok(false),
@@ -100,18 +100,18 @@ impl<'a> Settings<'a> {
         }
     }
 
-    /// A number, integer, length (in user units) or angle (in degrees), according to the parameter's kind.
+    /// Returns a number, integer, length (in user units) or angle (in degrees), according to the parameter's kind.
     ///
     /// # Errors
-    /// The value is not of its kind or out of range, or there is neither a value nor a default.
+    /// [`Error::Usage`] when the value is not of its kind or out of range, [`Error::Missing`] with neither a value nor a default.
     pub fn number(&self, name: &str) -> Result<f64, Error> {
         self.number_if(name)?.ok_or_else(|| self.missing(name))
     }
 
-    /// As [`Settings::number`], for an optional parameter.
+    /// Returns the number, integer, length or angle of an optional parameter.
     ///
     /// # Errors
-    /// The value is not of its kind, or out of range.
+    /// [`Error::Usage`] when the value is not of its kind or out of range.
     pub fn number_if(&self, name: &str) -> Result<Option<f64>, Error> {
         let Some((text, param)) = self.text(name) else { return Ok(None) };
         let value = match param.kind {
@@ -131,29 +131,29 @@ impl<'a> Settings<'a> {
         Ok(Some(value))
     }
 
-    /// A fixed number of numbers.
+    /// Returns the list of numbers of an optional parameter, as many as its kind has.
     ///
     /// # Errors
-    /// The value is not a list of that many numbers.
+    /// [`Error::Usage`] when the value is not a list of that many numbers.
     pub fn numbers_if(&self, name: &str) -> Result<Option<Vec<f64>>, Error> {
         let Some((text, param)) = self.text(name) else { return Ok(None) };
         let expected = if let Kind::Numbers(n) = param.kind { n } else { 1 };
         value::numbers(text, expected).map(Some).map_err(|e| usage(name, text, &e))
     }
 
-    /// A point.
+    /// Returns a point.
     ///
     /// # Errors
-    /// The value is not `x,y`, or there is neither a value nor a default.
+    /// [`Error::Usage`] when the value is not `x,y`, [`Error::Missing`] with neither a value nor a default.
     pub fn point(&self, name: &str) -> Result<Point, Error> {
         let (text, _) = self.text(name).ok_or_else(|| self.missing(name))?;
         value::point(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// The chosen word.
+    /// Returns the chosen word.
     ///
     /// # Errors
-    /// The value is not one of the words, or there is neither a value nor a default.
+    /// [`Error::Usage`] when the value is not one of the words, [`Error::Missing`] with neither a value nor a default.
     pub fn choice(&self, name: &str) -> Result<&'static str, Error> {
         let (text, param) = self.text(name).ok_or_else(|| self.missing(name))?;
         let words = if let Kind::Choice(words) = param.kind { words } else { &[] };
@@ -164,7 +164,7 @@ impl<'a> Settings<'a> {
             .ok_or_else(|| Error::usage(name, text, format!("is not one of {}", words.join(", "))))
     }
 
-    /// The values of a text parameter in the order given, or the default.
+    /// Returns the values of a text parameter in the order given, or the default.
     #[must_use]
     pub fn texts(&self, name: &str) -> Vec<&'a str> {
         let typed = self.args.get(name);
@@ -174,34 +174,34 @@ impl<'a> Settings<'a> {
         typed.iter().map(String::as_str).collect()
     }
 
-    /// A length within a text parameter, in user units, for deformations that parse their own notation.
+    /// Reads a length in the text of parameter `name`, in user units.
     ///
     /// # Errors
-    /// `text` is not a length. The message names the parameter.
+    /// [`Error::Usage`] when `text` is not a length.
     pub fn length_in(&self, name: &str, text: &str, axis: Axis) -> Result<f64, Error> {
         value::length(text, axis, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// An angle within a text parameter, in degrees.
+    /// Reads an angle in the text of parameter `name`, in degrees.
     ///
     /// # Errors
-    /// `text` is not an angle. The message names the parameter.
+    /// [`Error::Usage`] when `text` is not an angle.
     pub fn angle_in(&self, name: &str, text: &str) -> Result<f64, Error> {
         value::angle(text).map_err(|e| usage(name, text, &e))
     }
 
-    /// A plain number or a percentage within a text parameter.
+    /// Reads a plain number or a percentage in the text of parameter `name`.
     ///
     /// # Errors
-    /// `text` is not a number. The message names the parameter.
+    /// [`Error::Usage`] when `text` is not a number.
     pub fn number_in(&self, name: &str, text: &str) -> Result<f64, Error> {
         value::number(text).map_err(|e| usage(name, text, &e))
     }
 
-    /// The indices of a control point and the text after them: `I,J:REST` or `I,J,K:REST`.
+    /// Reads the indices of a control point, and returns them with the text after them: `I,J:REST` or `I,J,K:REST`.
     ///
     /// # Errors
-    /// `text` is not of that form with `N` integers. The message names the parameter.
+    /// [`Error::Usage`] when `text` does not have this form with `N` integers.
     pub fn node_in<'t, const N: usize>(&self, name: &str, text: &'t str) -> Result<([usize; N], &'t str), Error> {
         let wrong = || {
             let node = ["I", "J", "K"][..N.min(3)].join(",");
@@ -213,54 +213,54 @@ impl<'a> Settings<'a> {
         Ok((node, rest.trim()))
     }
 
-    /// A point within a text parameter. Percentages count from the left and top of the frame.
+    /// Reads a point in the text of parameter `name`. Percentages count from the left and top of the frame.
     ///
     /// # Errors
-    /// `text` is not a point. The message names the parameter.
+    /// [`Error::Usage`] when `text` is not a point.
     pub fn point_in(&self, name: &str, text: &str) -> Result<Point, Error> {
         value::point(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// Points `x,y x,y …` within a text parameter. Percentages count from the left and top of the frame.
+    /// Reads points `x,y x,y …` in the text of parameter `name`. Percentages count from the left and top of the frame.
     ///
     /// # Errors
-    /// `text` is not a list of points. The message names the parameter.
+    /// [`Error::Usage`] when `text` is not a list of points.
     pub fn points_in(&self, name: &str, text: &str) -> Result<Vec<Point>, Error> {
         value::points(text, self.frame).map_err(|e| usage(name, text, &e))
     }
 
-    /// The box given by a text parameter: `artwork` (the frame), or `x,y,w,h` with percentages of the frame. `None` if it is the
-    /// frame or not given.
+    /// Returns the box given by a text parameter: `artwork` (the frame), or `x,y,w,h` with percentages of the frame. `None` if it is
+    /// the frame or not given.
     ///
     /// # Errors
-    /// The value is not a box, or has no area. The message names the parameter.
+    /// [`Error::Usage`] when the value is not a box, or has no area.
     pub fn rect_if(&self, name: &str) -> Result<Option<Rect>, Error> {
         let Some((text, _)) = self.text(name).filter(|(t, _)| *t != "artwork") else { return Ok(None) };
         value::rect(text, self.frame).map(Some).map_err(|e| usage(name, text, &e))
     }
 
-    /// The file named by a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`], already read. `None` if none was named.
+    /// Returns the file, already read, that a parameter of kind [`Kind::File`] or [`Kind::NameOrFile`] names. `None` if it names none.
     ///
     /// # Errors
-    /// The file was not read, because [`Args::resolve_files`] was not called.
+    /// [`Error::Input`] when the file was not read, because [`Args::resolve_files`] was not called.
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
         let Some((file, _)) = self.text(name).filter(|(t, p)| p.reads_file(t)) else { return Ok(None) };
         let unread = || Error::input(file, "cannot be read here");
         self.args.file(file).map(Some).ok_or_else(unread)
     }
 
-    /// The path of an optional path parameter.
+    /// Returns the path of an optional path parameter.
     ///
     /// # Errors
-    /// The value is not a path.
+    /// [`Error::Usage`] when the value is not a path, [`Error::Geometry`] for a coordinate that is not finite.
     pub fn path_if(&self, name: &str) -> Result<Option<NamedPath>, Error> {
         Ok(self.paths(name)?.pop())
     }
 
-    /// All paths of a path parameter that may be repeated.
+    /// Returns all paths of a path parameter that may be repeated.
     ///
     /// # Errors
-    /// A value is not a path.
+    /// [`Error::Usage`] when a value is not a path, [`Error::Geometry`] for a coordinate that is not finite.
     pub fn paths(&self, name: &str) -> Result<Vec<NamedPath>, Error> {
         let typed = self.args.get(name);
         let default = self.param(name).and_then(|p| p.default).map(str::to_owned);
@@ -293,7 +293,7 @@ impl<'a> Settings<'a> {
         self.params.iter().find(|p| p.name == name)
     }
 
-    /// The last value given, or the default.
+    /// Returns the last value given, or the default, with the parameter.
     pub(super) fn text(&self, name: &str) -> Option<(&'a str, &'a Param)> {
         let param = self.param(name)?;
         let typed = self.args.get(name).last().map(String::as_str);
@@ -306,7 +306,7 @@ impl<'a> Settings<'a> {
     }
 }
 
-/// The error for a value that does not parse.
+/// Returns the error for a value that does not parse.
 fn usage(name: &str, text: &str, error: &ValueError) -> Error {
     Error::usage(name, text, error.to_string())
 }

@@ -1,7 +1,7 @@
 //! Shapes by name as path references: `heart`, `heart,ratio=1.2`, `heart,width=80mm`.
 //!
-//! The middle of a shape's bounding box is that of the frame. It is as wide as the frame, unless `width` gives a length (percentages
-//! refer to the frame's width), and as high as it was drawn, unless `ratio` gives its width divided by its height.
+//! A shape is centred in the frame. It is as wide as the frame, unless `width` gives a length (percentages refer to the frame's width),
+//! and keeps the proportions of its drawing, unless `ratio` gives its width divided by its height.
 
 use super::value;
 use super::{Axis, Frame};
@@ -9,38 +9,38 @@ use crate::outline::Outline;
 use kurbo::Affine;
 use std::sync::OnceLock;
 
-/// The drawing of all shapes, a line for each.
+/// The drawing of all shapes, one per line.
 const DRAWING: &str = include_str!("shapes.svg");
-/// The values of a shape, and the largest ratio of a width to a height, or of a height to a width.
+/// The names of a shape's values, and the largest ratio of its width to its height or of its height to its width.
 const VALUES: [&str; 2] = ["ratio", "width"];
 const MOST: f64 = 1000.0;
 
-/// The names and the path data of all shapes.
+/// Returns the names and the path data of all shapes.
 fn drawn() -> impl Iterator<Item = (&'static str, &'static str)> {
     let attribute = |line: &'static str, name: &str| Some(line.split_once(name)?.1.split_once('"')?.0);
     DRAWING.lines().filter_map(move |l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?)))
 }
 
-/// The names of the shapes that path references may name, in the order of the drawing.
+/// Returns the names of the shapes for path references, in the order of the drawing.
 #[must_use]
 pub fn shape_names() -> &'static [&'static str] {
     static NAMES: OnceLock<Vec<&'static str>> = OnceLock::new();
     NAMES.get_or_init(|| drawn().map(|(name, _)| name).collect())
 }
 
-/// Returns `true` if a path reference begins with the name of a shape: a file or an object may have that name, too.
+/// Returns `true` if a path reference begins with the name of a shape. A file or an object may have that name, too.
 #[must_use]
 pub fn is_shape(text: &str) -> bool {
     shape_names().contains(&split(text).0)
 }
 
-/// The name and the values after it.
+/// Returns the name, and the values after it.
 fn split(text: &str) -> (&str, &str) {
     let (name, values) = text.split_once(',').unwrap_or((text, ""));
     (name.trim(), values)
 }
 
-/// Reads a shape; `None` if the text is none. The error continues a sentence about the text.
+/// Reads a shape; `None` for other texts. The error continues a sentence about the text.
 pub(super) fn shape(text: &str, frame: &Frame) -> Option<Result<Outline, String>> {
     let (name, values) = split(text);
     let (_, data) = drawn().find(|(n, _)| *n == name)?;
@@ -89,7 +89,7 @@ mod tests {
             let b = bounds(name);
             assert!((b.width() - 200.0).abs() < 1e-6 && b.center().distance((110.0, 40.0).into()) < 1e-6, "{name} {b}");
         }
-        // A circle of which the drawing has two arcs is round, and its ratio makes it an ellipse.
+        // The circle, drawn as two arcs, is round; a ratio makes it an ellipse.
         assert!((bounds("circle").height() - 200.0).abs() < 1e-6);
         let wide = bounds("heart, ratio=1.25 ,width=50px");
         assert!((wide.width() - 100.0).abs() < 1e-6 && (wide.height() - 80.0).abs() < 1e-6);

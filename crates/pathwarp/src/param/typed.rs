@@ -1,4 +1,4 @@
-//! Parameters as fields: one declaration gives a deformation's type, setters, defaults, ranges, table and reading.
+//! Parameters as fields: one declaration gives the type of a deformation, its setters, defaults, ranges and table, and reads it from text.
 
 use super::{Kind, NamedPath, Param, Settings};
 use crate::error::{Error, within};
@@ -9,12 +9,12 @@ pub(crate) trait Value: Sized {
     /// Reads the value of a parameter, or its default.
     fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error>;
 
-    /// The number that the parameter's range is about, if it is one.
+    /// Returns the number to which the parameter's range applies, if it has one.
     fn number(&self) -> Option<f64> {
         None
     }
 
-    /// Refuses a number out of the parameter's range.
+    /// Refuses a number outside the parameter's range.
     fn check(&self, params: &[Param], name: &str) -> Result<(), Error> {
         let range = params.iter().find(|p| p.name == name).map(|p| p.range);
         match (self.number(), range) {
@@ -44,7 +44,7 @@ impl Value for usize {
     }
 }
 
-/// A flag, or the second of two words.
+/// `true` for a flag, or for the second of two words.
 impl Value for bool {
     fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
         match s.param(name).map(|p| p.kind) {
@@ -66,7 +66,7 @@ impl Value for NamedPath {
     }
 }
 
-/// `None` if there is neither a value nor a default.
+/// `None` with neither a value nor a default.
 impl<T: Value> Value for Option<T> {
     fn read(s: &Settings<'_>, name: &str) -> Result<Self, Error> {
         s.text(name).map(|_| T::read(s, name)).transpose()
@@ -77,8 +77,8 @@ impl<T: Value> Value for Option<T> {
     }
 }
 
-/// Declares a deformation with its parameters, each once: the help, which is the setter's documentation as well, the field, and how
-/// [`Param`] describes it.
+/// Declares a deformation with its parameters. Each has its help, which is also the setter's documentation, its field, and the
+/// [`Param`] that describes it.
 ///
 /// ```text
 /// parameters! {
@@ -95,10 +95,10 @@ impl<T: Value> Value for Option<T> {
 /// }
 /// ```
 ///
-/// `Option` is for parameters that may stay without a value; one without a type has no field of its own. A field after `let` is no
-/// parameter: it follows from the settings `s`. What has no default is an argument: `pub struct Bend(s, along: NamedPath)`.
+/// `Option` is for parameters that may have no value; a parameter without a type has no field. A field after `let` is no parameter, and
+/// follows from the settings `s`. A field without a default is an argument: `pub struct Bend(s, along: NamedPath)`.
 ///
-/// The type gets `PARAMS`, the table; a setter for each parameter's field; `read(s, …)`; `defaults(frame, …)`, with no value given; and
+/// The type gets the table `PARAMS`, a setter for each parameter's field, `read(s, …)`, `defaults(frame, …)` without given values, and
 /// `check()`, which refuses numbers out of range.
 macro_rules! parameters {
     (
@@ -184,19 +184,19 @@ macro_rules! parameters {
     };
 }
 
-/// Variants with a word for each.
+/// An enum with a word for each variant.
 pub(crate) trait Choice: Copy + PartialEq + 'static {
     /// The words.
     const WORDS: &'static [&'static str];
     /// The variants, in the words' order.
     const VARIANTS: &'static [Self];
 
-    /// The variant for a word.
+    /// Returns the variant for a word.
     fn named(word: &str) -> Option<Self> {
         Self::WORDS.iter().position(|w| *w == word).map(|i| Self::VARIANTS[i])
     }
 
-    /// The word for a variant.
+    /// Returns the word for this variant.
     fn name(self) -> &'static str {
         Self::WORDS.iter().zip(Self::VARIANTS).find(|(_, v)| **v == self).map_or("", |(word, _)| word)
     }

@@ -5,7 +5,7 @@ use kurbo::{Point, Rect, Size};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// A plain number or a percentage.
+/// Reads a plain number or a percentage.
 pub(super) fn number(text: &str) -> Result<f64, ValueError> {
     match split(text) {
         Some((v, "")) => Ok(v),
@@ -15,7 +15,7 @@ pub(super) fn number(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// A whole number.
+/// Reads a whole number.
 pub(super) fn count(text: &str) -> Result<f64, ValueError> {
     match split(text) {
         Some((v, "")) if v.fract() == 0.0 => Ok(v),
@@ -23,12 +23,12 @@ pub(super) fn count(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// A length in user units.
+/// Reads a length, in user units.
 pub(super) fn length(text: &str, axis: Axis, frame: &Frame) -> Result<f64, ValueError> {
     Ok(parse(text)?.in_units(axis, frame))
 }
 
-/// An angle in degrees.
+/// Reads an angle, in degrees.
 pub(super) fn angle(text: &str) -> Result<f64, ValueError> {
     let Some((v, unit)) = split(text) else {
         return Err(ValueError::NotAnAngle);
@@ -42,7 +42,7 @@ pub(super) fn angle(text: &str) -> Result<f64, ValueError> {
     }
 }
 
-/// `expected` numbers separated by commas, white space or both.
+/// Reads `expected` numbers, separated by commas, white space or both.
 pub(super) fn numbers(text: &str, expected: usize) -> Result<Vec<f64>, ValueError> {
     let parse = |word: &str| match split(word) {
         Some((v, "")) => Ok(v),
@@ -60,7 +60,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|w| !w.is_empty())
 }
 
-/// A point. Percentages count from the left and top of the frame.
+/// Reads a point. Percentages count from the left and top of the frame.
 pub(super) fn point(text: &str, frame: &Frame) -> Result<Point, ValueError> {
     let parts: Vec<&str> = words(text).collect();
     let [x, y] = parts[..] else {
@@ -70,7 +70,7 @@ pub(super) fn point(text: &str, frame: &Frame) -> Result<Point, ValueError> {
     Ok(Point::new(at(x, Axis::X, frame.rect.x0)?, at(y, Axis::Y, frame.rect.y0)?))
 }
 
-/// A box `x,y,w,h`. Percentages count from the left and top of the frame, and of its width and height.
+/// Reads a box `x,y,w,h`. Percentages count from the left and top of the frame, or are of its width and height.
 pub(super) fn rect(text: &str, frame: &Frame) -> Result<Rect, ValueError> {
     let parts: Vec<&str> = words(text).collect();
     let [x, y, w, h] = parts[..] else {
@@ -87,7 +87,7 @@ pub(super) fn looks_like_points(text: &str) -> bool {
     text.contains(',') && points(text, &unit).is_ok()
 }
 
-/// Points `x,y x,y …`, separated by white space or semicolons.
+/// Reads points `x,y x,y …`, separated by white space or semicolons.
 pub(super) fn points(text: &str, frame: &Frame) -> Result<Vec<Point>, ValueError> {
     text.split(|c: char| c == ';' || c.is_whitespace())
         .filter(|w| !w.is_empty())
@@ -104,12 +104,12 @@ pub struct Length {
     pub unit: LengthUnit,
 }
 
-/// The unit of a length. Absolute units are CSS's: 96 px to the inch.
+/// The unit of a length. Absolute units are those of CSS, with 96 px to the inch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum LengthUnit {
-    /// None: user units of the drawing.
+    /// User units of the drawing, without a suffix.
     User,
     /// Percent of the frame.
     Percent,
@@ -127,7 +127,7 @@ pub enum LengthUnit {
 const PX_PER_INCH: f64 = 96.0;
 
 impl LengthUnit {
-    /// The length of an absolute unit in px; `None` for user units and percentages.
+    /// Returns the length of an absolute unit in px; `None` for user units and percentages.
     #[must_use]
     pub fn px(self) -> Option<f64> {
         Some(match self {
@@ -145,7 +145,7 @@ impl LengthUnit {
 }
 
 impl Length {
-    /// The length along `axis` in user units.
+    /// Returns the length along `axis` in user units.
     #[must_use]
     pub fn in_units(&self, axis: Axis, frame: &Frame) -> f64 {
         let unit = match self.unit {
@@ -214,7 +214,7 @@ pub(super) enum ValueError {
     NotABox,
     #[error("has no area")]
     NoArea,
-    /// One word of several has the error.
+    /// An error in one word of several.
     #[error("contains `{word}`, which {error}")]
     In { word: String, error: Box<Self> },
 }
@@ -222,7 +222,7 @@ pub(super) enum ValueError {
 /// Splits a number from its unit: `12.5mm` into 12.5 and `mm`.
 pub(super) fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
-    // The longest prefix that is a number: the `e` of an exponent belongs to it, the `e` of a unit does not.
+    // The longest prefix that is a number includes the `e` of an exponent, but not that of a unit.
     (1..=text.len())
         .rev()
         .filter(|&n| text.is_char_boundary(n))

@@ -7,8 +7,8 @@
 //! > p̂ = O + (p − O)/δ(u(p)),  δ(u) = Σ δᵢ Bᵢ(u)
 //!
 //! (J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46, 2016, equations 5 and 6). With the eye in the
-//! plane of the drawing that is a map of the plane; at degree 1 of a triangle δ(p) = d·(p − O) + d₀ is linear and the map the
-//! perspective collineation with the matrix [I 0; d d₀] about O, whose axis is the line δ = 1.
+//! plane of the drawing, this is a map of the plane. At degree 1 of a triangle, δ(p) = d·(p − O) + d₀ is linear, and the map is the
+//! perspective collineation about O with the matrix [I 0; d d₀], whose axis is the line δ = 1.
 
 use super::scene::Eye;
 use crate::deform::triangle;
@@ -19,9 +19,9 @@ use kurbo::{Affine, BezPath, Point, Rect, Shape};
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Reference {
-    /// Points (i·A + j·B + k·C)/n with i + j + k = n.
+    /// Corners A, B, C and degree n: points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([Point; 3], usize),
-    /// Points (i, j), i from the left, j from the top, degrees along x and y.
+    /// Box and degrees along x and y: points (i, j), i from the left, j from the top.
     Rectangle(Rect, [usize; 2]),
 }
 
@@ -34,7 +34,7 @@ impl Reference {
         }
     }
 
-    /// Returns `true` if there is such a control point.
+    /// Returns `true` if there is a control point with these numbers.
     pub(super) fn has(&self, node: [usize; 3]) -> bool {
         match *self {
             Self::Triangle(_, n) => node.iter().try_fold(0usize, |s, v| s.checked_add(*v)) == Some(n),
@@ -98,7 +98,7 @@ impl Reference {
         }
     }
 
-    /// Returns the coordinates of the powers of [`Self::expanded`].
+    /// Returns the map from a point to the coordinates of the polynomials of [`Self::expanded`].
     pub(super) fn coordinates(&self) -> Affine {
         match *self {
             Self::Triangle(corners, _) => triangle::coordinates(corners),
@@ -120,7 +120,7 @@ impl Reference {
     }
 }
 
-/// δ over a reference: the factor by which each control point comes closer to the eye.
+/// δ over a reference, given at the control points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dilation {
     reference: Reference,
@@ -128,7 +128,7 @@ pub(super) struct Dilation {
 }
 
 impl Dilation {
-    /// Creates δ = 1: nothing moves.
+    /// Creates δ = 1, with which nothing moves.
     pub(super) fn none(reference: Reference) -> Self {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
     }
@@ -154,11 +154,10 @@ impl Dilation {
         self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
     }
 
-    /// Moves one control point so that the point `p` goes to 1/`delta` times its distance: δᵢ = δᵢ + (δ − δ(p))/Bᵢ(p), which is
-    /// 1 + (δ − 1)/Bᵢ from rest. Among those that are not `held`, the one with the largest Bᵢ(p) moves. `None`: all of them vanish
-    /// there.
+    /// Moves one control point so that the point `p` goes to 1/`delta` times its distance: δᵢ grows by (δ − δ(p))/Bᵢ(p). It is the one
+    /// with the largest Bᵢ(p) among those that are not `held`, and its numbers are returned; `None` if no Bᵢ(p) is large enough.
     pub(super) fn prescribe(&mut self, p: Point, delta: f64, held: impl Fn([usize; 3]) -> bool) -> Option<[usize; 3]> {
-        /// With a smaller basis function a control point would have to move further than its numbers can express.
+        /// Least value of the basis function, below which a control point would have to move too far.
         const MIN_BASIS: f64 = 1e-6;
         let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
         let free = all.filter(|(node, _)| !held(*node));
@@ -178,18 +177,18 @@ impl Dilation {
         self.values.iter().all(|d| *d > 0.0)
     }
 
-    /// Returns the polynomial δ and its coordinates.
+    /// Returns the polynomial δ, with the map from a point to its coordinates.
     pub(super) fn plane(&self) -> (Affine, Plane) {
         (self.reference.coordinates(), self.reference.expanded(&self.values))
     }
 
-    /// Returns the region in which the inverse is searched: the reference with a margin of half its size.
+    /// Returns the region in which the inverse is sought: the reference with a margin of half its size.
     pub(super) fn domain(&self) -> Rect {
         let r = self.reference.bounds();
         r.inflate(0.5 * r.width(), 0.5 * r.height())
     }
 
-    /// Returns the map of the plane for an eye in it. If `bounded`, it is used inside the reference only.
+    /// Returns the map of the plane for an eye in that plane. If `bounded`, it is used only inside the reference.
     pub(super) fn about(&self, eye: Eye, bounded: bool) -> Quotient {
         let (pre, delta) = self.plane();
         let eye = match eye {
@@ -206,7 +205,7 @@ impl Dilation {
         if bounded && self.is_positive() { q.without_poles() } else { q }
     }
 
-    /// Draws the net's lines, with `place` applied to every control point and its δ.
+    /// Draws the net's lines. `place` takes every control point and its δ to a point.
     pub(super) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
         let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
         let mut path = BezPath::new();

@@ -1,16 +1,15 @@
-//! Mirrors: drawings on a table that look right in a mirror which stands on it.
+//! Mirrors: drawings on a table that look right in a mirror that stands on it.
 //!
-//! Space is measured from the middle F of the mirror's foot: x to the right, y down, z away from the viewer; the table is y = 0, and
-//! its point (x, z) is drawn at F' + (x, −z), F' being the foot's place on the page. The artwork appears in a plane through a point Q
-//! of the mirror's axis, square to the line from the eye O to Q: at a cylinder Q is F and the artwork stands on it, at a cone it is
-//! centred on F; at a sphere it is centred below the middle, halfway down the part that reflects the table.
+//! The origin of space is the middle F of the mirror's foot, with x to the right, y down and z away from the viewer. The table is y = 0.
+//! Its point (x, z) is drawn at F' + (x, −z), where F' is the foot's position on the page. The artwork appears in a plane through a
+//! point Q of the mirror's axis, square to the line from the eye O to Q. For a cylinder, Q is F and the artwork stands on it; for a cone,
+//! the artwork is centred on F; for a sphere, it is centred below the middle, halfway down the part that reflects the table.
 //!
-//! The ray d from O through the point P of the picture meets the mirror at H, the nearer root of a quadratic. With the mirror's
-//! normal n there, it leaves along r = d − 2(d·n)/(n·n)·n, and meets the table at H − r·H_y/r_y. A cylinder or cone with the axis a
-//! and the radius R(s) = R − g·s at s = (q − F)·a is |q − F − s·a|² = R(s)², its normal q − F − s·a + g·R(s)·a.
+//! The ray with direction d from O through the point P of the picture meets the mirror at H, the nearer root of a quadratic. With the
+//! mirror's normal n there, it leaves along r = d − 2(d·n)/(n·n)·n and meets the table at H − r·H_y/r_y. A cylinder or cone with the axis
+//! a and the radius R(s) = R − g·s at s = (q − F)·a is |q − F − s·a|² = R(s)², with the normal q − F − s·a + g·R(s)·a.
 //!
-//! The inverse has no closed form (at a sphere it is Alhazen's problem); it is sought by Newton's
-//! method over the picture.
+//! The inverse has no closed form (for a sphere it is Alhazen's problem) and is found by Newton's method over the picture.
 
 use super::scene::{Eye, Scene};
 use super::surface::{Space, cross, dot, length, minus, picture_axes};
@@ -20,7 +19,7 @@ use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A mirror that stands on the table in which the artwork appears. Lengths in user units, angles in degrees.
+/// A mirror that stands on the table, in which the artwork appears. Lengths are in user units, angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Mirror {
@@ -28,9 +27,9 @@ pub struct Mirror {
     pub shape: MirrorShape,
     /// Angle by which the axis leans away from the viewer.
     pub tilt: f64,
-    /// Length by which the artwork appears higher.
+    /// Length by which the artwork is raised.
     pub lift: f64,
-    /// Place of the foot's middle on the page; below the artwork's middle if `None`.
+    /// Position of the foot's middle on the page; `None` for a point below the artwork's middle.
     pub at: Option<Point>,
 }
 
@@ -38,7 +37,7 @@ pub struct Mirror {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum MirrorShape {
-    /// An upright cylinder: radius, and height if it is known.
+    /// A cylinder that stands on its base: radius, and height if it is known.
     Cylinder(f64, Option<f64>),
     /// A cone that stands on its base: radius of the base and height.
     Cone(f64, f64),
@@ -98,7 +97,7 @@ impl Mirror {
         [0.0, -t.cos(), t.sin()]
     }
 
-    /// Returns the point of the artwork that appears at Q.
+    /// Returns the point of the artwork that appears at the middle Q of the picture.
     pub(super) fn anchor(self, frame: Rect) -> Point {
         match self.shape {
             MirrorShape::Cylinder(..) => Point::new(frame.center().x, frame.y1),
@@ -114,7 +113,7 @@ pub(super) struct Reflection {
     /// The eye in space, or the direction towards it.
     eye: Space,
     infinite: bool,
-    /// The middle Q of the picture, its point in the artwork, and its directions right and down.
+    /// The middle Q of the picture, the point of the artwork there, and the picture's directions right and down.
     middle: Space,
     anchor: Point,
     axes: [Space; 2],
@@ -155,7 +154,7 @@ impl Reflection {
         let mut lift = mirror.lift;
         if let MirrorShape::Sphere(r) = mirror.shape {
             out.middle = [0.0, -r, 0.0];
-            // A ray that falls by e is level again after a reflection where the sphere rises by e/2.
+            // A ray that descends by the angle e is level after a reflection at the height where the sphere's normal rises by e/2.
             let to = out.sight();
             lift -= 0.5 * r * (1.0 + (0.5 * (to[1] / length(to)).asin()).sin());
         }
@@ -167,12 +166,12 @@ impl Reflection {
         Ok(out)
     }
 
-    /// Returns the line of sight to the middle.
+    /// Returns the line of sight to the middle Q.
     fn sight(&self) -> Space {
         if self.infinite { self.eye.map(|v| -v) } else { minus(self.middle, self.eye) }
     }
 
-    /// Positive outside the mirror.
+    /// Returns a number that is positive if the point is outside the mirror.
     fn off(&self, q: Space) -> f64 {
         if let MirrorShape::Sphere(r) = self.mirror.shape {
             return q[0] * q[0] + (q[1] + r).powi(2) + q[2] * q[2] - r * r;
@@ -182,13 +181,13 @@ impl Reflection {
         if self.mirror.height().is_some_and(|h| s > h) { 1.0 } else { dot(q, q) - s * s - radius * radius }
     }
 
-    /// Returns a point of the picture in space.
+    /// Returns the point in space of a point of the picture.
     fn picture<S: Real>(&self, x: S, y: S) -> [S; 3] {
         let (u, v) = (x - self.anchor.x, y - self.anchor.y);
         std::array::from_fn(|i| u * self.axes[0][i] + v * self.axes[1][i] + self.middle[i])
     }
 
-    /// Follows the ray through (x, y): the place on the mirror, the direction after it, the discriminant, and s there.
+    /// Follows the ray through (x, y) to the mirror: the point there, the direction after it, the discriminant, and s.
     fn bounce<S: Real>(&self, x: S, y: S) -> Bounce<S> {
         let dot = |a: [S; 3], b: [S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let p = self.picture(x, y);
@@ -219,14 +218,14 @@ impl Reflection {
         Bounce { hit: [w[0], w[1] + centre, w[2]], along: r, disc, s, ahead: k, facing: -dot(d, n) }
     }
 
-    /// Returns the place on the table, x and z.
+    /// Returns the point of the table, x and z, at which the ray through (x, y) arrives.
     fn table<S: Real>(&self, x: S, y: S) -> (S, S) {
         let b = self.bounce(x, y);
         let t = -b.hit[1] / b.along[1];
         (b.hit[0] + b.along[0] * t, b.hit[2] + b.along[2] * t)
     }
 
-    /// Returns the reason why a point of the artwork is not seen in the mirror, and a number that is not positive then.
+    /// Returns a number that is positive if a point of the artwork is seen in the mirror, and the reason why it is not seen otherwise.
     pub(super) fn fault(&self, p: Point) -> (f64, &'static str) {
         let b: Bounce<f64> = self.bounce(p.x, p.y);
         let r = self.mirror.radius();
@@ -267,12 +266,12 @@ impl Reflection {
         *undefined.unwrap_or_else(|| all.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&all[0]))
     }
 
-    /// Returns the level of the mirror's highest point that shows the artwork, along its axis.
+    /// Returns the height along the axis up to which the mirror shows the artwork.
     pub(super) fn needed_height(&self) -> f64 {
         super::surface::samples(self.domain).map(|p| self.bounce(p.x, p.y).s).fold(0.0, f64::max)
     }
 
-    /// Refuses a mirror that does not show all of the artwork, but for a cone's tip inside of it, which it returns.
+    /// Refuses a mirror that does not show all of the artwork, except around the tip of a cone, which is returned.
     pub(super) fn check(&self) -> Result<Option<Point>, Error> {
         let mut tip = None;
         for p in super::surface::samples(self.domain) {
@@ -287,12 +286,12 @@ impl Reflection {
         Ok(tip)
     }
 
-    /// Returns a place on the table for a point in space.
+    /// Returns the point of the page that shows the point of the table below or above a point in space.
     pub(super) fn on_page(&self, [x, _, z]: Space) -> Point {
         self.foot + Vec2::new(x, -z)
     }
 
-    /// Returns the outline of the foot on the page; of a sphere, its outline from above.
+    /// Returns the outline of the foot on the page; for a sphere, its outline as seen from above.
     pub(super) fn footprint(&self) -> BezPath {
         /// Corners of the outline of a tilted mirror.
         const CORNERS: u32 = 360;
@@ -313,13 +312,13 @@ impl Reflection {
         path
     }
 
-    /// Returns the distance of the eye in front of the foot and its height, and its place on the page; `None` at infinity.
+    /// Returns the eye's position on the page, its distance from the foot and its height; `None` at infinity.
     pub(super) fn eye(&self) -> Option<(Point, [f64; 2])> {
         let [x, y, z] = self.eye;
         (!self.infinite).then(|| (self.on_page([x, 0.0, z]), [x.hypot(z), -y]))
     }
 
-    /// Returns the drawing on the table in space, the picture in the mirror, and a point of the mirror at (angle, share of its height).
+    /// Returns the point in space of a point of the drawing, of the picture, or of the mirror, there as (angle, share of the height).
     pub(super) fn in_space(&self, what: Part, p: Point) -> Option<Space> {
         match what {
             Part::Table => {
@@ -335,14 +334,14 @@ impl Reflection {
                 }
                 let (a, s) = (self.mirror.axis(), p.y * height);
                 let r = self.mirror.radius() - self.mirror.slope() * s;
-                // Across the axis: x, and the direction that is square to both.
+                // The directions across the axis are x and the one square to both.
                 let across = [0.0, a[2], -a[1]];
                 Some(std::array::from_fn(|i| a[i] * s + r * (if i == 0 { cos } else { sin * across[i] })))
             }
         }
     }
 
-    /// Returns the height of the mirror, or as much as is needed.
+    /// Returns the height of the mirror; if it is not known, one that shows all of the artwork.
     pub(super) fn height(&self) -> f64 {
         self.mirror.height().unwrap_or_else(|| 1.1 * self.needed_height())
     }
@@ -355,11 +354,11 @@ pub(super) enum Part {
     Table,
     /// The picture in the mirror.
     Picture,
-    /// The mirror, this high.
+    /// The mirror, with this height.
     Mirror(f64),
 }
 
-/// A ray at the mirror.
+/// A ray reflected by the mirror.
 struct Bounce<S> {
     hit: [S; 3],
     along: [S; 3],
@@ -385,10 +384,10 @@ impl Formula for Reflection {
     }
 }
 
-/// The inverse. A mirror that bulges everywhere shows each place of the table once, so that every solution is the one.
+/// The inverse. A convex mirror shows each point of the table at most once, so any solution is the only one.
 struct Back {
     of: Reflection,
-    /// Places of the artwork, and their images.
+    /// Points of the artwork, and their images.
     starts: Vec<[Point; 2]>,
 }
 
@@ -405,7 +404,7 @@ impl Back {
         Self { starts: starts.collect(), of }
     }
 
-    /// Damped Newton steps from the nearest of the places.
+    /// Solves by damped Newton steps, from the points of the artwork whose images are nearest.
     fn solve(&self, q: Point) -> Option<Jet> {
         const STEPS: usize = 60;
         const TRIES: usize = 4;

@@ -1,22 +1,21 @@
-//! Anamorphosis: drawings that look right from one place only.
+//! Anamorphosis: drawings that look right only from one point, the eye.
 //!
 //! Every point moves along its ray through the eye O: p̂ = O + (p − O)/δ(p). There are three ways to define δ:
 //!
 //! - the eye lies in the plane of the drawing, and control points are pushed along rays ([`dilation`]);
-//! - the eye is in front of it, and the drawing is projected onto a surface ([`surface`]): unrolled true to size, or seen by
-//!   another camera ([`Camera`](surface::Camera));
-//! - the eye is in front, and control points are pushed along rays in space: at degree 1 of a triangle they span a plane, at
-//!   degree 2 a quadric through O, on which straight lines become conics.
+//! - the eye lies in front of the drawing, which is projected onto a surface ([`surface`]); the surface is laid flat true to size, or
+//!   seen by another camera ([`Camera`](surface::Camera));
+//! - the eye lies in front of the drawing, and control points are pushed along rays in space: at degree 1 of a triangle they span a
+//!   plane, at degree 2 a quadric through O, on which straight lines become conics.
 //!
-//! A point p prescribed to go to p/δ sets one control point, δᵢ = 1 + (δ − 1)/Bᵢ(p) (the paper's δ₃ = 1 + (δ − 1)/u₃); the
-//! others stay, so that inside and outside of the reference join along the sides that do not move (its Fig. 9).
+//! A point p that must go to p/δ sets one control point, δᵢ = 1 + (δ − 1)/Bᵢ(p) (the paper's δ₃ = 1 + (δ − 1)/u₃). The others do not
+//! move, so that the inside and the outside of the reference join along the sides without pushes (the paper's Fig. 9).
 //!
-//! The size on a ramp rising by α: the point at slant L is L·sin α high and L·cos α behind the picture plane, and is seen at
-//! height H + (L·sin α − H)·D/(D + L·cos α) there, H being the eye's height and D its distance. `length` solves this for the
-//! scale.
+//! On a ramp that rises by α, the point at slant L is L·sin α high and L·cos α behind the picture plane. With H the eye's height and D
+//! its distance, it appears at the height H + (L·sin α − H)·D/(D + L·cos α) in that plane. `length` solves this for the scale.
 //!
-//! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); D. Hansford, D. Collins, *Anamorphic 3D
-//! geometry*, Computing 79 (2007).
+//! The paper is J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016); see also D. Hansford, D. Collins,
+//! *Anamorphic 3D geometry*, Computing 79 (2007).
 
 mod dilation;
 mod mirror;
@@ -115,14 +114,14 @@ parameters! {
     }
 }
 
-/// The way a surface is shown.
+/// The view in which a surface is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Look {
     /// Laid flat, true to size.
     Unrolled,
-    /// By the eye.
+    /// Seen by the eye.
     Eye,
-    /// By a camera at x, y, and z in front of the drawing.
+    /// Seen by a camera at x, y, and z in front of the drawing.
     From([f64; 3]),
 }
 
@@ -146,7 +145,7 @@ impl Anamorph {
         view(x: f64, y: f64, z: f64) => look: Look::From([x, y, z]);
     }
 
-    /// Gives the eye's view of the surface, which is the artwork itself.
+    /// Shows the eye's view of the surface, which is the artwork itself.
     #[must_use]
     pub fn seen(self) -> Self {
         Self { look: Look::Eye, ..self }
@@ -157,41 +156,41 @@ impl Anamorph {
         self
     }
 
-    /// Lays the control points over a triangle, with this degree, 1 to 10.
+    /// Lays the control points over a triangle, with a degree of 1 to 10.
     #[must_use]
     pub fn triangle(self, corners: [impl Into<Point>; 3], degree: usize) -> Self {
         let corners = corners.map(Into::into).to_vec();
         self.with_net(|net| (net.reference, net.degree) = (corners, [degree; 2]))
     }
 
-    /// Lays the control points over a box, with these degrees across and down, 1 to 10. Default: the artwork's box, degree 1.
+    /// Lays the control points over a box, with degrees of 1 to 10 across and down. Default: the artwork's box, degree 1.
     #[must_use]
     pub fn grid(self, region: Rect, degree: [usize; 2]) -> Self {
         let corners = vec![region.origin(), Point::new(region.x1, region.y1)];
         self.with_net(|net| (net.reference, net.degree) = (corners, degree))
     }
 
-    /// Takes a control point to this many times its distance from the eye. The third number of a box's control point is 0.
+    /// Moves a control point to `factor` times its distance from the eye. The third number of a box's control point is 0.
     #[must_use]
     pub fn push(self, node: [usize; 3], factor: f64) -> Self {
         self.with_net(|net| net.pushes.push(Push::By(node, factor)))
     }
 
-    /// Takes a control point this much further from the eye, user units.
+    /// Moves a control point away from the eye by `length` user units.
     #[must_use]
     pub fn push_away(self, node: [usize; 3], length: f64) -> Self {
         self.with_net(|net| net.pushes.push(Push::Away(node, length)))
     }
 
-    /// Takes a control point to the point of its ray nearest to `to`. The eye must lie in the drawing.
+    /// Moves a control point to the point of its ray nearest to `to`. The eye must lie in the drawing.
     #[must_use]
     pub fn push_to(self, node: [usize; 3], to: impl Into<Point>) -> Self {
         let to = to.into();
         self.with_net(|net| net.pushes.push(Push::To(node, to)))
     }
 
-    /// Takes a point to this many times its distance from the eye, or this much further from an eye at infinity, by one control point
-    /// near it.
+    /// Takes a point to `factor` times its distance from the eye, or away from an eye at infinity by `factor` user units. One control
+    /// point near it moves.
     #[must_use]
     pub fn prescribe(self, point: impl Into<Point>, factor: f64) -> Self {
         let point = point.into();
@@ -201,8 +200,8 @@ impl Anamorph {
     /// Builds the map, and for an eye in front of the drawing its surface ([`Built::space`]).
     ///
     /// # Errors
-    /// [`Error::Usage`] or [`Error::Missing`] for values out of range, that contradict or lack each other, and for surfaces
-    /// that a ray misses or that cannot be laid flat.
+    /// [`Error::Usage`] for values out of range or that contradict each other, and for surfaces that a ray misses; [`Error::Missing`] for a
+    /// value that another one needs, and without a view of a surface that cannot be laid flat.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         if let Some(mirror) = self.mirror {
@@ -225,7 +224,7 @@ impl Anamorph {
         }
     }
 
-    /// Marks the place of the eye beside the image on a surface that was laid flat.
+    /// Marks the position of the eye beside the image on a surface laid flat.
     fn sighted(&self, cast: &Anamorphosis, scene: &Scene, map: &dyn Map) -> Result<Option<SightMark>, Error> {
         if !self.sight_mark {
             return Ok(None);
@@ -247,7 +246,7 @@ impl Anamorph {
                 }
             }
             (Surface::Round(r), Eye::At(foot, distance)) => {
-                // Straight in front of the axis at the eye's height.
+                // The mark lies straight in front of the axis, at the eye's height.
                 let k = distance / (distance + r.axis());
                 let front = match r.level {
                     true => Point::new(foot.x, foot.y + (r.middle.y - foot.y) * k),
@@ -332,7 +331,7 @@ impl Anamorph {
                 return Err(Error::usage(name, "", "moves control points, but `onto` has the surface already"));
             }
             (Some(onto), None) => onto.surface(&scene)?,
-            // Without control points, the sheet in front of the eye is the drawing itself.
+            // Without control points, the sheet in front of the eye would be the drawing itself.
             (None, None) if self.look == Look::Unrolled => {
                 let hint = "the surface in front of the eye, such as cylinder:radius=40mm; or bend a sheet there, with `push` or `at`";
                 return Err(Error::missing("onto", hint));
@@ -372,8 +371,8 @@ impl Anamorph {
         Ok(built)
     }
 
-    /// Returns the same with the view of a sheet that has no flat one: from the eye's side, from as far to the right, left or above as no
-    /// part hides another.
+    /// Returns this anamorphosis with a view from the side, for a sheet that cannot be laid flat. Of some cameras, the first is taken for
+    /// which no part of the sheet hides another.
     fn beside(&self, cast: &Anamorphosis, scene: &Scene) -> Option<Self> {
         const SIDES: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
         let middle = cast.point(scene.frame.center());
@@ -587,7 +586,7 @@ flat for a triangle of degree 1, otherwise shown with --view.")
             to: (50.0, 0.0),
             tolerance: 1e-12,
         },
-        // The same locally: the first side stays, and so does what lies outside.
+        // Locally, neither the first side nor the outside moves.
         Case { args: LOCAL, at: (30.0, 100.0), to: (30.0, 100.0), tolerance: 1e-12 },
         Case { args: LOCAL, at: (5.0, 40.0), to: (5.0, 40.0), tolerance: 0.0 },
     ]);
@@ -599,7 +598,7 @@ const LOCAL: Pairs =
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    // The surface as typed, rather than in user units.
+    // The error shows the surface as typed, instead of in user units.
     Anamorph::read(s)?.build().map_err(|e| match e {
         Error::Usage { param, value, problem, advice } => {
             let typed = ["onto", "mirror"].iter().find(|n| **n == param).and_then(|n| s.texts(n).pop());
@@ -609,7 +608,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     })
 });
 
-/// The files that a parameter asks for.
+/// Returns the files that a parameter asks for.
 fn files(s: &Settings<'_>, param: &'static str, filled: bool) -> impl Iterator<Item = SpaceFile> {
     s.texts(param).into_iter().map(move |name| SpaceFile { param, name: name.to_owned(), filled })
 }

@@ -1,4 +1,4 @@
-//! The control points and their pushes.
+//! Control points that are pushed along rays through the eye.
 
 use super::dilation::{Dilation, Reference};
 use super::scene::{Eye, Scene};
@@ -10,9 +10,9 @@ use kurbo::{Point, Rect, Shape, Vec2};
 /// A net of control points, and the pushes along rays through the eye.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PushedNet {
-    /// Three corners of a triangle, two of a box; empty: the artwork's box.
+    /// Three corners of a triangle or two of a box; if empty, the artwork's box.
     pub(super) reference: Vec<Point>,
-    /// Degrees across and down a box; a triangle has the first.
+    /// Degrees across and down a box; a triangle uses the first.
     pub(super) degree: [usize; 2],
     pub(super) pushes: Vec<Push>,
 }
@@ -28,11 +28,11 @@ impl Default for PushedNet {
 pub(super) enum Push {
     /// To this many times its distance from the eye.
     By([usize; 3], f64),
-    /// This much further from the eye, user units.
+    /// Away from the eye by this many user units.
     Away([usize; 3], f64),
     /// To the point of its ray nearest to this one.
     To([usize; 3], Point),
-    /// So that this point goes to this many times its distance from the eye, or this much further from an eye at infinity.
+    /// So that this point goes to this many times its distance from the eye, or away from an eye at infinity by this length.
     Prescribe(Point, f64),
 }
 
@@ -46,7 +46,7 @@ impl Push {
         }
     }
 
-    /// Returns the control point or the point, for messages.
+    /// Describes the control point, or the prescribed point, for messages.
     fn text(self, reference: &Reference) -> String {
         match (self, reference) {
             (Self::By(n, _) | Self::Away(n, _) | Self::To(n, _), Reference::Triangle(..)) => {
@@ -61,7 +61,7 @@ impl Push {
 }
 
 impl PushedNet {
-    /// Returns the net with its control points pushed. For an eye at infinity δ is 1 less the length of the push.
+    /// Returns δ of the pushed net. For an eye at infinity, δ is 1 minus the length of a push.
     pub(super) fn dilation(&self, scene: &Scene, local: bool) -> Result<Dilation, Error> {
         let reference = self.reference(scene)?;
         let mut out = Dilation::none(reference);
@@ -177,16 +177,16 @@ pub(super) fn flat(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
     let cast = Anamorphosis { eye, surface: Surface::Radial(Radial::net(d)) };
     let [a, b, c, through] = [a, b, c, middle].map(|p| cast.point(p));
     let normal = cross(minus(b, a), minus(c, a));
-    // The sense of the corners in the drawing, as they are seen from the eye.
+    // The orientation of the corners in the drawing, as seen from the eye.
     let sense = (d.reference().corners()[1] - d.reference().corners()[0])
         .cross(d.reference().corners()[2] - d.reference().corners()[0]);
     Some(SpacePlane::new(through, normal.map(|v| v * sense.signum()), middle))
 }
 
-/// Warns of sides that tear the artwork that crosses them.
+/// Warns of sides at which artwork is torn.
 pub(super) fn warn_of_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
     let corners = d.reference().corners();
-    // Strokes reach past the box.
+    // Artwork along the edge of the box counts, as strokes reach past it.
     let room = 1e-9 * (frame.width() + frame.height());
     let frame = frame.inflate(room, room);
     for k in 0..corners.len() {

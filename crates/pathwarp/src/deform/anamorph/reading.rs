@@ -26,7 +26,7 @@ pub(super) fn eye(s: &Settings<'_>) -> Result<Eye, Error> {
     }))
 }
 
-/// Reads the way the surface is shown.
+/// Reads the view in which the surface is drawn.
 pub(super) fn look(s: &Settings<'_>) -> Result<Look, Error> {
     let Some(text) = s.texts("view").pop() else {
         return Ok(if s.flag("seen")? { Look::Eye } else { Look::Unrolled });
@@ -42,7 +42,7 @@ pub(super) fn look(s: &Settings<'_>) -> Result<Look, Error> {
     Ok(Look::From([p.x, p.y, s.length_in("view", z, Axis::X)?]))
 }
 
-/// Reads the control points; `None` if no parameter of theirs is given.
+/// Reads the control points; `None` if none of their parameters is given.
 pub(super) fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
     const NAMES: [&str; 6] = ["reference", "degree", "push", "away", "at", "point"];
     if !NAMES.iter().any(|n| s.given(n)) {
@@ -117,7 +117,7 @@ impl<'t> Words<'t> {
         Error::usage(self.param, self.text, problem)
     }
 
-    /// Refuses all but these words.
+    /// Refuses words other than these.
     fn only(&self, switches: &[&str], values: &[&str]) -> Result<(), Error> {
         for (name, value) in &self.list {
             let known = if value.is_some() { values } else { switches };

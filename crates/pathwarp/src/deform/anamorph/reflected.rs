@@ -1,4 +1,4 @@
-//! Builds anamorphoses in mirrors.
+//! Builds anamorphoses that are seen in mirrors.
 
 use super::mirror::{Part, Reflection};
 use super::scene::{self, Eye, measured};
@@ -31,7 +31,7 @@ impl Anamorph {
             (Eye::Infinite(_), ..) => {
                 return Err(Error::usage("eye", "", "is at infinity; omit `distance` and `eye-height`"));
             }
-            // Straight above the mirror.
+            // The eye is straight above the mirror.
             (Eye::At(foot, _), None, Some(_)) => Eye::At(foot, 0.0),
             (Eye::At(foot, _), Some(distance), _) => Eye::At(foot, distance),
             (Eye::At(..), None, None) => {
@@ -70,7 +70,7 @@ impl Anamorph {
     }
 }
 
-/// Returns the drawing on the table in space, and besides the table, the mirror, and the artwork as the eye sees it.
+/// Returns the drawing on the table in space, with the table, the mirror, and the artwork as the eye sees it.
 fn in_space(cast: &Reflection, scale: Affine, all: Rect) -> InSpace {
     let part = |what: Part, scale: Affine| -> Place {
         let cast = cast.clone();
@@ -88,7 +88,7 @@ fn in_space(cast: &Reflection, scale: Affine, all: Rect) -> InSpace {
     InSpace { place: part(Part::Table, scale), besides, files: Vec::new() }
 }
 
-/// Marks the eye's place on the table, and the mirror's foot.
+/// Marks the eye's position on the table, and the mirror's foot.
 fn sight(cast: &Reflection, eye: Eye, all: Rect, units: [f64; 2]) -> SightMark {
     let (at, words) = match (cast.eye(), eye) {
         (Some((at, [distance, height])), _) => {

@@ -11,10 +11,10 @@ use crate::refit;
 use kurbo::{Affine, BezPath, Circle, Point, Rect, Shape, Vec2};
 use std::fmt;
 
-/// The eye.
+/// The position of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Eye {
-    /// This far in front of its foot in the drawing; 0: in the drawing.
+    /// At this distance in front of a point of the drawing; 0 means in the drawing.
     At(Point, f64),
     /// At infinity, in the direction of this unit vector: x right, y down, z away from the viewer.
     Infinite([f64; 3]),
@@ -25,7 +25,7 @@ impl Eye {
         matches!(self, Self::Infinite(_))
     }
 
-    /// Returns the distance of a point in space, at infinity some distance.
+    /// Returns the distance from the eye to a point in space. At infinity it is replaced by a finite distance.
     pub(super) fn apart(self, [x, y, z]: [f64; 3]) -> f64 {
         const FAR: f64 = 1e3;
         match self {
@@ -34,7 +34,7 @@ impl Eye {
         }
     }
 
-    /// Returns the line of sight of an eye at infinity in front of the drawing: per unit of depth.
+    /// Returns the line of sight of an eye at infinity in front of the drawing, per unit of depth.
     pub(super) fn sight(self) -> [f64; 3] {
         match self {
             Self::At(..) => [0.0, 0.0, 1.0],
@@ -70,12 +70,12 @@ pub(super) fn measured(length: f64, units_per_px: [f64; 2]) -> String {
     if metres < 1.0 { format!("{} mm", trimmed(metres * 1e3, 1)) } else { format!("{} m", trimmed(metres, 3)) }
 }
 
-/// The end of words after which the length of the way is added.
+/// The end of a label to which the distance is added.
 pub(super) const HERE: &str = ", from here";
 
-/// Marks a place, or by an arrow the way there if it is far from the result, whose box is `all`; with words for either.
+/// Marks the point `at` with the words `here`. If it is far from the box `all` of the result, draws an arrow towards it with `there`.
 pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_px: [f64; 2]) -> SightMark {
-    /// Height of a mark, in metres and as a share of the result.
+    /// Least height of a mark, in metres and as a share of the result.
     const SMALLEST: f64 = 0.003;
     const SHARE: f64 = 0.012;
     let size = (SMALLEST * METRE * units_per_px[0]).max(SHARE * (all.width() + all.height()));
@@ -91,12 +91,12 @@ pub(super) fn mark(at: Point, [here, there]: [String; 2], all: Rect, units_per_p
             line(at - v, at + v);
         }
         path.extend(Circle::new(at, size).path_elements(1e-3 * size));
-        // Words do not stand on the artwork.
+        // The label does not lie on the artwork.
         let label = if all.contains(at) { Point::new(at.x, all.y1 + 2.0 * size) } else { under(at) };
         return SightMark { path, label: (label, here), size };
     }
     let way = (at - all.center()) / (at - all.center()).hypot();
-    // Where the way leaves the box.
+    // The distances at which the way leaves the box.
     let leaves = [(all.width(), way.x), (all.height(), way.y)].map(|(side, v)| 0.5 * side / v.abs());
     let from = all.center() + way * (leaves[0].min(leaves[1]) + 2.0 * size);
     let (to, across) = (from + way * (6.0 * size), Vec2::new(-way.y, way.x));

@@ -1,4 +1,4 @@
-//! The surfaces that artwork is projected onto.
+//! Surfaces onto which artwork is projected, and views of them.
 
 use super::dilation::Dilation;
 use super::scene::{Eye, Scene};
@@ -9,7 +9,7 @@ use crate::map::{
 use kurbo::{Affine, Point, Rect};
 use std::sync::Arc;
 
-/// A surface that artwork is projected onto. Lengths in user units, angles in degrees.
+/// A surface onto which artwork is projected. Lengths are in user units, angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Onto {
@@ -52,12 +52,12 @@ pub enum Onto {
         /// It is seen from inside.
         inside: bool,
     },
-    /// A sphere through the eye, a dome with the eye on its near pole: lines become circles.
+    /// A sphere with the eye on its near pole, on which lines become circles.
     Dome,
 }
 
 impl Onto {
-    /// Returns the text that means this surface.
+    /// Returns the text of `--onto` for this surface.
     fn text(self) -> String {
         let inside = |inside: bool| if inside { ",inside" } else { "" };
         match self {
@@ -207,7 +207,7 @@ pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) ->
     Err(onto.map_or_else(|| Error::usage("push", "", problem.clone()), |onto| onto.wrong(problem.clone())))
 }
 
-/// Refuses a camera that has part of the image behind it.
+/// Refuses a camera that has a part of the image behind it.
 pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, frame: Rect) -> Result<(), Error> {
     match samples(frame).find(|p| camera.depth(cast.point(*p)) <= 0.0) {
         Some(p) => {
@@ -220,20 +220,20 @@ pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, fr
 
 // Surfaces in front of the eye, and their intersections with the rays through a drawing.
 //
-// Space is measured in user units: x to the right, y down, z away from the viewer; the drawing lies in z = 0 and the eye O at
+// Coordinates in space are in user units, x to the right, y down, z away from the viewer. The drawing lies in z = 0 and the eye O at
 // (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
 //
 // - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
-// - a net of control points on rays, or the sphere on whose near pole the eye sits and whose far pole touches the drawing
-//   (δ = |d|²/distance², the inverse of the stereographic projection): δ is a polynomial;
-// - cylinders, cones and other spheres: the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
-//   each in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
+// - a net of control points on rays: δ is a polynomial; also a sphere with the eye on its near pole, whose far pole touches the drawing
+//   (δ = |d|²/distance², the inverse of the stereographic projection);
+// - cylinders, cones and other spheres: λ is the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
+//   computed in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
 //
-// An eye at infinity in the direction of the unit vector e is the point (e, 0) where the others are (O, 1): the pencil
-// (p, 1) + (δ − 1)·(O, 1) of the paper's points becomes p + (δ − 1)·e, so that control points move by lengths 1 − δ. On planes δ − 1
-// = n·(P − p)/n·e; on curved surfaces rays start in front of everything and go along the line of sight.
+// In homogeneous coordinates, an eye at infinity in the direction of the unit vector e is (e, 0) instead of (O, 1). The paper's points
+// (p, 1) + (δ − 1)·(O, 1) become p + (δ − 1)·e, so that control points move by the lengths 1 − δ. On planes δ − 1 = n·(P − p)/n·e. On
+// curved surfaces, rays start in front of the whole surface and run along the line of sight.
 //
-// J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3, for the polynomial ones.
+// Polynomial δ are in J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3.
 
 /// A vector or point in space.
 pub(super) type Space = [f64; 3];
@@ -259,8 +259,8 @@ fn unit(a: Space) -> Space {
     a.map(|v| v / n)
 }
 
-/// Returns the directions (right, down) of a picture that looks along `forward`. It is upright, or with its bottom towards the viewer
-/// if it looks straight up or down.
+/// Returns the directions right and down of a picture seen along `forward`. The picture is upright, or has its bottom towards the viewer
+/// if `forward` is straight up or down.
 pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
     const DOWN: Space = [0.0, 1.0, 0.0];
     let right = cross(DOWN, forward);
@@ -290,8 +290,8 @@ impl SpacePlane {
 }
 
 impl SpacePlane {
-    /// Returns the point of the plane nearest to the eye in its coordinates, and the distance; at infinity a far point in the eye's
-    /// direction, and the sine of the angle. `None` if that is square to the plane.
+    /// Returns the point of the plane nearest to the eye, in its coordinates, and the distance. For an eye at infinity, returns a far point
+    /// in the eye's direction, and the sine of the eye's elevation; `None` if the direction is square to the plane.
     pub(super) fn nearest(&self, eye: Eye) -> Option<(Point, f64)> {
         let to = match eye {
             Eye::At(foot, distance) => minus([foot.x, foot.y, -distance], self.through),
@@ -307,12 +307,12 @@ impl SpacePlane {
     }
 }
 
-/// A cylinder or cone with a vertical (or horizontal) axis that touches the plane of the drawing along a line or at a point.
+/// A cylinder or cone with a vertical or horizontal axis, which touches the plane of the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Round {
-    /// The point of contact, `radius` away from the axis.
+    /// A point of contact, `radius` away from the axis.
     pub(super) middle: Point,
-    /// The radius there.
+    /// The radius at the point of contact.
     pub(super) radius: f64,
     /// Growth of the radius per unit downwards (rightwards for a horizontal axis); 0 for a cylinder.
     pub(super) slope: f64,
@@ -341,7 +341,7 @@ pub(super) struct Radial {
     pub(super) domain: Rect,
 }
 
-/// The surface that the drawing is projected onto.
+/// A surface with its position in space.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Surface {
     /// A plane.
@@ -354,16 +354,16 @@ pub(super) enum Surface {
     Radial(Radial),
 }
 
-/// An eye and a surface: takes points of the drawing to the points in space on the same ray.
+/// An eye and a surface: takes points of the drawing along their rays to the surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Anamorphosis {
     /// The eye, in front of the drawing.
     pub(super) eye: Eye,
-    /// The surface that the drawing is projected onto.
+    /// The surface onto which the drawing is projected.
     pub(super) surface: Surface,
 }
 
-/// Returns δ on a plane, a linear form about a point of the drawing: constant, coefficients of x and y.
+/// Returns δ for a plane, as a linear form about the returned point of the drawing: constant, coefficients of x and y.
 fn plane_form(eye: Eye, p: &SpacePlane) -> (Point, [f64; 3]) {
     let [nx, ny, nz] = p.normal;
     match eye {
@@ -379,17 +379,17 @@ fn plane_form(eye: Eye, p: &SpacePlane) -> (Point, [f64; 3]) {
     }
 }
 
-/// aλ² + 2bλ + c = 0 along a ray.
+/// The equation aλ² + 2bλ + c = 0 for the intersections of a ray with a surface.
 struct Quadratic<S> {
     a: S,
     b: S,
     c: S,
-    /// The surface is a hollow, whose far side is seen.
+    /// `true` for a hollow, whose far side is seen.
     hollow: bool,
 }
 
 impl<S: Real> Quadratic<S> {
-    /// The nearer root is wanted, and the eye is outside.
+    /// Returns `true` if the nearer root is wanted, because the eye is outside a surface that is not a hollow.
     fn is_near(&self) -> bool {
         self.c.value() > 0.0 && !self.hollow
     }
@@ -401,7 +401,7 @@ impl<S: Real> Quadratic<S> {
 }
 
 impl Quadratic<f64> {
-    /// Positive where there is a root in front of the eye.
+    /// Returns a number that is positive if there is a root in front of the eye.
     fn defined(&self) -> f64 {
         let d = self.b * self.b - self.a * self.c;
         if d <= 0.0 {
@@ -433,12 +433,12 @@ impl Round {
         }
     }
 
-    /// A distance in front of the drawing at which rays may start, outside.
+    /// Returns a distance in front of the drawing at which rays may start, outside the surface.
     fn reach(&self) -> f64 {
         4.0 * self.radius
     }
 
-    /// Returns the z of the axis.
+    /// Returns the depth z of the axis.
     pub(super) fn axis(&self) -> f64 {
         if self.inside { -self.radius } else { self.radius }
     }
@@ -489,10 +489,10 @@ impl Radial {
 }
 
 impl Anamorphosis {
-    /// Returns the start and the direction of the ray through (x, y): from the eye, or from at most `reach` in front of the drawing.
+    /// Returns the start and the direction of the ray through (x, y). It starts at the eye, but at most `reach` in front of the drawing.
     fn ray<S: Real>(&self, x: S, y: S, reach: f64) -> [[S; 3]; 2] {
         match self.eye {
-            // From a far eye, the way to the surface would cost digits.
+            // A ray from a far eye would lose digits on the way to the surface.
             Eye::At(foot, distance) if distance > reach => {
                 let [u, v] = [(x - foot.x) / distance, (y - foot.y) / distance];
                 [[x - u * reach, y - v * reach, S::from(-reach)], [u, v, S::from(1.0)]]
@@ -508,7 +508,7 @@ impl Anamorphosis {
         }
     }
 
-    /// Returns the image in space.
+    /// Returns the image of (x, y) in space.
     pub(super) fn at<S: Real>(&self, x: S, y: S) -> [S; 3] {
         let from = |ray: [[S; 3]; 2], k: S| -> [S; 3] { std::array::from_fn(|i| ray[0][i] + ray[1][i] * k) };
         let delta = match &self.surface {
@@ -538,12 +538,12 @@ impl Anamorphosis {
         }
     }
 
-    /// Returns the point of the surface that the eye sees at the drawing's point `p`.
+    /// Returns the point of the surface that the eye sees at the point `p` of the drawing.
     pub(super) fn point(&self, p: Point) -> Space {
         self.at(p.x, p.y)
     }
 
-    /// Positive where the ray through `p` meets the surface.
+    /// Returns a number that is positive if the ray through `p` meets the surface.
     pub(super) fn defined(&self, p: Point) -> f64 {
         match (&self.surface, self.eye) {
             (Surface::Round(r), _) => {
@@ -563,18 +563,18 @@ impl Anamorphosis {
 
 // Views of an anamorphosis: unrolled true to size, from the eye, and from elsewhere.
 //
-// **Unrolled.** A plane has coordinates in itself. A cylinder or cone is cut along its far line and rolled out. With the
-// radius R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y lies, measured from the middle
-// (x₀, y₀), at
+// **Unrolled.** A plane has two coordinates. A cylinder or cone is cut along its far line and rolled out. With the radius
+// R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y has, relative to the middle (x₀, y₀), the
+// coordinates
 //
 // > X = R·sin(κθ)/κ,  Y = σ·(y − y₀) + 2R·sin²(κθ/2)/κ
 //
-// which are polar coordinates about the cone's apex, written so that the cylinder (κ → 0: X = rθ, Y = y − y₀) is no special
-// case. Both directions are in closed form: (X, Y) gives R = |(κX, r − κY)|, κθ its angle, σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R),
-// and a point in space is seen at O + (q − O)·D/(z + D), D being the eye's distance and z the point's depth.
+// which are polar coordinates about the cone's apex, in a form that includes the cylinder (κ → 0: X = rθ, Y = y − y₀). The inverse is in
+// closed form, too: (κX, r − κY) has the length R and the angle κθ, and σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R). A point q in space,
+// at the depth z, is seen at O + (q − O)·D/(z + D), where D is the eye's distance.
 //
-// **From elsewhere.** A pinhole camera at C looks at the image of the drawing's middle, scaled so that the surroundings of that
-// point are true to size. Where δ is a polynomial of degree n, so are numerators and denominator of the view.
+// **From elsewhere.** A pinhole camera looks at the image of the drawing's middle, scaled so that the neighbourhood of that point is
+// true to size. If δ is a polynomial of degree n, so are the numerators and the denominator of the view.
 
 /// A pinhole camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -602,13 +602,13 @@ impl Camera {
     }
 }
 
-/// Returns n·(q − o).
+/// Returns n·(q − o), where q = (x, y, z).
 fn project<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
     (x - o[0]) * n[0] + (y - o[1]) * n[1] + (z - o[2]) * n[2]
 }
 
 impl Anamorphosis {
-    /// Returns δ, if it is a polynomial, with its coordinates and its domain.
+    /// Returns δ, if it is a polynomial, with the map to its coordinates and its domain.
     fn polynomial(&self) -> Option<(Affine, Plane, Rect)> {
         match &self.surface {
             Surface::Radial(Radial { pre, delta, domain }) => Some((*pre, delta.clone(), *domain)),
@@ -621,7 +621,7 @@ impl Anamorphosis {
     }
 
     /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / depth + origin of the image q, if δ is a polynomial.
-    /// Without a `depth` direction it is undivided.
+    /// Without a `depth` direction there is no division.
     fn flattened(
         &self,
         from: Space,
@@ -638,7 +638,7 @@ impl Anamorphosis {
             Eye::Infinite(towards) => (towards, one.clone()),
         };
         let [x, y] = source_coordinates(pre);
-        // n·(q − from), multiplied by the point's weight: n·(p − from) + (δ − 1)·n·(O − w·from).
+        // Times the point's weight, n·(q − from) is n·(p − from) + (δ − 1)·n·(O − w·from).
         let along = |n: Space| {
             let d = Plane::linear(std::array::from_fn(|i| {
                 let [x, y, z] = if i == 0 { [x[0] - from[0], y[0] - from[1], -from[2]] } else { [x[i], y[i], 0.0] };
@@ -655,7 +655,7 @@ impl Anamorphosis {
         })
     }
 
-    /// Returns the surface laid flat, true to size; `None` for surfaces that cannot be.
+    /// Returns the surface laid flat, true to size; `None` for a surface for which this is impossible.
     pub(super) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
             Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
@@ -664,12 +664,12 @@ impl Anamorphosis {
         }
     }
 
-    /// Returns the eye's view: the drawing itself, computed through space.
+    /// Returns the eye's view, which is the drawing itself, computed through space.
     pub(super) fn seen(&self) -> Arc<dyn Map> {
         Arc::new(EyeView(self.clone()))
     }
 
-    /// Returns a camera's view. The inverse is searched over `domain`.
+    /// Returns a camera's view. The inverse is sought over `domain`.
     pub(super) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
         match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
             Some(q) => q.simplest(),
@@ -697,7 +697,7 @@ impl Anamorphosis {
     }
 }
 
-/// The eye's view.
+/// The eye's view of a surface.
 struct EyeView(Anamorphosis);
 
 impl Formula for EyeView {
@@ -714,7 +714,7 @@ impl Formula for EyeView {
     }
 }
 
-/// A camera's view.
+/// A camera's view of a surface.
 #[derive(Clone)]
 struct CameraView {
     of: Anamorphosis,
@@ -745,7 +745,7 @@ impl Formula for CameraView {
     }
 }
 
-/// A cylinder or cone rolled out.
+/// A cylinder or cone that is rolled out.
 #[derive(Clone)]
 struct Unrolled {
     of: Anamorphosis,
@@ -753,7 +753,7 @@ struct Unrolled {
 }
 
 impl Unrolled {
-    /// Returns the surface, κ, σ, and its middle after turning the axis vertical.
+    /// Returns the surface, κ, σ, and the middle after the axis is turned vertical.
     fn round(&self) -> (Round, f64, f64, Point) {
         let r = self.round;
         let sigma = r.slope.hypot(1.0);
@@ -789,7 +789,7 @@ impl Formula for Unrolled {
     }
 }
 
-/// The inverse: rolled up again, and seen by the eye.
+/// The inverse: the surface is rolled up again and seen by the eye.
 struct RolledUp(Unrolled);
 
 impl Formula for RolledUp {

@@ -1,4 +1,4 @@
-//! Anamorphoses against geometry in space, the papers' figures, and their faults.
+//! Compares anamorphoses with geometry in space and the papers' figures, and tests errors.
 
 use super::dilation::{Dilation, Reference};
 use super::scene::Eye;
@@ -25,7 +25,7 @@ fn space_jet(cast: &Anamorphosis, p: Point) -> SpaceJet {
 
 type Given = &'static [(&'static str, &'static str)];
 
-/// The entry with another demo.
+/// The registry's entry with another demo.
 struct With(Info);
 
 impl Deformation for With {
@@ -132,7 +132,7 @@ fn grid() -> impl Iterator<Item = Point> {
     (0..=10).flat_map(|i| (0..=10).map(move |j| Point::new(10.0 * f64::from(i), 10.0 * f64::from(j))))
 }
 
-/// On the surface, by its equation, and on the ray; jets agree with difference quotients.
+/// Images satisfy the equation of the surface and lie on their rays; jets agree with difference quotients.
 #[test]
 fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
@@ -169,7 +169,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     }
 }
 
-/// Laying flat changes no length: the derivatives have the same products in space and in the plane.
+/// A surface laid flat keeps lengths: derivatives have equal scalar products in space and in the plane.
 #[test]
 fn unrolled_surfaces_are_true_to_size() {
     let product = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
@@ -195,7 +195,7 @@ fn unrolled_surfaces_are_true_to_size() {
     assert_eq!(flat, 6);
 }
 
-/// Eliminates the quadric's ten coefficients from its points, and returns the residual of other points.
+/// Finds the ten coefficients of a quadric from `points`, and returns the residual of `others`.
 fn off_quadric(points: &[Space], others: &[Space]) -> f64 {
     let size = points.iter().flatten().fold(0.0, |m, v| f64::max(m, v.abs()));
     let row = |q: &Space| -> Vec<f64> {
@@ -251,7 +251,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
     let d0 = d.at(FOOT);
     let along = Vec2::new(d.at(FOOT + Vec2::new(1.0, 0.0)) - d0, d.at(FOOT + Vec2::new(0.0, 1.0)) - d0);
     let o = FOOT;
-    // [I 0; d d₀] about the eye.
+    // The matrix [I 0; d d₀] about the eye.
     let m = [
         [1.0 + o.x * along.x, o.x * along.y, o.x * (d0 - along.dot(o.to_vec2())) - o.x],
         [o.y * along.x, 1.0 + o.y * along.y, o.y * (d0 - along.dot(o.to_vec2())) - o.y],
@@ -265,7 +265,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
     let image = bezier.simplest().image(&source).unwrap();
     assert_eq!(image.degree(), 3);
     for p in grid() {
-        // Straight from the paper: Σ uᵢ (bᵢ, δᵢ) in coordinates about the eye.
+        // The paper's Σ uᵢ (bᵢ, δᵢ), in coordinates about the eye.
         let area = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
         let [a, b, c] = CORNERS;
         let u = [area(p, b, c), area(a, p, c), area(a, b, p)].map(|v| v / area(a, b, c));
@@ -286,8 +286,8 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
 
 const METRE: f64 = 96.0 / 0.0254;
 
-/// Similar triangles: an eye 1.6 m high and 20 m away sees the far end of a 10 m marking, 30 m away, at a height of
-/// 1.6·10/30 m above the near end; the far end is 30/20 times its apparent width.
+/// By similar triangles, an eye 1.6 m high and 20 m away sees the far end of a 10 m marking, 30 m away, at a height of
+/// 1.6·10/30 m above the near end. The far end is 30/20 times as wide as it appears.
 #[test]
 fn a_road_marking_ten_metres_long() {
     let frame = Frame::new(Rect::new(100.0, 40.0, 400.0, 240.0));
@@ -301,7 +301,7 @@ fn a_road_marking_ten_metres_long() {
     let width = |y: f64| m.point((400.0, y).into()).x - m.point((100.0, y).into()).x;
     assert!((width(240.0) - 0.8 * METRE).abs() < 1e-9 * METRE);
     assert!((width(40.0) - 1.2 * METRE).abs() < 1e-9 * METRE);
-    // The same by its width.
+    // Its width gives the same scale.
     let same = args(&[&road[..], &[("picture-width", "80cm")]].concat());
     assert!(same.point((123.0, 77.0).into()).distance(m.point((123.0, 77.0).into())) < 1e-8);
     assert!(matches!(m.class(), Class::Projective(_)));
@@ -310,14 +310,14 @@ fn a_road_marking_ten_metres_long() {
     let h = 200.0 / METRE;
     let far = small.point((250.0, 40.0).into());
     assert!((240.0 - far.y - 20.0 * h / (1.6 - h) * METRE).abs() < 1e-9 * METRE);
-    // A ramp: an eye 1.6 m above its foot; the end of its 10 m is 5 m up.
+    // A ramp of 10 m, whose end is 5 m high.
     let ramp = [("eye-height", "8m"), ("distance", "20m"), ("onto", "plane:ramp=30"), ("length", "10m")];
     let m = args(&ramp);
     let (near, far) = (m.point((250.0, 240.0).into()), m.point((250.0, 40.0).into()));
     assert!((near.y - far.y - 10.0 * METRE).abs() < 1e-9 * METRE);
 }
 
-/// A horizontal line at the eye's height on a cylinder: the ray at φ from the axis' direction ends according to the sine rule.
+/// A horizontal line at the eye's height on a cylinder: the ray at φ from the direction of the axis ends by the sine rule.
 #[test]
 fn labels_are_as_long_as_their_arcs() {
     let m = build(&[("distance", "300"), ("onto", "cylinder:radius=80")]).unwrap().map;
@@ -329,7 +329,7 @@ fn labels_are_as_long_as_their_arcs() {
         let got = m.point((x, 50.0).into());
         assert!(got.distance((50.0 + 80.0 * theta, 50.0).into()) < 1e-10, "{got:?}");
     }
-    // A hollow is seen from within, and from outside, where the nearer wall does not count: r sin θ = (x − 50)/D · (D − r + r cos θ).
+    // A hollow is seen from inside and outside, where the nearer wall does not count: r sin θ = (x − 50)/D · (D − r + r cos θ).
     for distance in [150.0, 300.0] {
         let hollow = build(&[("distance", &distance.to_string()), ("onto", "cylinder:radius=80,inside")]).unwrap().map;
         for theta in [-0.5, -0.2, 0.0, 0.3, 0.6_f64] {
@@ -338,7 +338,7 @@ fn labels_are_as_long_as_their_arcs() {
             assert!(got.distance((50.0 + 80.0 * theta, 50.0).into()) < 1e-10, "{distance} {theta}: {got:?}");
         }
     }
-    // A cone whose half angle has the sine ½: half a turn of it unrolls to a quarter.
+    // A cone whose half angle has the sine ½, so that half a turn unrolls to a quarter turn.
     let cone = Surface::Round(Round {
         middle: Point::ORIGIN,
         radius: 100.0,
@@ -354,7 +354,7 @@ fn labels_are_as_long_as_their_arcs() {
     assert!(got.distance(want) < 1e-11, "{got:?} {want:?}");
 }
 
-/// Another camera, by its definition; polynomial maps have exact images.
+/// Compares a camera's view with the central projection; polynomial maps have exact images.
 #[test]
 fn views_are_central_projections_and_exact_where_they_can_be() {
     let at = [-100.0, 20.0, -180.0];
@@ -393,7 +393,7 @@ fn views_are_central_projections_and_exact_where_they_can_be() {
     }
 }
 
-/// A triangle of degree 1 in front of the eye is a plane, unrolled true to size: its corners' distances are those in space.
+/// A triangle of degree 1 in front of the eye is a plane, unrolled true to size: its corners have their distances in space.
 #[test]
 fn three_pushed_corners_span_a_plane() {
     let m = build(&[
@@ -524,7 +524,7 @@ fn every_fault_is_named() {
     }
 }
 
-/// The limit of far eyes in a direction, from eyes at 1, 2, 4, … times a distance by Richardson's extrapolation.
+/// Returns the limit of far eyes in a direction, by Richardson's extrapolation from eyes at 1, 2, 4, … times a distance.
 fn limit(of: impl Fn(f64) -> Point) -> Point {
     let mut row: Vec<Vec2> = (0..7).map(|k| of(1e3 * f64::from(1 << k)).to_vec2()).collect();
     let mut power = 2.0;
@@ -535,7 +535,7 @@ fn limit(of: impl Fn(f64) -> Point) -> Point {
     row[0].to_point()
 }
 
-/// An eye at infinity is the limit of far eyes, and what it sees goes along parallel rays.
+/// An eye at infinity is the limit of far eyes, and its rays are parallel.
 #[test]
 fn an_eye_at_infinity_is_the_limit_of_far_ones() {
     let u = {
@@ -588,8 +588,8 @@ fn an_eye_at_infinity_is_the_limit_of_far_ones() {
     }
 }
 
-/// Follows the ray from the eye through a point of the picture by vectors: where it meets the mirror, and after a reflection the table
-/// y = 0. Space is x right, y down, z away, from the middle of the foot.
+/// Follows the ray from the eye through a point of the picture to the mirror, and after the reflection to the table y = 0, by vectors.
+/// The origin is the middle of the foot, with x right, y down, z away.
 fn traced(shape: MirrorShape, tilt: f64, eye: Space, p: Space) -> Option<Space> {
     let add = |a: Space, b: Space, k: f64| -> Space { std::array::from_fn(|i| a[i] + b[i] * k) };
     let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
@@ -613,7 +613,7 @@ fn traced(shape: MirrorShape, tilt: f64, eye: Space, p: Space) -> Option<Space> 
             }
         }
     };
-    // The first place where the ray enters, by steps and bisection.
+    // The point at which the ray first enters, by steps and bisection.
     let d = add(p, eye, -1.0);
     let (mut a, steps) = (0.0, 40_000);
     let mut b =
@@ -629,7 +629,7 @@ fn traced(shape: MirrorShape, tilt: f64, eye: Space, p: Space) -> Option<Space> 
     Some(add(hit, r, -hit[1] / r[1]))
 }
 
-/// Mirrors against rays and reflections by vectors, and there and back.
+/// Compares mirrors with rays reflected by vectors, and inverts them.
 #[test]
 fn mirrors_reflect_the_drawing_into_the_eye() {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
@@ -651,7 +651,7 @@ fn mirrors_reflect_the_drawing_into_the_eye() {
             if matches!(shape, MirrorShape::Cylinder(..)) { Point::new(50.0, 100.0) } else { Point::new(50.0, 50.0) };
         let at = format!("{},{}", anchor.x + eye[0], anchor.y + eye[1]);
         let distance = (-eye[2]).to_string();
-        // Straight above the mirror there is no distance.
+        // An eye straight above the mirror has no distance.
         let mut args = vec![("mirror", text), ("foot", "70,-30")];
         if eye[2] < 0.0 {
             args.extend([("distance", &*distance), ("eye", &at)]);

@@ -18,7 +18,7 @@ struct PieceHandles {
     levels: Vec<Vec<[f64; 2]>>,
 }
 
-/// Reads the levels of handles of every piece, or the handles at points. Those of deeper levels may vanish.
+/// Reads the levels of handles of every piece, or the handles at points. Handles of deeper levels may vanish.
 pub(super) fn read(name: &str, text: &str) -> Result<Handles, Error> {
     let wrong = |problem: String| Error::input(name, problem);
     let file: HandlesFile = serde_json::from_str(text).map_err(|e| wrong(format!("is not a file of handles: {e}")))?;

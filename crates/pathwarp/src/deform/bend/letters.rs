@@ -57,9 +57,8 @@ impl LetterSetting {
         if self == Self::Stair { letter.origin.x } else { letter.middle().x }
     }
 
-    /// Returns the distances along the skeleton of letters spread over it. The gaps of every line grow by the same amount, those
-    /// between words by twice as much, until the line reaches from end to end of its share. A closed skeleton has one more gap
-    /// between words.
+    /// Returns the distances along the skeleton of letters spread over it. The gaps of every line grow by the same amount, gaps between
+    /// words by twice as much, until the line reaches from end to end. A closed skeleton has one more gap between words.
     fn spread(self, to_strip: &ToStrip, closed: bool, letters: &[Letter]) -> Vec<f64> {
         /// A gap wider than this share of its line's mean advance separates words.
         const BETWEEN_WORDS: f64 = 0.2;
@@ -76,7 +75,7 @@ impl LetterSetting {
             let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + round;
             let (from, to) = (to_strip.s(letters[first].origin.x), to_strip.s(end(last)));
             let spare = to - from - up * (end(last) - letters[first].origin.x);
-            // A single letter stands in the middle.
+            // A single letter is centred.
             let (more, mut at) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
             at += 0.5 * round * more;
             for (k, i) in line.into_iter().enumerate() {
@@ -89,14 +88,14 @@ impl LetterSetting {
     }
 }
 
-/// The copies, or the identity for artwork without copies.
+/// Returns the copies, or the identity for artwork without copies.
 pub(super) fn or_identity(copies: &[Affine]) -> &[Affine] {
     if copies.is_empty() { &[Affine::IDENTITY] } else { copies }
 }
 
 /// Returns the indices of the letters of every line, from left to right.
 fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
-    /// Baselines closer than this share of an advance are the same.
+    /// Distance of baselines that belong to one line, as a share of an advance.
     const ONE_LINE: f64 = 1e-3;
     let mut out: Vec<Vec<usize>> = Vec::new();
     for (i, l) in letters.iter().enumerate() {
@@ -112,7 +111,7 @@ fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
     out
 }
 
-/// Returns the map of every letter in each of the copies. `spread` distributes the letters over the whole skeleton.
+/// Returns the map of every letter for each of the copies. `spread` distributes the letters over the whole skeleton.
 pub(super) fn places(
     map: &BendMap,
     setting: LetterSetting,
@@ -132,8 +131,8 @@ pub(super) fn places(
     letters.iter().zip(at).map(all).collect()
 }
 
-/// Returns the translations, in the source plane, of letters whose spaces grow until they reach around a closed skeleton, as `whole` stretches
-/// the artwork.
+/// Returns the translations of letters in the source plane that spread them around a closed skeleton by larger spaces. `whole` is the
+/// map to the strip that would stretch the artwork around it.
 pub(super) fn apart(map: &BendMap, letters: &[Letter], whole: ToStrip) -> Vec<Vec<Affine>> {
     let at = LetterSetting::Rotate.spread(&whole, true, letters);
     let by =
@@ -141,8 +140,8 @@ pub(super) fn apart(map: &BendMap, letters: &[Letter], whole: ToStrip) -> Vec<Ve
     letters.iter().zip(at).map(by).collect()
 }
 
-/// Returns the map of every object in each of `count` copies of the row, with equal gaps between all of them; the first begins at
-/// `first`, or around a closed skeleton has its middle there. `None`: one copy, at the distances drawn.
+/// Returns the map of every object for each of `count` copies of the row, with equal gaps between all objects. The first begins at
+/// `first`; on a closed skeleton its middle is there. Without `count`, there is one copy, at the distances drawn.
 pub(super) fn row(
     map: &BendMap,
     setting: LetterSetting,
@@ -176,7 +175,7 @@ pub(super) fn row(
 /// Warns of letters that are squeezed or mirrored, and of letters that collide.
 pub(super) fn warnings(letters: &[Letter], places: &[Vec<Affine>]) -> Vec<String> {
     let mut out = Vec::new();
-    /// A letter that keeps less than this share of its width is illegible.
+    /// Share of its width below which a letter is illegible.
     const THIN: f64 = 0.1;
     let share = |m: &Affine| {
         let [a, b, c, d, ..] = m.as_coeffs();
@@ -200,7 +199,7 @@ and `glyphs stair` keep every letter legible",
     };
     for line in lines(letters) {
         line.windows(2).for_each(|p| look(p[0], p[1], 0));
-        // The end of every copy and the start of the next, or of the same one around a closed skeleton.
+        // The end of every copy meets the start of the next, or its start on a closed skeleton.
         if let (Some(&first), Some(&last)) = (line.first(), line.last())
             && (line.len() > 1 || places[first].len() > 1)
         {
@@ -224,7 +223,7 @@ pub(super) fn points<'a>(
     letters: &'a [Letter],
     copies: &'a [Affine],
 ) -> impl Iterator<Item = (Point, Option<&'a Letter>)> {
-    /// Points per segment.
+    /// Number of points per segment.
     const SAMPLES: u32 = 8;
     let copies = or_identity(copies);
     let each = letters.iter().flat_map(move |l| copies.iter().map(move |c| (l, *c)));
@@ -234,7 +233,7 @@ pub(super) fn points<'a>(
     })
 }
 
-/// Returns a point where two letters that are apart in the source cross in one of their `places`.
+/// Returns a point where two letters, apart in the source, cross under one of the pairs of maps in `places`.
 fn collision<'a>(a: &Letter, b: &Letter, places: impl Iterator<Item = (&'a Affine, &'a Affine)>) -> Option<Point> {
     let (left, right) = (Chords::of(&a.outline)?, Chords::of(&b.outline)?);
     let mut places = places.peekable();
@@ -251,7 +250,7 @@ struct Chords {
 
 impl Chords {
     fn of(outline: &Outline) -> Option<Self> {
-        /// Tolerance as a share of the letter's size: letters closer than this touch.
+        /// Tolerance as a share of the letter's size. Letters closer than this touch.
         const FINE: f64 = 1e-3;
         let rect = outline.bounding_box()?;
         let fine = (FINE * rect.width().max(rect.height())).max(f64::MIN_POSITIVE);

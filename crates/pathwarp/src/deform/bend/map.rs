@@ -1,4 +1,4 @@
-//! The map: pieces of the skeleton side by side, and the artwork's position on them.
+//! The bend as a map: the pieces of the skeleton, and the artwork's position on them.
 
 use crate::error::show;
 use crate::map::bspline::bernstein;
@@ -40,7 +40,7 @@ impl ToStrip {
     }
 }
 
-/// The map: pieces side by side.
+/// The bend: pieces in a row.
 #[derive(Clone)]
 pub(super) struct BendMap {
     pub(super) pieces: Vec<Arc<SkeletonPiece>>,
@@ -66,7 +66,7 @@ impl BendMap {
         (at, along / along.hypot())
     }
 
-    /// Returns the first level of the algorithm on every piece with handles, if there are any.
+    /// Returns the first level of de Casteljau's generalised algorithm on every piece with handles, if there are any.
     pub(super) fn first_level(&self, heights: [f64; 2]) -> Option<BezPath> {
         let ribbon = |p: &Arc<SkeletonPiece>| match &p.strip {
             Strip::Ribbon { ribbon, .. } => ribbon.first_level(heights),
@@ -87,8 +87,8 @@ impl BendMap {
         }
     }
 
-    /// Warns if the artwork folds over itself. `points` samples the outlines of letters, each with its letter, or the box of
-    /// other artwork ([`edges`]). The determinant is linear in the height, so that it is worst at the highest and lowest points.
+    /// Returns a warning if the artwork folds over itself. `points` are samples of the outlines of letters, each with its letter, or of the
+    /// box of other artwork ([`edges`]). The determinant is linear in the height, and so least at the highest or lowest points.
     pub(super) fn fold<'a>(&self, points: impl Iterator<Item = (Point, Option<&'a Letter>)>) -> Option<String> {
         let det = |x: f64, y: f64| self.jet(Point::new(x, y)).det() / (self.to_strip.k * self.to_strip.up);
         let mut worst: Option<(f64, Point)> = None;
@@ -126,7 +126,7 @@ bend avoids that",
     }
 }
 
-/// Lists names for a message, as many as a line holds.
+/// Lists names for a message, up to a limit.
 pub(super) fn listed(names: &[&str]) -> String {
     const SHOWN: usize = 8;
     let shown = names.iter().take(SHOWN).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
@@ -143,9 +143,9 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 }
 
 impl Map for BendMap {
-    /// A jet on a curve takes less than half as long as one of a net: 7 ns on the hairpin of `tests/cli/report.rs`.
+    /// A jet on a curve takes less than half as long as one of a net.
     fn cost(&self) -> Cost<'_> {
-        /// Pieces to look at, which stand for all.
+        /// Number of pieces whose mean work is taken for all.
         const FIRST: usize = 16;
         const CURVE: f64 = 0.4;
         const SINGLY: f64 = 3.0;
@@ -163,7 +163,7 @@ impl Map for BendMap {
         self.to_strip.point(piece, begin, p)
     }
 
-    /// Verticals at the skeleton's joints.
+    /// Adds the verticals at the skeleton's joints.
     fn creases(&self, out: &mut Creases) {
         /// Limit on the turns around a closed skeleton whose joints are reported.
         const MAX_TURNS: f64 = 64.0;
@@ -252,17 +252,17 @@ impl Map for OnPiece {
 pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S with S the unit normal, blended into the mitre of a corner at the ends: linearly, or `smooth`ly where the
-    /// mitre vanishes within the piece. s is the length of the offset curve at height `even`.
+    /// F = C(u(s)) + d·S, where S is the unit normal, blended at the ends into the mitres of corners: linearly, or smoothly if `smooth`,
+    /// where the mitre vanishes within the piece. s is the length of the offset curve at height `even`.
     Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
-    /// The paper's polynomial F(u, v), v = d / unit; u by arc length if there is a table, else s / length.
+    /// The paper's polynomial F(u, v) with v = d / unit. u comes from the arc length by `table`, or without one is s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
 
 /// A piece of the skeleton and its strip.
 #[derive(Debug, Clone)]
 pub(super) struct SkeletonPiece {
-    /// The distance from which it applies; −∞ for the first of an open skeleton.
+    /// The distance from which the piece applies; −∞ for the first piece of an open skeleton.
     pub(super) from: f64,
     /// The distance of its start.
     pub(super) anchor: f64,
@@ -272,7 +272,7 @@ pub(super) struct SkeletonPiece {
 }
 
 impl SkeletonPiece {
-    /// The work of a point: an arc takes several sines and cosines, and the de Casteljau steps of a ribbon twice as long as a net.
+    /// Returns the work of a point. An arc takes several sines and cosines, and the de Casteljau steps of a ribbon twice as long as a net.
     pub(super) fn work(&self) -> f64 {
         match &self.strip {
             Strip::Normals { spine, .. } if matches!(spine.curve, Curve::Seg(Seg::Arc(_)) | Curve::Bezier(_)) => 2.0,
@@ -293,7 +293,7 @@ impl SkeletonPiece {
         }
     }
 
-    /// Returns the side at distance `s`, the normal of `t` blended into the mitres, and the derivative of the blend.
+    /// Returns the side S at distance `s`, the normal of `t` blended into the mitres, and the derivative of the blend.
     fn side(&self, t: Vec2, [start, end]: &[Vec2; 2], smooth: bool, s: f64) -> (Vec2, Vec2) {
         let share = s / self.length;
         let (a, b) = (1.0 - share, share);
@@ -352,7 +352,7 @@ impl Curve {
         }
     }
 
-    /// Returns the control points; of an arc those of a cubic near it.
+    /// Returns the control points; for an arc, those of a cubic near it.
     pub(super) fn points(&self) -> Vec<Point> {
         match self {
             Self::Seg(Seg::Line(s)) => vec![s.p0, s.p1],
@@ -403,7 +403,7 @@ impl Curve {
         }
     }
 
-    /// Returns segments for a preview: of a curve of higher degree, cubics near it.
+    /// Returns segments for a preview; for a curve of higher degree, cubics near it.
     pub(super) fn segs(&self) -> Vec<Seg> {
         if let Self::Seg(s) = self {
             return vec![*s];
@@ -435,11 +435,11 @@ fn derivative(points: &[Point], u: f64, order: usize) -> Vec2 {
 #[derive(Debug, Clone)]
 pub(super) struct Spine {
     pub(super) curve: Curve,
-    /// The speed that counts as zero.
+    /// A lower speed counts as zero.
     still: f64,
 }
 
-/// The moving frame of a piece. With N the [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
+/// The moving frame of a piece. With T the tangent and N its [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
 pub(super) struct MovingFrame {
     pub(super) p: Point,
     /// Unit tangent.
@@ -450,7 +450,7 @@ pub(super) struct MovingFrame {
 
 impl Spine {
     pub(super) fn new(curve: Curve) -> Self {
-        /// The speed that counts as zero, as a share of the piece's size.
+        /// A lower speed counts as zero, as a share of the piece's size.
         const STILL: f64 = 1e-9;
         let b = match &curve {
             Curve::Seg(seg) => seg.bounding_box(),
@@ -471,9 +471,9 @@ impl Spine {
         MovingFrame { p: self.curve.eval(u), t: v / speed, bend: v.cross(self.curve.second(at)) / speed.powi(3) }
     }
 
-    /// Returns a parameter with the derivative and its length there: `u` itself, or one a little further in where the curve stands still.
+    /// Returns a parameter, with the derivative and its length there: `u`, or a parameter further inside if the speed vanishes at `u`.
     fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
-        /// How much further in.
+        /// Distance to that parameter.
         const ASIDE: f64 = 1e-5;
         let v = self.curve.deriv(u);
         let speed = v.hypot();
@@ -486,15 +486,14 @@ impl Spine {
     }
 }
 
-// The generalised algorithm of de Casteljau: every step an affine map of the whole plane (or space) instead of a point on a
-// segment.
+// The generalised algorithm of de Casteljau, in which every step is an affine map of the whole plane (or space) instead of a point on
+// a segment:
 //
-// `p[i,j] = p[i,j−1] + u·(p[i+1,j−1] − p[i,j−1]) + v·s[i,j] (+ w·t[i,j] in space)`, the s and t being the *handles* of level j
-// (equations 2 and 3). Every term with v is linear in it and stays so through the levels above: in the plane
-// F(u, v) = C(u) + v·S(u), C the Bézier curve of the control points and S the sum over the levels j of the Bézier curves of
-// degree n−j of their handles.
+// `p[i,j] = p[i,j−1] + u·(p[i+1,j−1] − p[i,j−1]) + v·s[i,j] (+ w·t[i,j] in space)`, where s and t are the *handles* of level j
+// (equations 2 and 3). Terms with v stay linear in v through all levels: in the plane F(u, v) = C(u) + v·S(u), where C is the Bézier
+// curve of the control points, and S is the sum, over the levels j, of the Bézier curves of degree n−j of their handles.
 
-/// Returns one step's affine map at u: p + u₀·(q − p) + Σ uₖ·hₖ.
+/// Returns the image of u under the affine map of one step: p + u₀·(q − p) + Σ uₖ·hₖ.
 fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: &[S]) -> [S; D] {
     std::array::from_fn(|i| {
         let along = p[i] + u[0] * (q[i] - p[i]);
@@ -502,7 +501,7 @@ fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: 
     })
 }
 
-/// Returns the point at parameters `u` for a control polygon and handles: `handles(level, i)`, levels counted from 1.
+/// Returns the point at parameters `u` for a control polygon and handles, given by `handles(level, i)` with levels from 1.
 fn eval<'a, S: Real, const D: usize>(
     row: &mut [[S; D]],
     handles: impl Fn(usize, usize) -> &'a [[f64; D]],
@@ -521,9 +520,9 @@ fn eval<'a, S: Real, const D: usize>(
 pub(super) struct Ribbon {
     /// The control points.
     points: Vec<Point>,
-    /// Handles at the control points, which are maps p + v·s of their own then; or none.
+    /// Handles s at the control points p, which stand for the maps p + v·s; or none.
     at_points: Vec<[f64; 2]>,
-    /// The handles, level by level: n of the first, n−1 of the second ... The last levels may be omitted.
+    /// The handles by levels: n on the first, n−1 on the second, and so on. The last levels may be omitted.
     levels: Vec<Vec<[f64; 2]>>,
 }
 
@@ -556,7 +555,7 @@ impl Ribbon {
         for (r, h) in row.iter_mut().zip(&self.at_points) {
             *r = [r[0] + v * S::from(h[0]), r[1] + v * S::from(h[1])];
         }
-        // Levels without handles are free.
+        // Levels without handles cost nothing.
         let handles = |level: usize, i: usize| match self.levels.get(level - 1) {
             Some(l) => std::slice::from_ref(&l[i]),
             None => &[],
@@ -571,7 +570,7 @@ impl Ribbon {
         all.filter_map(pick).fold(Vec2::ZERO, |a, [x, y]| a + Vec2::new(x, y))
     }
 
-    /// Returns the first level of the algorithm, which takes artwork between two heights to every side of the control polygon, as in
+    /// Draws the first level of the algorithm, which takes artwork between two heights to every side of the control polygon, as in
     /// the paper's figure 1c: the polygon, and the quadrangles between the handles of both ends.
     pub(super) fn first_level(&self, heights: [f64; 2]) -> Vec<BezPath> {
         let handle = |leg: usize, end: usize| {
@@ -588,7 +587,7 @@ impl Ribbon {
         self.points.windows(2).enumerate().map(quad).chain([polygon]).collect()
     }
 
-    /// Returns the exact image of a curve in (u, v), of n times its degree, or n + 1 times with handles at the points.
+    /// Returns the exact image of a curve in (u, v). Its degree is n times that of the curve, or n + 1 times with handles at the points.
     pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
         let n = self.points.len() - 1;
         let whole = n + usize::from(!self.at_points.is_empty());
@@ -609,7 +608,7 @@ impl Ribbon {
         for (i, p) in self.points.iter().enumerate() {
             add([p.x, p.y], n, i, &wp[whole - n]);
         }
-        // The degrees of S's terms fall from n, that of the handles at points.
+        // The terms of S have degree n for handles at points, and n − j for the handles of level j.
         for (j, level) in [&self.at_points].into_iter().chain(&self.levels).enumerate() {
             for (i, h) in level.iter().enumerate() {
                 add(*h, n - j, i, &v.times(&wp[whole + j - n - 1]));
@@ -629,7 +628,7 @@ mod tests {
     use crate::check::{Counted, operations};
 
     /// Table 1 of the paper: 9, 27 and 54 products and as many sums per point in space for degrees 1, 2 and 3. The paper takes
-    /// q − p as given; computing it costs three differences a step, which Table 1 leaves out. In the plane a step is 4 and 4.
+    /// q − p as given, and omits its three differences per step. In the plane, a step takes 4 products and 4 sums.
     #[test]
     fn operation_counts_are_those_of_table_1() {
         for (degree, expected) in [(1, 9), (2, 27), (3, 54)] {
@@ -663,7 +662,7 @@ mod tests {
         ]
     }
 
-    /// Without handles the algorithm is de Casteljau's own; with them F is linear in v, with the stated S.
+    /// Without handles the algorithm is de Casteljau's; with handles F is linear in v, with the stated S.
     #[test]
     fn handles_add_v_times_a_curve_of_lower_degree() {
         let r = ribbon();

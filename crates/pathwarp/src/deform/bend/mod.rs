@@ -1,17 +1,17 @@
 //! Bends artwork along a skeleton.
 //!
-//! The artwork's horizontals run along the skeleton curve C, its verticals stand on it: F(x, y) = C(u) + v·S(u), u growing with x and v
-//! with the height above the baseline. Two kinds of sides S:
+//! The artwork's horizontals run along the skeleton curve C, and its verticals stand on it: F(x, y) = C(u) + v·S(u), where u grows with
+//! x, and v with the height d above the baseline. There are two kinds of sides S:
 //!
-//! - **unit normals** ([`map`]): with u by arc length s, ∂F/∂s = (1 + κd)·T and ∂F/∂d = N, exactly; the strip is as high as
-//!   the artwork everywhere and folds beyond the centre of curvature, 1 + κd = 0. At corners S is blended into the mitre along
-//!   both neighbours, of lines only near the corner, so that offsets of a polygon are exact;
-//! - **handles** ([`map`]): the generalised algorithm of de Casteljau, one handle per leg of the control polygon, deeper
-//!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is one again, exactly. By default a handle is
-//!   the leg's unit normal, as long as the artwork is high. Where pieces meet, and on splines ([`spline`]), handles stand at the control
+//! - **unit normals** ([`map`]): u is given by the arc length s, so that ∂F/∂s = (1 + κd)·T and ∂F/∂d = N with the curvature κ, the unit
+//!   tangent T and the unit normal N. The strip is as high as the artwork everywhere, and folds beyond the centre of curvature, where
+//!   1 + κd = 0. At corners S is blended into the mitre, along lines only near the corner, so that offsets of a polygon are exact;
+//! - **handles** ([`map`]): the generalised algorithm of de Casteljau, with one handle per leg of the control polygon, and deeper
+//!   levels on request. F is polynomial in u and v, and the image of a Bézier curve is exactly a Bézier curve. By default a handle is
+//!   the leg's normal, as long as the artwork is high. Where pieces meet, and on splines ([`spline`]), handles stand at the control
 //!   points instead, which keeps parallels smooth.
 //!
-//! Source: *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
+//! The paper is *A generalized de Casteljau approach to 3D free-form deformation* (Chang & Rockwood, SIGGRAPH 1994), here in the plane;
 //! its joint conditions (4) and (5) are checked and reported. Joints of the skeleton are creases: verticals in the artwork.
 
 #[cfg(feature = "serde")]
@@ -110,7 +110,7 @@ parameters! {
         let sets_objects: bool = s.flag("objects")?;
         // Copies of the artwork: so many, or as many as fit.
         let copies: Option<Option<usize>> = copies(s)?;
-        // The frame was laid around the letters, and says nothing about their own heights.
+        // The frame was laid around the letters, and does not show their heights.
         let around_letters: bool = s.frame().baseline.is_some();
         // Points of the artwork; empty if they are not known.
         let ink: Arc<[Point]> = Arc::clone(&s.frame().ink);
@@ -145,8 +145,8 @@ choice! {
 }
 
 impl Bend {
-    /// Creates a bend of the box `frame` along one connected path. An open path is run left to right, a closed one clockwise;
-    /// the middle of the box lies on its middle, and nothing is stretched.
+    /// Creates a bend of the box `frame` along one connected path. An open path is run left to right, a closed one clockwise.
+    /// The middle of the box lies on the path's middle, and nothing is stretched.
     #[must_use]
     pub fn new(frame: Rect, along: &Outline) -> Self {
         Self::defaults(frame, NamedPath { name: "along".into(), outline: along.clone() })
@@ -196,7 +196,7 @@ impl Bend {
             None => Repeats::ONE,
         };
         let (from, to) = match self.align {
-            // Copies that reach from end to end begin at the start of the skeleton.
+            // Copies on an open skeleton begin at its start.
             _ if repeats.count > 1 && !closed => (rect.x0, 0.0),
             Align::Start => (rect.x0, 0.0),
             Align::End => (rect.x1, length),
@@ -244,7 +244,7 @@ impl Bend {
         Ok(built)
     }
 
-    /// Lays the skeleton.
+    /// Builds the skeleton.
     fn skeleton(&self) -> Result<Skeleton, Error> {
         let sub = anchors::only_subpath(&self.along, "a single connected run of them")?;
         let (closed, given) = (sub.closed, self.points()?);
@@ -257,17 +257,17 @@ impl Bend {
         Skeleton::new((parts, closed, &self.along.name), self.is_as_drawn(), self.reverse)
     }
 
-    /// The height that v = 1 means; for artwork without height any will do.
+    /// Returns the height for v = 1; for artwork without height it is arbitrary.
     fn unit(&self) -> f64 {
         if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 }
     }
 
-    /// The heights of the artwork's top and bottom over the skeleton, if it is scaled by `k`.
+    /// Returns the heights of the artwork's top and bottom over the skeleton, if the artwork is scaled by `k`.
     fn heights(&self, k: f64) -> [f64; 2] {
         [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y) * self.width * k)
     }
 
-    /// The handles at the points of a spline, if there are any.
+    /// Returns the handles at the points of a spline, if there are any.
     fn points(&self) -> Result<&[Option<Vec2>], Error> {
         let wrong = |problem| Err(Error::input("handles", problem));
         match &self.handles {
@@ -282,19 +282,19 @@ impl Bend {
         }
     }
 
-    /// The left and the right edge of what is seen of the artwork in all its copies, whose frame is `rect` and the last of which is
-    /// `shift` further right. Advances of letters are wider than their ink.
+    /// Returns the left and the right edge of the visible artwork in all copies, which have the frame `rect`. The last copy is `shift`
+    /// further right. Advances of letters are wider than the letters.
     fn seen(&self, rect: Rect, shift: f64) -> [f64; 2] {
         let letters = self.letters.iter().filter(|_| self.around_letters).filter_map(|l| l.outline.bounding_box());
         letters.reduce(|a, b| a.union(b)).map_or([rect.x0, rect.x1], |ink| [ink.x0, ink.x1 + shift])
     }
 
-    /// Handles belong to the pieces in the order they were drawn.
+    /// Returns `true` if the skeleton keeps its direction. Given handles belong to the pieces in the order drawn.
     fn is_as_drawn(&self) -> bool {
         self.as_drawn || self.handles.is_some()
     }
 
-    /// Whether letters keep their widths on a whole ring, and the spaces between them grow.
+    /// Returns `true` if letters on a whole ring keep their widths, and the spaces between them grow.
     fn spreads_letters(&self, closed: bool) -> bool {
         let is_lettering = self.around_letters && !self.letters.is_empty();
         closed && self.stretch == Stretch::Fit && self.setting.is_none() && is_lettering
@@ -325,7 +325,7 @@ impl Bend {
 
     /// Returns the skeleton with its lengths measured at the right height, and its arcs as cubics where handles need them.
     fn measured(&self, skeleton: Skeleton, size: f64) -> Result<Skeleton, Error> {
-        /// Distance of the cubics from the arcs, relative to the size of everything.
+        /// Distance of the cubics from the arcs, relative to the size of the skeleton and the artwork.
         const ARC_TOLERANCE: f64 = 1e-9;
         let skeleton = if self.even {
             let (width, height) = (self.width, self.baseline - self.frame.center().y);
@@ -359,7 +359,7 @@ impl Bend {
         skeleton.with_handles(given, (self.unit(), heights), !self.by_parameter)
     }
 
-    /// Places the letters, or warns where the artwork folds.
+    /// Sets the letters one by one, or warns where the artwork folds.
     fn explain_letters(&self, built: &mut Built, map: &BendMap, rect: Rect, spreads: Option<ToStrip>) {
         let letters = &self.letters;
         let copies = &built.placement.copies;
@@ -380,7 +380,7 @@ impl Bend {
             None if self.ink.is_empty() => map.fold(map::edges(rect).map(|p| (p, None))).into_iter().collect(),
             None => {
                 let copies = letters::or_identity(copies);
-                // Many copies share the places between them.
+                // The more copies, the fewer samples of each.
                 let points = self.ink.iter().step_by(1 + copies.len() / 64);
                 let all = points.flat_map(|p| copies.iter().map(move |c| (*c * *p, None)));
                 map.fold(all).into_iter().collect()
@@ -390,9 +390,9 @@ impl Bend {
     }
 }
 
-/// Describes the skeleton and its corners; warns of artwork longer than the skeleton, which is from `x0` to `x1` in all copies.
+/// Describes the skeleton and its corners. Warns of artwork longer than the skeleton; with all copies it reaches from `x0` to `x1`.
 fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], [x0, x1]: [f64; 2]) {
-    /// Artwork longer by less than this share fits.
+    /// Excess of length that still fits, as a share.
     const CLOSE: f64 = 1e-3;
     let (length, closed) = (map.length, map.closed);
     let skeleton = format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" });
@@ -551,7 +551,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     if drawn { bend.as_drawn(true).build() } else { bend.build() }
 });
 
-/// Barr's deformations that a plane has; a twist needs space.
+/// Barr's deformations, except the twist, which needs space.
 const PRESETS: &[&str] = &["stretch", "swell", "taper"];
 
 /// Reads a preset: a straight skeleton whose handles differ in length.
@@ -590,7 +590,7 @@ fn preset(s: &Settings<'_>) -> Result<Option<Bend>, Error> {
     }))
 }
 
-/// The paper's handles: the levels of every piece, or those at the points of a spline.
+/// The paper's handles: levels for every piece, or handles at the points of a spline.
 #[derive(Debug, Clone, PartialEq)]
 enum Handles {
     Pieces(Vec<Vec<Vec<Vec2>>>),
@@ -607,7 +607,7 @@ fn handles(file: &NamedText) -> Result<Handles, Error> {
     Err(crate::error::no_json(&file.name))
 }
 
-/// Reads how many copies are wanted, if several are.
+/// Reads the number of copies: `None` if it is not given, `Some(None)` for as many as fit.
 fn copies(s: &Settings<'_>) -> Result<Option<Option<usize>>, Error> {
     match s.texts("copies").last() {
         None => Ok(None),
@@ -619,7 +619,7 @@ fn copies(s: &Settings<'_>) -> Result<Option<Option<usize>>, Error> {
     }
 }
 
-/// Reads how letters are set one by one, if they are.
+/// Reads the setting of letters one by one; `None` if they are bent.
 fn setting(s: &Settings<'_>) -> Result<Option<LetterSetting>, Error> {
     let mut given: Vec<&str> = if s.given("glyphs") { vec![s.choice("glyphs")?] } else { Vec::new() };
     for name in ["skew", "ribbon"] {
@@ -641,22 +641,22 @@ fn setting(s: &Settings<'_>) -> Result<Option<LetterSetting>, Error> {
 #[derive(Debug, Clone, Copy)]
 struct Repeats {
     count: usize,
-    /// Distance from one to the next.
+    /// Distance from one copy to the next.
     spacing: f64,
 }
 
 impl Repeats {
     const ONE: Self = Self { count: 1, spacing: 0.0 };
 
-    /// Returns `count` copies of `width` that have `gaps` gaps each, or as many as fit on `length` with at least `gap` in each, spread
-    /// evenly: on an open skeleton from its start to its end, on a closed one all the way around.
+    /// Returns `count` copies of `width` with `gaps` gaps each, or as many as fit on `length` if a gap is at least `gap`. They are spread
+    /// evenly, on an open skeleton from its start to its end, on a closed one all the way around.
     fn new(
         count: Option<usize>,
         (width, gaps, gap): (f64, f64, f64),
         length: f64,
         closed: bool,
     ) -> Result<Self, Error> {
-        /// More copies on one skeleton are probably a mistake in the unit.
+        /// Limit on the copies. More are probably a mistake in the unit.
         const MAX_COPIES: f64 = 10_000.0;
         let period = width + gaps * gap;
         if period <= 0.0 {

@@ -1,4 +1,4 @@
-//! The skeleton: a path's pieces in a row, measured, oriented, and joined.
+//! The skeleton: the pieces of a path, measured, oriented and joined in a row.
 
 use super::map::{Curve, MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
 use super::spline::{Part, directions, mitre};
@@ -8,17 +8,17 @@ use crate::map::curves::ArcLength;
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{BezPath, Line, Point, Vec2};
 
-/// Below this angle (radians) a joint is smooth.
+/// A joint that turns by less than this angle (radians) is smooth.
 const SMOOTH: f64 = 1e-6;
-/// Below this angle a corner is invisible.
+/// A corner that turns by less than this angle (radians) is invisible.
 const UNSEEN: f64 = 5e-3;
-/// 1 + cos of the turn beyond which a mitre would be longer than eight times the height.
+/// Least 1 + cos of a turn, below which a mitre would be longer than eight times the height.
 const SHARPEST: f64 = 1.0 / 32.0;
 
 /// The measured pieces of a path.
 pub(super) struct Skeleton {
     spines: Vec<(Spine, ArcLength)>,
-    /// The handles at the points of every piece, and its share of the parameter, if the skeleton is a spline.
+    /// For a spline, the handles at the points of every piece, and the piece's share of the parameter; empty otherwise.
     frames: Vec<(Vec<Vec2>, f64)>,
     pub(super) closed: bool,
     pub(super) length: f64,
@@ -42,15 +42,15 @@ pub(super) struct Joined {
     pub(super) warning: Option<String>,
 }
 
-/// The only connected run of a path, as pieces.
+/// Returns the segments of a subpath as pieces.
 pub(super) fn drawn(sub: Subpath) -> Vec<Part> {
     let part = |s| Part { curve: Curve::Seg(s), handles: Vec::new(), width: 0.0 };
     sub.segs.into_iter().map(part).collect()
 }
 
 impl Skeleton {
-    /// Measures the pieces of the path of this name. Unless `as_drawn`, an open one is oriented left to right, except if it goes around more
-    /// than once, a closed one clockwise (up is then outside). `reverse` turns it around after that.
+    /// Measures the pieces of a path with this name. Unless `as_drawn`, a closed path is oriented clockwise, so that up is outside, and an
+    /// open one left to right, unless it winds more than once. `reverse` then turns the path around.
     pub(super) fn new(
         (parts, closed, name): (Vec<Part>, bool, &str),
         as_drawn: bool,
@@ -91,7 +91,7 @@ impl Skeleton {
     pub(super) fn at_height(self, d: f64) -> Result<Self, Error> {
         /// Samples of a piece.
         const SAMPLES: u32 = 256;
-        /// Below this share of the skeleton's speed, the offset is close to a cusp.
+        /// Share of the skeleton's speed below which the offset is close to a cusp.
         const SLOWEST: f64 = 1e-3;
         let rate = move |s: &Spine, u: f64| 1.0 + s.moving(u).bend * d;
         for (spine, _) in &self.spines {
@@ -114,8 +114,8 @@ artwork's height; a smaller `width` helps too",
         Ok(Self { spines, length, even: d, ..self })
     }
 
-    /// Returns the scale k at which artwork of `width` is as long as the skeleton's offset at height k·`height`:
-    /// k·width = length + k·height·(total turn), because the offset's length is linear in the height.
+    /// Returns the scale k at which artwork of `width` is as long as the skeleton's offset at height k·`height`. The length of an offset
+    /// is linear in the height, so that k·width = length + k·height·(total turn).
     pub(super) fn even_scale(&self, width: f64, height: f64) -> Result<f64, Error> {
         /// Samples of a piece, between which its tangent turns by less than half a circle.
         const SAMPLES: u32 = 256;
@@ -132,8 +132,8 @@ artwork's height; a smaller `width` helps too",
         Err(Error::usage("spacing", "even", problem))
     }
 
-    /// Converts arcs to cubics within `tolerance`, for the paper's handles. Of several pieces, quadratics that turn by more than a right
-    /// angle become cubics too: one point cannot have the mitres of both their ends.
+    /// Converts arcs to cubics within `tolerance`, for the paper's handles. In a path of several pieces, quadratics that turn by more
+    /// than a right angle become cubics too, because one inner point cannot have the mitres of both ends.
     pub(super) fn polynomial(mut self, tolerance: f64) -> Self {
         let several = self.frames.is_empty() && (self.closed || self.spines.len() > 1);
         for (spine, table) in std::mem::take(&mut self.spines) {
@@ -151,7 +151,7 @@ artwork's height; a smaller `width` helps too",
         self
     }
 
-    /// Returns the distance of the highest point on the screen, or of the lowest.
+    /// Returns the distance along the skeleton of its highest point on the screen, or of its lowest.
     pub(super) fn extreme(&self, lowest: bool) -> f64 {
         /// Samples of a piece. They decide the position of the artwork, not its shape.
         const SAMPLES: u32 = 256;
@@ -176,7 +176,7 @@ artwork's height; a smaller `width` helps too",
         (0..if self.closed { n } else { n - 1 }).map(move |i| (i, (i + 1) % n))
     }
 
-    /// Returns the unit normals at every piece's ends, mitred at corners, and the corners.
+    /// Returns the sides at every piece's ends, unit normals or mitres at corners, and the corners.
     fn sides(&self) -> Result<(Vec<[Vec2; 2]>, Vec<Corner>), Error> {
         let ends: Vec<[MovingFrame; 2]> = self.spines.iter().map(|(s, _)| [s.moving(0.0), s.moving(1.0)]).collect();
         let mut sides: Vec<[Vec2; 2]> = ends.iter().map(|[a, b]| [normal(a.t), normal(b.t)]).collect();
@@ -227,9 +227,9 @@ artwork's height; a smaller `width` helps too",
         Ok(Joined { pieces, corners, notes: Vec::new(), warning: None })
     }
 
-    /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`: `given` for every piece, those of a
-    /// spline, the unit normals of the sides of a single piece's control polygon, or else mitres at the points of several, which keep
-    /// parallels smooth wherever the skeleton is (the paper's equation 5).
+    /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`. The handles are `given`, or
+    /// belong to a spline. Otherwise a single piece has the normals of its control polygon's sides, and several pieces have mitres at their
+    /// points, which keep parallels smooth wherever the skeleton is (the paper's equation 5).
     pub(super) fn with_handles(
         self,
         given: Option<&[Vec<Vec<Vec2>>]>,
@@ -293,7 +293,7 @@ artwork's height; a smaller `width` helps too",
         let strips: Vec<_> = strips.collect();
         let joints: Vec<_> = self.joints().collect();
         let pieces = self.in_a_row(strips);
-        // The straight continuations of open ends are pieces too.
+        // An open skeleton has a straight piece before its first one.
         let first = usize::from(!self.closed);
         let joints: Vec<Joint> =
             joints.into_iter().map(|(i, j)| joint(&pieces[first + i], &pieces[first + j], heights)).collect();
@@ -305,7 +305,7 @@ artwork's height; a smaller `width` helps too",
         })
     }
 
-    /// Lines up the pieces; an open skeleton continues straight at both ends.
+    /// Lines up strips of given lengths as pieces. An open skeleton continues straight at both ends.
     fn in_a_row(&self, strips: Vec<(Strip, f64)>) -> Vec<SkeletonPiece> {
         let mut pieces = Vec::with_capacity(strips.len() + 2);
         let mut at = 0.0;
@@ -335,11 +335,11 @@ artwork's height; a smaller `width` helps too",
     }
 }
 
-/// The strips on a side of a polygon. Artwork turns near its corners: the sides are blended into a mitre within a few times what it
-/// juts out at `height`, and stand straight on the rest of the line. On a line too short for that they are blended all along.
+/// Returns the strips on a side of a polygon. The normals are blended into the mitres near the corners, over a few times the mitre's
+/// width at `height`, and are square to the rest of the line. A line too short for that is blended all along.
 fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
-    /// Length of a blend as a multiple of the mitre's width: at the corner, artwork on its inner side keeps a third of its width, and
-    /// with a factor of 2 none.
+    /// Length of a blend as a multiple of the mitre's width. At the inner side of a corner, artwork keeps a third of its width; a
+    /// factor of 2 would leave nothing of it.
     const REACH: f64 = 3.0;
     let length = line.length();
     let t = (line.p1 - line.p0) / length;
@@ -367,22 +367,22 @@ fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
     out
 }
 
-/// Chords of a piece.
+/// Number of chords of a piece.
 const CHORDS: u32 = 32;
 
-/// Samples a run, the joints twice.
+/// Samples a run of curves, with its joints twice.
 fn samples<'a>(curves: &'a [&Curve]) -> impl Iterator<Item = Point> + 'a {
     curves.iter().flat_map(|s| (0..=CHORDS).map(|i| s.eval(f64::from(i) / f64::from(CHORDS))))
 }
 
-/// Returns `true` if a closed run goes counter-clockwise on the screen: its area, y down, is negative.
+/// Returns `true` if a closed run goes counter-clockwise on the screen: with y down, its area is negative.
 fn turns_left(curves: &[&Curve]) -> bool {
     let start = curves.first().map_or(Point::ORIGIN, |c| c.eval(0.0));
     let points: Vec<Vec2> = samples(curves).map(|p| p - start).collect();
     points.windows(2).map(|p| p[0].cross(p[1])).sum::<f64>() < 0.0
 }
 
-/// Returns `true` if an open run ends left of its start. The ends of a whole circle are the same up to rounding.
+/// Returns `true` if an open run ends left of its start, by more than rounding, as in a whole circle.
 fn runs_left(curves: &[&Curve]) -> bool {
     const SAME: f64 = 1e-9;
     let (Some(first), Some(last)) = (curves.first(), curves.last()) else { return false };
@@ -391,7 +391,7 @@ fn runs_left(curves: &[&Curve]) -> bool {
     start.x - last.eval(1.0).x > SAME * size
 }
 
-/// Returns `true` if the tangent of an open run turns through more than a whole turn from its start to its end. Chords turn a little less.
+/// Returns `true` if the tangent of an open run turns by more than a whole turn from its start to its end. Chords turn slightly less.
 fn winds(curves: &[&Curve]) -> bool {
     let points: Vec<Point> = samples(curves).filter(|p| p.is_finite()).collect();
     let (mut chord, mut turn) = (Vec2::ZERO, 0.0);
@@ -407,8 +407,8 @@ fn measured(curve: Curve) -> (Spine, ArcLength) {
     (Spine::new(curve), table)
 }
 
-/// Returns handles at the points of a piece with given ones at its ends: mitres of the sides of its control polygon, which turn
-/// along the skeleton alone at both ends, as unit normals do.
+/// Returns handles at the points of a piece, with the given ones at its ends and mitres of the control polygon between them. At both
+/// ends they change along the skeleton alone, as unit normals do.
 fn mitres(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     let (n, legs) = (points.len() - 1, directions(points, false));
     let inner = legs.windows(2).map(|d| mitre(normal(d[0]), normal(d[1])));
@@ -420,7 +420,7 @@ fn mitres(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     out
 }
 
-/// Compares lines along the skeleton on both sides of a joint, by distances instead of parameters.
+/// Compares the derivatives along the skeleton on both sides of a joint, with respect to distances instead of parameters.
 fn joint(a: &SkeletonPiece, b: &SkeletonPiece, [low, high]: [f64; 2]) -> Joint {
     let line = |d: f64| [a.jet(a.length, d).1, b.jet(0.0, d).1].map(|v| [v.x, v.y]);
     Joint::new(show(b.point(0.0, 0.0)), &[0.0, low, high].map(line))

@@ -1,13 +1,13 @@
 //! Skeletons given by points: B-splines that the anchors of a path control, and cubic splines that run through them.
 //!
-//! A point has a handle, the image of the artwork's height there. Points and handles together are control points in four dimensions,
-//! so that the generalised algorithm of de Boor, or interpolation, applies to both alike: S has the degree, the knots and the
-//! continuity of C, and every parallel C + v·S is as smooth as the skeleton. At a joint of Bézier pieces that is the paper's
-//! equation 4, s₃ = (s₂ + s₄)/2.
+//! Every point has a handle, the image of the artwork's height there. Points and handles together are control points in four
+//! dimensions, to which the algorithm of de Boor, or interpolation, applies: S has the degree, the knots and the continuity of C, and
+//! every parallel C + v·S is as smooth as the skeleton. At a joint of Bézier pieces this is equation 4 of the paper of Chang and
+//! Rockwood, s₃ = (s₂ + s₄)/2.
 //!
-//! Unless it is given, the handle of a B-spline's point is the mitre of the polygon's sides, so that the control points of a parallel are
-//! the corners of the polygon's offset (W. Tiller and E. G. Hanson, *Offsets of two-dimensional profiles*, IEEE CG&A 4, 1984). On an
-//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, where normals change so.
+//! The default handle of a B-spline's point is the mitre of the polygon's sides, so that the control points of a parallel are the
+//! corners of the polygon's offset (W. Tiller and E. G. Hanson, *Offsets of two-dimensional profiles*, IEEE CG&A 4, 1984). On an
+//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, as for normals.
 
 use super::map::{Curve, normal};
 use crate::error::{Error, show};
@@ -15,10 +15,10 @@ use crate::map::bspline;
 use crate::outline::Subpath;
 use kurbo::{Point, Vec2};
 
-/// The way in which the anchors of a path make a skeleton.
+/// The kind of spline that the anchors of a path make.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Spline {
-    /// They are control points of a uniform B-spline of this degree.
+    /// A uniform B-spline of this degree has them as control points.
     Near(usize),
     /// A C² cubic spline runs through them, with centripetal parameters.
     Through,
@@ -27,14 +27,14 @@ pub(super) enum Spline {
 /// A piece of a skeleton before it is measured.
 pub(super) struct Part {
     pub(super) curve: Curve,
-    /// The handles at its control points; empty if they follow from the curve.
+    /// The handles at the curve's control points; empty if they follow from the curve.
     pub(super) handles: Vec<Vec2>,
-    /// Its share of the parameter; 0 if that follows from its length.
+    /// The piece's share of the parameter; 0 if it follows from the length.
     pub(super) width: f64,
 }
 
 impl Part {
-    /// Returns the piece run the other way, on whose other side the artwork then stands.
+    /// Returns the piece in the opposite direction, with the artwork on the other side.
     pub(super) fn reversed(mut self) -> Self {
         self.handles.reverse();
         self.handles.iter_mut().for_each(|h| *h = -*h);
@@ -43,8 +43,8 @@ impl Part {
 }
 
 impl Spline {
-    /// Returns the pieces. `given` has a handle for every anchor, or `None` for one of its own, which is `unit` long; no handles at all are
-    /// as many of these.
+    /// Returns the pieces. `given` has a handle for every anchor, or `None` for the default handle, which is `unit` long. An empty `given`
+    /// stands for default handles at all anchors.
     pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
         let (points, closed) = (sub.anchors(), sub.closed);
         let n = points.len();
@@ -89,7 +89,7 @@ impl Spline {
     }
 }
 
-/// Returns the directions of a polygon's sides; one without length has that of the side before it.
+/// Returns the directions of a polygon's sides. A side without length has the direction of the side before it.
 pub(super) fn directions(points: &[Point], closed: bool) -> Vec<Vec2> {
     let n = points.len();
     let legs: Vec<Vec2> = (0..if closed { n } else { n - 1 }).map(|i| points[(i + 1) % n] - points[i]).collect();
@@ -103,13 +103,13 @@ pub(super) fn directions(points: &[Point], closed: bool) -> Vec<Vec2> {
     legs.iter().map(fill).collect()
 }
 
-/// Returns the mitre of two unit normals, which is as high over either of their lines as they are; beyond a right angle it grows no longer.
+/// Returns the mitre of two unit normals, which has the height 1 over the lines of both. Beyond a right angle it does not grow.
 pub(super) fn mitre(n: Vec2, m: Vec2) -> Vec2 {
     let c = 1.0 + n.dot(m);
     if c < 1e-9 { n } else { (n + m) / c.max(c.sqrt()) }
 }
 
-/// Returns the mitres at the corners of a polygon, and the normals at its ends.
+/// Returns the mitres at the corners of a polygon, with normals at open ends.
 fn mitres(points: &[Point], closed: bool) -> Vec<Vec2> {
     let sides: Vec<Vec2> = directions(points, closed).into_iter().map(normal).collect();
     let (n, last) = (points.len(), sides.len() - 1);
@@ -127,7 +127,7 @@ mod tests {
         Ok(Spline::Near(degree).parts(&sub, &[], 1.0)?.into_iter().map(|p| p.curve.points()).collect())
     }
 
-    /// Against the textbook's values at the knots, with all continuous derivatives.
+    /// Compares the spline with the textbook's values and continuous derivatives at the knots.
     #[test]
     fn pieces_are_the_spline() {
         let p = [(0.0, 0.0), (10.0, 30.0), (50.0, 20.0), (60.0, -10.0), (20.0, -40.0)].map(Point::from);
@@ -147,7 +147,7 @@ mod tests {
         for (s, a, b) in [(&cubic, 0, 1), (&cubic, 2, 3), (&cubic, 4, 0), (&open, 0, 1)] {
             let (a, b) = (&s[a], &s[b]);
             let off = |a: Vec2, b: Vec2| (a - b).hypot();
-            // The second derivative of the open one jumps nowhere either: its inner knot is simple and its cells equally wide.
+            // The second derivative of the open spline is continuous, too: its inner knot is simple and its cells are equally wide.
             assert!(off(a[3] - a[2], b[1] - b[0]) < 1e-12);
             assert!(off((a[3] - a[2]) - (a[2] - a[1]), (b[2] - b[1]) - (b[1] - b[0])) < 1e-12);
         }

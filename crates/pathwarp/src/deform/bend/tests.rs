@@ -1,4 +1,4 @@
-//! Bends against the paper, exact shapes and the letters' settings.
+//! Compares bends with the paper and with exact shapes, and tests the settings of letters.
 
 use super::*;
 use crate::check;
@@ -25,7 +25,7 @@ fn with_handles(pairs: &[(&str, &str)], json: &str) -> Result<Built, Error> {
     ENTRY.build_from(&args, &check::frame())
 }
 
-/// Derivatives against differences and branches against the map, on every kind of skeleton, away from the joints.
+/// Derivatives agree with differences, and branches with the map, on every kind of skeleton, away from the joints.
 #[test]
 fn jets_are_right_on_every_kind_of_skeleton() {
     for along in [
@@ -91,7 +91,7 @@ fn folds_are_reported_with_the_radius() {
     assert!(w.iter().any(|w| w.contains("folds") && w.contains("more than 30.0000")), "{w:?}");
     let w = build(&[("along", ring), ("baseline", "0")]).unwrap().explanation.warnings;
     assert!(w.is_empty(), "{w:?}");
-    // At a sharp corner even what lies on the skeleton is turned over: no distance says how far is too far.
+    // At a sharp corner even points of the skeleton are turned over, so the warning gives no distance.
     let corner = "M35,63 C64,65 45,84 58,59 C44,72 92,71 92,58";
     let w = build(&[("along", corner), ("baseline", "74%")]).unwrap().explanation.warnings;
     assert!(w.iter().any(|w| w.contains("folds")) && !w.iter().any(|w| w.contains("more than -")), "{w:?}");
@@ -140,7 +140,7 @@ fn the_polynomial_mode_has_exact_images() {
     }
 }
 
-/// Handles as in a file: the box's top edge lies at the ends of the handles, and the joint conditions are reported.
+/// With handles from a file, the box's top edge lies at the ends of the handles, and the joint conditions are reported.
 #[test]
 fn handles_from_a_file() {
     let along = ("along", "M0,100 Q50,60 100,100");
@@ -273,7 +273,7 @@ fn letters_stand_on_a_circle() {
             let [m] = set(how)[k][..] else { panic!("one copy") };
             assert!((m * p).distance(to.to_point()) < 1e-10, "{how} {k}: {:?} {to:?}", m * p);
         }
-        // Stairs: the start of the advance is on the circle.
+        // In stairs, the start of the advance is on the circle.
         let (sin, cos) = ((middle - 55.0) / 100.0_f64).sin_cos();
         let [m] = set("stair")[k][..] else { panic!("one copy") };
         let on = Point::new(100.0 * sin, -100.0 * cos);
@@ -289,8 +289,8 @@ fn objects(widths: &[f64]) -> Arc<[Letter]> {
     widths.iter().enumerate().map(one).collect()
 }
 
-/// Around a circle of radius 50 about 50,50: the middles of turned objects are apart by half of both widths and a gap that is the same
-/// everywhere, also from the last to the first.
+/// Around a circle of radius 50 about 50,50, the distance between the middles of neighbouring objects is half of both widths and a gap,
+/// which is the same everywhere, also from the last to the first.
 #[test]
 fn copies_of_a_cycle_close_on_a_ring_with_equal_gaps() {
     let (widths, length) = ([10.0, 4.0, 7.0], 100.0 * std::f64::consts::PI);
@@ -333,7 +333,7 @@ fn objects_reach_from_end_to_end_of_an_open_skeleton() {
     let wanted = [0.0, 74.0, 148.0, 32.0, 106.0, 180.0];
     assert!(starts(&built(&[("copies", "3")])).iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-9));
     assert!(starts(&built(&[("stretch", "fit")])).iter().zip([0.0, 180.0]).all(|(a, b)| (a - b).abs() < 1e-9));
-    // As drawn, the middle of the frame on that of the skeleton.
+    // By default, the middle of the frame lies on the middle of the skeleton.
     assert!(starts(&built(&[])).iter().zip([50.0, 80.0]).all(|(a, b)| (a - b).abs() < 1e-9));
     assert!(built(&[("copies", "3")]).explanation.warnings.is_empty());
     let crowded = built(&[("copies", "7")]).explanation.warnings;
@@ -357,7 +357,7 @@ fn senseless_copies_are_refused() {
     assert!(build(&[("along", CIRCLE), ("glyphs", "rotate")]).err().unwrap().to_string().contains("neither"));
 }
 
-/// Letters around a whole ring keep their widths, and the gaps between them grow alike, that from the last to the first by twice as much.
+/// Letters around a whole ring keep their widths. The gaps between them grow equally, the one from the last to the first twice as much.
 #[test]
 fn text_around_a_ring_is_spread_and_not_widened() {
     let letters: Vec<Letter> = (0..4)
@@ -405,12 +405,12 @@ fn sides_of_a_polygon_are_straight_between_their_corners() {
         let near = m.jet(Point::new(960.0 + 2.0 * f64::from(i), y));
         assert!(near.det() > 0.3 * 0.2, "{near:?}");
     }
-    // On a side too short for that, the blend of both its mitres has no part of its own.
+    // A side too short for that is blended between both its mitres.
     let short = build(&[("along", "0,0 50,0 50,50"), ("align", "start")]).unwrap().map;
     assert!(short.point(Point::new(25.0, 0.0)).distance(Point::new(50.0, -50.0)) < 1e-9);
 }
 
-/// What fits says nothing, and what does not says in one sentence by how much.
+/// Artwork that fits gives no warning; a single one states by how much longer artwork exceeds the path.
 #[test]
 fn artwork_longer_than_the_path_is_named() {
     let said = |along: &str| build(&[("along", along)]).unwrap().explanation.warnings;
@@ -421,7 +421,7 @@ fn artwork_longer_than_the_path_is_named() {
     assert!(warning.contains("longer than the path by 20.000 (25 % of the path)"), "{warning}");
 }
 
-/// The value of a B-spline's basis function over uniform knots: clamped with `cells` cells, or, without, on all whole numbers.
+/// Returns the value of a B-spline's basis function over uniform knots: clamped with `cells` cells, or else on all whole numbers.
 fn basis(cells: Option<usize>, i: isize, d: usize, degree: usize, x: f64) -> f64 {
     let knot = |k: isize| cells.map_or(k as f64, |c| (k - degree as isize).clamp(0, c as isize) as f64);
     let (t, n) = (knot(i), knot(i + d as isize + 1));
@@ -433,8 +433,8 @@ fn basis(cells: Option<usize>, i: isize, d: usize, degree: usize, x: f64) -> f64
         + part(n - x, n - knot(i + 1), basis(cells, i + 1, d - 1, degree, x))
 }
 
-/// Points and handles of a spline of any degree are blended by the same B-splines (the recursion of Cox and de Boor, written again), and lines
-/// along the skeleton are as smooth at the joints as the formula.
+/// Points and handles of a spline of any degree are blended by the same B-splines (by an independent recursion of Cox and de Boor), and
+/// lines along the skeleton are as smooth at the joints as the formula.
 #[test]
 fn handles_at_the_points_of_a_spline_are_control_points_too() {
     let points =
@@ -475,7 +475,7 @@ fn handles_at_the_points_of_a_spline_are_control_points_too() {
     }
 }
 
-/// Of any degree, by arc length: true to size, with the derivatives of the map.
+/// Splines of high degree by arc length are true to size, with the right derivatives.
 #[test]
 fn splines_of_high_degree_are_measured() {
     let points = "0,50 20,10 60,20 80,90 130,70 150,20 170,60 190,50 230,0 250,40";
@@ -516,7 +516,7 @@ fn skeletons_run_through_points() {
     assert!(second(1e-9, 1e-4).hypot() < 1e-3, "no curvature at the ends");
 }
 
-/// Stretch, swell and taper from their definitions.
+/// Stretch, swell and taper agree with their definitions.
 #[test]
 fn presets_are_polynomial_profiles() {
     let m = |pairs: &[(&str, &str)]| build(pairs).unwrap().map;
@@ -563,8 +563,8 @@ fn bad_skeletons_and_handles_are_named() {
     }
 }
 
-/// The command that once turned lines by 100°, and its relatives: at every joint, both sides of every parallel have the same derivative
-/// where the skeleton is a spline, and the same direction where it is drawn.
+/// At every joint, both sides of every parallel have the same derivative if the skeleton is a spline, and the same direction if it is
+/// drawn. Lines once turned by 100° here.
 #[test]
 fn default_handles_leave_no_kinks() {
     let zigzag = "0,100 30,40 60,120 90,50 120,130 150,60 180,100";

@@ -1,10 +1,10 @@
-//! A closed path filled in columns: verticals stay vertical between its lower and its upper outline.
+//! A closed path filled in columns: verticals stay vertical between its lower outline b and its upper outline t.
 //!
 //! > (u, v) ↦ (x, b(x) + v·(t(x) − b(x))), x linear in u between the ends
 //!
-//! Every vertical line meets the inside in intervals; the columns are those that follow one another from left to right with the largest
-//! area, without short thin ends beyond a jump. Where the outline jumps from one height to another, the columns go on level, or a slope
-//! leads into the higher part. Rows are the columns of the path with x and y exchanged.
+//! Every vertical line meets the inside in intervals. The columns are a sequence of adjacent intervals from left to right, with the
+//! largest area; short thin ends beyond a jump are cut off. Where the outline jumps from one height to another, the lower height
+//! continues level, or a slope leads to the greater one. Rows are the columns of the path with x and y exchanged.
 
 use super::fit::{SAMPLES, bounds, part, reversed, shown, to_unit};
 use crate::deform::entry::{Built, Role};
@@ -15,33 +15,33 @@ use kurbo::{Affine, Line, Point, Rect, StrokeOpts, common::solve_quadratic};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Minimum number of columns to look at.
+/// Least number of columns across a shape.
 const COLUMNS: f64 = 600.0;
-/// The slope into the higher part after a jump, in heights of the shape per width.
+/// The slope after a jump, in heights of the shape per width.
 const RAMP: f64 = 2.0;
-/// Curves go on level after a jump, where letters stand better, if that leaves at least this share of the area that slopes would.
+/// Curves continue level after a jump, where letters stand better, if that keeps at least this share of the area left by slopes.
 const LEVEL: f64 = 0.75;
 /// Jumps below this share of the height are rounding.
 const JUMP: f64 = 1e-6;
 /// Exchanges x and y.
 const TRANSPOSED: Affine = Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
 
-/// The room that artwork leaves in a shape.
+/// The room that artwork leaves free in a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::deform) struct Room {
-    /// The share of the greatest height at which it ends, in columns.
+    /// The artwork ends in columns lower than this share of the greatest height.
     pub(super) ends: Option<f64>,
-    /// Its distance from the outline.
+    /// The distance between the artwork and the outline.
     pub(super) padding: f64,
 }
 
-/// A shape in columns, or in rows: two curves that face one another over one range.
+/// A shape in columns, or in rows: two curves that face one another over a common range.
 pub(super) struct Columns {
     /// The curves: bottom and top from left to right, or left and right upwards.
     pub(super) curves: [Vec<Seg>; 2],
     /// The range of the artwork, as shares of the curves' range.
     pub(super) range: [f64; 2],
-    /// Places where the outline jumps, in the order found.
+    /// Points at which the outline jumps, in the order found.
     pub(super) jumps: Vec<Point>,
     /// The share of the shape's area that the columns hold.
     pub(super) coverage: f64,
@@ -52,13 +52,13 @@ struct Piece {
     seg: Seg,
     from: f64,
     to: f64,
-    /// As drawn it ran to the left.
+    /// `true` if it was drawn to the left.
     turned: bool,
-    /// Belongs to the band that `padding` keeps free.
+    /// `true` if it bounds the band that `padding` keeps free.
     band: bool,
 }
 
-/// A part of a piece: its number and its range.
+/// A part of a piece: the piece's index and a range of x.
 #[derive(Clone, Copy)]
 struct Span {
     piece: usize,
@@ -66,7 +66,7 @@ struct Span {
     to: f64,
 }
 
-/// An interval of a vertical line: the pieces at its ends, by y, and their heights.
+/// An interval of a vertical line: the pieces at its ends, in the order of y, and the ordinates there.
 #[derive(Clone, Copy)]
 struct Interval {
     ends: [usize; 2],
@@ -83,7 +83,7 @@ impl Interval {
     }
 }
 
-/// A vertical line: its x, the events on both sides of it, the width it stands for and its intervals.
+/// A vertical line: its x, the neighbouring ends of pieces on both sides, the width that it represents, and its intervals.
 struct VerticalLine {
     x: f64,
     between: [f64; 2],
@@ -110,7 +110,7 @@ impl Columns {
         let lowest = ends * heights.iter().map(|h| h.1).fold(0.0, f64::max);
         let height = |x: f64| all.at(high, x) - all.at(low, x) - lowest;
         let step = (to - from) / heights.len() as f64;
-        // From an end of a run outwards to where the shape is just high enough.
+        // Extends an end of a run outwards to where the shape is just high enough.
         let inner = |end: f64, by: f64| {
             let beyond = (end + by).clamp(from, to);
             if height(beyond) >= 0.0 { beyond } else { bisected(beyond, end, height) }
@@ -132,24 +132,24 @@ impl Columns {
     }
 }
 
-/// Two curves without jumps: low and high.
+/// Two curves without jumps, the low one and the high one.
 struct SmoothCurves {
     curves: [Vec<Span>; 2],
-    /// Where slopes begin.
+    /// Points at which slopes begin.
     jumps: Vec<Point>,
-    /// Heights between the curves, at even places.
+    /// Heights between the curves, at equal steps of x: (x, height).
     heights: Vec<(f64, f64)>,
     area: f64,
 }
 
-/// Pieces of outlines.
+/// The inside of outlines, as their pieces.
 pub(super) struct Region {
     pieces: Vec<Piece>,
     pub(super) bounds: Rect,
 }
 
 impl Region {
-    /// The inside of a closed path after `turn`, without a band along its outline.
+    /// Creates the inside of a closed path after `turn`, without a band of width `padding` along its outline.
     pub(super) fn new(shape: &Subpath, turn: Affine, padding: f64) -> Option<Self> {
         let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
         let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
@@ -161,17 +161,17 @@ impl Region {
         Some(all)
     }
 
-    /// The intervals of a vertical line that are inside, by y.
+    /// Returns the intervals of a vertical line that are inside, in the order of y.
     pub(super) fn spans(&self, x: f64) -> Vec<[f64; 2]> {
         self.intervals(&self.crossed(x), x).iter().map(|v| v.ys).collect()
     }
 
-    /// The pieces that a vertical line crosses.
+    /// Returns the indices of the pieces that a vertical line crosses.
     fn crossed(&self, x: f64) -> Vec<usize> {
         (0..self.pieces.len()).filter(|i| (self.pieces[*i].from..self.pieces[*i].to).contains(&x)).collect()
     }
 
-    /// Adds an outline, cut where it turns back.
+    /// Adds an outline, cut where its direction along x changes.
     fn add(&mut self, segs: &[Seg], band: bool) {
         for s in segs {
             let mut ts = turns(s);
@@ -191,7 +191,7 @@ impl Region {
         }
     }
 
-    /// Vertical lines from left to right, some between any two neighbouring ends of pieces.
+    /// Returns vertical lines from left to right, with at least one between any two neighbouring ends of pieces.
     fn lines(&self) -> Vec<VerticalLine> {
         let mut events: Vec<f64> = self.pieces.iter().flat_map(|p| [p.from, p.to]).collect();
         events.sort_by(f64::total_cmp);
@@ -210,7 +210,7 @@ impl Region {
         out
     }
 
-    /// The intervals of a vertical line that are inside the shape, and not in the band.
+    /// Returns the intervals of a vertical line that are inside the shape and outside the band.
     fn intervals(&self, here: &[usize], x: f64) -> Vec<Interval> {
         let mut crossed: Vec<(f64, usize)> = here.iter().map(|i| (self.pieces[*i].y(x), *i)).collect();
         crossed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -232,7 +232,7 @@ impl Region {
         out
     }
 
-    /// The low (0) or high (1) end of the chosen intervals as parts of pieces.
+    /// Returns the low (0) or high (1) ends of the chosen intervals as parts of pieces.
     fn traced(&self, chosen: &[(&VerticalLine, Interval)], end: usize) -> Vec<Span> {
         let mut out: Vec<Span> = Vec::new();
         let (first, last) = (&chosen[0], &chosen[chosen.len() - 1]);
@@ -254,17 +254,17 @@ impl Region {
         out
     }
 
-    /// The x at which an outermost interval ends: the event next to it, or where its ends cross before that.
+    /// Returns the x at which an outermost interval ends: the neighbouring event, or a crossing of its two pieces before that.
     fn outer_end(&self, (line, v): &(&VerticalLine, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
         if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
     }
 
-    /// Cuts off the ends of two curves beyond a jump or a steep step, if they are short and thin.
+    /// Cuts off short and thin ends of two curves beyond a jump or a steep step.
     fn trim(&self, curves: &mut [Vec<Span>; 2]) {
-        /// Longest, as a share of the range.
+        /// Greatest length of an end, as a share of the range.
         const SHORT: f64 = 0.25;
-        /// Highest, as a share of the height on the other side of the jump, and of the step.
+        /// Greatest height of an end, as a share of the height on the other side of the jump, and of the step.
         const THIN: f64 = 0.55;
         const LOW: f64 = 0.85;
         /// Heights at a step are compared at this share of its distance from the end, on both sides.
@@ -301,7 +301,7 @@ impl Region {
         }
     }
 
-    /// Leads slopes over the jumps of two curves. `None` if the curves meet.
+    /// Replaces the jumps of two curves by slopes. `None` if the curves meet.
     fn smoothed(&mut self, mut curves: [Vec<Span>; 2], ramp: f64) -> Option<SmoothCurves> {
         let mut jumps = Vec::new();
         for (curve, out) in curves.iter_mut().zip([-1.0, 1.0]) {
@@ -314,9 +314,9 @@ impl Region {
         heights.iter().all(|h| h.1 > 0.0).then_some(SmoothCurves { curves, jumps, heights, area })
     }
 
-    /// Leads slopes over jumps of a curve; `out` is −1 for the low and 1 for the high one.
+    /// Replaces the jumps of a curve by slopes; `out` is −1 for the low and 1 for the high curve.
     fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, ramp: f64, jumps: &mut Vec<Point>) {
-        /// A slope may meet another jump.
+        /// Limit on the jumps, as a slope may meet another one.
         const MAX_JUMPS: usize = 100;
         for _ in 0..MAX_JUMPS {
             let g = |me: &Self, s: &Span, x: f64| out * me.pieces[s.piece].y(x);
@@ -327,7 +327,7 @@ impl Region {
             let Some((i, x, a, b)) = jump else { return };
             let start = Point::new(x, out * a.min(b));
             jumps.push(start);
-            // Outwards into the higher part, until the slope leaves it.
+            // The slope runs outwards into the higher part, until it leaves it.
             let (right, slope) = (b > a, ramp * self.bounds.height() / self.bounds.width());
             let mut rest: Vec<Span> = if right { curve.split_off(i + 1) } else { curve.drain(..=i).rev().collect() };
             let line = |x1: f64| out * start.y + slope * (x1 - x).abs();
@@ -367,26 +367,26 @@ impl Region {
         }
     }
 
-    /// Heights between two curves in the middles of equal parts of their range.
+    /// Returns the heights between two curves, in the middles of equal parts of their range.
     fn heights(&self, low: &[Span], high: &[Span], from: f64, to: f64) -> Vec<(f64, f64)> {
         let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
         xs.map(|x| (x, self.at(high, x) - self.at(low, x))).collect()
     }
 
-    /// The y of a curve.
+    /// Returns the y of a curve at `x`.
     fn at(&self, curve: &[Span], x: f64) -> f64 {
         let k = curve.partition_point(|s| s.to < x).min(curve.len() - 1);
         self.pieces[curve[k].piece].y(x)
     }
 
-    /// The segments of a curve.
+    /// Returns the segments of a curve.
     fn cut(&self, curve: &[Span]) -> Vec<Seg> {
         let one = |s: &Span| {
             let p = &self.pieces[s.piece];
             part(&p.seg, p.parameter(s.from), p.parameter(s.to))
         };
         let mut out: Vec<Seg> = curve.iter().filter(|s| s.to > s.from).map(one).collect();
-        // Neighbours meet to the last bit.
+        // Neighbours must meet to the last bit.
         for k in 1..out.len() {
             out[k - 1] = crate::anchors::ending_at(&out[k - 1], out[k].start());
         }
@@ -395,7 +395,7 @@ impl Region {
 }
 
 impl Piece {
-    /// The parameter at `x`.
+    /// Returns the parameter of the piece at `x`.
     fn parameter(&self, x: f64) -> f64 {
         if x <= self.from || x >= self.to {
             return if x <= self.from { 0.0 } else { 1.0 };
@@ -417,9 +417,9 @@ impl Piece {
     }
 }
 
-/// Returns the intervals from left to right, each meeting the next, with the largest area.
+/// Returns the sequence of adjacent intervals from left to right that has the largest area.
 fn largest(lines: &[VerticalLine]) -> Option<Vec<(&VerticalLine, Interval)>> {
-    // For every interval, the largest area from it on, and the next interval.
+    // For every interval, the largest area of a sequence that begins with it, and the next interval of that sequence.
     let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
     for k in (0..lines.len()).rev() {
         let follow = |v: &Interval| {
@@ -444,7 +444,7 @@ fn largest(lines: &[VerticalLine]) -> Option<Vec<(&VerticalLine, Interval)>> {
     Some(out)
 }
 
-/// Returns the outline of the band around an outline that `padding` keeps free.
+/// Returns the outline of the band that `padding` keeps free along an outline.
 fn band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
     let tolerance = 1e-5 * (bounds.width() + bounds.height());
     let start = segs.first().map_or(Point::ORIGIN, Seg::start);
@@ -454,7 +454,7 @@ fn band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
     Outline::from(&stroke).segs().copied().collect()
 }
 
-/// Returns the parameters where a segment may turn back along x.
+/// Returns the parameters at which a segment's direction along x may change.
 fn turns(s: &Seg) -> Vec<f64> {
     match s {
         Seg::Line(_) => Vec::new(),
@@ -468,7 +468,7 @@ fn turns(s: &Seg) -> Vec<f64> {
         }
         Seg::Arc(e) => {
             let angle = e.b.x.atan2(e.a.x);
-            // Half turns on both sides of the start.
+            // All half turns near the arc, on both sides of its start.
             let halves = ((e.start - angle) / PI).floor() as i32;
             (-3..=4).map(|k| (angle + PI * f64::from(halves + k) - e.start) / e.sweep).collect()
         }

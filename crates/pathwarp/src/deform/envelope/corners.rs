@@ -9,26 +9,26 @@ use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Affine, CubicBez, Line, Point, Rect, Vec2};
 
-/// A joint that turns by at least this angle (degrees) looks like a corner.
+/// Least angle, in degrees, at which a joint counts as a corner.
 const CORNER: f64 = 20.0;
 /// The cost of a corner on a smooth curve, in units of [`distortion`].
 const SMOOTH: f64 = 0.1;
 /// The additional cost if a sharp node is near.
 const NEAR_SHARP: f64 = 0.2;
-/// How near that is, as a share of the box.
+/// Distance within which a sharp node is near, as a share of the box.
 const AROUND: f64 = 0.15;
 /// Limit on sharp nodes considered as corners.
 const MAX_SHARP: usize = 14;
-/// Corners that cost less than this more than the best are rivals.
+/// Choices of corners whose cost exceeds the least by no more than this are rivals.
 const RIVAL_MARGIN: f64 = 0.03;
-/// Corners farther apart than this, as a share of the box, are different.
+/// Distance beyond which two corners are different, as a share of the box.
 const DIFFERENT: f64 = 0.1;
 /// Limit on a path's pieces: every joint is a crease of the map.
 const MAX_PIECES: usize = 2000;
-/// A location on the path: piece and parameter.
+/// A location on a path: the index of a piece, and a parameter.
 type Location = (usize, f64);
 
-/// Reads a closed path that encloses something.
+/// Returns the closed subpath of a path, if it encloses an area.
 pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {
     let sub = anchors::closed_subpath(path, "a single closed run of them", |lines| lines >= 2)?;
     if sub.segs.len() > MAX_PIECES {
@@ -42,7 +42,7 @@ pub(super) fn closed(path: &NamedPath) -> Result<Subpath, Error> {
     Ok(sub)
 }
 
-/// Divides a closed path into four sides. Corners and bottom are found unless given; nothing is mirrored unless `reverse`.
+/// Divides a closed path into four sides. Corners and bottom are found unless given. Only `reverse` mirrors the artwork.
 pub(super) fn ring(
     name: &str,
     sub: &Subpath,
@@ -92,7 +92,7 @@ pub(super) fn ring(
 /// Returns the lowest side on the screen among those that run to the right.
 fn lowest(sides: &[Vec<Seg>; 4]) -> usize {
     let height = |side: &[Seg]| {
-        // Mean height by length.
+        // The mean height, weighted by length.
         let parts = side
             .iter()
             .flat_map(|s| (0..SAMPLES).map(move |i| (f64::from(i) + 0.5) / f64::from(SAMPLES)).map(move |t| (s, t)));
@@ -103,7 +103,7 @@ fn lowest(sides: &[Vec<Seg>; 4]) -> usize {
         sum / length
     };
     let to_the_right = |side: &[Seg]| side.first().zip(side.last()).is_some_and(|(a, b)| b.end().x > a.start().x);
-    // The first of equals; tiny differences are rounding.
+    // The first of equal sides is taken; tiny differences are rounding.
     let mut best: Option<(usize, f64)> = None;
     for (i, side) in sides.iter().enumerate().filter(|(_, s)| to_the_right(s)) {
         let here = height(side);
@@ -120,7 +120,7 @@ fn cut(segs: &[Seg], locations: [Location; 4]) -> [Vec<Seg>; 4] {
         let ((from, a), (to, b)) = (locations[i], locations[(i + 1) % 4]);
         let mut out = Vec::new();
         let (mut at, mut start) = (from, a);
-        // At most once around.
+        // The loop goes around the path at most once.
         for _ in 0..=segs.len() {
             if at == to && b > start {
                 out.push(part(&segs[at], start, b));
@@ -132,7 +132,7 @@ fn cut(segs: &[Seg], locations: [Location; 4]) -> [Vec<Seg>; 4] {
                 break;
             }
         }
-        // Close the gap that rounding leaves to the next part.
+        // Rounding must leave no gap to the next part.
         let next = segs[to].eval(b);
         if let Some(last) = out.last_mut() {
             *last = anchors::ending_at(last, next);
@@ -165,22 +165,22 @@ fn given(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Location; 4]
     Ok(locations)
 }
 
-/// Finds corners: a path's only four nodes if each lies in another quarter of its box; else, of all choices of four sharp nodes, and
-/// of points nearest to the corners of the box in whose quarter there is none, the one that distorts least. `places` are those of the
-/// artwork, in the unit square.
+/// Finds four corners. If a path has just four nodes, one in each quarter of its box, it is those. Otherwise the candidates are sharp
+/// nodes and, for each quarter of the box without one, the point of the path nearest to its corner; the four that distort least win.
+/// `places` are points of the artwork, in the unit square.
 fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<FoundCorners, Error> {
     let n = sub.segs.len();
     let mut sharp: Vec<usize> = (0..n).filter(|&i| turn(sub, i).abs() >= CORNER).collect();
     let mut seen: Vec<_> = (0..n).filter_map(|i| quarter(sub.segs[i].start(), bounds)).collect();
     seen.sort_unstable();
     seen.dedup();
-    // Four nodes are meant as corners, unless they are those of a circle.
+    // Four nodes are meant as corners, unless they are the extremes of a circle.
     if n == 4 && seen.len() == 4 {
         return Ok(FoundCorners { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
     }
     sharp.sort_by(|a, b| turn(sub, *b).abs().total_cmp(&turn(sub, *a).abs()).then(a.cmp(b)));
     sharp.truncate(MAX_SHARP);
-    // A lone tip between two empty quarters, as of a heart, is the middle of a side, unless there are four, as of a diamond.
+    // A tip between two quarters without sharp nodes, as of a heart, is the middle of a side. Four such tips, as of a diamond, are corners.
     let held: Vec<_> = sharp.iter().filter_map(|i| quarter(sub.segs[*i].start(), bounds)).collect();
     let beside = |p: Point| {
         let (to, d) = (bounds.center(), 0.25 * bounds.size().to_vec2());
@@ -247,11 +247,11 @@ fn found(name: &str, sub: &Subpath, bounds: Rect, places: &[Point]) -> Result<Fo
     })
 }
 
-/// Corners found.
+/// The result of a search for corners.
 struct FoundCorners {
     corners: [Location; 4],
     how: &'static str,
-    /// Others that are hardly worse, for a message.
+    /// Other corners that are hardly worse, for a message.
     rival: Option<String>,
 }
 
@@ -261,7 +261,7 @@ struct FlatPath {
     lengths: Vec<f64>,
 }
 
-/// Lines per piece.
+/// Number of lines per piece.
 const LINES: u32 = 16;
 
 impl FlatPath {
@@ -286,7 +286,7 @@ impl FlatPath {
         self.lengths[self.lengths.len() - 1]
     }
 
-    /// The point at a length, which may be more than once around.
+    /// Returns the point at a length from the start, which may lead around the path more than once.
     fn at(&self, length: f64) -> Point {
         let length = length.rem_euclid(self.whole());
         let k = self.lengths.partition_point(|l| *l <= length).clamp(1, self.points.len() - 1);
@@ -294,7 +294,7 @@ impl FlatPath {
         self.points[k - 1].lerp(self.points[k], if b > a { (length - a) / (b - a) } else { 0.0 })
     }
 
-    /// The distortion of the patch between corners at these lengths; `None` if two are the same.
+    /// Returns the distortion of the patch between corners at these lengths; `None` if a side is too short.
     fn distortion(&self, corners: [f64; 4], places: &[Point]) -> Option<f64> {
         /// The least length of a side, as a share of the path's.
         const SHORTEST: f64 = 0.01;
@@ -333,18 +333,18 @@ impl FlatPath {
 
 /// Returns the quarter of the box that a point lies in; `None` if it is too close to the box's middle lines.
 fn quarter(p: Point, bounds: Rect) -> Option<(bool, bool)> {
-    /// Distance from the middle lines, as a share of the box.
+    /// Least distance from the middle lines, as a share of the box.
     const MIDDLE: f64 = 0.05;
     let (x, y) = ((p.x - bounds.x0) / bounds.width() - 0.5, (p.y - bounds.y0) / bounds.height() - 0.5);
     (x.abs() > MIDDLE && y.abs() > MIDDLE).then_some((x > 0.0, y > 0.0))
 }
 
-/// Replaces tails and teeth of a closed path, which lettering leaves free, by straight lines: what sticks out with a sharp tip between
-/// two notches near one another. Returns the tips, too.
+/// Replaces tails and teeth of a closed path, which lettering leaves free, by straight lines. They stick out with a sharp tip between
+/// two notches that are near one another. Returns the tips, too.
 pub(super) fn trimmed(sub: &Subpath) -> (Subpath, Vec<Point>) {
     /// The largest area, as a share of the path's.
     const SMALL: f64 = 0.08;
-    /// The least area against the square over the notches' distance.
+    /// The least area, as a share of the square over the notches' distance.
     const DEEP: f64 = 0.15;
     let whole: f64 = sub.segs.iter().map(area).sum();
     let n = sub.segs.len();
@@ -374,7 +374,7 @@ pub(super) fn trimmed(sub: &Subpath) -> (Subpath, Vec<Point>) {
     (Subpath { start: segs.first().map_or(sub.start, Seg::start), segs, closed: true }, found)
 }
 
-/// Returns the nodes of a path that runs around its area with this sign at which it turns sharply outwards.
+/// Returns the nodes at which a path turns sharply outwards. `around` is the sign of the area that it runs around.
 pub(super) fn sharp(sub: &Subpath, around: f64) -> impl Iterator<Item = usize> {
     (0..sub.segs.len()).filter(move |i| turn(sub, *i) * around >= CORNER)
 }
@@ -383,7 +383,7 @@ pub(super) fn sharp(sub: &Subpath, around: f64) -> impl Iterator<Item = usize> {
 fn turn(sub: &Subpath, node: usize) -> f64 {
     let n = sub.segs.len();
     let (a, b) = (&sub.segs[(node + n - 1) % n], &sub.segs[node]);
-    /// Distance of the point further in whose direction counts where a piece has no speed.
+    /// Distance in parameter of the point whose direction counts if the piece has no speed at its end.
     const ASIDE: f64 = 1e-4;
     let direction = |s: &Seg, t: f64, aside: f64| {
         let v = s.deriv(t);
@@ -394,8 +394,8 @@ fn turn(sub: &Subpath, node: usize) -> f64 {
     v.cross(w).atan2(v.dot(w)).to_degrees()
 }
 
-/// Returns the location nearest to `c`, both axes scaled: the best sample, refined to where the distance's slope vanishes. Ends
-/// of pieces are nodes.
+/// Returns the location nearest to `c` after scaling both axes: the best sample, refined to a zero of the distance's derivative.
+/// The ends of pieces become nodes.
 fn nearest(sub: &Subpath, c: Point, scale: Vec2, bounds: Rect) -> Location {
     let scaled = |v: Vec2| Vec2::new(v.x * scale.x, v.y * scale.y);
     let off = |s: &Seg, t: f64| scaled(s.eval(t) - c);
@@ -414,7 +414,7 @@ fn nearest(sub: &Subpath, c: Point, scale: Vec2, bounds: Rect) -> Location {
     let step = 1.0 / f64::from(SAMPLES);
     let (mut lo, mut hi) = ((t - step).max(0.0), (t + step).min(1.0));
     let slope = |t: f64| off(s, t).dot(scaled(s.deriv(t)));
-    // 60 bisections reduce a unit interval to rounding.
+    // Sixty bisections reduce a unit interval to rounding.
     for _ in 0..60 {
         let middle = 0.5 * (lo + hi);
         if slope(middle) > 0.0 {
@@ -432,31 +432,31 @@ fn nearest(sub: &Subpath, c: Point, scale: Vec2, bounds: Rect) -> Location {
     }
 }
 
-// Sides drawn one by one: two facing curves, or three, or four, or one with a height.
+// Sides drawn one by one: two facing curves, three, four, or one with a height.
 
-/// Ends this close, as a share of the whole, meet.
+/// Distance at which ends still meet, as a share of the size of all curves.
 const MEET: f64 = 1e-4;
 
 /// The curves of an envelope, and how to complete them.
 pub(super) struct Curves<'a> {
     /// Bottom, right, top, left.
     pub(super) drawn: &'a [Option<NamedPath>; 4],
-    /// Distance of the facing side, if one curve is drawn.
+    /// Distance between the only curve drawn and its copy on the facing side.
     pub(super) height: Option<f64>,
     /// The default for `height`.
     pub(super) frame_height: f64,
-    /// Joins two curves at right angles.
+    /// `true` if missing sides leave the curves at right angles.
     pub(super) square: bool,
     pub(super) reverse: bool,
 }
 
-/// Two facing curves, run the same way, and those drawn between them.
+/// Two facing curves, run in the same direction, and the curves drawn between them.
 struct FacingCurves {
-    /// Bottom and top, rather than left and right.
+    /// `true` for bottom and top, `false` for left and right.
     lying: bool,
     first: Vec<Seg>,
     second: Vec<Seg>,
-    /// From the first curve to the second, at their starts and at their ends.
+    /// The curves from the first to the second, at their starts and at their ends.
     between: [Option<Vec<Seg>>; 2],
 }
 
@@ -488,7 +488,7 @@ impl Curves<'_> {
         };
         let area: f64 = sides.iter().flatten().map(area).sum();
         if area > 0.0 {
-            // Half a turn of the parameters: bottom stays bottom.
+            // The ring is run the other way; the bottom remains the bottom.
             sides = mirrored(sides);
             notes.push("the curves run right to left: the other way they would mirror".into());
         }
@@ -501,7 +501,7 @@ impl Curves<'_> {
         Ok(Ring { sides, notes, warnings })
     }
 
-    /// Warns if each of two facing curves is where the other should be.
+    /// Returns a warning if two facing curves should be exchanged.
     fn exchanged(&self, lying: bool, first: &[Seg], second: &[Seg]) -> Option<String> {
         let middle = |c: &[Seg]| {
             let sum = c.iter().map(|s| s.start().to_vec2() + s.end().to_vec2()).fold(Vec2::ZERO, |a, b| a + b);
@@ -522,7 +522,7 @@ impl Curves<'_> {
         (wrong && !self.reverse).then(|| format!("envelope: {what}"))
     }
 
-    /// Returns the pair of curves drawn on both sides, the second a copy of the first if it is drawn alone.
+    /// Returns the facing curves. A curve drawn alone faces a copy of itself.
     fn facing(&self, notes: &mut Vec<String>) -> Result<FacingCurves, Error> {
         let [bottom, right, top, left] = [0, 1, 2, 3].map(|k| self.curve(k));
         let (mut bottom, right, mut top, left) = (bottom?, right?, top?, left?);
@@ -541,7 +541,7 @@ impl Curves<'_> {
             let problem = "goes with `bottom` or `top` alone: here the facing side is drawn";
             return Err(Error::usage("height", height.to_string(), problem));
         }
-        // The corners are the ends of the pair that is drawn on both sides.
+        // The corners are the ends of the facing curves.
         match (bottom, top, left, right) {
             (Some(mut a), Some(mut b), left, right) => {
                 run(&mut a, &mut b, |v| v.x);
@@ -556,7 +556,7 @@ impl Curves<'_> {
         }
     }
 
-    /// Returns one connected open curve.
+    /// Returns curve `k`, one connected open run; `None` if it is not drawn.
     fn curve(&self, k: usize) -> Result<Option<Vec<Seg>>, Error> {
         let Some(path) = &self.drawn[k] else { return Ok(None) };
         let sub = anchors::only_subpath(path, "a single connected run of them")?;
@@ -589,7 +589,7 @@ fn arriving(c: &[Seg]) -> Vec2 {
     c.last().map_or(Vec2::ZERO, |s| s.deriv(1.0))
 }
 
-/// Orients both curves so that `along` grows from start to end.
+/// Orients both curves so that `along` of the way from start to end is positive.
 fn run(a: &mut Vec<Seg>, b: &mut Vec<Seg>, along: impl Fn(Vec2) -> f64) {
     for c in [a, b] {
         if along(end(c) - start(c)) < 0.0 {
@@ -598,7 +598,7 @@ fn run(a: &mut Vec<Seg>, b: &mut Vec<Seg>, along: impl Fn(Vec2) -> f64) {
     }
 }
 
-/// Orients a drawn side between two corners, and snaps its ends onto them.
+/// Orients a drawn side from one corner to another, and snaps its ends onto them.
 fn joined(name: &str, c: Vec<Seg>, from: Point, to: Point, size: f64) -> Result<Vec<Seg>, Error> {
     let back = reversed(&c);
     let off = |c: &[Seg]| start(c).distance(from).max(end(c).distance(to));

@@ -1,17 +1,17 @@
-//! Measures how much a map distorts: its stretches at places of the artwork.
+//! Distortion of a map, measured by its stretches at points of the artwork.
 
 use crate::map::Jet;
 use kurbo::{Point, Vec2};
 
-/// Returns `n` × `n` places of the unit square.
+/// Returns `n` × `n` points of the unit square, in the middles of equal cells.
 pub(super) fn grid(n: u32) -> impl Iterator<Item = Point> {
     let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
     (0..n * n).map(move |k| Point::new(at(k % n), at(k / n)))
 }
 
-/// Returns the mean over all places of the squared logarithms of both [`stretches`].
+/// Returns the sum of the squared logarithms of both [`stretches`], averaged over all points.
 pub(super) fn distortion(jets: &[Jet]) -> f64 {
-    /// The limit at a place, which folds and places squeezed to nothing reach.
+    /// The limit at a point, reached at folds and where the artwork is squeezed to nothing.
     const MAX: f64 = 100.0;
     let one = |[a, b]: [f64; 2]| {
         let d = a.ln().powi(2) + b.ln().powi(2);
@@ -28,14 +28,14 @@ pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
     RADIAN * (right.y.atan2(right.x).powi(2) + down.x.atan2(down.y).powi(2))
 }
 
-/// Returns the largest and the smallest stretch at every place, relative to the mean stretches along both axes; the smallest is negative
-/// where the map mirrors.
+/// Returns the largest and the smallest stretch at every point, relative to the mean stretches along both axes. The smallest is
+/// negative where the map mirrors.
 pub(super) fn stretches(jets: &[Jet]) -> Vec<[f64; 2]> {
     let mean = |v: fn(&Jet) -> Vec2| jets.iter().map(|j| v(j).hypot()).sum::<f64>() / jets.len() as f64;
     let (x, y) = (mean(|j| j.dx), mean(|j| j.dy));
     let one = |j: &Jet| {
         let (dx, dy) = (j.dx / x, j.dy / y);
-        // Singular values by the sums of the conformal and the anticonformal part.
+        // The singular values are the sum and the difference of the conformal and the anticonformal part, halved.
         let (c, a) = ((dx.x + dy.y).hypot(dx.y - dy.x), (dx.x - dy.y).hypot(dx.y + dy.x));
         [0.5 * (c + a), 0.5 * (c - a)]
     };

@@ -1,4 +1,4 @@
-//! The map of a box into a ring of four sides.
+//! The Coons patch of a box into a ring of four sides.
 
 use crate::anchors;
 use crate::deform::entry::{Built, Role};
@@ -46,7 +46,7 @@ choice! {
 }
 
 impl Spread {
-    /// Returns the pace of a lying or standing side.
+    /// Returns the pace along a side, which lies or stands.
     fn pace(self, lying: bool) -> Pace {
         match self {
             Self::Parameter => Pace::Parameter,
@@ -57,7 +57,7 @@ impl Spread {
     }
 }
 
-/// Builds the map of the box `frame` into these sides.
+/// Builds the map of the box `frame` into the sides of a ring.
 pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Option<Spread>) -> Result<Built, Error> {
     let anchors::Anchors::Four(from) = anchors::frame_corners(&Frame::new(frame))? else {
         return Err(no_length("frame"));
@@ -92,7 +92,7 @@ pub(super) fn to_unit(frame: Rect) -> Affine {
     Affine::new([1.0 / w, 0.0, 0.0, -1.0 / h, -frame.x0 / w, frame.y1 / h])
 }
 
-/// Returns the sides at their pace, and straight ones where `keep` needs them.
+/// Returns the sides, parametrised at their pace, with straight ones where `keep` needs them.
 pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut Built) -> Result<Sides, Error> {
     let [bottom, right, top, left] = &ring.sides;
     let (top, left) = (reversed(top), reversed(left));
@@ -120,7 +120,7 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
             });
         }
     };
-    // The kept lines run between a pair of curves; the other two sides are kept lines themselves.
+    // The kept lines run between a pair of curves; the other two sides are kept lines, too.
     let (pair, names) = if lying { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
     let exact = if given.is_some() { None } else { Side::new(pair[0], axis).zip(Side::new(pair[1], axis)) };
     let (a, b) = match exact {
@@ -161,7 +161,7 @@ pub(super) fn is_curved(ring: &Ring, k: usize) -> bool {
     demand_straight(&ring.sides[k], SIDES[k], "").is_err()
 }
 
-/// Refuses a curved side, not one without length; `what` begins the message.
+/// Refuses a curved side; a side without length is accepted. `what` begins the message.
 fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
     let Some(side) = Side::new(c, Pace::Length) else { return Ok(()) };
     let (off, at) = side.off_straight();
@@ -191,14 +191,14 @@ fn no_pace(name: &str, pace: Pace, spread: Spread) -> Error {
 
 /// Chords per side.
 const CHORDS: u32 = 400;
-/// Chords in a block, which are looked at only if the block's box is met.
+/// Chords per block. Only blocks whose box is met are searched.
 const BLOCK: usize = 20;
-/// Overshoot, in lengths of a chord, that still counts as its end.
+/// Overshoot beyond a chord that still counts as its end, as a share of its length.
 const ROUNDING: f64 = 1e-9;
 /// Samples of the map's determinant along an axis.
 const GRID: u32 = 64;
 
-/// Returns the warnings. `inverse` takes the unit square to the source.
+/// Returns warnings about crossings and folds. `inverse` takes the unit square to the source.
 fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
     let s = map.sides();
     let sides = [&s.bottom, &s.right, &s.top, &s.left];
@@ -215,7 +215,7 @@ fn crossings(sides: [&Side; 4]) -> Vec<String> {
         for j in i..4 {
             let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
             let pairs = chords[i].all.iter().enumerate().flat_map(|(k, a)| {
-                // A side against itself: each pair once, without neighbours.
+                // Within a side, each pair of chords is compared once, without neighbours.
                 let from = if i == j { k + 2 } else { 0 };
                 chords[j].near(a, from).map(move |b| (a, b))
             });
@@ -244,7 +244,7 @@ struct Chords {
 }
 
 impl Chords {
-    /// Cuts a side into chords. Their boxes are wider by `room`.
+    /// Cuts a side into chords. Boxes are enlarged by `room`.
     fn new(side: &Side, room: f64) -> Self {
         let points: Vec<Point> = (0..=CHORDS).map(|i| side.at(f64::from(i) / f64::from(CHORDS)).0).collect();
         let all: Vec<Line> = points.windows(2).map(|p| Line::new(p[0], p[1])).collect();
@@ -256,7 +256,7 @@ impl Chords {
         Self { all, boxes }
     }
 
-    /// Returns the chords, from a number on, in the blocks whose box meets that of `line`.
+    /// Returns the chords, from number `from` on, in the blocks whose box meets the box of `line`.
     fn near(&self, line: &Line, from: usize) -> impl Iterator<Item = &Line> {
         let here = Rect::from_points(line.p0, line.p1);
         let first = from / BLOCK;
@@ -272,7 +272,7 @@ impl Chords {
 fn crossing(a: &Line, b: &Line) -> Option<Point> {
     let (v, w, d) = (a.p1 - a.p0, b.p1 - b.p0, b.p0 - a.p0);
     let det = v.cross(w);
-    // Parallel chords, as of a straight stretch, meet nowhere or everywhere.
+    // Parallel chords, as on a straight stretch, meet nowhere or everywhere.
     if det.abs() <= 1e-9 * v.hypot() * w.hypot() {
         return None;
     }
@@ -282,7 +282,7 @@ fn crossing(a: &Line, b: &Line) -> Option<Point> {
 }
 
 fn fold(map: &Coons, inverse: Affine) -> Option<String> {
-    /// Below this share of the mean a negative determinant counts as zero: it vanishes at smooth corners.
+    /// Negative determinants below this share of the mean count as zero, since the determinant vanishes at smooth corners.
     const NOTHING: f64 = 1e-6;
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
     let places = (0..GRID * GRID).map(|k| Point::new(at(k % GRID), at(k / GRID)));
@@ -359,7 +359,7 @@ pub(super) fn reversed(side: &[Seg]) -> Vec<Seg> {
     side.iter().rev().map(Seg::reversed).collect()
 }
 
-/// Runs the ring the other way from the bottom's end: left and right change places.
+/// Runs the ring the other way, from the end of the bottom, which exchanges left and right.
 pub(super) fn mirrored([bottom, right, top, left]: [Vec<Seg>; 4]) -> [Vec<Seg>; 4] {
     [reversed(&bottom), reversed(&left), reversed(&top), reversed(&right)]
 }
@@ -375,7 +375,7 @@ pub(super) fn bounds(sub: &Subpath) -> Rect {
     sub.segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
 }
 
-/// Returns a part of a segment.
+/// Returns the part of a segment between two parameters.
 pub(super) fn part(s: &Seg, a: f64, b: f64) -> Seg {
     match s {
         _ if a == 0.0 && b == 1.0 => *s,

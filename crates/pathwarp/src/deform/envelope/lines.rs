@@ -1,10 +1,10 @@
-//! Lines of lettering in a closed shape: each as wide as the shape at its height, only its tops and bottoms bent.
+//! Lines of lettering in a closed shape: each is as wide as the shape at its height, and only the letters' tops and bottoms are bent.
 //!
-//! > (x, v) ↦ (X(x), t(X) + v·(b(X) − t(X))), X linear in each line, or in the parts of a line that parts around a notch
+//! > (x, v) ↦ (X(x), t(X) + v·(b(X) − t(X))), X linear in each line, or in both parts of a line that is divided at a notch
 //!
-//! The boundaries between lines are parabolas that lead from the top of the shape over to its bottom. A band between two of them, clipped by
-//! the outline, ends where it is too low for letters. Of all heights of the boundaries, those are taken that fill the shape best with
-//! letters of like heights and widths, about its middle. t and b are splines within the band, so no letter has a corner of the outline in it.
+//! The boundaries between lines are parabolas, between the trends of the shape's top and its bottom. A band between two boundaries,
+//! clipped by the outline, ends where it is too low for letters. Levels are chosen to fill the shape best, about its middle, with
+//! letters of similar heights and widths. The top t and bottom b of a line are splines, so no corner of the outline bends a letter.
 
 use super::columns::Region;
 use crate::error::Error;
@@ -14,21 +14,21 @@ use kurbo::{Affine, Point, Rect};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A line of the artwork.
+/// A line of lettering.
 pub(super) struct Line {
     /// Its letters, for messages.
     name: String,
-    /// The box of its letters, and of what else lies between its neighbours.
+    /// The box of its letters and of all other artwork between the neighbouring lines.
     rect: Rect,
     /// Indices of its letters, from left to right, and their boxes.
     letters: Vec<(usize, Rect)>,
 }
 
-/// Divides letters into lines by their baselines, downwards.
+/// Divides letters into lines by their baselines, from top to bottom.
 pub(super) fn lines(letters: &[Letter], ink: &[Point]) -> Vec<Line> {
-    /// Baselines that differ by less than this share of the letters' height are one.
+    /// Baselines that differ by less than this share of the letters' height are the same.
     const SAME: f64 = 0.3;
-    /// Lines lower than this share of the highest, such as a dash, keep room above and below.
+    /// A line lower than this share of the highest, such as one of dashes, keeps room above and below.
     const LOW: f64 = 0.4;
     let boxes = letters.iter().enumerate().filter_map(|(i, l)| Some((l.origin.y, i, l.outline.bounding_box()?)));
     let mut all: Vec<(f64, usize, Rect)> = boxes.filter(|l| l.2.area() > 0.0).collect();
@@ -60,7 +60,7 @@ pub(super) fn lines(letters: &[Letter], ink: &[Point]) -> Vec<Line> {
     out
 }
 
-/// The ordinates between lines.
+/// Returns ordinates that separate the lines.
 fn cuts(lines: &[Line]) -> Vec<f64> {
     let mut cuts: Vec<f64> = lines.windows(2).map(|w| 0.5 * (w[0].rect.y1 + w[1].rect.y0)).collect();
     for k in 1..cuts.len() {
@@ -74,12 +74,12 @@ fn cuts(lines: &[Line]) -> Vec<f64> {
 struct Part {
     letters: Range<usize>,
     xs: [f64; 2],
-    /// How much wider the letters are drawn than in the artwork, in relation to their height, space between them included.
+    /// Widening of the letters: their width, spaces included, by their height, as a multiple of that ratio in the artwork.
     ratio: f64,
     area: f64,
 }
 
-/// A line in its band.
+/// A line with the boundaries of its band.
 #[derive(Clone)]
 struct Band {
     /// The levels of its boundaries; `None` where the outline is the boundary.
@@ -93,13 +93,13 @@ impl Band {
     }
 }
 
-/// A band, and where letters may stand in it.
+/// The columns of a band, and the runs of columns, single or in pairs beside a notch, in which letters may stand.
 type Places<'a> = (&'a Cuts, (Vec<Range<usize>>, Vec<[Range<usize>; 2]>));
 
-/// Bands and what they are worth together.
+/// The worth of bands, and the bands.
 type Plan = (f64, Vec<Band>);
 
-/// How a curve of the shape runs: its mean height, its slope and its bend.
+/// The parabola that fits the top or the bottom of the shape: mean height, slope and bend.
 #[derive(Clone, Copy, Default)]
 struct Trend {
     mean: f64,
@@ -114,10 +114,10 @@ struct Room<'a> {
     columns: Vec<Column>,
     step: f64,
     area: f64,
-    /// The mean height of a line, and the distance between lines.
+    /// The mean height of a line, and the gap between lines.
     mean: f64,
     gap: f64,
-    /// The middle and the spread of the shape along x.
+    /// The mean x of the shape, and its spread.
     middle: f64,
     spread: f64,
     trends: [Trend; 2],
@@ -126,7 +126,7 @@ struct Room<'a> {
 /// The x of a column, and its intervals inside the shape, each from its top downwards.
 type Column = (f64, Vec<[f64; 2]>);
 
-/// The interval of a column between two boundaries.
+/// The interval of a column between two boundaries; `None` if it is empty.
 type Cut = Option<[f64; 2]>;
 
 fn height(c: &Cut) -> f64 {
@@ -136,16 +136,16 @@ fn height(c: &Cut) -> f64 {
 /// The columns of a band.
 struct Cuts {
     all: Vec<Cut>,
-    /// Sums over all before each: of the heights, their logarithms, and the fourth powers of the slopes.
+    /// For every column, sums over the columns before it: heights, their logarithms, and fourth powers of slopes.
     sums: Vec<[f64; 3]>,
-    /// The least height of a jump.
+    /// Steps between columns that are higher than this are jumps.
     jump: f64,
 }
 
 impl Cuts {
-    /// `step` is the width of a column.
+    /// Creates the columns of a band; `step` is their width.
     fn new(all: Vec<Cut>, step: f64) -> Self {
-        /// Slopes are measured over so many columns to both sides.
+        /// Number of columns on both sides over which a slope is measured.
         const REACH: usize = 3;
         let mut sums = vec![[0.0; 3]];
         for (i, c) in all.iter().enumerate() {
@@ -164,7 +164,7 @@ impl Cuts {
         [0, 1, 2].map(|k| (self.sums[r.end][k] - self.sums[r.start][k]) / r.len() as f64)
     }
 
-    /// Columns that follow one another without a jump and are high enough, but not too high.
+    /// Returns runs of columns without a jump, whose heights are between `least` and `most`.
     fn runs(&self, least: f64, most: f64) -> Vec<Range<usize>> {
         let on = |a: &Cut, b: &Cut| a.zip(*b).is_some_and(|(a, b)| (0..2).all(|k| (a[k] - b[k]).abs() <= self.jump));
         let mut out: Vec<Range<usize>> = Vec::new();
@@ -178,7 +178,7 @@ impl Cuts {
         out
     }
 
-    /// Where letters of about a height may stand: runs, and pairs of them at both sides of a notch, which end lower there.
+    /// Returns runs of columns in which letters of about `height` may stand, and pairs of runs, which may be lower at a notch between them.
     fn places(&self, height: f64) -> (Vec<Range<usize>>, Vec<[Range<usize>; 2]>) {
         let [low, rest @ ..] = ENDS.map(|e| self.runs(e * height, HIGHEST * height));
         let outer = |x: usize| low.iter().find(|r| r.contains(&x)).cloned().unwrap_or(x..x + 1);
@@ -190,7 +190,7 @@ impl Cuts {
     }
 }
 
-/// What letters should be: the logarithms of their height, and of how much wider they are drawn than in the artwork, in relation to it.
+/// The letters aimed at: the logarithms of their height and of their widening ([`Part::ratio`]).
 #[derive(Clone, Copy)]
 struct Aim {
     height: f64,
@@ -198,40 +198,40 @@ struct Aim {
 }
 
 const COLUMNS: u32 = 200;
-/// Heights at which boundaries are tried.
+/// Number of levels at which boundaries are tried.
 const LEVELS: usize = 24;
-/// Heights of letters that are tried, by the mean height of a line, and widenings.
+/// Heights of letters that are tried, as multiples of a line's mean height, and widenings that are tried.
 const HEIGHTS: [f64; 5] = [0.6, 0.8, 1.0, 1.25, 1.6];
 const RATIOS: [f64; 5] = [0.4, 0.65, 1.0, 1.6, 2.4];
-/// Ends of columns that differ by more than so many widths of them belong to a jump.
+/// Least height of a jump, in widths of a column.
 const JUMP: f64 = 3.0;
-/// Places that are tried for a line that is narrower than its band.
+/// Number of positions that are tried for a line that is narrower than its band.
 const PLACES: usize = 16;
 /// The space between lines, as a share of their mean height.
 const GAP: f64 = 0.12;
-/// A line ends where its band is lower than one of these shares of the height aimed at, and is nowhere higher than this one.
+/// Limits on the height of a band, as shares of the height aimed at: a line ends where it is lower than one of `ENDS`.
 const ENDS: [f64; 3] = [0.59, 0.75, 0.9];
 const HIGHEST: f64 = 1.65;
-/// How far boundaries follow the bend of the outline.
+/// Share of an outline's bend that boundaries follow.
 const BEND: f64 = 0.5;
-/// Letters are widened by no more than this. Further widening is space between them, by no more than this.
+/// Limits on widening: of the letters, and further by spaces between them.
 const WIDEST: f64 = 2.0;
 const SPACED: f64 = 1.45;
-/// Letters are narrowed to no less than this.
+/// The least widening, which narrows letters.
 const NARROWEST: f64 = 0.3;
-/// Costs, as shares of the shape's area: of letters of unlike heights and widths, of slopes, and of a line away from the middle. That of a
-/// slope is small below the second value, and large above it.
+/// Costs, as shares of the shape's area: letters of different heights and widths, slopes, and lines beside the middle. The cost of a
+/// slope grows steeply above `STEEPEST`.
 const UNLIKE: f64 = 0.3;
 const STEEP: f64 = 0.3;
 const STEEPEST: f64 = 1.5;
 const BESIDE: f64 = 10.0;
-/// A line parts at a gap of no more than these shares of its width: within a word, and between words.
+/// Widest gaps at which a line may be divided, as shares of its width: within a word, and between words.
 const APART: [f64; 2] = [0.15, 0.4];
-/// What a word that parts costs, as a share of the shape's area.
+/// Cost of dividing a word, as a share of the shape's area.
 const DIVIDED: f64 = 0.15;
 /// Gaps of more than this share of the height are word spaces.
 const WORD: f64 = 0.2;
-/// Letters fill at least this share of a shape.
+/// Least share of a shape that letters must fill.
 const LEAST: f64 = 0.48;
 
 impl<'a> Room<'a> {
@@ -255,14 +255,14 @@ impl<'a> Room<'a> {
             let slope = mean(&|c| u(c) * (y(c) - m)) / spread;
             let rest = |c: &Column| y(c) - m - slope * u(c);
             let bend = mean(&|c| q(c) * rest(c)) / mean(&|c| q(c).powi(2));
-            // Trends count as far as they explain the curve.
+            // A trend counts by the share of the curve's variance that it explains.
             let share =
                 1.0 - mean(&|c| (rest(c) - bend * q(c)).powi(2)) / mean(&|c| (y(c) - m).powi(2)).max(1e-12 * spread);
             let share = share.clamp(0.0, 1.0);
             Trend { mean: m, slope: slope * share, bend: share * bend }
         };
         let mut trends = [trend(|s| s[0][0]), trend(|s| s[s.len() - 1][1])];
-        // What both sides have in common is followed in full.
+        // The bend that both sides share is followed in full.
         let [a, b] = trends.map(|t| t.bend);
         let common = if a * b > 0.0 { a.abs().min(b.abs()) * a.signum() } else { 0.0 };
         trends.iter_mut().for_each(|t| t.bend = common + BEND * (t.bend - common));
@@ -271,7 +271,7 @@ impl<'a> Room<'a> {
         Some(Self { region, bounds, columns, step, area, mean, gap: GAP * mean, middle, spread, trends })
     }
 
-    /// The height at `x` of the boundary with this mean height.
+    /// Returns the ordinate at `x` of the boundary whose mean is `level`.
     fn boundary(&self, level: f64, x: f64) -> f64 {
         let [top, bottom] = self.trends;
         let t = ((level - top.mean) / (bottom.mean - top.mean)).clamp(0.0, 1.0);
@@ -280,7 +280,7 @@ impl<'a> Room<'a> {
         level + between(top.slope, bottom.slope) * u + between(top.bend, bottom.bend) * (u * u - self.spread)
     }
 
-    /// The highest interval of a column between two boundaries.
+    /// Returns the highest interval of a column between two boundaries.
     fn cut(&self, x: f64, spans: &[[f64; 2]], levels: [Option<f64>; 2]) -> Cut {
         let above = levels[0].map_or(f64::NEG_INFINITY, |l| self.boundary(l, x) + 0.5 * self.gap);
         let below = levels[1].map_or(f64::INFINITY, |l| self.boundary(l, x) - 0.5 * self.gap);
@@ -293,8 +293,8 @@ impl<'a> Room<'a> {
         Cuts::new(all, self.step)
     }
 
-    /// Puts letters into a run of columns, and says what they are worth there. `anchor` is the place, from 0 at their left end to 1 at
-    /// their right one, that belongs on an axis, and the column of that. `share` is the letters' share of all.
+    /// Puts letters into a run of columns, and returns their worth there. `anchor` is a position in the letters, 0 at their left end and 1
+    /// at their right one, and the column on which it should lie. `share` is the letters' share of all letters.
     fn put(
         &self,
         cuts: &Cuts,
@@ -324,7 +324,7 @@ impl<'a> Room<'a> {
         places.filter_map(worth).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The best way to put a line into a band: as a whole, or parted at a notch. `share` is its share of all lines.
+    /// Returns the best way to put a line into a band, as a whole or divided at a notch. `share` is the line's share of all lines.
     fn band(&self, line: &Line, share: f64, (cuts, (runs, pairs)): &Places<'_>, aim: &Aim) -> Option<(f64, Vec<Part>)> {
         let n = line.letters.len();
         let middle = (self.middle - self.bounds.x0) / self.step;
@@ -345,7 +345,7 @@ impl<'a> Room<'a> {
         whole.chain(parted).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The best bands for all lines.
+    /// Returns the best bands for all lines.
     fn plan(&self, lines: &[Line]) -> Result<Vec<Band>, Error> {
         let at =
             |k: usize| (k > 0 && k < LEVELS).then(|| self.bounds.y0 + self.bounds.height() * k as f64 / LEVELS as f64);
@@ -358,7 +358,7 @@ impl<'a> Room<'a> {
             let places: Vec<_> = all.iter().map(|(p, cuts)| (*p, (cuts, cuts.places(height)))).collect();
             for ratio in RATIOS {
                 let aim = Aim { height: height.ln(), ratio: ratio.ln() };
-                // For every level, the best bands of the lines so far above it.
+                // For every level, the best bands above it of the lines so far.
                 let mut above: Vec<Option<Plan>> = vec![Some((0.0, Vec::new())); LEVELS + 1];
                 for (i, line) in lines.iter().enumerate() {
                     let mut next: Vec<Option<Plan>> = vec![None; LEVELS + 1];
@@ -388,10 +388,10 @@ impl<'a> Room<'a> {
         Ok(bands)
     }
 
-    /// The map of a part of a line, from a box of the artwork.
+    /// Returns the map of a box of the artwork into the band, for a part of a line.
     fn map(&self, part: &Part, levels: [Option<f64>; 2], from: Rect) -> Option<Arc<dyn Map>> {
         const SAMPLES: u32 = 240;
-        /// The share of the least height that smooth curves leave.
+        /// Least share of the lowest height that smooth curves must leave.
         const KEPT: f64 = 0.93;
         let cells = (3 * part.letters.len() / 2).clamp(4, 16);
         let sampled = |[x0, x1]: [f64; 2]| -> Vec<(f64, Cut)> {
@@ -427,12 +427,12 @@ impl<'a> Room<'a> {
     }
 }
 
-/// The most that letters are widened, with the space between them.
+/// Returns the largest widening of this many letters, spaces included.
 fn widest(letters: usize) -> f64 {
     if letters > 1 { WIDEST * SPACED } else { WIDEST }
 }
 
-/// The control points of a smooth spline above samples at equal distances, close to them, and its values there.
+/// Returns the control points of a smooth spline closely above equidistant samples, and its values at them.
 fn above(ys: &[f64], cells: usize) -> [Vec<f64>; 2] {
     const ROUNDS: usize = 6;
     let last = (ys.len() - 1) as f64;
@@ -455,7 +455,7 @@ fn above(ys: &[f64], cells: usize) -> [Vec<f64>; 2] {
             points.iter_mut().zip(&places).for_each(|(p, s)| *p += most(&short, *s));
         }
     }
-    // A spline whose control points are all raised is raised as much.
+    // Raising all control points raises the spline by the same amount.
     let lift = short.into_iter().fold(0.0, f64::max);
     points.iter_mut().for_each(|p| *p += lift);
     let values = values(&points);
@@ -463,24 +463,24 @@ fn above(ys: &[f64], cells: usize) -> [Vec<f64>; 2] {
 }
 
 impl Line {
-    /// The box of some letters, as high as the line.
+    /// Returns the box of some letters, as high as the line.
     fn part(&self, letters: &Range<usize>) -> Rect {
         let boxes = self.letters[letters.clone()].iter().map(|l| l.1);
         let b = boxes.reduce(|a, b| a.union(b)).unwrap_or(self.rect);
         Rect::new(b.x0, self.rect.y0, b.x1, self.rect.y1)
     }
 
-    /// Whether a point is in the box of a letter.
+    /// Returns `true` if a point is in the box of a letter.
     fn holds(&self, p: Point) -> bool {
         self.rect.contains(p) && self.letters.iter().any(|l| l.1.contains(p))
     }
 
-    /// Whether a word begins with this letter.
+    /// Returns `true` if a word begins with letter `k`.
     fn is_space(&self, k: usize) -> bool {
         self.letters[k].1.x0 - self.letters[k - 1].1.x1 > WORD * self.rect.height()
     }
 
-    /// Letters before which the line may part, to fill two runs alike.
+    /// Returns letters before which the line may be divided, so that both runs are filled equally.
     fn divisions(&self, pair: &[Range<usize>; 2]) -> impl Iterator<Item = usize> {
         let [a, b] = [0, 1].map(|k| pair[k].len() as f64);
         let x = self.rect.x0 + self.rect.width() * a / (a + b);
@@ -499,18 +499,18 @@ another ratio of width to height, or `together`, one map for all lines"
     }
 }
 
-/// Where lines are taken from in the source plane, so that none overlaps another.
+/// Strips of the source plane from which lines are taken. They do not overlap, so letters may be moved before the map.
 pub(super) struct Strips {
-    /// Their tops and bottoms.
+    /// The tops and bottoms of the strips.
     ys: Vec<[f64; 2]>,
-    /// The ordinates between them.
+    /// The ordinates between the strips.
     pub(super) cuts: Vec<f64>,
-    /// Where each letter is put before the map.
+    /// The map of each letter that precedes the deformation.
     places: Vec<Affine>,
 }
 
 impl Strips {
-    /// `count` is the number of letters.
+    /// Creates the strips of lines with `count` letters in all.
     pub(super) fn new(lines: &[Line], count: usize) -> Self {
         let cuts = cuts(lines);
         let mut out = Self { ys: Vec::new(), cuts, places: vec![Affine::IDENTITY; count] };
@@ -530,7 +530,7 @@ impl Strips {
 
     /// Spaces letters of a line that are to be widened by `ratio`, moves them to the right of `end`, and returns their box.
     fn spaced(&mut self, line: &Line, letters: &Range<usize>, ratio: f64, end: f64) -> Rect {
-        /// What is moved does not touch what it is moved away from.
+        /// Distance from `end` of letters that are moved, as a share of the line's width.
         const APART: f64 = 1e-3;
         let r = if letters.len() == line.letters.len() { line.rect } else { line.part(letters) };
         let space = r.width() * ((ratio / WIDEST).max(1.0) - 1.0);
@@ -543,7 +543,7 @@ impl Strips {
         Rect::new(r.x0 + shift, r.y0, r.x1 + shift + space, r.y1)
     }
 
-    /// The places of all letters; empty if the map takes them from where they are.
+    /// Returns the maps of all letters before the deformation; empty if none of them moves.
     pub(super) fn places(&self) -> Vec<Vec<Affine>> {
         if self.places.iter().all(|p| *p == Affine::IDENTITY) {
             return Vec::new();
@@ -551,14 +551,14 @@ impl Strips {
         self.places.iter().map(|p| vec![*p]).collect()
     }
 
-    /// For each line, the box that must be laid onto a block, as wide and high as given, to put the line into a row of its own. `None` if
-    /// they would fill too little of it.
+    /// Returns, for each line, the box whose map onto a block of this width and height puts the line into its row. `None` if the lines
+    /// would fill too little of the block.
     pub(super) fn frames(&mut self, lines: &[Line], [width, height]: [f64; 2]) -> Option<Vec<Rect>> {
-        /// Rows are no lower than this share of the highest.
+        /// Least height of a row, as a share of the highest.
         const LOWEST: f64 = 0.5;
         let gap = GAP * height / lines.len() as f64;
         let room = height - gap * (lines.len() - 1) as f64;
-        // Between even heights, and those that letters of an even width have.
+        // A compromise between equal heights, and the heights that give letters the same widening.
         let natural: Vec<f64> = lines.iter().map(|l| l.rect.height() / l.rect.width()).collect();
         let most = natural.iter().copied().fold(0.0, f64::max);
         let rows: Vec<f64> = natural.iter().map(|h| (h / most).sqrt().max(LOWEST)).collect();
@@ -583,7 +583,7 @@ impl Strips {
     }
 }
 
-/// Fits lines into a region: the map, and notes.
+/// Fits lines into a region. Returns the map and notes.
 pub(super) fn fitted(
     lines: &[Line],
     region: &Region,

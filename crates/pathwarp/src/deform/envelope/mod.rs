@@ -1,7 +1,7 @@
 //! Artwork put into a shape: an envelope of four sides, each a curve of any number of pieces.
 //!
-//! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which for sides of one cubic is the shaper's
-//! (Koppinen, *A plane transformation from 16 control points*, equation 7).
+//! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which equals the shaper's if every side is one cubic
+//! (Koppinen, *A plane transformation from 16 control points*, equation 7); or it fills a closed shape in columns, rows or lines.
 
 mod columns;
 mod corners;
@@ -26,7 +26,7 @@ pub use fit::{Keep, Spread};
 
 pub(super) use fit::{Ring, fit};
 
-/// The share of the greatest height at which lettering ends.
+/// Lettering ends where a shape is lower than this share of its greatest height.
 const ENDS: f64 = 0.25;
 
 choice! {
@@ -99,7 +99,7 @@ parameters! {
 }
 
 impl Envelope {
-    /// Puts the box `frame` into a closed path. Its corners and its bottom are found, unless they are set.
+    /// Puts the box `frame` into a closed path. The path's corners and its bottom are found, unless they are set.
     #[must_use]
     pub fn new(frame: Rect, shape: &Outline) -> Self {
         Self::between(frame).shape(shape)
@@ -160,7 +160,7 @@ impl Envelope {
     ///
     /// # Errors
     /// [`Error::Geometry`] for a shape that is not closed or a flat box; [`Error::Usage`] for curves that do not meet, corners
-    /// that cannot be found, sides too curved for the lines to be kept, and values that contradict each other.
+    /// that cannot be found, sides too curved to keep lines, and values that contradict each other.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         self.check_together()?;
@@ -203,9 +203,9 @@ impl Envelope {
         Ok(built)
     }
 
-    /// Returns where the artwork is, in the unit square with v upwards: a few places, as every choice of corners looks at all.
+    /// Returns a few points of the artwork, in the unit square with v upwards. Every choice of corners is judged at all of them.
     fn places(&self) -> Vec<Point> {
-        /// Places along an axis, and in all.
+        /// Points along an axis, if the artwork is unknown.
         const PLACES: u32 = 5;
         let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
         let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
@@ -342,7 +342,7 @@ a projective map. --keep nothing bends artwork between four sides, whatever the 
         Case { args: ARCH, at: (25.0, 100.0), to: (50.0 - 50.0 * R2, 100.0 - 50.0 * R2), tolerance: 1e-10 },
         Case { args: ARCH, at: (50.0, 0.0), to: (50.0, 10.0), tolerance: 1e-10 },
         Case { args: ARCH, at: (75.0, 50.0), to: (50.0 + 50.0 * R2, 80.0 - 50.0 * R2), tolerance: 1e-10 },
-        // The shaper's own case: the middle of a Coons patch.
+        // The middle of the Coons patch, as for the shaper.
         Case { args: CAGE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
         // y = 100 − 1.6·x·(100−x)/100: at x = 20 the curve is 25.6 higher.
         Case { args: UPRIGHT, at: (20.0, 100.0), to: (20.0, 74.4), tolerance: 1e-10 },
@@ -382,14 +382,14 @@ fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {
     }
 }
 
-// The map that suits the shape and the artwork: the patch of four sides, columns or rows.
+// The choice of the map for a shape and its artwork: the patch of four sides, columns, rows or lines.
 
 /// Columns that hold at least this share of a shape's area fill it.
 const FILLS: f64 = 0.8;
 /// Samples along each axis of the box if the artwork is unknown.
 const GRID: u32 = 24;
 
-/// The settings and the artwork that decide which map suits.
+/// The settings and the artwork that decide on the map.
 #[derive(Clone, Copy)]
 struct Choice<'a> {
     frame: Rect,
@@ -397,7 +397,7 @@ struct Choice<'a> {
     spread: Option<Spread>,
     room: Room,
     lettering: bool,
-    /// The lines to be fitted one by one, if there are several.
+    /// The lines of lettering.
     lines: &'a [lines::Line],
     /// The number of letters.
     letters: usize,
@@ -406,7 +406,7 @@ struct Choice<'a> {
 }
 
 impl Choice<'_> {
-    /// Builds the map. `closed` is the shape if it is not divided by the user, `ring` its division.
+    /// Builds the map. `closed` is the shape, unless the user divided it; `ring` is its division into four sides.
     fn build(&self, closed: Option<Subpath>, ring: Result<Ring, Error>) -> Result<Built, Error> {
         // Curves that meet enclose a shape.
         let closed = closed.or_else(|| ring.as_ref().ok().filter(|r| r.meets()).map(Ring::closed));
@@ -418,7 +418,7 @@ impl Choice<'_> {
             (Keep::Auto, Some(shape)) => self.suited(&shape, ring.ok()),
             (keep, _) => {
                 let ring = ring?;
-                // No ruled map keeps lines between curved sides; columns and rows do.
+                // Between curved sides, only columns and rows keep lines.
                 let across = match keep {
                     Keep::Verticals => [1, 3],
                     Keep::Horizontals => [0, 2],
@@ -438,7 +438,7 @@ impl Choice<'_> {
         fit(padded(self.frame, ring, self.room.padding)?, ring, keep, self.spread)
     }
 
-    /// Builds what suits the shape and the artwork.
+    /// Builds the map that suits the shape and the artwork best.
     fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
         let has_corners = ring.as_ref().is_some_and(|ring| has_own_corners(shape, ring));
         if self.lines.len() > 1 {
@@ -473,7 +473,7 @@ impl Choice<'_> {
         best.map(|b| b.0).ok_or_else(|| nothing(shape))
     }
 
-    /// Fits lines one by one.
+    /// Fits the lines one by one.
     fn in_lines(&self, shape: &Subpath) -> Result<Built, Error> {
         let region = Region::new(shape, Affine::IDENTITY, self.room.padding).ok_or_else(|| nothing(shape))?;
         let mut strips = lines::Strips::new(self.lines, self.letters);
@@ -484,7 +484,7 @@ impl Choice<'_> {
         Ok(placed(built, &strips))
     }
 
-    /// Puts lines into rows of the patch of four sides.
+    /// Puts the lines into rows of the patch of four sides.
     fn in_rows(&self, ring: &Ring, shape: &Subpath) -> Option<Built> {
         let length = |k: usize| Side::new(&ring.sides[k], Pace::Length).map_or(0.0, |s| s.length());
         let size = [0, 1].map(|k| 0.5 * (length(k) + length(k + 2)));
@@ -509,19 +509,19 @@ impl Choice<'_> {
     }
 }
 
-/// Puts letters before a map where its strips take them from.
+/// Moves letters, before the map, to the positions in its strips.
 fn placed(mut built: Built, strips: &lines::Strips) -> Built {
     built.placement.letters = strips.places();
     built.placement.before = !built.placement.letters.is_empty();
     built
 }
 
-/// Returns `true` if a shape has four corners of its own: no other sharp node points outwards, its bottom runs to the right and its
-/// sides upwards, and nothing folds or is stretched much more one way than the other.
+/// Returns `true` if a shape clearly has four corners: no other sharp node points outwards, the bottom runs to the right and the
+/// sides upwards, and the patch folds nowhere and is nowhere stretched much more in one direction than in the other.
 fn has_own_corners(shape: &Subpath, ring: &Ring) -> bool {
     /// The largest angle of the bottom and of the sides with the screen's axes, as a tangent.
     const TURNED: f64 = 0.9;
-    /// The largest ratio of both stretches, relative to their means, in nine tenths of the places.
+    /// The largest ratio of both stretches, relative to their means, in nine tenths of the samples.
     const UNEVEN: f64 = 2.2;
     let around: f64 = shape.segs.iter().map(area).sum();
     let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
@@ -551,7 +551,7 @@ fn has_own_corners(shape: &Subpath, ring: &Ring) -> bool {
     level && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= UNEVEN
 }
 
-/// Ends lettering between the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
+/// Ends lettering at the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
 /// the letters end at the upright through the notch.
 fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
     let around: f64 = shape.segs.iter().map(area).sum();
@@ -584,7 +584,7 @@ fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect)
     (ring, Rect::new(frame.x0 - left * width, frame.y0, frame.x1 + right * width, frame.y1))
 }
 
-/// Returns a box around `frame`, such that mapping that box into the sides keeps `frame` a distance of `padding` away from them.
+/// Returns a larger box, whose map into the sides keeps `frame` a distance of `padding` away from them.
 fn padded(frame: Rect, ring: &Ring, padding: f64) -> Result<Rect, Error> {
     if padding == 0.0 {
         return Ok(frame);

@@ -1,4 +1,4 @@
-//! The envelope against formulas written out separately, and against the shaper.
+//! Compares the envelope with formulas written out independently, and with the shaper.
 
 use super::fit::paced;
 use super::*;
@@ -29,7 +29,7 @@ fn grid(n: u32, beyond: f64) -> impl Iterator<Item = Point> {
     (0..=n).flat_map(move |i| (0..=n).map(move |j| Point::new(at(i), at(j))))
 }
 
-/// Criterion: with one cubic for every side, the shaper to 1e-12, beyond the box as well.
+/// With one cubic for every side, the map equals the shaper to 1e-12, beyond the box as well.
 #[test]
 fn one_cubic_a_side_is_the_shaper() {
     const CAGES: [&str; 3] = [
@@ -63,7 +63,7 @@ fn one_cubic_a_side_is_the_shaper() {
     }
 }
 
-/// A wavy run of `n` pieces from one corner to another, lines, quadratics, cubics and arcs in turn.
+/// Returns a wavy run of `n` pieces from one corner to another: lines, quadratics, cubics and arcs in turn.
 fn wavy(from: Point, to: Point, n: u32) -> String {
     use std::fmt::Write as _;
     let (step, side) = ((to - from) / f64::from(n), (to - from).turn_90() / (f64::from(n) * 4.0));
@@ -82,7 +82,7 @@ fn wavy(from: Point, to: Point, n: u32) -> String {
     out
 }
 
-/// The point at a share of a run's length, by kurbo's integration: an independent reference.
+/// Returns the point at a share of a run's length by kurbo's integration, an independent reference.
 fn by_length(segs: &[Seg], share: f64) -> Point {
     let as_kurbo = |s: &Seg| match s {
         Seg::Line(l) => PathSeg::Line(*l),
@@ -107,7 +107,7 @@ fn by_length(segs: &[Seg], share: f64) -> Point {
     segs.last().unwrap().end()
 }
 
-/// Criterion: sides of 1, 3 and 17 pieces are reproduced to 1e-9, at the share of their length.
+/// Sides of 1, 3 and 17 pieces are reproduced to 1e-9, at equal shares of their length.
 #[test]
 fn boundaries_are_reproduced_by_length() {
     let c = [(0.0, 100.0), (110.0, 95.0), (100.0, -10.0), (-5.0, 5.0)].map(Point::from);
@@ -130,7 +130,7 @@ fn boundaries_are_reproduced_by_length() {
     }
 }
 
-/// The inside against the formula written out, with the shares of length from kurbo.
+/// The inside agrees with the formula of the Coons patch, with shares of length from kurbo.
 #[test]
 fn the_inside_is_the_coons_patch() {
     let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";
@@ -165,7 +165,7 @@ fn branches_and_creases() {
             let dx = (m.point(p + Vec2::new(h, 0.0)) - m.point(p - Vec2::new(h, 0.0))) / (2.0 * h);
             assert!((dx - a.dx).hypot() < 1e-6, "{by} {p:?} {dx:?} {:?}", a.dx);
         }
-        // No tear at a crease: branches on both sides agree on it.
+        // Branches on both sides of a crease agree on it.
         for c in creases.items() {
             for q in grid(9, 0.0) {
                 let (f, g) = (c.level.at(q), c.level.at(q + Vec2::new(1.0, 0.0)) - c.level.at(q));
@@ -176,13 +176,13 @@ fn branches_and_creases() {
                 assert!(a.distance(b) < 1e-9, "{by} {c:?} {on:?}: {a:?} {b:?}");
             }
         }
-        // By parameter the cells are polynomials, and say so.
+        // Only by parameter are the cells polynomials, with a known degree.
         let known = m.branch(Point::new(20.0, 80.0)).unwrap().rational_degree().is_some();
         assert_eq!(known, by == "parameter");
     }
 }
 
-/// Criterion: text is never mirrored, for any start and direction of the path.
+/// Artwork is never mirrored, for any start and direction of the path.
 #[test]
 fn nothing_is_mirrored_and_the_bottom_is_below() {
     let shapes = [
@@ -193,7 +193,7 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
         "M30,0 H170 A30,30 0 0 1 200,30 V70 A30,30 0 0 1 170,100 H30 A30,30 0 0 1 0,70 V30 A30,30 0 0 1 30,0 Z",
         "M100,0 L200,170 L0,170 Z",
         "M0,50 L50,0 H150 L200,50 L150,100 H50 Z",
-        // A crescent whose lowest corners are its horns.
+        // A crescent, whose lowest corners are its horns.
         "M0,100 A100,100 0 0 1 200,100 L170,110 A70,70 0 0 0 30,110 Z",
     ];
     for shape in shapes {
@@ -207,7 +207,7 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                     .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
                 let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
-                // On both sides of the middle, where a heart has its notch.
+                // The heart has a notch in the middle, so both sides of it are tested.
                 let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));
                 assert!(l.det() > 0.0 && r.det() > 0.0, "{shape} from {start}, reversed {reversed}: mirrored");
                 // Right is right, and up is up: wrong corners turn it by 45° or more, a wavy shape by less.
@@ -225,19 +225,19 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
 fn corners_by_the_stated_rule() {
     let note =
         |pairs: &[(&str, &str)]| built(&[pairs, &[("keep", "nothing")]].concat()).unwrap().explanation.notes.join("\n");
-    // A circle's are on its diagonals, an ellipse's on those of its box.
+    // The corners of a circle are on its diagonals, those of an ellipse on the diagonals of its box.
     let n = note(&[("envelope", "M200,100 A100,50 0 1 1 0,100 A100,50 0 1 1 200,100 Z")]);
     let (x, y) = (100.0 * FRAC_1_SQRT_2, 50.0 * FRAC_1_SQRT_2);
     let p = |sx: f64, sy: f64| show(Point::new(100.0 + sx * x, 100.0 + sy * y));
     let wanted = [p(-1.0, 1.0), p(1.0, 1.0), p(1.0, -1.0), p(-1.0, -1.0)].join(" ");
     assert!(n.contains(&wanted) && n.contains("nearest to the corners of its box"), "{n}\n{wanted}");
-    // A swallow-tailed pennant: five corners, of which the notch is not chosen.
+    // A swallow-tailed pennant has five corners, of which the notch is not chosen.
     let n = note(&[("envelope", "M0,0 L100,0 L80,50 L100,100 L0,100 Z")]);
     assert!(n.contains("0,100 100,100 100,0 0,0"), "{n}");
-    // Four by angle, among smooth joints.
+    // Four corners by angle, among smooth joints.
     let n = note(&[("envelope", "M0,0 L50,0 L100,0 L100,50 L100,100 L0,100 Z")]);
     assert!(n.contains("found by angle") && n.contains("0,100 100,100 100,0 0,0"), "{n}");
-    // The ends of a ribbon, however little its middle is bent; not its notches, nor a point of a smooth curve.
+    // A ribbon has the corners of its ends, however little its middle is bent; not its notches, nor a point of a smooth curve.
     for y in ["0", "5", "10"] {
         let ribbon = format!("M0,40 Q100,{y} 200,40 L190,70 L200,100 Q100,60 0,100 L10,70 Z");
         let n = note(&[("envelope", &ribbon)]);
@@ -252,10 +252,10 @@ fn corners_by_the_stated_rule() {
         "M8,266 C34,212 44,288 94,234 C97,229 97,223 94,218 C44,164 34,240 8,186 C18,210 18,242 8,266 Z",
     )]);
     assert!(n.contains("8,266 94,234 94,218 8,186"), "{n}");
-    // A triangle has none at its tip.
+    // A triangle has no corner at its tip.
     let n = note(&[("envelope", "M50,0 L100,100 L0,100 Z")]);
     assert!(n.contains("0,100 100,100 60,20 40,20"), "{n}");
-    // Chosen bottoms: the picture is turned, never mirrored.
+    // Other bottoms turn the picture, but never mirror it.
     for k in ["1", "2", "3", "4"] {
         let m = map(&[("envelope", "0,0 100,0 100,100 0,100"), ("bottom-side", k)]);
         assert!((m.jet(Point::new(20.0, 30.0)).det() - 1.0).abs() < 1e-12);
@@ -266,7 +266,7 @@ fn corners_by_the_stated_rule() {
     assert!(m.point(Point::new(10.0, 80.0)).distance(Point::new(90.0, 80.0)) < 1e-12);
 }
 
-/// Criterion: `keep verticals`, measured on the refitted result: vertical within 0.1° and straight.
+/// With `keep verticals`, verticals of the refitted result are straight and vertical within 0.1°.
 #[test]
 fn uprights_stay_upright_through_the_refit() {
     const TOLERANCE: f64 = 0.005;
@@ -293,11 +293,11 @@ fn uprights_stay_upright_through_the_refit() {
             }
             let lean = (to.x - from.x).abs().atan2((to.y - from.y).abs()).to_degrees();
             assert!(lean < 0.1, "{x} leans by {lean}°");
-            // Its position is at the same share of the curves' width, on both.
+            // Its ends lie at the same share of the width of both curves.
             assert!((from.x - 3.6 * x).abs() < 1e-9, "{x} {from:?}");
         }
     }
-    // Without an exact map the verticals are straight all the same, and the warning gives their lean.
+    // Without an exact map the verticals are still straight, and a warning gives their lean.
     let b = built(&[
         ("bottom", "M0,100 A50,50 0 0 1 100,100"),
         ("top", "M-20,100 A70,70 0 0 1 120,100"),
@@ -324,10 +324,10 @@ fn keep_says_when_nothing_can() {
     assert!(matches!(m.class(), Class::Projective(_)));
 }
 
-/// Columns against the formula, for outlines whose heights are known: (u, v) ↦ (x, b(x) + v·(t(x) − b(x))).
+/// Columns agree with (u, v) ↦ (x, b(x) + v·(t(x) − b(x))) for outlines whose heights are known.
 #[test]
 fn columns_by_the_formula() {
-    /// x over the whole, upper and lower outline at x, of shapes in columns from end to end.
+    /// A shape whose columns reach from end to end: its path, its range of x, and its upper and lower outline at x.
     type Shape = (&'static str, [f64; 2], fn(f64) -> [f64; 2]);
     let shapes: [Shape; 4] = [
         ("M200,100 A100,100 0 1 1 0,100 A100,100 0 1 1 200,100 Z", [0.0, 200.0], |x| {
@@ -343,7 +343,7 @@ fn columns_by_the_formula() {
             let h = 85.0 * ((100.0 - (x - 100.0).abs() - 5.0) / 45.0).min(1.0);
             [95.0 - h, 95.0 + h]
         }),
-        // An arrow: on from the shaft on the same level, then along the head.
+        // An arrow: the columns continue at the level of the shaft, then along the head.
         ("M0,60 H120 V20 L200,100 L120,180 V140 H0 Z", [0.0, 200.0], |x| {
             let h = (200.0 - x).min(40.0);
             [100.0 - h, 100.0 + h]
@@ -364,7 +364,7 @@ fn columns_by_the_formula() {
                 let [top, bottom] = heights(x);
                 let wanted = Point::new(x, top + (bottom - top) * p.y / 100.0);
                 let got = m.point(p);
-                // The ends are known to a step, which is steep in the circle.
+                // The ends are known to one column, where the circle is steep.
                 assert!(
                     got.distance(wanted) < 0.02 * if ends == 0.0 { 1e-6 } else { 1.0 },
                     "{path} {p:?}: {got:?} {wanted:?}"
@@ -404,7 +404,7 @@ fn curves_that_meet_enclose_a_shape() {
     assert!(e.starts_with("envelope: "), "{e}");
 }
 
-/// What is chosen for lettering and for other artwork.
+/// The map chosen for lettering and for other artwork suits the shape.
 #[test]
 fn what_suits_is_chosen() {
     let chosen = |path: &str, lettering: bool| {
@@ -441,7 +441,7 @@ fn what_suits_is_chosen() {
     }
 }
 
-/// Lettering in a swallow-tailed banner ends at the notches: its outermost uprights go through them.
+/// Lettering in a swallow-tailed banner ends at the notches, through which its outermost verticals go.
 #[test]
 fn letters_end_at_notches() {
     let outline =
@@ -463,7 +463,7 @@ fn letters_do_not_run_through_a_waist() {
     assert!(grid(40, 0.0).all(|p| m.point(p).x < 150.0));
 }
 
-/// A speech bubble's tail stays free, and what is padded keeps its distance.
+/// A speech bubble's tail stays free, and padded artwork keeps its distance from the outline.
 #[test]
 fn tails_and_edges_stay_free() {
     let bubble = "M20,0 H180 A20,20 0 0 1 200,20 V100 A20,20 0 0 1 180,120 H90 L55,150 V120 H20 A20,20 0 0 1 0,100 V20 A20,20 0 0 1 20,0 Z";
@@ -492,7 +492,7 @@ fn crossings_and_folds_are_named() {
         &[("bottom", "0,100 100,20"), ("top", "0,50 100,60")],
         &["the bottom and the top side cross near 55.5", "folds over"],
     );
-    // They cross in the middle of both, where chords meet.
+    // The sides cross in the middle of both, at a joint of chords.
     warned(
         &[("bottom", "0,100 100,0"), ("top", "0,0 100,100")],
         &["the bottom and the top side cross near 50,50", "folds over"],
@@ -527,7 +527,7 @@ fn every_fault_is_named() {
     assert!(fault(&[("envelope", &many)]).contains("the limit is 2000"));
 }
 
-/// The shared Newton inverse finds its way back, over joints too, at every pace.
+/// The general inverse by Newton's method returns to the source at every pace, across joints too.
 #[test]
 fn it_can_be_undone() {
     let path = "M0,100 C20,120 40,80 50,100 Q70,130 110,95 L100,50 Q120,20 100,-10 C70,-30 30,10 -5,5 Q20,60 0,100 Z";

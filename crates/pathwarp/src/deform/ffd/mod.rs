@@ -1,14 +1,13 @@
 //! Free-form deformation by a grid of control points.
 //!
-//! With s, t running from 0 to 1 across the region, X(s,t) = Σ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ·(xᵢⱼ, yᵢⱼ, 1) (T. W. Sederberg, S. R. Parry,
-//! *Free-form deformation of solid geometric models*, SIGGRAPH 1986; T. W. Sederberg, *Computer Aided Geometric Design*,
-//! chapter 14, equations 14.1-14.3): see [`Lattice`]. Control points are counted from the left (i) and from the top (j),
-//! from 0. Pins are solved for as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form deformations*,
-//! SIGGRAPH 1992: see [`pull`].
+//! With s, t from 0 to 1 across the region, the image in homogeneous coordinates is X(s,t) = Σ Bᵐᵢ(s) Bⁿⱼ(t) wᵢⱼ·(xᵢⱼ, yᵢⱼ, 1)
+//! (T. W. Sederberg, S. R. Parry, *Free-form deformation of solid geometric models*, SIGGRAPH 1986; T. W. Sederberg, *Computer Aided
+//! Geometric Design*, chapter 14, equations 14.1-14.3): see [`Lattice`]. Control points are counted from 0, from the left (i) and
+//! from the top (j). Points of the artwork can be pinned to their images (W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of
+//! free-form deformations*, SIGGRAPH 1992): see [`pull`].
 //!
-//! A region that is the artwork's own box has no outside: the pieces continue there, so that strokes and everything else that
-//! extends past the outlines' box follow smoothly. Any other region ends in a border, beyond which nothing moves, unless the
-//! map is extended.
+//! If the region is the artwork's box, the map continues outside it, so that strokes, which reach past the box, follow smoothly.
+//! Any other region ends in a border, beyond which nothing moves unless the map is extended.
 
 #[cfg(feature = "serde")]
 mod file;
@@ -41,7 +40,7 @@ pub struct Ffd {
     grid: Grid,
     changes: Vec<([usize; 2], Change)>,
     pins: Vec<(Point, Point)>,
-    /// Columns and rows kept in place: left, right, top, bottom.
+    /// Numbers of columns and rows that do not move: left, right, top, bottom.
     frozen: [usize; 4],
     extended: bool,
 }
@@ -64,7 +63,7 @@ impl Ffd {
         Self::with(Grid::Regular { region, degree: [3, 3], cells: [1, 1] })
     }
 
-    /// Starts from a grid that may have been changed already.
+    /// Starts from the control points of a lattice.
     #[must_use]
     pub fn from_lattice(lattice: Lattice) -> Self {
         Self::with(Grid::Given(lattice))
@@ -74,7 +73,7 @@ impl Ffd {
         Self { grid, changes: Vec::new(), pins: Vec::new(), frozen: [0; 4], extended: false }
     }
 
-    /// Sets the degrees along x and y of a regular grid, 1 to 10 each: one less than the control points there.
+    /// Sets the degrees along x and y of a regular grid, 1 to 10 each. A grid of degree n has n + 1 control points.
     #[must_use]
     pub fn degree(mut self, x: usize, y: usize) -> Self {
         if let Grid::Regular { degree, .. } = &mut self.grid {
@@ -83,7 +82,7 @@ impl Ffd {
         self
     }
 
-    /// Makes a regular grid a B-spline of so many cells along x and y, 1 to 64 each: it has degree + cells control points.
+    /// Makes a regular grid a B-spline with this many cells along x and y, 1 to 64 each. It has degree + cells control points.
     #[must_use]
     pub fn cells(mut self, x: usize, y: usize) -> Self {
         if let Grid::Regular { cells, .. } = &mut self.grid {
@@ -92,14 +91,14 @@ impl Ffd {
         self
     }
 
-    /// Puts control point (i, j) at a place.
+    /// Sets the position of control point (i, j).
     #[must_use]
     pub fn place(mut self, i: usize, j: usize, at: impl Into<Point>) -> Self {
         self.changes.push(([i, j], Change::Place(at.into())));
         self
     }
 
-    /// Moves control point (i, j), user units.
+    /// Moves control point (i, j) by a vector in user units.
     #[must_use]
     pub fn shift(mut self, i: usize, j: usize, by: impl Into<Vec2>) -> Self {
         self.changes.push(([i, j], Change::Shift(by.into())));
@@ -113,8 +112,8 @@ impl Ffd {
         self
     }
 
-    /// Takes a point of the artwork to another; the control points that are not frozen follow with the smallest change. Pins
-    /// are solved for together, after all other changes. At most 256.
+    /// Pins a point of the artwork to its image, by the smallest change of the control points that are not frozen. All pins are solved
+    /// for together, after all other changes. At most 256.
     #[must_use]
     pub fn pin(mut self, from: impl Into<Point>, to: impl Into<Point>) -> Self {
         self.pins.push((from.into(), to.into()));
@@ -138,10 +137,10 @@ impl Ffd {
         Ok(self.build_with_lattice()?.0)
     }
 
-    /// Builds the map, and returns the changed grid with it.
+    /// Builds the map, and returns it with the changed grid.
     ///
     /// # Errors
-    /// As [`Ffd::build`].
+    /// [`Error::Usage`] in the cases listed for [`Ffd::build`].
     pub fn build_with_lattice(&self) -> Result<(Built, Lattice), Error> {
         let mut lattice = self.start()?;
         let mut warnings = Vec::new();
@@ -212,7 +211,7 @@ impl Ffd {
         Ok(lattice)
     }
 
-    /// Returns `true` for a frozen control point of a grid of this size.
+    /// Returns `true` if control point (i, j) of a grid of this size is frozen.
     fn holds(&self, [columns, rows]: [usize; 2], i: usize, j: usize) -> bool {
         let [left, right, top, bottom] = self.frozen;
         i < left || i + right >= columns || j < top || j + bottom >= rows
@@ -269,7 +268,7 @@ fn indices(l: &Lattice) -> impl Iterator<Item = (usize, usize)> + use<> {
 }
 
 fn names(points: &[(usize, usize)]) -> String {
-    /// A longer list would not be read.
+    /// Limit on the points that a message lists.
     const SHOWN: usize = 8;
     let mut out = points.iter().take(SHOWN).map(|(i, j)| format!("{i},{j}")).collect::<Vec<_>>().join(" ");
     if points.len() > SHOWN {
@@ -312,17 +311,14 @@ fn net(l: &Lattice) -> BezPath {
     p
 }
 
-// Directly manipulated free-form deformation: points of the artwork are moved, and the lattice follows.
-//
-// The image of a point is Σ Rₖ Pₖ with influences Rₖ that do not depend on the control points' positions. Pins p → q ask for
-// Σₖ Rₖ(p) dₖ = q − F(p), one row of a linear system per pin, whose smallest solution is taken (W. M. Hsu, J. F. Hughes,
-// H. Kaufman, *Direct manipulation of free-form deformations*, SIGGRAPH 1992).
+// Pins. The image of a point is Σ Rₖ Pₖ, with influences Rₖ that do not depend on the control points' positions Pₖ. A pin p → q asks for
+// changes dₖ with Σₖ Rₖ(p) dₖ = q − F(p): one row of a linear system per pin, whose solution of least norm is taken.
 
-/// Limit on pins: the work grows with the cube of their number.
+/// Limit on pins. The work grows with the cube of their number.
 const MAX_PINS: usize = 256;
 
 /// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second. Returns the
-/// distance by which each pin is missed: rounding, unless the pins ask for more than the lattice can do.
+/// distance by which each pin is missed, which is rounding if the lattice can meet all pins.
 fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
     let n = pins.len();
     let columns = lattice.columns();
@@ -454,7 +450,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     Ok(built)
 });
 
-/// Reads the initial grid. The flag is `true` if a file gave it its region.
+/// Reads the initial grid. The flag is `true` for a lattice from a file whose region that file or `region` gives.
 fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
     let own_region = s.rect_if("region")?;
     let frame = s.frame().rect;
@@ -466,7 +462,7 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
             }
         }
         let (lattice, named) = read(file, own_region.unwrap_or(frame))?;
-        // An explicit region wins: the grid is laid onto it.
+        // The grid of a file is laid onto an explicit region.
         return Ok(match own_region {
             Some(r) => (Grid::Given(lattice.on(r)), true),
             None if s.given("region") => (Grid::Given(lattice.on(frame)), false),
@@ -503,7 +499,7 @@ fn pair(s: &Settings<'_>, name: &str, max: usize) -> Result<Option<[usize; 2]>, 
     }
 }
 
-/// Reads `at`, `move` and `weight`, in this order; `parts` divides a value into changes.
+/// Reads the changes in `at`, `move` and `weight`, in this order; `parts` divides a value into changes.
 pub(super) fn changes<'a, const N: usize>(
     s: &Settings<'a>,
     parts: impl Fn(&'a str) -> Vec<&'a str>,
@@ -555,16 +551,16 @@ fn frozen(s: &Settings<'_>) -> Result<[usize; 4], Error> {
 /// A change of one control point, of a grid or of a Bézier triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
-    /// Put it here.
+    /// Sets its position.
     Place(Point),
-    /// Move it by so much, user units.
+    /// Moves it by a vector, in user units.
     Shift(Vec2),
-    /// Set its weight.
+    /// Sets its weight.
     Weight(f64),
 }
 
 impl Change {
-    /// The parameter that makes such a change.
+    /// Returns the name of the parameter for this change.
     pub(super) const fn param(self) -> &'static str {
         match self {
             Self::Place(_) => "at",
@@ -595,7 +591,7 @@ mod tests {
         for ((from, to), off) in pins.iter().zip(off) {
             assert!(map.point(*from).distance(*to) < 1e-12 && off < 1e-12);
         }
-        // Smallest: the change is a combination of the pins' rows, so it is orthogonal to any change that keeps the pins.
+        // The smallest change is a combination of the pins' rows, and so orthogonal to any change that keeps the pins.
         let norm = |l: &Lattice| -> f64 {
             (0..3)
                 .flat_map(|j| (0..4).map(move |i| (i, j)))

@@ -1,4 +1,4 @@
-//! Lattices written as JSON (`file.rs` has the format), and the limits that files and parameters share.
+//! Writes lattices as JSON, in the format of `file.rs`, and has the limits that files and parameters share.
 
 use crate::map::Lattice;
 
@@ -7,7 +7,7 @@ pub(in crate::deform) const MAX_DEGREE: usize = 10;
 /// The largest number of Bézier pieces along an axis.
 pub(in crate::deform) const MAX_CELLS: usize = 64;
 
-/// Writes a lattice.
+/// Returns a lattice as JSON.
 pub(super) fn write(lattice: &Lattice) -> String {
     let r = lattice.region();
     let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));

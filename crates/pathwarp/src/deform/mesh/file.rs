@@ -8,10 +8,10 @@
 //! }
 //! ```
 //!
-//! `points` are rows from the top, each from left to right, in user units: 3·columns + 1 in each of 3·rows + 1, patches sharing
-//! the points of their common sides. `region` is the box the quilt was made on; the default is the artwork's. `x` and `y` are the
-//! positions where patches meet, as shares of its width and height; by default it is divided evenly. With `fit` true the quilt is
-//! laid onto the artwork's box.
+//! `points` has 3·rows + 1 rows from the top, each of 3·columns + 1 points from left to right, in user units; patches share the points
+//! of their common sides. `region` is the box for which the quilt was made, by default the artwork's. `x` and `y` are the positions
+//! where patches meet, as shares of the width and height of `region`, which is divided evenly by default. If `fit` is true, the quilt
+//! is laid onto the artwork's box.
 
 use super::quilt::{Contents, Quilt};
 use crate::deform::warp::{self, Style, StyleParams};
@@ -56,16 +56,16 @@ impl QuiltFile {
     }
 }
 
-// Warps of Photoshop layers: JSON made from the file's warp descriptors, or written by hand.
+// Warps of Photoshop layers, as JSON made from the warp descriptors of a file or written by hand.
 
-/// The file's contents.
+/// The contents of a file of warps.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Warps {
     All {
         warps: Vec<LayerWarp>,
     },
-    /// A file written by hand needs no list.
+    /// A single warp, as in a file written by hand.
     One(LayerWarp),
 }
 
@@ -89,7 +89,7 @@ struct LayerWarp {
     mesh: Option<QuiltFile>,
 }
 
-/// Reads the warp of a layer, or of the only warped one, over `region`.
+/// Reads the warp over `region` of the named layer, by default the only warped one.
 pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Contents, Error> {
     let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
         Error::input(

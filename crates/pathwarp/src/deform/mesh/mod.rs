@@ -1,8 +1,8 @@
-//! Meshes: artwork bent by a quilt of bicubic patches, also by the warps that Photoshop keeps with its layers.
+//! Meshes: artwork is bent by a quilt of bicubic patches, or by a warp that Photoshop stores with a layer.
 //!
-//! Each patch is the tensor product Bézier surface of sixteen points (see [`BicubicNet`](crate::map::BicubicNet)); patches share the points of the
-//! sides where they meet. Along such a joint the map is C¹ if the control points beside it divide evenly: (p₊ − p)/after =
-//! (p − p₋)/before in every row (G. Farin, *Curves and Surfaces for CAGD*, §15.4).
+//! Each patch is the tensor product Bézier surface of sixteen points (see [`BicubicNet`](crate::map::BicubicNet)). Patches share the
+//! points of the sides where they meet. Across a joint the map is C¹ if (p₊ − p)/after = (p − p₋)/before in every row, where p₋, p, p₊
+//! are the control points around it, and before, after the patches' widths (G. Farin, *Curves and Surfaces for CAGD*, §15.4).
 
 #[cfg(feature = "serde")]
 mod file;
@@ -37,7 +37,7 @@ pub struct Mesh {
     frame: Option<Rect>,
 }
 
-/// The control points, checked or not.
+/// The control points, before or after they are checked.
 #[derive(Debug, Clone, PartialEq)]
 enum Source {
     Points { region: Rect, rows: Vec<Vec<Point>>, cuts: [Option<Vec<f64>>; 2] },
@@ -131,7 +131,7 @@ static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches
              M0,66.6667 C16.6667,66.6667 33.3333,66.6667 50,66.6667 C66.6667,66.6667 83.3333,66.6667 100,66.6667 \
              M0,100 C16.6667,100 33.3333,100 50,100 C66.6667,100 83.3333,100 100,100",
         )],
-        // A file's own region is in the units of the drawing that it was made for.
+        // The region in a file is in units of the drawing for which it was made.
         instead: &[
             Instead { param: "mesh", others: &["net", "psd"], with: Some(("region", "artwork")) },
             Instead { param: "psd", others: &["net", "mesh"], with: None },

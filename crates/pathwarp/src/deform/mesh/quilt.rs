@@ -10,19 +10,19 @@ use std::sync::Arc;
 /// Limit on patches along one side.
 const MAX_PATCHES: usize = 64;
 
-/// Patches side by side.
+/// Rows and columns of bicubic patches over a box.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quilt {
     /// The box that the patches divide.
     pub(super) region: Rect,
-    /// Positions where patches begin and end, as shares of the box, 0 and 1 included.
+    /// Positions of the patches' sides, as shares of the box, from 0 to 1.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     /// Rows of control points.
     points: Vec<Vec<Point>>,
 }
 
-/// The contents of a file.
+/// The deformation that a file describes.
 pub(super) enum Contents {
     /// The map of a warp style.
     Style(Built),
@@ -36,7 +36,7 @@ fn patches(points: usize) -> Option<usize> {
     (n * 3 + 1 == points && (1..=MAX_PATCHES).contains(&n)).then_some(n)
 }
 
-/// Adds both ends to the cuts; without cuts, divides evenly.
+/// Returns the cuts with 0 and 1; without cuts, an even division into `n`. `None` if they do not rise.
 fn ends(cuts: Option<Vec<f64>>, n: usize) -> Option<Vec<f64>> {
     let Some(inner) = cuts else { return Some((0..=n).map(|i| i as f64 / n as f64).collect()) };
     let all: Vec<f64> = [0.0].into_iter().chain(inner).chain([1.0]).collect();
@@ -53,7 +53,7 @@ impl Quilt {
         Self::new(&path.name, region, path.outline.subpaths.iter().map(row).collect(), None, None)
     }
 
-    /// Checks the control points and divides the box. `x` and `y` default to even divisions.
+    /// Creates a quilt after checking its control points. `x` and `y` default to even divisions.
     pub(super) fn new(
         name: &str,
         region: Rect,
@@ -109,7 +109,7 @@ impl Quilt {
         std::array::from_fn(|r| std::array::from_fn(|c| self.points[3 * j + r][3 * i + c]))
     }
 
-    /// Makes the joints C¹: handles on both sides of a joint get the mean of their two derivatives, corners after sides, so that
+    /// Makes the joints C¹: handles on both sides of a joint get the mean of their two derivatives. Columns come after rows, so that
     /// the cross derivatives agree too.
     pub(super) fn smooth(&mut self) {
         let level = |a: Point, b: Point, c: Point, before: f64, after: f64| {
@@ -131,9 +131,9 @@ impl Quilt {
         }
     }
 
-    /// Counts the pairs of handles that are not C¹, and returns the largest jump of the derivative as a share of it.
+    /// Returns the number of pairs of handles that are not C¹, and the largest jump of the derivative relative to its size.
     pub(super) fn kinks(&self) -> (usize, f64) {
-        /// Files keep about seven digits.
+        /// Smaller jumps are rounding: files keep about seven digits.
         const ROUNDING: f64 = 1e-6;
         let (mut count, mut worst) = (0, 0.0_f64);
         let mut joint = |a: Point, b: Point, c: Point, before: f64, after: f64| {

@@ -22,7 +22,7 @@ fn with(name: &str, text: &str, more: &[(&str, &str)]) -> Result<Built, Error> {
     ENTRY.build_from(&args, &Frame::new(Rect::new(10.0, 20.0, 110.0, 80.0)))
 }
 
-/// Two columns, two rows, some points moved.
+/// Returns the points of two columns and two rows of patches, some of them moved.
 fn points() -> Vec<Vec<(f64, f64)>> {
     (0..7)
         .map(|j| {
@@ -66,7 +66,7 @@ fn every_patch_is_its_net() {
     }
 }
 
-/// Both sides of every joint have one derivative after smoothing, also where four patches meet, and kinks are reported before.
+/// After smoothing, both sides of every joint have the same derivative, also where four patches meet. Without it, kinks are reported.
 #[test]
 fn joints_are_smoothed() {
     let text = json(&points(), "\"region\": [0,0,120,60], \"x\": [0.25],");
@@ -127,7 +127,7 @@ fn photoshops_warps_are_the_styles_and_nets() {
     assert!(fault(with("psd", "{ \"warps\": [] }", &[])).contains("no layer"));
 }
 
-/// Written by hand: one warp, with the keys of Photoshop's descriptors, without those that are zero.
+/// A file written by hand has one warp, with the keys of Photoshop's descriptors that are not zero.
 #[test]
 fn warps_written_by_hand() {
     let flag = with("psd", "{ \"warpStyle\": \"warpFlag\", \"warpValue\": 50 }", &[]).unwrap();

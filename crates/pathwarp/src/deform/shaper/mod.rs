@@ -1,9 +1,9 @@
-//! The 16-point shaper: artwork bent into a four-sided curved path.
+//! The 16-point shaper: artwork is bent into a closed path of four curved sides.
 //!
-//! F = h₂ ∘ F₀ ∘ h₁ (Markku Koppinen, *A plane transformation from 16 control points*, equation 8). F₀ is the bicubic map of a
-//! 4×4 net (equation 3); the user draws its outer twelve points as a closed path of four cubic sides, and the inner four follow
-//! by equation 7 ([`complete_net`](crate::map::complete_net)). h₁ brings the base to the standard position, h₂ the shaper's corners
-//! to the target: direct similitudes for two anchors, projective maps for four.
+//! The map is F = h₂ ∘ F₀ ∘ h₁ (Markku Koppinen, *A plane transformation from 16 control points*, equation 8, to which all numbers
+//! of equations here refer). F₀ is the bicubic map of a 4×4 net (equation 3). The user draws its outer twelve points as a closed path
+//! of four cubic sides; the inner four follow by equation 7 ([`complete_net`](crate::map::complete_net)). h₁ takes the base to the
+//! unit square, h₂ the shaper's corners to the target. They are direct similitudes for two anchors, projective maps for four.
 
 #[cfg(test)]
 mod tests;
@@ -61,20 +61,20 @@ parameters! {
 #[derive(Debug, Clone, PartialEq)]
 enum Cage {
     Path(NamedPath),
-    /// All 16 points, and a name for them.
+    /// All 16 points, and their name for messages.
     Net(Box<Net>, String),
 }
 
 impl Shaper {
-    /// Lays the box `frame`, or what [`base`](Self::base) names, into a closed path of four lines, curves or arcs. Of the eight ways to lay the base's corners on its
-    /// own, the one that is nearest to a similitude is chosen; among near ties the paper's: the bottom is the side that lies
-    /// lowest on the screen, run left to right.
+    /// Lays the box `frame`, or the [`base`](Self::base), into a closed path of four lines, curves or arcs. Of the eight ways to lay the
+    /// base's corners on the corners of the path, the one nearest to a similitude is chosen. Near ties go to the paper's rule: the bottom
+    /// is the side that lies lowest on the screen, run left to right.
     #[must_use]
     pub fn new(frame: Rect, cage: &Outline) -> Self {
         Self::defaults(frame, Cage::Path(NamedPath { name: "shaper".into(), outline: cage.clone() }))
     }
 
-    /// Lays the box `frame`, or what [`base`](Self::base) names, onto all 16 control points, row by row, the bottom row first, each left to right.
+    /// Lays the box `frame`, or the [`base`](Self::base), onto 16 control points, given by rows from the bottom, each left to right.
     #[must_use]
     pub fn from_net(frame: Rect, net: [[Point; 4]; 4]) -> Self {
         Self::defaults(frame, Cage::Net(Box::new(net), "net".into()))
@@ -94,8 +94,8 @@ impl Shaper {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Geometry`] if the path does not close or has other than four sides, if anchors coincide, or if three of four lie
-    /// on a line and a projective map needs them: those of base and target, and the shaper's if the target has four; [`Error::Usage`] for a bottom side out of range.
+    /// [`Error::Geometry`] when the path is not closed or has other than four sides, when anchors coincide, or when three of the four
+    /// anchors of a projective map lie on a line (also the shaper's, for four targets); [`Error::Usage`] for a bottom side out of range.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let mut explanation = Explanation::default();
@@ -150,7 +150,7 @@ impl Shaper {
         Ok(built)
     }
 
-    /// Makes the net of a closed path with four sides. `base` are the four corners that it is laid onto, if there are four; `usable` checks the path's corners.
+    /// Makes the net of a closed path with four sides. `base` holds the base's corners if it has four; `usable` checks the path's.
     fn net_from_sides(
         &self,
         path: &NamedPath,
@@ -237,22 +237,21 @@ fn list(points: &[Point]) -> String {
     points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
 
-// Nets of 16 points: from a closed path of four sides, or given in full.
-//
-// The net is numbered p\[r\]\[s\]: row 0 is the bottom side run left to right, column 0 the left side run upwards.
+// Nets of 16 points, from a closed path of four sides or given in full. In `net[r][s]`, row 0 is the bottom side run left to right, and
+// column 0 is the left side run upwards.
 
-/// The choice of a cage's bottom.
+/// The rule that chooses the bottom side of a cage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bottom {
     /// The way of laying the base's corners on the cage's that distorts least.
     LeastDistorting,
     /// The paper's rule.
     Lowest,
-    /// 1 to 4, as drawn.
+    /// This side, 1 to 4 in the order drawn.
     Side(usize),
 }
 
-/// Chooses the way of laying `base` on the corners that distorts least, and says why. Warns if that turns the artwork on its side.
+/// Returns the way of laying `base` on the corners that distorts least, and its reason. Warns if it turns the artwork on its side.
 fn least_distorting(
     name: &str,
     base: &[Point; 4],
@@ -286,7 +285,7 @@ fn least_distorting(
     )
 }
 
-/// Arranges the outer twelve points; the inner four are still to be completed.
+/// Returns the net with its outer twelve points, before the inner four are completed.
 fn outer_net(sides: &[CubicBez; 4], a: &Arrangement) -> Net {
     let backwards = |c: CubicBez| CubicBez::new(c.p3, c.p2, c.p1, c.p0);
     // Four sides head to tail: bottom, right, top (right to left), left (downwards).
@@ -348,26 +347,26 @@ pub(in crate::deform) fn rows_path(n: &Net) -> BezPath {
     p
 }
 
-// The eight ways to lay the corners of a base on those of a cage, and the one that distorts least.
+// The eight ways to lay the corners of a base on the corners of a cage, and the one that distorts least.
 //
-// A way is judged by the best similitude from the base's corners to the cage's, without reflection: with both sets about their
-// means as complex numbers bᵢ and cᵢ, what the similitude leaves over is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)) of the cage's size.
+// A way is judged by the best direct similitude from the base's corners to the cage's. Relative to their means, let the corners be the
+// complex numbers bᵢ and cᵢ. The residual, as a share of the cage's size, is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)).
 
-/// Ways whose distortions differ by less than this tie: artwork and cages up to about 1.3 times as wide as high, or as high as
-/// wide, are not turned on their sides.
+/// Distortions that differ by less than this tie, so that artwork and cages with sides up to about 1:1.3 are not turned on
+/// their sides.
 const TIE: f64 = 0.25;
 
-/// One way to lay the corners of the base on those of the cage.
+/// One way to lay the corners of the base on the corners of the cage.
 struct CornerMatch {
     arrangement: Arrangement,
-    /// Distance from the best similitude as a share of the cage's size: 0 to 1.
+    /// Residual of the best similitude, as a share of the cage's size, 0 to 1.
     distortion: f64,
     /// Angle by which that similitude turns, −180° to 180°, clockwise on the screen.
     turn: f64,
 }
 
 impl CornerMatch {
-    /// Judges an arrangement of the cage's corners for a base: bottom left, bottom right, then on around.
+    /// Judges an arrangement of the cage's corners for the corners of a base: bottom left, bottom right, top right, top left.
     fn new(base: &[Point; 4], cage: &[Point; 4], arrangement: Arrangement) -> Self {
         let order = arrangement.order();
         let (b, c) = (centred(*base), centred(order.map(|i| cage[i])));
@@ -377,8 +376,8 @@ impl CornerMatch {
         Self { arrangement, distortion: (1.0 - kept).max(0.0).sqrt(), turn: sum.angle().to_degrees() }
     }
 
-    /// The way that distorts least; among ties `lowest`, or else the one that turns least. Ways that mirror the artwork, which
-    /// hardly distorts a narrow box, are left out.
+    /// Returns the way that distorts least; among ties `lowest`, or else the one that turns least. Ways that mirror the artwork are
+    /// excluded, because mirroring hardly distorts a narrow box.
     fn best(base: &[Point; 4], cage: &[Point; 4], lowest: Arrangement) -> Self {
         let by_rule = Self::new(base, cage, lowest);
         let all = (0..8).map(|i| Self::new(base, cage, Arrangement { bottom: i % 4, reversed: i >= 4 }));
@@ -393,7 +392,7 @@ impl CornerMatch {
     }
 }
 
-/// The signed area of a quadrilateral.
+/// Returns the signed area of a quadrilateral.
 fn area(q: &[Point; 4]) -> f64 {
     0.5 * (q[2] - q[0]).cross(q[3] - q[1])
 }
@@ -514,7 +513,7 @@ fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {
 mod laying_tests {
     use super::*;
 
-    /// A box of this width and height, turned clockwise: bottom left, bottom right, top right, top left.
+    /// Returns a box of this shape, turned clockwise: bottom left, bottom right, top right, top left.
     fn turned(width: f64, height: f64, degrees: f64) -> [Point; 4] {
         let corners = [(-width, height), (width, height), (width, -height), (-width, -height)];
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -525,7 +524,7 @@ mod laying_tests {
     fn similar_cages_are_not_distorted_however_they_lie() {
         for (width, degrees) in [4.0, 10.0].iter().flat_map(|w| (-89..=89).map(move |d| (*w, f64::from(d)))) {
             let (base, cage) = (turned(width, 1.0, 0.0), turned(3.0 * width, 3.0, degrees));
-            // As drawn from any corner, in either direction.
+            // The cage may be drawn from any corner, in either direction.
             for start in 0..8 {
                 let drawn: [Point; 4] =
                     std::array::from_fn(|i| cage[(if start < 4 { start + i } else { start + 4 - i }) % 4]);
@@ -556,7 +555,7 @@ mod laying_tests {
         assert!(way(0, false) < 1e-7 && way(2, false) < 1e-7);
         // Σ|b|² = 5, and the mirror image leaves 4 − 1 of it: √(1 − (3/5)²).
         assert!((way(0, true) - 0.8).abs() < 1e-12, "{}", way(0, true));
-        // On its side: 4 of 5 remain.
+        // On its side 4 of 5 remain: √(1 − (4/5)²).
         assert!((way(1, false) - 0.6).abs() < 1e-12, "{}", way(1, false));
     }
 }

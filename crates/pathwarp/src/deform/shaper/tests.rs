@@ -11,7 +11,7 @@ fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
     ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0)))
 }
 
-/// Criterion: the box's sides land on the shaper's arcs to 1e-9.
+/// The box's sides land on the sides of the shaper to 1e-9.
 #[test]
 fn sides_land_on_sides() {
     let m = build(&[("shaper", CAGE)]).unwrap().map;
@@ -25,7 +25,7 @@ fn sides_land_on_sides() {
     }
 }
 
-/// Criterion: the Base's anchors land on the Target's to 1e-9, in every mix of counts.
+/// The Base's anchors land on the Target's to 1e-9, for two or four anchors of either.
 #[test]
 fn base_lands_on_target() {
     let bases: [(&str, &[usize]); 2] = [("12,80 77,88", &[0, 1]), ("0,100 90,95 100,5 10,10", &[0, 1, 2, 3])];
@@ -48,8 +48,8 @@ fn base_lands_on_target() {
     }
 }
 
-/// Criterion: three corners on a line, and two shapes whose four are, bend by F₀ alone (equation 6), and fail by name with four
-/// targets, which need a projective map (equation 10).
+/// Cages with three or four corners on a line bend by F₀ alone (equation 6). With four targets, which need a projective map
+/// (equation 10), they are refused by name.
 #[test]
 fn corners_on_a_line_are_refused_only_with_four_targets() {
     let four = "200,150 320,150 320,40 200,40";
@@ -115,12 +115,12 @@ fn the_lowest_side_is_the_bottom_and_can_be_overruled() {
     let near = |p: Point, q: (f64, f64)| p.distance(q.into()) < 1e-12;
     assert!(near(m(&[]), (10.0, 80.0)));
     assert!(near(m(&[("reverse-shaper", "true")]), (90.0, 80.0)));
-    // Side 1 is the top edge: the picture stands on its head, not mirrored left to right.
+    // Side 1 is the top edge: the picture is turned upside down, not mirrored left to right.
     assert!(near(m(&[("bottom", "1")]), (10.0, 20.0)));
 }
 
-/// A box of 4 by 1 in a cage of the same shape, tilted: the result is the similar image, at every angle at which the paper's rule
-/// would take a short side for the bottom.
+/// A box of 4 by 1 in a tilted cage of the same shape goes to its similar image, even at angles at which the paper's rule would
+/// take a short side for the bottom.
 #[test]
 fn a_tilted_cage_does_not_turn_wide_artwork_on_its_side() {
     for degrees in [-80.0, -45.0, -15.0, 0.0, 10.0, 20.0, 45.0, 80.0_f64] {
@@ -140,7 +140,7 @@ fn a_tilted_cage_does_not_turn_wide_artwork_on_its_side() {
             let q = built.map.point(p);
             assert!(q.distance(turn * scaled) < 1e-9, "{degrees}°: {p:?} goes to {q:?}, not {:?}", turn * scaled);
         }
-        // The paper's rule, on its own: the side with the lowest middle.
+        // The paper's rule takes the side with the lowest middle.
         let lowest = (0..4).map(|i| corners[i].y + corners[(i + 1) % 4].y).fold(f64::MIN, f64::max);
         let bottom = build(&[("bottom", "lowest")]).map.point(Point::new(40.0, 20.0));
         assert!((2.0 * bottom.y - lowest).abs() < 1e-9, "{degrees}°");

@@ -1,29 +1,29 @@
 //! Weights that make a Bézier triangle of degree two birational.
 //!
-//! With weights 1 in the corners, F(u) = Σ uᵢ²·Pᵢᵢ + Σ uᵢuⱼ·cᵢⱼ·Pᵢⱼ, cᵢⱼ twice the weight of the point between corners i and j. F is
-//! birational if its three conics share three points; then two moving lines Σ uₖ·ℓₖ follow it, and X = F(u) gives u as the intersection of
-//! two lines: u ~ (ℓ·X) × (ℓ'·X). A moving line follows F if ℓᵢ·Pᵢᵢ = 0, ℓⱼ·Pᵢᵢ = −cᵢⱼ·ℓᵢ·Pᵢⱼ for i ≠ j, and the terms in u₀u₁u₂ cancel.
-//! These equations have two independent solutions ℓ for two choices of weights. With p, q, r the barycentric coordinates of P₀₁, P₀₂, P₁₂
-//! in the triangle of the corners, g = q₀r₁ − q₁r₀ and h = p₀r₂ − p₂r₀, they are, for the two roots σ of
+//! Let u be barycentric coordinates and Pᵢⱼ the control points in homogeneous coordinates, Pᵢᵢ those of the corners. With weights 1 in
+//! the corners, F(u) = Σ uᵢ²·Pᵢᵢ + Σ uᵢuⱼ·cᵢⱼ·Pᵢⱼ (i < j), where cᵢⱼ is twice the weight of Pᵢⱼ. F is birational if its three conics share
+//! three points. Then two moving lines Σ uₖ·ℓₖ follow it, and u ~ (ℓ·X) × (ℓ'·X) for X = F(u). A moving line follows F if ℓᵢ·Pᵢᵢ = 0,
+//! ℓⱼ·Pᵢᵢ = −cᵢⱼ·ℓᵢ·Pᵢⱼ for i ≠ j, and the terms in u₀u₁u₂ cancel. There are two independent solutions ℓ for two choices of weights. With
+//! p, q, r the barycentric coordinates of P₀₁, P₀₂, P₁₂, g = q₀r₁ − q₁r₀ and h = p₀r₂ − p₂r₀, these are, for the two roots σ of
 //!
 //! > (q₁ + σg)(p₂ + σh) = p₁q₂(1 − σr₀)
 //!
 //! > c₁₂² = (1 − σr₀)/(r₁r₂),  c₀₂/c₀₁ = c₁₂p₁r₁/(q₁ + σg),  c₀₁² = r₂(q₁ + σg)/(p₁(p₀q₁r₂ + g(p₂ + σh)))
 //!
-//! A regular net has σ = 2 and the weights 1. The weight of a corner is free: λᵢ² there multiplies cᵢⱼ by λᵢλⱼ.
+//! A regular net has σ = 2 and the weights 1. The corners' weights λᵢ² are free: they multiply cᵢⱼ by λᵢλⱼ.
 
 use super::{coordinates, index};
 use crate::map::{Plane, Quotient};
 use kurbo::{Point, Rect};
 
-/// The weights of the three points between the corners 0 1, 0 2 and 1 2, and the inverse.
+/// The weights of P₀₁, P₀₂ and P₁₂, and the inverse.
 pub(super) struct Birational {
     pub(super) weights: [f64; 3],
     pub(super) back: Quotient,
 }
 
-/// The weights for a net of six points, by [`index`], over a reference triangle, with the roots `lambda` of the weights of its corners.
-/// `None` if the corners lie on a line, or if no positive weights make the map birational.
+/// Returns the weights for a net of six points, by [`index`], over a reference triangle. `lambda` holds the square roots of the
+/// corners' weights. `None` if the corners lie on a line, or if no positive weights make the map birational.
 pub(super) fn birational(points: &[Point], lambda: [f64; 3], reference: [Point; 3]) -> Option<Birational> {
     let corner = [[2, 0, 0], [0, 2, 0], [0, 0, 2]].map(|k| points[index(k)]);
     let pre = coordinates(corner);
@@ -43,7 +43,7 @@ pub(super) fn birational(points: &[Point], lambda: [f64; 3], reference: [Point; 
         let k = positive(z * p1 * r1 / m)?;
         let x = positive(r2 * m / (p1 * (p0 * q1 * r2 + g * (p2 + sigma * h))))?.sqrt();
         let y = k * x;
-        // ℓᵢ at the corners, for ℓ₀ = 1 at corner 1 and 0 at corner 2, or the reverse.
+        // The values of ℓᵢ at the corners, for ℓ₀ = 1 at corner 1 and 0 at corner 2, or the reverse.
         let line = |a01: f64, a02: f64| {
             let (a10, a20) = (-x * (p1 * a01 + p2 * a02), -y * (q2 * a02 + q1 * a01));
             let (a12, a21) = ((d * r1 * a10 - z * a20) / sigma, (d * r2 * a20 - z * a10) / sigma);
@@ -62,7 +62,7 @@ pub(super) fn birational(points: &[Point], lambda: [f64; 3], reference: [Point; 
         let terms = u.iter().zip(reference).zip(lambda);
         terms.fold(Plane::default(), |sum, ((u, corner), lambda)| sum.plus(f(corner) / lambda, u))
     };
-    // The image of the middle of the triangle: W is positive there.
+    // The denominator W is positive at the image of the middle of the triangle.
     let w = [1.0, 2.0 * weights[0], 2.0 * weights[1], 1.0, 2.0 * weights[2], 1.0];
     let middle = points.iter().zip(w).map(|(p, w)| p.to_vec2() * w).sum::<kurbo::Vec2>() / w.iter().sum::<f64>();
     let at = pre * middle.to_point();

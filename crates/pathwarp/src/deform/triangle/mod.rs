@@ -1,10 +1,10 @@
-//! Bézier triangles: the artwork in a triangle follows a net of control points.
+//! Bézier triangles: artwork in a triangle follows a net of control points.
 //!
 //! F(u) = Σ wᵢⱼₖ Pᵢⱼₖ Bᵢⱼₖ(u) / Σ wᵢⱼₖ Bᵢⱼₖ(u), with Bᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱu₁ʲu₂ᵏ and u the barycentric coordinates in
-//! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n. At degree 1 the map is affine, with weights projective; at degree 2
-//! six points are free and lines become conics' projections: parabolas, or conics with weights. Outside a triangle that was asked for
-//! nothing moves; the restriction of the map to a side depends on that side's points alone, so a side whose points stay put is joined
-//! without a gap. Outside the triangle about the artwork's box the map continues: strokes reach past the box.
+//! the reference triangle ABC. Pᵢⱼₖ starts at (iA + jB + kC)/n, where nothing moves. At degree 1 the map is affine, and with weights
+//! projective. At degree 2 there are six points, and lines become parabolas, or with weights other rational curves. Outside a
+//! triangle that the user gives, nothing moves. The map of a side depends on that side's points alone, so no gap opens along a side
+//! whose points do not move. Outside the default triangle about the artwork's box the map continues, as strokes reach past the box.
 //!
 //! G. Farin, *Triangular Bernstein–Bézier patches*, CAGD 3 (1986); J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form
 //! deformation*, CAGD 46 (2016), where the net is moved along rays (see `anamorph`).
@@ -58,27 +58,27 @@ parameters! {
 }
 
 impl Triangle {
-    /// Creates a net of degree 2 over a reference triangle. Outside it nothing moves, unless it is
+    /// Creates a net of degree 2 over a reference triangle. Outside the triangle nothing moves, unless the map is
     /// [extended](Self::extend).
     pub fn new(corners: [impl Into<Point>; 3]) -> Self {
         Self { frame: None, ..Self::defaults(Rect::ZERO, corners.map(Into::into)) }
     }
 
-    /// Creates a net over a triangle about the artwork's box: its first corner at the top, its second at the bottom left. The map
-    /// continues outside it.
+    /// Creates a net over a triangle about the artwork's box, with its first corner at the top and its second at the bottom left. The
+    /// map continues outside.
     #[must_use]
     pub fn around(frame: Rect) -> Self {
         Self::defaults(frame, around(frame)).extend(true)
     }
 
-    /// Puts control point (i, j, k) at a place.
+    /// Sets the position of control point (i, j, k).
     #[must_use]
     pub fn place(mut self, node: [usize; 3], at: impl Into<Point>) -> Self {
         self.changes.push((node, Change::Place(at.into())));
         self
     }
 
-    /// Moves control point (i, j, k), user units.
+    /// Moves control point (i, j, k) by a vector in user units.
     #[must_use]
     pub fn shift(mut self, node: [usize; 3], by: impl Into<Vec2>) -> Self {
         self.changes.push((node, Change::Shift(by.into())));
@@ -182,7 +182,7 @@ pub(super) fn outline(corners: [Point; 3]) -> BezPath {
     path
 }
 
-/// Returns `true` if the line between two points runs through a box or along its edge, past which strokes reach.
+/// Returns `true` if the line between two points runs through a box or along its edge.
 fn meets(r: Rect, a: Point, b: Point) -> bool {
     let room = 1e-9 * (r.width() + r.height());
     let r = r.inflate(room, room);
@@ -215,23 +215,18 @@ fn cage(net: &TriangleNet) -> BezPath {
     path
 }
 
-// Bézier triangles as maps of the plane.
+// Evaluation of Bézier triangles.
 //
-// > F(p) = Σ wᵢⱼₖ Pᵢⱼₖ Bⁿᵢⱼₖ(u) / Σ wᵢⱼₖ Bⁿᵢⱼₖ(u),  Bⁿᵢⱼₖ(u) = n!/(i!j!k!)·u₀ⁱ u₁ʲ u₂ᵏ,  i + j + k = n
-//
-// u are the barycentric coordinates of p in a reference triangle ABC (G. Farin, *Triangular Bernstein–Bézier patches*, CAGD
-// 3, 1986). With Pᵢⱼₖ = (iA + jB + kC)/n and equal weights nothing moves. A straight line becomes a curve of degree n
-// whatever its direction: a triangle of degree n has total degree n, a rectangle of degree n × n twice that.
-//
-// To evaluate it, the net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓ by running de Casteljau's algorithm on polynomials.
-// That multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, 3ⁿ in a corner: negligible at practical degrees.
+// A straight line becomes a curve of degree n whatever its direction: a triangle of degree n has total degree n, a rectangle of
+// degree n × n twice that. The net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓, by running de Casteljau's algorithm on polynomials.
+// This multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, which is 3ⁿ in a corner: negligible at practical degrees.
 
 /// The control points of a Bézier triangle with their weights.
 #[derive(Debug, Clone, PartialEq)]
 struct TriangleNet {
     corners: [Point; 3],
     degree: usize,
-    /// By [`index`].
+    /// Displacements from the regular net, by [`index`].
     moves: Vec<Vec2>,
     weights: Vec<f64>,
 }
@@ -317,7 +312,7 @@ impl TriangleNet {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
     }
 
-    /// Puts control point (i, j, k) at `p`.
+    /// Moves control point (i, j, k) to `p`.
     fn place(&mut self, ijk: [usize; 3], p: Point) {
         self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
     }
@@ -340,7 +335,7 @@ impl TriangleNet {
         on.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[on[0]])
     }
 
-    /// Returns the map, with its inverse if that is known. Outside the triangle it is the identity or, if `extended`, the continued polynomials.
+    /// Returns the map, with the inverse `back` if it is known. Outside the triangle it is the identity or, if `extended`, continues.
     fn map(&self, extended: bool, back: Option<Quotient>) -> Arc<dyn Map> {
         let pre = coordinates(self.corners);
         let [a, b, c] = self.corners;
@@ -453,7 +448,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     Triangle::read(s, corners)?.build()
 });
 
-/// A triangle about a box, twice as wide and twice as high.
+/// Returns a triangle about a box, twice as wide and twice as high.
 fn around(frame: Rect) -> [Point; 3] {
     let half = frame.width() / 2.0;
     [

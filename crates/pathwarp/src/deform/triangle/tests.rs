@@ -17,7 +17,7 @@ fn is_sound() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-/// Straight from the definition, factorials and all.
+/// Compares every degree with the definition by factorials.
 #[test]
 fn every_degree_agrees_with_the_definition() {
     let corners = [Point::new(-20.0, 10.0), Point::new(120.0, -5.0), Point::new(30.0, 140.0)];
@@ -111,7 +111,7 @@ fn a_fixed_side_joins_and_a_torn_one_warns() {
     );
 }
 
-/// The triangle about the artwork's box has no edge: strokes reach past it.
+/// The triangle about the artwork's box has no edge, because strokes reach past it.
 #[test]
 fn the_artworks_box_has_no_outside() {
     let built = build(&[("move", "0,1,1:0,10")]).unwrap();
@@ -140,7 +140,7 @@ fn every_fault_is_named() {
     }
 }
 
-/// Equation 2 for a net of six points in the order of `index`, from the definition.
+/// Returns the image of barycentric coordinates under a net of six points in the order of `index`, by the definition.
 fn six(points: &[Point], weights: &[f64], [a, b, c]: [f64; 3]) -> Point {
     let basis = [a * a, 2.0 * a * b, 2.0 * a * c, b * b, 2.0 * b * c, c * c];
     let w: f64 = basis.iter().zip(weights).map(|(b, w)| b * w).sum();
@@ -180,7 +180,7 @@ fn six_points_are_birational() {
             assert!(back.cost().searches.is_none());
             assert!(back.point(q).distance(at(u)) < 1e-7, "{round}: {u:?}");
             assert_eq!(exact.preimages(q).unwrap().len(), 1);
-            // The search among all polynomials knows nothing of the weights: it finds this point alone.
+            // The general search for preimages does not use the birational weights; it finds this point alone.
             let all = crate::map::preimages(&plain, &[q], Rect::ZERO).concat();
             several += usize::from(all.len() > 1);
             let equal = TriangleNet { weights: vec![1.0; 6], ..net.clone() }.map(true, None);

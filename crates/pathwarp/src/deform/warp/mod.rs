@@ -1,9 +1,9 @@
-//! Warp styles: ready-made bends of a box, each one bicubic net.
+//! Warp styles: ready-made bends of a box, each by one bicubic net.
 //!
-//! The fifteen styles that drawing programs share, as data ([`style`], `styles.json`): each makes a net of sixteen points from the
-//! artwork's box. The numbers were measured on the most widely used drawing program and published with the OPuller editor
-//! (AnatomikPerq, 2026). The arcs are the usual cubics for circular arcs, and the inner points of the families with bent sides
-//! follow equation (7) of M. Koppinen, *A plane transformation from 16 control points*, the bilinear Coons patch.
+//! The fifteen styles that drawing programs share are data in `styles.json`. Each makes a net of sixteen points from the artwork's
+//! box. The numbers were measured on the most widely used drawing program and published with the OPuller editor (AnatomikPerq,
+//! 2026). Circular arcs are the usual cubics for them. In the families with bent sides, the inner points make a bilinear Coons patch,
+//! by equation 7 of M. Koppinen, *A plane transformation from 16 control points*.
 
 #[cfg(test)]
 mod tests;
@@ -87,11 +87,11 @@ impl Warp {
         Ok(built)
     }
 
-    /// Puts the box between the sides of the style's net. If the lines cannot be kept, the error lists the styles that can.
+    /// Fits the box between the sides of the style's net and keeps lines. If that fails, the error lists the styles that can keep them.
     fn kept(&self, net: &Net, params: &StyleParams) -> Result<Built, Error> {
         let frame = self.frame;
         let put = |style: &Style, net: &Net| -> Result<Built, Error> {
-            // A style that moves only the inside has nothing left between its sides.
+            // A style that moves only the inside has no effect between its sides.
             let flat = style.net(frame.width(), frame.height(), &StyleParams { bend: 0.0, ..*params });
             if params.bend != 0.0 && flat.is_ok_and(|flat| same_sides(&flat, net)) {
                 return Err(Error::usage("keep", self.keep.name(), "its sides do not bend, only its inside"));
@@ -111,7 +111,7 @@ impl Warp {
                 format!("it can with {}", names.join(", "))
             };
             let Error::Usage { problem, .. } = e else { return e };
-            // The envelope's advice is for drawn curves and does not apply here.
+            // The envelope's advice is for drawn curves only.
             Error::usage("keep", self.keep.name(), format!("is impossible with this style ({problem}); {others}"))
         })
     }
@@ -148,17 +148,17 @@ pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
 
 // Warp styles as data: rules that turn a box and a bend into a net of sixteen points.
 //
-// A style starts from the identity net: point (j, c), row j from the top and column c from the left, lies at u = c/3, v = j/3
-// of the box, which here runs from 0,0 to w,h. Its rules are formulas over
+// A style starts from the identity net: point (j, c), in row j from the top and column c from the left, lies at u = c/3, v = j/3
+// of the box, which runs from 0,0 to w,h. The rules are formulas of
 //
-// - `w`, `h`: the box; `b`: the bend, 1 for 100 %; `a` = |b|
-// - `k` = 4/3·tan(bπ/4), `S` = sin(bπ/2), `C` = cos(bπ/2): the ingredients of a circular arc of angle bπ
+// - `w`, `h`: the size of the box; `b`: the bend, 1 for 100 %; `a` = |b|
+// - `k` = 4/3·tan(bπ/4), `S` = sin(bπ/2), `C` = cos(bπ/2): terms of a circular arc of angle bπ
 // - `u`, `v`: the point's position in the box, in `moves`
 //
-// evaluated in this order: `let` (named values), `arcs` (rows that are one arc; in the family `boundary` the sides run
-// straight between their ends), `points` (absolute positions), `moves` (displacements).
-// An arc with ends `half` to the left and right of the middle at height `y` has its handles `lift`·half above the ends, and
-// 2/3·half·C/cos²(bπ/4) from them towards the middle: the usual cubic for a circular arc, written so that b = 0 gives the line.
+// They are evaluated in this order: `let` (named values), `arcs` (rows that are one arc; in the family `boundary`, the left and right
+// sides are straight between the ends of arcs), `points` (absolute positions), `moves` (displacements).
+// The ends of an arc lie at height `y`, `half` to the left and right of the middle. Its handles are `lift`·half above the ends, and
+// 2/3·half·C/cos²(bπ/4) from them towards the middle: the usual cubic for a circular arc, in a form that gives the line for b = 0.
 
 /// A warp style: rules for a net of sixteen points over a box.
 ///
@@ -173,14 +173,14 @@ pub(super) fn over(rect: Rect, net: &Net) -> Result<Built, Error> {
 #[serde(deny_unknown_fields)]
 pub struct Style {
     name: String,
-    /// Other spellings.
+    /// Alternative spellings of the name.
     #[serde(default)]
     also: Vec<String>,
     /// A description in a few words.
     #[serde(default)]
     title: String,
     family: Family,
-    /// Largest bend, 1 for 100 %; without it, any bend that keeps the numbers finite is accepted.
+    /// Largest bend, 1 for 100 %. Without it, bends are limited only by finite numbers.
     limit: Option<f64>,
     #[serde(default, rename = "let")]
     names: Vec<String>,
@@ -190,19 +190,19 @@ pub struct Style {
     points: Vec<Rule>,
     #[serde(default)]
     moves: Vec<Rule>,
-    /// Added to every point when the axis is vertical.
+    /// Shift of every point when the axis is vertical.
     upright: Option<Shift>,
 }
 
-/// The part of a style that a distortion scales.
+/// The part of a net that a distortion scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Family {
-    /// The twelve points of the sides; the bilinear Coons patch completes the inner four, with or without distortion.
+    /// The twelve points of the sides; a bilinear Coons patch completes the inner four, with or without distortion.
     Boundary,
     /// All sixteen points.
     Points,
-    /// The box; the style's displacements are added, scaled by the local factors.
+    /// The points of the box, to which the style's displacements are then added, scaled by the local factors.
     Frame,
 }
 
@@ -225,7 +225,7 @@ struct Rule {
 }
 
 impl Rule {
-    /// Returns `false` if the formulas are certain to have one value everywhere.
+    /// Returns `false` if the formulas do not use the point's position.
     fn depends_on_place(&self) -> bool {
         self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
     }
@@ -241,11 +241,11 @@ struct Shift {
 /// The parameters of a style.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::deform) struct StyleParams {
-    /// 1 for 100 %.
+    /// The bend, 1 for 100 %.
     pub(in crate::deform) bend: f64,
     /// Horizontal and vertical distortion, 1 for 100 %.
     pub(in crate::deform) distortion: [f64; 2],
-    /// Turns the style sideways.
+    /// `true` for the style turned sideways.
     pub(in crate::deform) vertical: bool,
 }
 
@@ -296,7 +296,7 @@ impl Style {
         presets().to_vec()
     }
 
-    /// Returns the built-in style of this name, also as Photoshop spells it (`warpArc`).
+    /// Returns the built-in style of this name, which may be in Photoshop's spelling (`warpArc`).
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         presets().iter().find(|style| style.is_called(name)).cloned()
@@ -305,7 +305,7 @@ impl Style {
     /// Reads a style from JSON.
     ///
     /// # Errors
-    /// [`Error::Input`](Error::Input) if the text is not JSON of a style. Formulas are checked when the style is used.
+    /// [`Error::Input`] when the text is not JSON of a style. Formulas are checked when the style is used.
     pub fn from_json(text: &str) -> Result<Self, Error> {
         Self::from_file("the style", text)
     }
@@ -321,7 +321,7 @@ impl Style {
         &self.name
     }
 
-    /// Returns `true` if the style has this name, or an alternative spelling of it.
+    /// Returns `true` for the style's name and its alternative spellings.
     #[must_use]
     pub fn is_called(&self, name: &str) -> bool {
         self.name == name || self.also.iter().any(|a| a == name)
@@ -340,7 +340,7 @@ impl Style {
             return self
                 .distorted(w, h, with.bend, [horizontal, vertical], |n| heightened(&widened(n, horizontal), vertical));
         }
-        // Horizontal comes first in both cases; sideways it scales the rows.
+        // The horizontal distortion always comes first; here it scales rows of the transposed net.
         let net =
             self.distorted(h, w, with.bend, [vertical, horizontal], |n| widened(&heightened(n, horizontal), vertical))?;
         let shift = self.shift(h, w, with.bend)?;
@@ -368,7 +368,7 @@ impl Style {
         })
     }
 
-    /// Applies the rules, without distortion.
+    /// Returns the net after the rules, without distortion.
     fn plain(&self, rest: &Net, w: f64, h: f64, b: f64) -> Result<Net, StyleError> {
         let mut names = self.names(w, h, b)?;
         let mut net = *rest;
@@ -440,14 +440,14 @@ impl Style {
     }
 }
 
-/// The built-in styles, parsed once: a batch of small drawings would spend a fifth of its time on that.
+/// Returns the built-in styles, which are parsed once.
 fn presets() -> &'static [Style] {
     static PRESETS: OnceLock<Vec<Style>> = OnceLock::new();
-    // The text is part of this crate; a test reads every style.
+    // A test reads every style of this text, which is part of the crate.
     PRESETS.get_or_init(|| serde_json::from_str(include_str!("styles.json")).unwrap_or_default())
 }
 
-/// Returns the points that `j,c` selects.
+/// Returns the points (j, c) that `at` selects.
 fn selected(at: &str) -> Result<Vec<(usize, usize)>, StyleError> {
     let wrong = || StyleError::BadPoint(at.to_owned());
     let one = |t: &str| match t.trim() {

@@ -1,4 +1,4 @@
-//! The nets against the measured table, written out here once more with plain numbers and circles.
+//! Compares the nets with the measured table, written out here independently with plain numbers and circles.
 
 use super::*;
 use crate::deform::Deformation as _;
@@ -24,7 +24,7 @@ fn rest(w: f64, h: f64) -> N {
     t.map(|v| t.map(|u| (u * w, v * h)))
 }
 
-/// An arc through |b|·π about (W/2, yc) with radius r, above or below its centre.
+/// Returns an arc of the angle |b|·π about (W/2, yc) with radius r, above or below its centre.
 fn arc(w: f64, b: f64, yc: f64, r: f64, up: bool) -> [(f64, f64); 4] {
     let theta = b.abs() * PI;
     let (s, c, k) = ((theta / 2.0).sin(), (theta / 2.0).cos(), 4.0 / 3.0 * (theta / 4.0).tan());
@@ -38,7 +38,7 @@ fn mirrored(n: N, h: f64) -> N {
     [3, 2, 1, 0].map(|j: usize| n[j].map(|(x, y)| (x, h - y)))
 }
 
-/// Straight sides with handles at thirds, and the inner points of the bilinear Coons patch.
+/// Adds straight sides with handles at thirds, and the inner points of the bilinear Coons patch.
 fn completed(mut n: N) -> N {
     let mix = |p: (f64, f64), q: (f64, f64), t: f64| (p.0 + (q.0 - p.0) * t, p.1 + (q.1 - p.1) * t);
     for c in [0, 3] {
@@ -69,7 +69,7 @@ fn inner(mut n: N) -> N {
     n
 }
 
-/// The table.
+/// Returns the net of a style from the measured table.
 fn table(style: &str, b: f64, w: f64, h: f64) -> N {
     let theta = b.abs() * PI;
     let (s, c) = ((theta / 2.0).sin(), (theta / 2.0).cos());
@@ -204,7 +204,7 @@ fn nets_are_the_tables() {
     }
 }
 
-/// Sideways it is the same style on the transposed box; a rise ends where it began.
+/// The vertical axis gives the style on the transposed box; a rise then ends where it began.
 #[test]
 fn the_vertical_axis_is_transposition() {
     for style in Style::builtin() {
@@ -223,7 +223,7 @@ fn the_vertical_axis_is_transposition() {
     }
 }
 
-/// Columns, then rows (or the reverse), about the middles of their ends; the family decides which points are scaled.
+/// Scales columns, then rows (or the reverse), about the middles of their ends. The family decides which points are scaled.
 fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> N {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
     let columns = |n: &N| {
@@ -275,7 +275,7 @@ fn distortions_come_in_order() {
                 let net = style.net(W, H, &StyleParams { distortion: [h, v], ..plain(b) }).unwrap();
                 let d = off(&net, &distorted(&style.name, b, [W, H], [h, v], true));
                 assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
-                // Sideways the two change roles; horizontal still comes first.
+                // With the vertical axis, the two distortions change roles; horizontal still comes first.
                 let net = style.net(W, H, &StyleParams { bend: b, distortion: [h, v], vertical: true }).unwrap();
                 let across = distorted(&style.name, b, [H, W], [v, h], false);
                 let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
@@ -298,8 +298,8 @@ fn build(pairs: &[(&str, &str)]) -> Built {
     ENTRY.build_from(&Args::from_pairs(pairs), &Frame::new(Rect::new(5.0, 7.0, 5.0 + W, 7.0 + H))).unwrap()
 }
 
-/// A drawing: every node of the result that comes from one of the source lies where the table's net puts it, and the box's own
-/// sides come out as one curve each, the net's outermost rows and columns.
+/// Every node that comes from a node of the source lies where the table's net puts it, and each side of the box becomes one curve,
+/// an outermost row or column of the net.
 #[test]
 fn a_drawings_nodes_lie_where_the_table_says() {
     let drawing = "M40,20 C80,10 90,60 130,50 L200,80 Q220,40 160,30 Z M20,20 A14,9 10 1 0 60,70 L20,90";
@@ -392,7 +392,7 @@ fn files_of_ones_own_and_their_faults() {
     assert!(ENTRY.build_from(&Args::from_pairs(&[("style", "rise"), ("bend", "700%")]), &check::frame()).is_ok());
 }
 
-/// `keep verticals`: vertical within 0.1° where the style's sides allow it, for styles whose own map does not keep them.
+/// With `keep verticals`, verticals stay vertical within 0.1° for styles that bend them otherwise, if their sides allow it.
 #[test]
 fn kept_verticals_are_upright() {
     let build = |pairs: &[(&str, &str)]| {
@@ -411,7 +411,7 @@ fn kept_verticals_are_upright() {
                 assert!(lean < 0.1, "{style} {bend} at {x}: {lean}°");
                 assert!((b - a).cross(c - a).abs() < 1e-9 * (c - a).hypot2(), "{style} {bend} at {x}: bent");
             }
-            // The shape is the style's: corners on corners, and the bottom's points on its bottom.
+            // Corners are those of the style, and points of the bottom lie on its bottom.
             for corner in [(0.0, 0.0), (200.0, 0.0), (0.0, 100.0), (200.0, 100.0)] {
                 assert!(built.map.point(corner.into()).distance(free.point(corner.into())) < 1e-9, "{style} {bend}");
             }

@@ -1,8 +1,8 @@
-//! Text warps: the forty shapes that office programs put words into.
+//! Text warps: the forty shapes into which office programs put words.
 //!
-//! Each is two guide curves, or several pairs, between which the artwork is spanned (`map::tiled`), or guides
-//! that it stands on. The curves and their adjust values are those of ECMA-376, Part 1, *presetTextWarpDefinitions* (the preset
-//! text warps of DrawingML, `prstTxWarp`), written anew as data in `presets.json`.
+//! A shape has one or several pairs of guide curves, between which the artwork is spanned (`map::tiled`), or single guides, on which it
+//! stands. The curves and their adjust values are those of ECMA-376, Part 1, *presetTextWarpDefinitions* (the preset text warps of
+//! DrawingML, `prstTxWarp`), rewritten as data in `presets.json`.
 
 mod shape;
 #[cfg(test)]
@@ -61,7 +61,7 @@ parameters! {
     }
 }
 
-/// Guides are drawn within this share of the box's width and height.
+/// Tolerance of drawn guides, as a share of the box's width and height.
 const GUIDE_TOLERANCE: f64 = 1e-4;
 
 impl WordArt {
@@ -133,7 +133,7 @@ impl WordArt {
         Ok(built)
     }
 
-    /// Returns the box that the shape is drawn in; the artwork is divided at `cuts`.
+    /// Returns the box in which the shape is drawn, for artwork divided at `cuts`.
     fn placed(&self, cuts: &[f64], guides: &dyn Fn(f64, f64) -> Result<Guides, Error>) -> Result<Rect, Error> {
         let rect = self.frame;
         match self.shape_box {
@@ -153,7 +153,7 @@ impl WordArt {
             }
             Guides::Between(_) if !self.shape.round => Ok(rect),
             Guides::Between(_) => {
-                // At the origin, where rounding does not hide the least of a flat function.
+                // The search runs near the origin, where rounding does not hide a flat minimum.
                 let near = Self { frame: rect - rect.origin().to_vec2(), ..self.clone() };
                 let cuts: Vec<f64> = cuts.iter().map(|y| y - rect.y0).collect();
                 let found = shape::least_distorting(near.frame, |b| {
@@ -166,7 +166,7 @@ impl WordArt {
         }
     }
 
-    /// The same with a larger box, such that mapping that into the shape keeps the artwork as far off the guides as it should be.
+    /// Returns the deformation with a larger frame, whose map into the shape leaves the padding between the artwork and the guides.
     fn padded(&self, guides: Guides, cuts: &[f64], shape_box: Rect) -> Result<Self, Error> {
         /// Samples of a guide.
         const SAMPLES: usize = 128;
@@ -181,7 +181,7 @@ impl WordArt {
             (0..=SAMPLES).map(|i| map.point(Point::new(at(i), y))).collect()
         };
         let length = |ps: &[Point]| ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
-        // The shares of the length and of the heights of the outer bands, within which the lines between bands are guides, too.
+        // The padding as shares of the length and of the heights of the outer bands. Lines between bands are guides, too.
         let (mut ends, mut shares) = (0f64, [0.0; 2]);
         for (k, share) in [0, last].into_iter().zip(&mut shares) {
             let band = self.band(cuts, k);
@@ -190,7 +190,7 @@ impl WordArt {
             ends = ends.max(self.padding / length(&top).min(length(&bottom)));
             *share = self.padding / least;
         }
-        // A single band has both sides.
+        // A single band is padded on both sides.
         let sides = if last == 0 { 2.0 } else { 1.0 };
         if !(ends < 0.5 && shares.iter().all(|share| sides * share < 1.0)) {
             return Err(Error::usage("padding", self.padding.to_string(), "leaves nothing of the shape"));
@@ -201,7 +201,7 @@ impl WordArt {
         Ok(Self { frame, ..self.clone() })
     }
 
-    /// The part of the artwork's box between two cuts.
+    /// Returns band `k` of the artwork's box, between two cuts.
     fn band(&self, cuts: &[f64], k: usize) -> Rect {
         let rect = self.frame;
         let y0 = if k == 0 { rect.y0 } else { cuts[k - 1] };
@@ -245,9 +245,9 @@ impl WordArt {
         }
     }
 
-    /// Stands a band of artwork on `path`: true to size in a box that suits it, else scaled to the path's length.
+    /// Stands a band of artwork on `path`: true to size if the box was fitted to the artwork, else scaled to the path's length.
     fn standing(&self, path: &[Seg], band: Rect) -> Result<Built, Error> {
-        // On a given box artwork has the scale of the path's length.
+        // In a given box, the artwork is scaled to the path's length.
         let scale = if self.shape_box == ShapeBox::Fit { 1.0 } else { shape::length(path) / band.width() };
         let bend = Bend::new(band, &outline(path)).baseline(band.y1 + self.padding / scale).as_drawn(true);
         let loose = || shape::is_loose(path, band.width(), band.height(), word_space(&self.letters).unwrap_or(0.0));
@@ -283,7 +283,7 @@ impl WordArt {
     }
 }
 
-/// The error about an adjust value that the shape does not have.
+/// Returns the error for an adjust value that the shape does not have.
 fn no_adjust_value(shape: &TextShape, text: &str) -> Error {
     let known: Vec<&str> = shape.adj.iter().map(|a| a.name.as_str()).collect();
     Error::usage("adj", text, format!("is not an adjust value of {}: {}", shape.name, known.join(", ")))
@@ -294,7 +294,7 @@ fn outline(segs: &[Seg]) -> Outline {
     Outline { subpaths: vec![Subpath { start, segs: segs.to_vec(), closed: false }] }
 }
 
-/// The names, in the standard's families.
+/// The names of the shapes, in the order of the standard's families.
 const NAMES: &[&str] = &[
     "plain",
     "stop",
@@ -426,7 +426,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     WordArt::read(s, shape)?.build()
 });
 
-/// Reads the adjust values; those not given have their defaults.
+/// Reads the adjust values, with defaults for those not given.
 fn adjusted(s: &Settings<'_>, shape: &TextShape) -> Result<Vec<f64>, Error> {
     let mut values: Vec<f64> = shape.adj.iter().map(|a| a.default).collect();
     let texts = if s.given("adj") { s.texts("adj") } else { Vec::new() };

@@ -1,9 +1,9 @@
 //! Text shapes as data: adjust values with their limits, formulas, and guide curves.
 //!
-//! Formulas use `w` and `h` (the box), `hc` = w/2, `vc` = h/2, `ss` = min(w, h), and the adjust values by their names: lengths
-//! in 1/100000 of the box, angles in 1/60000 of a degree, clockwise from the right. A guide is written like path data with
-//! formulas, without spaces, for numbers: `M x,y`, `L x,y …`, `Q x,y x,y`, `C x,y x,y x,y`, and `A cx,cy rx,ry from,sweep`, an
-//! elliptical arc by the direction from its centre in which it begins, and the angle it sweeps.
+//! Formulas use `w` and `h` (the size of the box), `hc` = w/2, `vc` = h/2, `ss` = min(w, h), and the adjust values by their names:
+//! lengths in 1/100000 of the box, angles in 1/60000 of a degree, clockwise from the right. A guide is written like path data, with
+//! formulas without spaces instead of numbers: `M x,y`, `L x,y …`, `Q x,y x,y`, `C x,y x,y x,y`, and `A cx,cy rx,ry from,sweep` for an
+//! elliptical arc, which begins in the direction `from` as seen from its centre and sweeps the angle `sweep`.
 
 use crate::formula::{Calculator, FormulaError};
 use crate::map::Map;
@@ -28,7 +28,7 @@ use thiserror::Error;
 #[serde(deny_unknown_fields)]
 pub struct TextShape {
     pub(super) name: String,
-    /// Other names.
+    /// Alternative names.
     #[serde(default)]
     also: Vec<String>,
     /// The adjust values.
@@ -39,15 +39,15 @@ pub struct TextShape {
     /// Top and bottom guides, one pair below the other.
     #[serde(default)]
     bands: Vec<[String; 2]>,
-    /// `true` if the shape surrounds a middle, so that its box should suit the artwork's proportion.
+    /// `true` if the shape surrounds a middle, so that its box is fitted to the artwork's proportions.
     #[serde(default)]
     pub(super) round: bool,
-    /// Single guides that text stands on, one below the other.
+    /// Single guides on which text stands, one below the other.
     #[serde(default)]
     paths: Vec<String>,
 }
 
-/// An adjust value.
+/// A declaration of an adjust value.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Adjust {
@@ -80,7 +80,7 @@ pub(super) enum GuideError {
 /// The guides of a text shape over a box.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Guides {
-    /// Guides with the artwork between them: top and bottom of each band.
+    /// Guides with the artwork between them: the top and the bottom of each band.
     Between(Vec<[Vec<Seg>; 2]>),
     /// Guides with the artwork standing on them.
     Along(Vec<Vec<Seg>>),
@@ -100,7 +100,7 @@ impl TextShape {
         serde_json::from_str(include_str!("presets.json")).unwrap_or_default()
     }
 
-    /// Returns the built-in text shape of this name, also as office menus (`Chevron Up`) and files (`textChevron`) spell it.
+    /// Returns the built-in text shape of this name, which may be spelt as in office menus (`Chevron Up`) or files (`textChevron`).
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::builtin().into_iter().find(|shape| shape.is_called(name))
@@ -109,7 +109,7 @@ impl TextShape {
     /// Reads a text shape from JSON.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::Error::Input) if the text is not JSON of a text shape. Formulas are checked when the shape is
+    /// [`Error::Input`](crate::Error::Input) when the text is not JSON of a text shape. Formulas are checked when the shape is
     /// used.
     pub fn from_json(text: &str) -> Result<Self, crate::Error> {
         Self::from_file("the text shape", text)
@@ -126,13 +126,13 @@ impl TextShape {
         &self.name
     }
 
-    /// Returns the adjust values: the name, the range, and the value unless another is given. Ranges beyond a million are angles in
-    /// 1/60000 degree, others in 1/100000 of the box.
+    /// Returns the name, the range and the default of every adjust value. Ranges beyond a million are angles in 1/60000 degree,
+    /// others in 1/100000 of the box.
     pub fn adjust_values(&self) -> impl Iterator<Item = (&str, RangeInclusive<f64>, f64)> {
         self.adj.iter().map(|a| (a.name.as_str(), a.least..=a.most, a.default))
     }
 
-    /// Returns `true` if the shape has this name, or another by which people know it.
+    /// Returns `true` for the shape's name and its alternative names.
     #[must_use]
     pub fn is_called(&self, name: &str) -> bool {
         let name = bare(name);
@@ -192,44 +192,44 @@ fn guide(text: &str, names: &Calculator) -> Result<Vec<Seg>, GuideError> {
 
 /// Returns the arc from one direction through an angle, both in 1/60000 of a degree.
 ///
-/// The point of an ellipse in the direction α from its centre has the parameter atan2(rx·sin α, ry·cos α).
+/// The point of an ellipse in the direction α from its centre has the parameter atan2(rx·sin α, ry·cos α), where rx and ry are its radii.
 fn arc(center: Point, radii: Point, from: f64, sweep: f64) -> EllipticArc {
     use std::f64::consts::{PI, TAU};
     const UNIT: f64 = PI / 10_800_000.0;
     let parameter = |direction: f64| {
         let off = (radii.x * direction.sin()).atan2(radii.y * direction.cos()) - direction;
-        // Parameter and direction differ by less than a quarter turn.
+        // The parameter and the direction differ by less than a quarter turn.
         direction + off - TAU * (off / TAU).round()
     };
     let (first, last) = (parameter(from * UNIT), parameter((from + sweep) * UNIT));
     EllipticArc::new(center, Vec2::new(radii.x, 0.0), Vec2::new(0.0, radii.y), first, last - first)
 }
 
-// The box that a text shape is drawn in, laid to the artwork's proportion, and the lines of lettering.
+// The box of a text shape, fitted to the artwork, and the lines of lettering.
 //
-// On a single guide, letters keep their size and the box is a square. Artwork of width w and height h, measured at half its
-// height, is as long as a guide of length L that turns by θ (positive: outwards) if L = w − θh/2, because the length of an
-// offset is linear in its height. Between two guides the box has the proportion whose map distorts the artwork least, and the
+// On a single guide, letters keep their size and the box is a square. The length of an offset is linear in its height: at half the
+// height of artwork of width w and height h, a guide of length L that turns by θ (positive: outwards) has the length L + θh/2. The
+// artwork fills it if L = w − θh/2. Between two guides, the box has the proportions whose map distorts the artwork least, and the
 // size that keeps the artwork's area.
 
-/// The box that a text shape is drawn in.
+/// The box in which a text shape is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum ShapeBox {
-    /// For round shapes, the box that suits the artwork's proportion; for all others, the artwork's own.
+    /// For round shapes, a box fitted to the artwork's proportions; for all others, the artwork's box.
     #[default]
     Fit,
-    /// The artwork's own.
+    /// The artwork's box.
     Artwork,
     /// This box.
     Given(Rect),
 }
 
-/// A guide, or artwork, that returns to its start within this share of its size is closed.
+/// A guide that returns to its start within this share of its length is closed.
 const CLOSED: f64 = 1e-3;
-/// Letters outside a guide become at most 1 + this times as wide at the top as at the foot.
+/// Limit on the widening of letters that stand outside a guide: their tops are at most 1 + this times as wide as their feet.
 const WIDEST: f64 = 1.0;
-/// Letters inside a guide become at most 1 − this times as wide at the top as at the foot.
+/// Limit on the narrowing of letters that stand inside a guide: their tops are at least 1 − this times as wide as their feet.
 const NARROWEST: f64 = 0.5;
 
 /// Factor by which the box is enlarged, so that rounding makes no artwork longer than its guide.
@@ -241,8 +241,8 @@ pub(super) fn is_closed(guide: &[Seg]) -> bool {
     ends.is_some_and(|(a, b)| a.start().distance(b.end()) < CLOSED * length(guide))
 }
 
-/// Returns the side of the square box in which `width` × `height` stands on a guide, true to size. `guide` is drawn in the unit
-/// square.
+/// Returns the side of the square box in which artwork of `width` × `height` stands on a guide true to size. `guide` is drawn in the
+/// unit square.
 pub(super) fn side(guide: &[Seg], width: f64, height: f64) -> f64 {
     let turn = turn(guide);
     let min = if turn > 0.0 { turn * height / WIDEST } else { -turn * height / NARROWEST };
@@ -263,17 +263,17 @@ pub(super) fn top(guide: &[Seg]) -> f64 {
     best.1 / before
 }
 
-/// Returns `true` if artwork leaves more of a guide free than `space`.
+/// Returns `true` if artwork leaves more than `space` of a guide free.
 pub(super) fn is_loose(guide: &[Seg], width: f64, height: f64, space: f64) -> bool {
     mid_length(guide, height) > (width + space) * (1.0 + CLOSED)
 }
 
-/// The length of a guide, measured at half the height of the artwork that stands on it.
+/// Returns the length of a guide, measured at half the height of the artwork that stands on it.
 pub(super) fn mid_length(guide: &[Seg], height: f64) -> f64 {
     length(guide) + 0.5 * turn(guide) * height
 }
 
-/// Samples of a guide's piece, between which its tangent turns by less than half a circle.
+/// Number of samples of a guide's piece, between which its tangent turns by less than half a circle.
 const SAMPLES: u32 = 256;
 
 fn samples() -> impl Iterator<Item = (f64, f64)> {
@@ -284,7 +284,7 @@ pub(super) fn length(guide: &[Seg]) -> f64 {
     guide.iter().map(|s| ArcLength::of(s).length()).sum()
 }
 
-/// The total turn of the tangent, radians, clockwise on the screen.
+/// Returns the total turn of the tangent, radians, clockwise on the screen.
 fn turn(guide: &[Seg]) -> f64 {
     let between = |s: &Seg, (a, b): (f64, f64)| {
         let (a, b) = (s.deriv(a), s.deriv(b));
@@ -293,15 +293,15 @@ fn turn(guide: &[Seg]) -> f64 {
     guide.iter().flat_map(|s| samples().map(move |ends| between(s, ends))).sum()
 }
 
-/// Returns the box about the middle of `rect` in which `map` distorts the artwork least and keeps its area. `map` builds the map
-/// for a box; `None` if a guide has no length there.
+/// Returns the box about the middle of `rect` whose map distorts the artwork least and keeps its area. `map` builds the map for a box;
+/// it returns `None` if a guide has no length there.
 pub(super) fn least_distorting<E>(
     rect: Rect,
     map: impl Fn(Rect) -> Result<Option<Arc<dyn Map>>, E>,
 ) -> Result<Rect, E> {
-    /// Logarithms of the proportions tried: between 1:20 and 20:1.
+    /// Largest logarithm of the proportions tried, which are between 1:20 and 20:1.
     const RANGE: f64 = 3.0;
-    /// Steps of golden section, which find the proportion to a millionth, so that differences in rounding do not show.
+    /// Number of steps of golden section, which find the proportions to a millionth, so that differences in rounding do not show.
     const STEPS: usize = 32;
     let of = |log: f64| {
         let area = (rect.width() * rect.height()).sqrt();
@@ -327,11 +327,11 @@ pub(super) fn least_distorting<E>(
     Ok(Rect::from_center_size(found.center(), found.size() * scale))
 }
 
-/// The mean squared logarithm of the ratio of the singular values over a box, and the mean factor of areas.
+/// Returns the mean squared logarithm of the ratio of the singular values over a box, and the mean factor of areas.
 fn distortion(rect: Rect, map: &dyn Map) -> (f64, f64) {
     /// Columns and rows of sampled points.
     const GRID: [u32; 2] = [24, 3];
-    /// The square of the logarithm for a collapsed or mirrored point.
+    /// The squared logarithm that counts for a collapsed or mirrored point, and its upper limit.
     const WORST: f64 = 50.0;
     let share = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
     let (mut cost, mut area) = (0.0, 0.0);
@@ -350,7 +350,7 @@ fn distortion(rect: Rect, map: &dyn Map) -> (f64, f64) {
 /// A line of lettering: the top and the bottom of its letters.
 pub(super) type TextLine = (f64, f64);
 
-/// The lines of the letters within `rect`, from top to bottom.
+/// Returns the lines of the letters within `rect`, from top to bottom.
 pub(super) fn lines(letters: &[Letter], rect: Rect) -> Vec<TextLine> {
     let mut rows: Vec<(f64, TextLine)> = Vec::new();
     for l in letters.iter().filter(|l| rect.contains(l.middle()) || rect.y0 < l.origin.y && l.origin.y <= rect.y1) {

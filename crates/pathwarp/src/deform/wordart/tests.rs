@@ -1,4 +1,4 @@
-//! The guides against the standard's formulas, written out here once more for one box.
+//! Compares the guides with the standard's formulas, written out here independently for one box.
 
 use super::*;
 use crate::check;
@@ -26,7 +26,7 @@ fn default_guides(name: &str) -> Guides {
     preset.guides(W, H, &values).unwrap()
 }
 
-/// First and last point.
+/// First and last point of a guide.
 type Ends = [(f64, f64); 2];
 
 fn ends(segs: &[Seg]) -> Ends {
@@ -34,7 +34,7 @@ fn ends(segs: &[Seg]) -> Ends {
     [(a.x, a.y), (b.x, b.y)]
 }
 
-/// First and last points of every guide, from the formulas of presetTextWarpDefinitions with the default adjust values.
+/// Compares the ends of every guide with the formulas of presetTextWarpDefinitions, for the default adjust values.
 #[test]
 fn the_guides_ends_are_the_formulas() {
     // A circle lacks 1/60000 of a degree, in the standard's parametrisation; shapes are given as shares of w and h.
@@ -135,7 +135,7 @@ fn the_guides_ends_are_the_formulas() {
     }
 }
 
-/// Control points and knees that ends do not show, and ellipses.
+/// Compares the control points of guides between two curves, and ellipses, with the formulas.
 #[test]
 fn the_two_curve_family_reproduces_its_guides() {
     let cubic = |p: [(f64, f64); 4]| {
@@ -227,7 +227,7 @@ fn the_two_curve_family_reproduces_its_guides() {
     }
 }
 
-/// Cans and rings: halves and wholes of ellipses, clockwise or not, run evenly.
+/// The guides of cans and rings are halves and wholes of ellipses, in either direction, run evenly.
 #[test]
 fn cans_and_rings_are_ellipses() {
     let on = |p: Point, cy: f64, ry: f64| (((p.x - 0.5 * W) / (0.5 * W)).hypot((p.y - cy) / ry) - 1.0).abs() < 1e-9;
@@ -304,7 +304,7 @@ fn names_and_limits() {
     assert!(fault(&[("preset", "button"), ("split", "50%,40%")]).contains("rising"));
 }
 
-/// A shape from a file: the triangle, rewritten; without bands or paths, and with broken guides, it is refused.
+/// A file with the triangle gives the built-in shape. Files without bands or paths, or with broken guides, are refused.
 #[test]
 fn files_of_ones_own() {
     let with = |text: &str| {
@@ -328,7 +328,7 @@ fn files_of_ones_own() {
     }
 }
 
-/// Followed on, the artwork's verticals reach the guides of the whole shape after the padding, at the nearest place exactly.
+/// The artwork's verticals, continued, reach the guides of the whole shape after the padding or more, exactly so where it is least.
 #[test]
 fn padding_is_kept_from_the_guides() {
     const PADDING: f64 = 4.0;
@@ -349,7 +349,7 @@ fn padding_is_kept_from_the_guides() {
                 (met.dot(out), met.cross(out).abs())
             };
             let all: Vec<(f64, f64)> = (0..=40).map(|i| off(W * f64::from(i) / 40.0)).collect();
-            // Where a vertical runs nearly along a guide, samples of it do not tell where it meets it.
+            // If a vertical runs nearly along a guide, its samples do not show where they meet.
             let sure = || all.iter().filter(|(_, missed)| *missed < 0.15).map(|(off, _)| *off);
             let least = sure().fold(f64::INFINITY, f64::min);
             assert!((0.98 * PADDING..1.1 * PADDING).contains(&least), "{name}: {least}");
@@ -363,7 +363,7 @@ fn padding_is_kept_from_the_guides() {
     assert!(build(&[("preset", "plain"), ("padding", "60")]).unwrap_err().to_string().contains("leaves nothing"));
 }
 
-/// The bottom of what stands on a circle is a circle, larger by the padding.
+/// The bottom of artwork that stands on a circle is a circle, larger by the padding.
 #[test]
 fn padding_lifts_off_a_guide() {
     let built = build(&[("preset", "arch-up"), ("padding", "7")]).unwrap();

@@ -1,4 +1,4 @@
-//! Proven signs against a dense, independent check of det J.
+//! Compares proven signs with independent, dense samples of det J.
 
 use super::*;
 use crate::map::{
@@ -25,7 +25,7 @@ impl Random {
 
 const BOX: Rect = Rect::new(-20.0, 30.0, 100.0, 90.0);
 
-/// The determinants by central differences of values over a dense grid: smallest and largest.
+/// Returns the smallest and the largest determinant over a dense grid, by central differences of values.
 fn dense(map: &dyn Map) -> (f64, f64) {
     const N: usize = 80;
     let h = 1e-4;
@@ -41,7 +41,7 @@ fn dense(map: &dyn Map) -> (f64, f64) {
     (least, most)
 }
 
-/// Checks a family of maps, gentle to wild: what is proven is true, gentle maps are proven, and folds are never missed.
+/// Checks a family of maps, from gentle to wild: proven signs are right, gentle maps are proven, and no fold is missed.
 fn check(family: &str, make: impl Fn(&mut Random, f64) -> Arc<dyn Map>) {
     let mut random = Random(7);
     let (mut proven_of, mut folded) = ([0, 0], 0);
@@ -65,7 +65,7 @@ fn check(family: &str, make: impl Fn(&mut Random, f64) -> Arc<dyn Map>) {
             folded += 1;
             assert!(proven(&*map, BOX, ENOUGH).is_none(), "{family} {k} folds");
         }
-        // Clearly unfolded maps: the determinant varies less than eightfold.
+        // If the determinant varies less than eightfold, the map is clearly unfolded.
         if (positive && least > most / 8.0) || (negative && most < least / 8.0) {
             proven_of[1] += 1;
             proven_of[0] += usize::from(proven(&*map, BOX, ENOUGH) == Some(if negative { -1.0 } else { 1.0 }));
