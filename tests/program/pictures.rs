@@ -157,7 +157,7 @@ fn diagonal(r: Rect) -> f64 {
 fn a_straight_shaper_changes_nothing() {
     let same = |source: usize, warped: usize| source == warped;
     straight("0%,0% 100%,0% 100%,100% 0%,100%", 1e-4, 2, same, same);
-    // Off by 1e-8, so that the affine case is not recognised: no segment is added. (Pixels say little here: the renderer's circles
+    // Off by 1e-8, so that the affine case is not recognised: no segment is added. (Pixels prove little here: the renderer's circles
     // are polynomials too, and dashes along them move with the error in length.)
     let no_more = |source: usize, warped: usize| warped <= source;
     let any = |_: usize, _: usize| true;

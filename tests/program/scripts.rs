@@ -150,7 +150,7 @@ fn pieces_follow_one_another() {
         ends[2] - ends[0]
     };
     let (thai, khmer) = (advance("สวัสดี", "thai.ttf"), advance("សួស្តី", "khmer.ttf"));
-    // Where the first or last word of a drawing begins.
+    // The position at which the first or last word of a drawing begins.
     let (thai_parts, khmer_parts) = (word("สวัสดี", "thai.ttf").len(), word("សួស្តី", "khmer.ttf").len());
     let first = |content: &str| moved(content, &[]).1[0].x0;
     let last = |content: &str, parts: usize| moved(content, &[]).1.iter().rev().nth(parts - 1).unwrap().x0;

@@ -32,7 +32,7 @@ impl Plugin {
     /// Starts the program at `path` and reads its entry. Also returns the entry's text.
     ///
     /// # Errors
-    /// A [`Fault`] when the program cannot be started, or its entry violates the protocol.
+    /// A [`Fault`], such as [`Fault::NotStarted`], when the program cannot be started; [`Fault::Entry`] when its entry breaks the protocol.
     pub fn start(path: &Path, reserved: Reserved<'_>) -> Result<(Self, String), Fault> {
         // The system would search PATH for a name without a folder.
         let path = path.canonicalize().map_err(|_| Fault::NoFile)?;
@@ -44,7 +44,7 @@ impl Plugin {
     /// Makes a plug-in of the program at `path` from its known entry, without starting it.
     ///
     /// # Errors
-    /// A [`Fault`] when the entry violates the protocol.
+    /// [`Fault::Entry`] or another [`Fault`] when the entry breaks the protocol.
     pub(crate) fn known(path: &Path, text: &str, reserved: Reserved<'_>) -> Result<Self, Fault> {
         Ok(Self::new(path, &read(text.as_bytes(), reserved)?, None))
     }

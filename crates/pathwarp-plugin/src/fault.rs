@@ -90,7 +90,7 @@ pub enum Fault {
     Garbage {
         /// The expected answer.
         expected: String,
-        /// The beginning of what it wrote.
+        /// The beginning of its output.
         found: String,
     },
     /// An answer has the wrong number of points.

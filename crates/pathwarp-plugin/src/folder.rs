@@ -116,7 +116,7 @@ pub fn installed(reserved: Reserved<'_>, afresh: Option<&str>) -> Found {
 /// Starts the plug-in in one file, which may be in any folder.
 ///
 /// # Errors
-/// A [`Fault`] when the plug-in cannot be used.
+/// A [`Fault`], such as [`Fault::NoFile`], when the plug-in cannot be used.
 pub fn by_file(path: &Path, reserved: Reserved<'_>) -> Result<Plugin, Fault> {
     Plugin::start(path, reserved).map(|(plugin, _)| plugin)
 }

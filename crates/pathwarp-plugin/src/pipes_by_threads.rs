@@ -144,7 +144,7 @@ impl Pipes {
     }
 }
 
-/// Starts a thread that forwards what it reads from `pipe`.
+/// Starts a thread that forwards all bytes read from `pipe`.
 fn reading(
     mut pipe: impl Read + Send + 'static,
     happened: SyncSender<Event>,

@@ -1,5 +1,5 @@
 //! The native half of the Python package `pathwarp`. The other half, in `python/pathwarp`, converts Python's values to the text
-//! that [`pathwarp_engine`] reads, so that they mean what they mean on the command line.
+//! that [`pathwarp_engine`] reads, so that values have one meaning in Python and on the command line.
 
 mod arrays;
 mod catalog;

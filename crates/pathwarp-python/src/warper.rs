@@ -34,7 +34,7 @@ pub(crate) struct Warper {
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 
-/// The name of a deformation, its parameters with their values, and whether it is inverted.
+/// The name of a deformation, its parameters with their values, and `true` if it is inverted.
 type TypedStep = (String, Vec<(String, Vec<String>)>, bool);
 
 #[pymethods]

@@ -108,7 +108,7 @@ fn what_is_not_supported_is_reported() {
     assert!(w.warnings.is_empty() && w.skipped.is_empty(), "{:?}", w.warnings);
 }
 
-/// Colours that are not understood are named, and drawn in black all the same.
+/// Colours that are not understood are named, and drawn in black.
 #[test]
 fn colours_that_are_not_understood_are_black() {
     for (content, said) in [

@@ -140,7 +140,7 @@ fn text_after(line: &[u8], keyword: &[u8]) -> String {
     String::from_utf8_lossy(&line.trim_ascii()[keyword.len()..]).trim().to_owned()
 }
 
-/// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error says what the line should be.
+/// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error describes a correct line.
 fn polygon<'a>(
     kind: PolygonKind,
     min: usize,
