@@ -18,7 +18,7 @@ pub struct Camera3 {
 const NEAR: f64 = 1e-3;
 
 impl Camera3 {
-    /// Makes a camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` if any of the box is behind the eye.
+    /// Makes a camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` unless the box is in front of the eye.
     #[must_use]
     pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
         let to = scene.center() - eye;

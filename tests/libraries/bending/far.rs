@@ -5,7 +5,7 @@ use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::{Map, inverse_over};
 use pathwarp::param::{Args, Frame};
 
-/// A distance so far that rounding a unit relative to the coordinates is a ten-millionth, and exact in binary.
+/// An offset so large that a unit is a ten-millionth of the coordinates; exact in binary.
 const FAR: Vec2 = Vec2::new(1e7, -1.2e7);
 const FRAME: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
 /// Largest difference, as a fraction of the frame's width.

@@ -49,7 +49,7 @@ fn each_shape_goes_through_the_steps_that_selected_it() {
         assert_eq!((bounds(&svg, "a"), bounds(&svg, "ab")), ([5.0, 7.0, 10.0, 10.0], [25.0, 67.0, 10.0, 20.0]));
         assert_eq!(data(&svg, "b"), data(DRAWING, "b"));
     }
-    // A part without a selection applies to everything; --exclude in several parts restricts only its part.
+    // A part without a selection applies to everything; each `--exclude` applies only to its part.
     let three = [
         "affine", "--move-x", "5", "--select", "#a", "+", "affine", "--move-x", "1", "+", "affine", "--move-y", "7",
         "--select", "#b",

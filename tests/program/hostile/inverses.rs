@@ -22,7 +22,7 @@ fn ends_by_count(folder: &Folder, args: &[&str]) {
     assert!(code == 4 && said.contains("--limit work"), "{args:?}: {code} {said}");
 }
 
-/// Found by fuzzing: this took 20 seconds, the limit on time.
+/// Found by fuzzing: this took 20 seconds, until the limit on time ended it.
 #[test]
 fn undoing_a_quilt_with_a_point_far_out_is_counted() {
     let folder = Folder::with(&[

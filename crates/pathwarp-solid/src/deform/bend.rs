@@ -246,7 +246,7 @@ impl Bend3 {
         Ok((pieces.into_iter().enumerate().map(ribbon).collect(), knots))
     }
 
-    /// Returns the handles at the points of a spline: `own`, with those that are set in their stead.
+    /// Returns the handles at the points of a spline: `own`, replaced by the handles that are set.
     fn at_points(&self, mut own: Vec<[DVec3; 2]>) -> Result<Vec<[DVec3; 2]>, Error> {
         let last = own.len() - 1;
         for h in &self.handles {
