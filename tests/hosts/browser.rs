@@ -1,4 +1,4 @@
-//! The browser, for tests of the editor's page and of how others read drawings.
+//! The browser, for tests of the editor's page and of drawings as other programs read them.
 
 use crate::support::root;
 use base64::Engine as _;
@@ -14,7 +14,7 @@ fn has_chromium() -> bool {
     names.iter().any(|name| Path::new("/usr/bin").join(name).exists())
 }
 
-/// Whether Firefox is where the page's tests look for it.
+/// Returns `true` if Firefox is where the page's tests look for it.
 pub fn has_firefox() -> bool {
     ["/usr/bin/firefox-esr", "/usr/bin/firefox"].into_iter().any(|b| Path::new(b).exists())
 }
@@ -34,12 +34,12 @@ pub fn missing() -> Option<&'static str> {
     }
 }
 
-/// What Chromium shows of a page of this size in px. The script starts it anew where it takes no picture.
+/// Returns the picture that Chromium shows of a page of this size in px. The script restarts Chromium if it takes no picture.
 pub fn shown(page: &Path, size: [usize; 2]) -> Pixmap {
     shown_with(page, size, &[])
 }
 
-/// As [`shown`], with variables of the environment.
+/// Returns the picture that Chromium shows of a page, with variables of the environment.
 pub fn shown_with(page: &Path, [width, height]: [usize; 2], environment: &[(&str, &str)]) -> Pixmap {
     let mut node = Command::new("node");
     node.envs(environment.iter().copied());

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What the judge found for every drawing of a folder with this program, tried in some ways, and its report. `None` where it cannot judge.
+/// Returns the judge's findings for every drawing of a folder with this program, in some ways, and its report; `None` without Chromium.
 fn judged(by: &Path, folder: &Path, ways: &[&str]) -> Option<(Vec<Value>, String)> {
     if let Some(what) = browser::missing() {
         skipped(format_args!("drawings are not compared in Chromium without {what}"));
@@ -21,7 +21,7 @@ fn judged(by: &Path, folder: &Path, ways: &[&str]) -> Option<(Vec<Value>, String
     Some((found, said))
 }
 
-/// Tries programs that empty a drawing, leave it as it is, or write no result.
+/// Tries programs that empty a drawing, leave it unchanged, or write no result.
 #[cfg(unix)]
 #[test]
 fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
@@ -56,8 +56,8 @@ fn emptied_and_unbent_results_differ_on_pages_of_every_size() {
     }
 }
 
-/// `tests/browser` holds a small drawing for each kind of thing that programs read in different ways. None may differ in any of the ways
-/// tried, whatever fonts a machine has. To add a drawing, put it there.
+/// `tests/browser` holds a small drawing for each feature that programs read in different ways. None may differ in any of the ways tried,
+/// with any installed fonts. To add a drawing, put it there.
 #[test]
 fn own_drawings_are_what_chromium_shows() {
     none_differs(&[], &[]);
@@ -77,10 +77,10 @@ fn own_drawings_in_pdf_are_what_chromium_shows() {
     none_differs(&["--as", "pdf"], &NOT_READ);
 }
 
-/// Drawings of what pictures lack and warnings name: rules for `:nth-child(… of …)`, pictures that are not there, and packed ones.
+/// Drawings of features that pictures lack and warnings name: rules for `:nth-child(… of …)`, missing pictures, and packed ones.
 const NOT_READ: [&str; 3] = ["css-nesting-of-selectors", "pictures-that-are-missing", "pictures-that-are-packed"];
 
-/// Asserts that no drawing differs but for those named.
+/// Asserts that no drawing differs except those named.
 fn none_differs(ways: &[&str], but: &[&str]) {
     let Some((found, said)) = judged(pathwarp_program(), &root().join("tests/browser"), ways) else { return };
     assert!(found.len() > 30 && found.iter().all(|f| f["counts"] == true), "{said}");

@@ -1,5 +1,5 @@
 //! The program beside other programs: browsers, Inkscape, GIMP, Poppler, Python, cargo. `.ci/run` runs these tests, and `cargo test` leaves
-//! them out; where a program is not installed, a line says what is skipped.
+//! them out. Where a program is not installed, a line names the tests that are skipped.
 
 #![allow(
     unreachable_pub,

@@ -1,4 +1,4 @@
-//! `cargo xtask new-deformation`: what it writes compiles, is registered and passes its tests.
+//! `cargo xtask new-deformation`: the generated code compiles, is registered and passes its tests.
 
 use crate::support::{program, root};
 use std::fs;
@@ -29,7 +29,7 @@ fn the_new_deformation_passes_its_tests() {
         copy_folder(&root().join("crates").join(name).join("src"), &folder.join("src"));
         let manifest = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).unwrap();
         let mut manifest: toml::Table = manifest.parse().unwrap();
-        // The benchmarks and what they need stay away.
+        // The benchmarks and their dependencies are left out.
         manifest.retain(|table, _| table != "bench" && table != "dev-dependencies");
         fs::write(folder.join("Cargo.toml"), manifest.to_string()).unwrap();
     }
@@ -47,7 +47,7 @@ fn the_new_deformation_passes_its_tests() {
     let written = fs::read_to_string(&file).unwrap();
     assert!(written.lines().count() <= 60, "{written}");
     fs::write(&file, written + SOUND).unwrap();
-    // This test's own target folder already has the dependencies.
+    // This test's target folder already has the dependencies.
     let target = std::env::current_exe().unwrap().ancestors().nth(3).unwrap().to_owned();
     let test = Command::new(env!("CARGO"))
         .args(["test", "--quiet", "-p", "pathwarp", "-p", "all", "--lib", "--target-dir"])
@@ -61,8 +61,8 @@ fn the_new_deformation_passes_its_tests() {
     assert!(test.status.success() && output.contains("4 passed"), "{output}");
 }
 
-/// The workspace's manifest, reduced to the copied crates. They are not optimised: they run only once, so that would take longer than it
-/// saves. And since they are built differently, they do not replace the workspace's own crates in the target folder.
+/// Returns the workspace's manifest, reduced to the copied crates. They are not optimised: they run only once, so that would take longer
+/// than it saves. Since they are built differently, they do not replace the workspace's crates in the target folder.
 fn reduced(manifest: &str) -> String {
     let members = manifest.lines().find(|l| l.starts_with("members")).unwrap();
     let levels = ["bezierfit.opt-level", "pathwarp.opt-level"];
@@ -77,7 +77,7 @@ fn reduced(manifest: &str) -> String {
         .replace(profile, &format!("{profile}bezierfit.opt-level = 0\npathwarp.opt-level = 0\n"))
 }
 
-/// The manifest of a crate that has all dependencies of the workspace, so that they have the same features and are not built again.
+/// Returns the manifest of a crate that has all dependencies of the workspace, so that they keep their features and are not built again.
 fn asking_for_all(manifest: &str) -> String {
     let table = manifest.split("[workspace.dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
     let names = table.lines().filter(|l| !l.contains("path = ")).filter_map(|l| l.split_once(" = "));

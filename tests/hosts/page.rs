@@ -9,7 +9,7 @@ fn the_page_works_in_chromium() {
     the_page_works("chromium", &[]);
 }
 
-/// The jobs, from beginning to end.
+/// The page's tasks, from beginning to end.
 #[test]
 fn the_jobs_are_done_in_firefox() {
     if browser::has_firefox() {

@@ -29,13 +29,13 @@ fn poppler(program: &str, args: &[&str]) -> bool {
     }
 }
 
-/// Draws a PDF and an SVG. Returns the mean difference, of 255, and the share of pixels that differ much.
+/// Draws a PDF and an SVG. Returns the mean difference, of 255, and the fraction of pixels that differ much.
 fn difference(folder: &Path, pdf: &Path, svg: &Path) -> Option<(f64, f64)> {
     const WIDTH: f32 = 600.0;
     let read = ReadOptions::default().with_base_dir(Some(folder.to_owned()));
     let tree = parse_tree(&fs::read(svg).unwrap(), "svg", &read).unwrap();
     let scale = WIDTH / tree.size().width();
-    // A page is composed on its own, and then lies on white paper.
+    // A page is composed by itself, and then laid on white paper.
     let ours = render(&tree, Size::Scale(scale)).unwrap();
     let drawn = folder.join("drawn");
     let (pdf, to, resolution) = (pdf.to_str().unwrap(), drawn.to_str().unwrap(), (96.0 * scale).to_string());
@@ -43,14 +43,14 @@ fn difference(folder: &Path, pdf: &Path, svg: &Path) -> Option<(f64, f64)> {
         return None;
     }
     let theirs = decode_png(&fs::read(drawn.with_extension("png")).unwrap()).unwrap();
-    // The last row and column may be there or not.
+    // The last row and column may be missing in one of the pictures.
     let (width, height) = (ours.width().min(theirs.width()), ours.height().min(theirs.height()));
     assert!(ours.width() - width <= 1 && theirs.width() - width <= 1, "{} {}", ours.width(), theirs.width());
     assert!(ours.height() - height <= 1 && theirs.height() - height <= 1);
     let page = IntRect::from_xywh(0, 0, width, height).unwrap();
     let [ours, theirs] = [ours, theirs].map(|p| on_white(p.clone_rect(page).unwrap()));
     let d = pathwarp_oracle::difference(&ours, &theirs);
-    // All is opaque now.
+    // Both pictures are opaque now.
     Some((d.mean * 4.0 / 3.0, d.share(64)))
 }
 
@@ -74,7 +74,7 @@ fn warped_samples_look_as_their_svg_does() {
     }
 }
 
-/// Features that a drawing can have, one by one.
+/// Features of drawings, one by one.
 #[test]
 fn features_look_as_in_svg() {
     let dir = tempfile::tempdir().unwrap();
@@ -191,7 +191,7 @@ const FEATURES: [(&str, &str); 15] = [
     ),
 ];
 
-/// Circles are within a hundred-thousandth of their radius, where the resolver's are off by up to a tenth of a unit.
+/// Circles are within a hundred-thousandth of their radius, where usvg's cubics are off by up to a tenth of a unit.
 #[test]
 fn arcs_are_true() {
     let dir = tempfile::tempdir().unwrap();
@@ -214,7 +214,7 @@ fn arcs_are_true() {
     assert!((radius - 140.0 / 25.4 * 72.0).abs() < 0.5, "{radius}");
 }
 
-/// Drawings of maps, far from the origin, are where they are near it.
+/// Drawings of maps look alike far from the origin and near it.
 #[test]
 fn far_drawings_keep_their_shape() {
     let dir = tempfile::tempdir().unwrap();
@@ -236,7 +236,7 @@ fn far_drawings_keep_their_shape() {
     }
 }
 
-/// Ghostscript's plates of a PDF: their names and files.
+/// Returns Ghostscript's plates of a PDF: their names and files.
 fn plates(dir: &Path, pdf: &Path) -> Option<Vec<(String, Vec<u8>)>> {
     let out = dir.join(format!("{}-plate.tif", pdf.file_stem()?.to_str()?));
     let to = format!("-sOutputFile={}", out.display());
@@ -257,7 +257,7 @@ fn plates(dir: &Path, pdf: &Path) -> Option<Vec<(String, Vec<u8>)>> {
     Some(found)
 }
 
-/// The line is one plate of its name, printed over the others, which are what they are without it, unless it knocks out.
+/// The line is one plate of its name, printed over the others. Those are equal to the plates without it, unless it knocks out.
 #[test]
 fn a_cutting_line_is_an_ink() {
     let dir = tempfile::tempdir().unwrap();
@@ -293,6 +293,6 @@ fn a_cutting_line_is_an_ink() {
         let [a, b] = [plate(a, "Cyan"), plate(&plain, "Cyan")];
         a.iter().zip(&b).filter(|(a, b)| a != b).count() + a.len().abs_diff(b.len())
     };
-    // A TIFF says when it was made, in 19 letters.
+    // A TIFF contains the time at which it was made, in 19 characters.
     assert!(differing(&over) <= 19 && differing(&out) > 500, "{} {}", differing(&over), differing(&out));
 }

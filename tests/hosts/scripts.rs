@@ -1,4 +1,4 @@
-//! Text in many scripts, and words as other programs write them, as Chromium shows them with the same fonts.
+//! Text in many scripts, and words as other programs write them, as Chromium shows them with equal fonts.
 //!
 //! Skipped where the browser is not installed.
 
@@ -11,7 +11,7 @@ use std::path::Path;
 
 const SIZE: [usize; 2] = [800, 120];
 
-/// Texts, and their attributes. Their fonts are those of this repository.
+/// Texts, and their attributes. Their fonts are in this repository.
 const TEXTS: [(&str, &str); 21] = [
     ("", "नमस्ते Hi"),
     ("", "Hi नमस्ते שלום שָׁלוֹם สวัสดี"),
@@ -44,7 +44,7 @@ fn folder(name: &str) -> String {
     root().join(name).display().to_string()
 }
 
-/// A configuration of fontconfig that knows the fonts of this repository alone.
+/// Writes a configuration of fontconfig that knows only the fonts of this repository.
 fn fontconfig(into: &Path) -> String {
     let mut text = "<?xml version='1.0'?><!DOCTYPE fontconfig SYSTEM 'fonts.dtd'><fontconfig>".to_owned();
     for name in ["crates/pathwarp-text/tests/scripts", "crates/pathwarp-svg/fonts"] {
@@ -56,7 +56,7 @@ fn fontconfig(into: &Path) -> String {
     file.display().to_string()
 }
 
-/// The dark pixels of a picture that are far from any of another one, within two pixels.
+/// Counts the dark pixels of a picture that are more than two pixels from any of another one.
 fn strays(a: &Pixmap, b: &Pixmap) -> usize {
     let dark = |p: &Pixmap, x: i64, y: i64, most: u8| {
         let inside = x >= 0 && y >= 0 && x < i64::from(p.width()) && y < i64::from(p.height());

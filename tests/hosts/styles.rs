@@ -24,7 +24,7 @@ const THREE: &str = "<g><rect class='b' id='foo' x='10' y='10' width='20' height
                      height='20'/><circle cx='80' cy='50' r='12'/><rect x='10' y='50' width='20' height='30'/></g>";
 const LINE: &str = "<path class='a' d='M20 20H70V60' fill='none' stroke='black'/>";
 
-/// Style sheets, and what they style.
+/// Style sheets, and the elements that they style.
 const SHEETS: &[(&str, &str)] = &[
     // Geometry.
     (".a{x:30px;y:40px;width:45px;height:5%;rx:4px}", RECT),
@@ -57,14 +57,14 @@ const SHEETS: &[(&str, &str)] = &[
     (":is(circle, .b){fill:red}:where(#foo){fill:blue}", THREE),
     ("rect ~ circle{fill:red}", THREE),
     ("[id^='fo']{fill:red}[class$=a]{fill:lime}", THREE),
-    // What applies.
+    // Rules that apply, among others.
     (".a{fill:red}@media print{.a{display:none}}@media screen and (prefers-color-scheme:light){.a{stroke:lime}}", RECT),
     ("@supports (fill:red){.a{fill:red}}", RECT),
     ("@layer x{.a{fill:red}}@layer y{.a{fill:lime}}@layer x{.a{fill:blue}}", RECT),
     ("@layer x{#foo{fill:red!important}}.b{fill:blue!important}", THREE),
 ];
 
-/// Drawings with style of their own.
+/// Drawings that contain style.
 const DRAWINGS: &[&str] = &[
     "<style media='print'>rect{fill:red}</style><rect x='10' y='10' width='20' height='20'/>",
     "<circle style='cx:30;cy:40;r:15px;fill:red'/>",
@@ -123,7 +123,7 @@ fn warped(svg: &str, side: f64, deformation: &str, args: &[(&str, &str)]) -> Str
     warped.svg
 }
 
-/// Pixels of a drawing's side, and its place among the others.
+/// Pixels of a drawing's side, and of its cell among the others.
 const SIDE: usize = 200;
 const COLUMNS: usize = 6;
 
@@ -173,13 +173,13 @@ fn style_is_read_as_browsers_read_it() {
     for (i, off) in differences(&expected, &found, originals.len()).into_iter().enumerate() {
         assert!(off < 1e-3, "{:.2} % of the pixels differ:\n{}\n{}", off * 100.0, originals[i], results[i]);
     }
-    // The comparison can fail: nothing looks like its original that is not moved.
+    // The comparison can fail: no drawing looks like its original unless it is moved.
     let still = shown(&originals, "none", "still", folder.path());
     let off = differences(&expected, &still, originals.len());
     assert!(off.iter().all(|o| *o > 0.01), "{off:?}");
 }
 
-/// Icons as sets of them are written, in `THEME`.
+/// Icons as icon sets write them, in `THEME`.
 const ICONS: &[(&str, &str)] = &[
     (
         "fill='none' stroke='currentColor' stroke-width='2' stroke-linecap='round' stroke-linejoin='round'",

@@ -1,10 +1,10 @@
-//! What the program writes to a terminal.
+//! Output of the program to a terminal.
 
 use crate::support::pathwarp_program;
 use std::fs;
 use std::process::Command;
 
-/// On a terminal, a picture is refused; a program of Python's plays the terminal.
+/// On a terminal, a picture is refused. A Python program simulates the terminal.
 #[test]
 fn pictures_do_not_go_to_a_terminal() {
     let dir = tempfile::tempdir().unwrap();
@@ -27,7 +27,7 @@ fn pictures_do_not_go_to_a_terminal() {
         assert_eq!(code, Some(2), "{args:?}: {said}");
         assert!(said.contains(part) && said.lines().count() == 1, "{args:?}: {said}");
     }
-    // Text is for reading.
+    // Text may go to a terminal.
     let (code, said) = on_a_terminal(&["warp", "a.svg"]).unwrap();
     assert!(code == Some(0) && said.contains("</svg>"), "{said}");
 }

@@ -1,5 +1,5 @@
-//! The libraries from outside: against independent measurements, formulas written again, and what other programs say.
-//! One program: linking takes longer than most of these tests run.
+//! The libraries from outside: against independent measurements, formulas and other programs. All tests are one program, since linking
+//! takes longer than most of them run.
 
 #![allow(
     unreachable_pub,

@@ -1,16 +1,16 @@
-//! The measures of the other tests: each finds an error that is known.
+//! The measures used by other tests: each finds a known error.
 
 use pathwarp::kurbo::{Point, Vec2};
 use pathwarp_oracle::curves::{Curve, read};
 use pathwarp_oracle::{Polygon, Run, apart, difference, kink, on_white};
 use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8};
 
-/// The distance between two paths.
+/// Returns the distance between two paths.
 fn between(a: &[Curve], b: &[Curve], n: usize, height: f64) -> f64 {
     apart(&Run::of(a).sampled(n, height), &Run::of(b).sampled(n, height)).0
 }
 
-/// An arc and its cubic are as far apart as the textbook says.
+/// An arc and its cubic have the distance given in textbooks.
 #[test]
 fn a_quarter_circle_has_its_error() {
     let k = 4.0 / 3.0 * std::f64::consts::FRAC_PI_8.tan();
@@ -21,8 +21,8 @@ fn a_quarter_circle_has_its_error() {
     }
 }
 
-/// A needle that is much narrower than the samples are apart, a cusp and a loop: the error is on the one branch or the other, at the tip,
-/// or before a jump to the next piece.
+/// A needle that is much narrower than the spacing of samples, a cusp and a loop: the error is on one of the branches, at the tip, or
+/// before a jump to the next piece.
 #[test]
 fn errors_at_hairpins_cusps_and_jumps_are_found() {
     let needle = |by: f64, tip: f64| read(&format!("M0 0C130 0 {tip} {by} 0 {by}"))[0].clone();
@@ -31,7 +31,7 @@ fn errors_at_hairpins_cusps_and_jumps_are_found() {
         assert!((found - wanted).abs() <= 0.2 * wanted + 1e-12, "{by} {tip}: {found}");
     }
     let cusp = &read("M20 20C80 80 20 80 80 20")[0];
-    // Without the last hundredth of it before the tip, on either side.
+    // The needle without its last hundredth before the tip, on either side.
     let cut =
         |t: f64| Run::new(2, move |(i, u)| cusp[0].at(if i == 0 { u * (0.5 - t) } else { 0.5 + t + u * (0.5 - t) }));
     let whole = Run::of(cusp);
@@ -47,7 +47,7 @@ fn errors_at_hairpins_cusps_and_jumps_are_found() {
     assert!((between(&two, &one, 64, 1e-3) - 1.0).abs() < 0.1);
 }
 
-/// Where a map tears, the line from one side's limit to the other's counts as part of the image, wherever the tear is.
+/// Where a map tears, the line between the limits of both sides counts as part of the image, wherever the tear is.
 #[test]
 fn a_jump_is_a_line() {
     for tear in [0.0, 0.3711, 0.5, 1.0] {
@@ -74,7 +74,7 @@ fn polygons_wind_and_have_distances() {
     assert_eq!(square(0.0, 1.0).apart(&square(0.0, 1.0)), 0.0);
     assert!((square(0.0, 1.0).apart(&square(0.3, 1.0)) - 0.3).abs() < 1e-12);
     assert!((square(0.0, 1.0).apart(&square(0.0, 2.0)) - 2.0_f64.sqrt()).abs() < 1e-12);
-    // A star of {n/2} has two turns around its middle and one in its tips; against all edges, one by one.
+    // A star of {n/2} winds twice around its middle and once in its tips. Compare with all edges, one by one.
     let n = 101;
     let corner = |i: usize| Vec2::from_angle(std::f64::consts::TAU * (2 * i % n) as f64 / n as f64).to_point();
     let star = Polygon::of_rings([&(0..n).map(corner).collect::<Vec<_>>()[..]]);

@@ -95,7 +95,7 @@ fn damaged_files_are_errors() {
     assert_eq!(warps(b"GIF89a"), Err(Error::NotPsd));
     assert_eq!(warps(b""), Err(Error::NotPsd));
     let whole = all(false);
-    // Truncated anywhere, or with any byte set to 255: a result or an error, never a panic.
+    // Truncated anywhere, or with any byte set to 255, a file gives a result or an error, never a panic.
     for n in 0..whole.len() {
         let _ = warps(&whole[..n]);
         let mut bad = whole.clone();
@@ -112,7 +112,7 @@ fn damaged_files_are_errors() {
     assert!(warps(&deep).unwrap_err().to_string().contains("nested more than 32 deep"));
 }
 
-/// Seeds for the fuzz target `psd`: `PATHWARP_FUZZ_SEEDS=fuzz/seeds cargo test --test libraries psd` writes them.
+/// Writes seeds for the fuzz target `psd`: `PATHWARP_FUZZ_SEEDS=fuzz/seeds cargo test --test libraries psd`.
 #[test]
 fn seeds_are_read() {
     let folder = std::env::var_os("PATHWARP_FUZZ_SEEDS").map(|f| crate::support::root().join(f).join("psd"));

@@ -45,7 +45,7 @@ fn counts_are_checked_against_the_bytes_left() {
     let _alone = alone();
     let file = xcf(0, Form::Vectors(2), &plain_paths());
     let name = find(&file, b"Base\0");
-    // Before the name: its length, before that the number of paths. After it: tattoo, visible, linked, parasites, strokes.
+    // The number of paths and the length of the name come before it; tattoo, visible, linked, parasites, strokes after it.
     expect(&with(&file, name - 8, 1 << 28), name - 8, "268435456 paths");
     expect(&with(&file, name - 4, 1 << 30), name - 4, "1073741824 bytes");
     expect(&with(&file, name + 17, u32::MAX), name + 17, "parasites");
@@ -178,7 +178,7 @@ fn decompression_bombs_end_soon() {
         gz.write_all(&vec![0; 1 << 20]).unwrap();
     }
     let e = error_of(&gz.finish().unwrap());
-    // The announced size is refused before anything is unpacked.
+    // The announced size is refused before any unpacking.
     assert!(e.limit.is_some(), "{e}");
     // More points than the limit for compressed data.
     let mut head = xcf::head(0).0;
@@ -199,7 +199,7 @@ fn decompression_bombs_end_soon() {
     }
     let e = error_of(&gz.finish().unwrap());
     assert!(e.limit.is_some_and(|e| e.limit == Limit::Bytes) && e.problem.contains("`bytes`"), "{e}");
-    // A string of a gigabyte, all of it present in compressed form.
+    // A string of a gigabyte, present in compressed form.
     let mut head = xcf::head(0).0;
     for w in [25, u32::MAX, 1, 0, 1, 1 << 30] {
         head.extend(u32::to_be_bytes(w));
@@ -215,6 +215,6 @@ fn decompression_bombs_end_soon() {
 
 #[test]
 fn rich_paths_are_rich() {
-    // The tests above depend on it.
+    // Other tests depend on this.
     assert!(rich_paths().iter().any(|p| p.strokes.is_empty()) && rich_paths()[1].strokes.len() == 3);
 }

@@ -1,5 +1,5 @@
-//! Files written by GIMP, in `tests/gimp` (its README says by which, and how they were checked). `PATHWARP_GIMP_SAMPLES` names another
-//! folder with pairs of `NAME.xcf` (or `.xcf.gz`) and `NAME.expected.json`, and with `gimp1-text/NAME.txt` likewise.
+//! Files written by GIMP, in `tests/gimp`, whose README names the versions and the checks. `PATHWARP_GIMP_SAMPLES` names another folder
+//! with pairs of `NAME.xcf` (or `.xcf.gz`) and `NAME.expected.json`, and with `gimp1-text/NAME.txt` likewise.
 
 use crate::support::xcf::Counted;
 use crate::{MEMORY, alone};
@@ -126,7 +126,7 @@ fn exports_and_point_lists_agree_with_the_files() {
     assert!(seen >= 46, "{seen} strokes");
 }
 
-/// Writing back the same strokes reproduces the file.
+/// Writing back unchanged strokes reproduces the file.
 #[test]
 fn files_survive_rewriting() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! Memory that is counted, and so needs a process of its own.
+//! Tests that count memory, and so need a separate process.
 
 #![allow(
     unreachable_pub,
@@ -23,7 +23,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Memory is counted for the whole process, so tests run one at a time: each begins with this.
+/// Memory is counted for the whole process, so tests run one at a time: each begins with this call.
 fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)

@@ -1,4 +1,4 @@
-//! `pathwarp.h` against the functions of `pathwarp-c`: the same names, parameters and types, in the same order.
+//! `pathwarp.h` against the functions of `pathwarp-c`: equal names, parameters and types, in one order.
 
 use crate::support::root;
 use std::collections::BTreeMap;
@@ -89,7 +89,7 @@ fn the_header_declares_what_the_library_exports() {
     assert_eq!(declared, exported);
 }
 
-/// The statuses are those of `raw.rs`.
+/// The statuses are equal to those of `raw.rs`.
 #[test]
 fn the_header_has_the_librarys_statuses() {
     let header = read("include/pathwarp.h");

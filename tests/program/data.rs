@@ -14,7 +14,7 @@ fn text_of(file: &Path) -> String {
         .fold(label, |text, (written, c)| text.replace(written, c))
 }
 
-/// Runs `text` with a table in a folder of its own. Returns what it says, and the drawings' names and texts.
+/// Runs `text` with a table in a separate folder. Returns the messages, and the drawings' names and texts.
 fn set(table: &[u8], code: i32, args: &[&str]) -> (String, Vec<(String, String)>) {
     let dir = tempfile::tempdir().unwrap();
     let (csv, out) = (dir.path().join("t.csv"), dir.path().join("out"));
@@ -44,7 +44,7 @@ fn a_table_gives_a_drawing_for_each_row() {
     }
 }
 
-/// Cells of any characters, written as RFC 4180 says, come back.
+/// Cells of any characters come back when written by the rules of RFC 4180.
 #[test]
 fn cells_come_back_as_they_were() {
     const LETTERS: [&str; 14] = ["a", "Ω", " ", ",", ";", "\"", "\n", "é", "'", "\t", "-", "{id}", "&", "\\n"];
@@ -87,7 +87,7 @@ fn rows_without_a_good_name_are_refused_before_anything_is_written() {
     }
     let long = format!("name\n{}\n", "ä".repeat(130));
     assert!(set(long.as_bytes(), 3, &["x", "-o", "OUT/{name}.svg"]).0.contains("longer"));
-    // The folder that a name would leave is not reached in any part of the output's name.
+    // No part of the output's name can name a folder outside.
     assert!(set(b"a,b\n..,x\n", 3, &["x", "-o", "OUT/{a}/{b}.svg"]).0.contains("row 2, column a"));
     for (table, part) in [
         ("", "is empty"),
@@ -103,7 +103,7 @@ fn rows_without_a_good_name_are_refused_before_anything_is_written() {
     assert!(set(b"name\na\nb\n", 3, &["{name}", "-o", "OUT/x.svg"]).0.contains("rows 2 and 3 give one file"));
 }
 
-/// A row that fails leaves the others alone, and no source is overwritten.
+/// A row that fails does not affect the others, and no source is overwritten.
 #[test]
 fn rows_that_fail_are_named() {
     let (said, files) =

@@ -1,4 +1,4 @@
-//! `pathwarp edit`: what it keeps, asked over its socket.
+//! `pathwarp edit`: the state that it keeps, as seen through its socket.
 
 use crate::support::editor::{Editor, ask};
 use base64::Engine as _;
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::{Duration, SystemTime};
 use tempfile::TempDir;
 
-/// A photograph is framed as a drawing, upright; a command line that is copied finds that drawing beside it.
+/// A photograph is framed as a drawing, upright; a copied command line finds that drawing beside it.
 #[test]
 fn pictures_are_drawings_of_themselves() {
     // An APP1 segment with orientation (0x0112) = 6: the first row is the right side.
@@ -115,7 +115,7 @@ fn files(folder: &Path) -> Vec<String> {
     all
 }
 
-/// Small pictures of a large drawing are bitmaps, and look like those of the same drawing without the bulk.
+/// Small pictures of a large drawing are bitmaps, and look like those of a drawing without the bulk.
 #[test]
 fn small_pictures_of_large_drawings_are_small() {
     let body = "<path fill='#06c' d='M-30,20 H60 V50 H-30Z'/><circle cx='20' cy='35' r='9' fill='#fc0'/>";
@@ -181,14 +181,14 @@ fn a_draft_belongs_to_the_drawing_it_was_made_from() {
     assert_eq!(files(folder.path()), ["logo.svg", "other-bent.svg", "state"]);
     assert_eq!(fs::read_to_string(folder.path().join("logo.svg")).unwrap(), LOGO);
     drop(editor);
-    // Another drawing under the name, and the old one again.
+    // Another drawing under that name, and then the old one.
     fs::write(folder.path().join("logo.svg"), OTHER).unwrap();
     assert_eq!(shown(&Editor::open(folder.path(), "logo.svg")), ("logo.svg".into(), Value::Null));
     fs::write(folder.path().join("logo.svg"), LOGO).unwrap();
     assert_eq!(shown(&Editor::open(folder.path(), "logo.svg")), ("logo.svg".into(), json!("flag")));
 }
 
-/// A result changes when it is saved to its own file; what comes after belongs to the new content.
+/// A result changes when it is saved to its source file; later changes belong to the new content.
 #[test]
 fn what_comes_after_saving_is_kept() {
     let folder = logo();
@@ -238,7 +238,7 @@ fn without_a_folder_for_state_it_is_said_that_nothing_is_kept() {
     assert_eq!(files(folder.path()), ["logo.svg"]);
 }
 
-/// A page that is still open finds the next run, unless another program has taken its port: then the old token is worth nothing.
+/// A page that is still open finds the next run, unless another program has taken its port: then the old token is invalid.
 #[test]
 fn the_next_run_is_found_at_the_same_address() {
     let folder = logo();
@@ -253,14 +253,14 @@ fn the_next_run_is_found_at_the_same_address() {
     let third = address(&Editor::open(folder.path(), "logo.svg"));
     assert!(third.0 != second.0 && third.1 != second.1, "the token goes on beside a stranger");
     drop(taken);
-    // Half a file is no token that anybody could guess.
+    // Half a file does not make a token that anybody could guess.
     let addresses = folder.path().join("state/pathwarp/addresses");
     let file = addresses.join(&files(&addresses)[0]);
     fs::write(file, format!("{{\"token\":\"\",\"port\":{}}}", third.0)).unwrap();
     assert!(Editor::open(folder.path(), "logo.svg").query.len() > 30);
 }
 
-/// Folders from anywhere may hold files that look like drafts; nothing beside a drawing is read.
+/// Folders from anywhere may hold files that look like drafts; no file beside a drawing is read.
 #[test]
 fn files_beside_the_drawing_are_no_drafts() {
     let folder = logo();

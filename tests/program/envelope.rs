@@ -16,7 +16,7 @@ fn along(doc: &Document, name: &str) -> Vec<Point> {
     outline.segs().flat_map(|s| (0..=SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES)))).collect()
 }
 
-/// Criterion: `--keep verticals` keeps vertical lines vertical within 0.1°, and `--keep horizontals` horizontal lines horizontal.
+/// `--keep verticals` keeps vertical lines vertical within 0.1°, and `--keep horizontals` horizontal lines horizontal.
 #[test]
 fn kept_lines_are_straight_in_the_file() {
     let dir = tempfile::tempdir().unwrap();

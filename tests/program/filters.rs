@@ -51,7 +51,7 @@ const FILTERS: &[(&str, &str, usize, usize)] = &[
     ),
 ];
 
-/// Bends a drawing by `common::Bend`, typed. Returns the file, and what was said.
+/// Bends a drawing by the formulas of `common::Bend`. Returns the file and the messages.
 fn bent(body: &str, args: &[&str]) -> (String, String) {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("in.svg"), drawing(body)).unwrap();
@@ -83,7 +83,7 @@ fn what_filters_draw_is_the_bent_rendering() {
     assert!(affine.mean > 3.0, "{affine:?}");
 }
 
-/// A shadow that the fit shows right stays a filter, and nothing is said.
+/// A shadow that the fit shows correctly stays a filter, without a message.
 #[test]
 fn filters_that_look_right_stay() {
     let small =
@@ -96,7 +96,7 @@ fn filters_that_look_right_stay() {
     assert!(!svg.contains("<image") && told.contains("follow the warp as a whole"), "{told}");
 }
 
-/// The renderer displaces pixels too far, so that a picture would show little of the shape.
+/// The renderer displaces pixels too far, so a picture would show little of the shape.
 #[test]
 fn roughened_shapes_stay() {
     let rough = "<rect x='20' y='20' width='60' height='50' filter='url(#f)'/><filter id='f'><feTurbulence \
@@ -108,7 +108,7 @@ fn roughened_shapes_stay() {
     }
 }
 
-/// Layers that each stack the one before twice double until a limit ends it.
+/// Layers that each stack the previous one twice double their work until a limit ends it.
 #[test]
 fn layers_that_double_are_bounded() {
     let twice =
@@ -140,7 +140,7 @@ fn no_picture_takes_a_shape_from_a_cutter() {
     }
 }
 
-/// A difference on less than .2 % of the page is not seen; the same bar on a small page is seen to differ.
+/// A difference on less than .2 % of the page is not visible; that of the bar on a small page is.
 #[test]
 fn the_choice_is_by_what_is_seen_of_the_page() {
     let pictures = |page: [u32; 2]| {

@@ -1,5 +1,5 @@
-//! Colours of bent gradients, pixel by pixel: the program's result, rendered, against the gradient's definition evaluated at the
-//! exact inverse of each pixel. The map is a pair of shears, whose inverse has a closed form.
+//! Colours of bent gradients, pixel by pixel: the program's result, rendered, against the gradient's definition evaluated at the exact
+//! inverse of each pixel. The map is a pair of shears, whose inverse has a closed form.
 
 use crate::support::pathwarp_in;
 use pathwarp::kurbo::{Affine, Point};
@@ -27,9 +27,9 @@ struct Case {
     markup: &'static str,
     along: fn(Point) -> f64,
     stops: &'static [(f64, Rgba)],
-    /// Whether it becomes a picture, with `exact` and by default; else it becomes another gradient.
+    /// `true` if the gradient becomes a picture, with `exact` and by default; else it becomes another gradient.
     pictured: [bool; 2],
-    /// Largest accepted error of a channel, of 255, likewise.
+    /// Largest accepted error of a channel, of 255, with `exact` and by default.
     most: [f64; 2],
     /// Most bytes that the picture may add to the file by default.
     bytes: usize,
@@ -110,8 +110,8 @@ fn warped(case: &Case, gradients: &str) -> String {
     fs::read_to_string(dir.path().join("out.svg")).unwrap()
 }
 
-/// Largest error of a channel over all pixels inside the image of the square, at least a unit from its edge, and of which no jump
-/// is nearer than `jump` units. `moved` shifts the truth.
+/// Returns the largest error of a channel over all pixels inside the image of the square, at least a unit from its edge and `jump` units
+/// from any jump of the colour. `moved` shifts the truth.
 fn worst(case: &Case, svg: &str, moved: f64) -> f64 {
     const JUMP: f64 = 0.8;
     let tree = parse_tree(svg.as_bytes(), case.name, &options()).unwrap();
@@ -156,7 +156,7 @@ fn colours_are_those_of_the_definition() {
     }
 }
 
-/// A gradient that is not seen needs no picture.
+/// A gradient that is not visible needs no picture.
 #[test]
 fn what_is_not_seen_is_not_painted() {
     let invisible = [
@@ -164,7 +164,7 @@ fn what_is_not_seen_is_not_painted() {
         "<linearGradient id='g'><stop stop-opacity='0'/><stop offset='1' stop-color='red' stop-opacity='0'/></linearGradient>",
         "<linearGradient id='g' gradientUnits='userSpaceOnUse' x2='5000' y2='9000'><stop stop-color='red'/><stop offset='1' \
          stop-color='blue'/></linearGradient>",
-        // The same colour throughout the shape.
+        // One colour throughout the shape.
         "<linearGradient id='g' gradientUnits='userSpaceOnUse' x1='-60' x2='-50'><stop stop-color='red'/><stop offset='1' \
          stop-color='blue'/></linearGradient>",
     ];

@@ -41,7 +41,7 @@ fn bent(body: &str, gradients: &str) -> (Gap, String, Value) {
     let dir = tempfile::tempdir().unwrap();
     let svg = drawing(body);
     fs::write(dir.path().join("in.svg"), &svg).unwrap();
-    // `common::Bend`, typed.
+    // The formulas of `common::Bend`.
     let map = ["--x", "x + 6*sin(y/30)", "--y", "y + 8*sin(x/25)"];
     let args = ["expr", "in.svg", "-o", "out.svg", "--report", "r.json", "--gradients", gradients];
     let run = pathwarp_in(dir.path(), &[&args[..], &map].concat(), b"");
@@ -117,7 +117,7 @@ fn gradients_that_would_look_wrong_are_exact_by_default() {
     assert_eq!(pictures(&bent(&hard.replace("'10'", "'90'"), "auto").2), 1);
 }
 
-/// What became a picture is said once, and no picture shows its pixels.
+/// Every gradient that became a picture is reported once, and no picture shows its pixels.
 #[test]
 fn pictures_are_said_and_not_coarse() {
     let dir = tempfile::tempdir().unwrap();

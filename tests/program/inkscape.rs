@@ -1,11 +1,11 @@
-//! The program as Inkscape calls it, without Inkscape: `--id=…`, the dialog's parameters, the drawing's file last.
+//! The program as Inkscape calls it, without Inkscape: `--id=…`, the dialog's parameters, and the drawing's file last.
 
 use crate::support::{inkscape_drawing, pathwarp, pathwarp_program};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Everything that can be selected.
+/// Objects of every kind that can be selected.
 const BODY: &str = "<g id='layer' inkscape:groupmode='layer' inkscape:label='Layer 1'>\
     <path id='a' d='M 20,20 H 60 V 60 H 20 Z'/>\
     <path id='b' style='fill:#c03030' d='M 80,20 H 120 V 60 Z'/>\
@@ -14,7 +14,7 @@ const BODY: &str = "<g id='layer' inkscape:groupmode='layer' inkscape:label='Lay
     <text id='t' x='20' y='160' style='font-size:30px;font-family:sans-serif'>Warp</text></g>\
     <g id='locked' sodipodi:insensitive='true'><path id='l' d='M 150,150 h 30 v 30 z'/></g>";
 
-/// What the attributes of a warped object begin with.
+/// The beginning of the attributes of a warped object.
 const MEMORY: &str = " xmlns:pathwarp=\"";
 
 struct Desk(tempfile::TempDir);
@@ -56,7 +56,7 @@ impl Desk {
         said
     }
 
-    /// What the command line makes of the drawing.
+    /// Returns the command line's result for the drawing.
     fn command_line(&self, svg: &str, args: &[&str]) -> String {
         let out = self.0.path().join("out.svg").display().to_string();
         let file = self.file(svg);
@@ -66,7 +66,7 @@ impl Desk {
     }
 }
 
-/// A drawing without what its objects remember.
+/// Returns a drawing without the attributes that its objects remember.
 fn forgetful(svg: &str) -> String {
     let mut out = svg.to_owned();
     while let Some(start) = out.find(MEMORY) {
@@ -93,7 +93,7 @@ fn what_is_selected_is_bent_and_nothing_else() {
         assert_eq!(forgetful(&got), desk.command_line(&svg, &words), "{ids:?}");
         assert_eq!(got.matches(MEMORY).count(), ids.len(), "{ids:?}");
     }
-    // Nothing is selected: the page, but not what is locked.
+    // Without a selection, the page is warped, except locked objects.
     let whole = desk.result(&svg, &[], &FLAG);
     let wanted = desk.command_line(&svg, &["warp", "--style=flag", "--bend=40%", "--fit=none", "--exclude=#locked"]);
     assert_eq!(forgetful(&whole), wanted);
@@ -113,7 +113,7 @@ fn failures_are_one_message_and_no_drawing() {
     let none = desk.message(&svg, &[], &["--inkscape-action=release"]);
     assert!(none.contains("nothing is selected"), "{none}");
     assert!(desk.message(&svg, &["a"], &["--inkscape-action=edit"]).contains("not warped"));
-    // With warnings on, both come.
+    // With warnings on, both messages appear.
     let far = [&["--inkscape-warnings=true", "--bend_percent=900"], &FLAG[..]].concat();
     let out = desk.call(&svg, &["layer"], &far);
     assert!(out.status.success() && out.stdout.starts_with(b"<svg"));
@@ -162,14 +162,14 @@ fn warps_are_edited_and_released() {
     let flag = [&FLAG[..], &["--clones=follow"]].concat();
     let warped = desk.result(&svg, &["a", "t"], &flag);
     let warped = desk.result(&warped, &["g"], &["--inkscape-deformation=swirl", "--angle=70.0"]);
-    // Other settings for one of the objects that were warped together.
+    // Change the settings of one of the objects that were warped together.
     let edited = desk.result(&warped, &["a"], &["--inkscape-action=edit", "--inkscape-changes=bend=-20%\nstyle=arc"]);
     let frame = frame_of(&warped, "a");
     let line = ["warp", "--style=arc", "--bend=-20%", "--select=#a", &frame];
     let direct = desk.command_line(&svg, &line);
     assert_eq!(element(&forgetful(&edited), "a"), element(&direct, "a"));
     assert_eq!(element(&edited, "t"), element(&warped, "t"));
-    // The same settings give the same drawing.
+    // Unchanged settings give an unchanged drawing.
     assert_eq!(desk.result(&warped, &["a", "t"], &["--inkscape-action=edit"]), warped);
     // In the dialog, another bend replaces the first one; so does another deformation if the user says so.
     let twice = desk.result(&warped, &["a"], &["--inkscape-deformation=warp", "--style=arc", "--bend_percent=-20"]);
@@ -192,7 +192,7 @@ fn warps_are_edited_and_released() {
     assert!(wrong.contains("has no `bnd`") && wrong.contains("bend"), "{wrong}");
 }
 
-/// Each step of a recipe holds for its own part of what is selected, and for nothing beside that.
+/// Each step of a recipe applies to its part of the selection, and to nothing outside.
 #[test]
 fn steps_for_parts_stay_within_the_selection() {
     let desk = Desk::new();
@@ -212,7 +212,7 @@ fn steps_for_parts_stay_within_the_selection() {
             format!("warp --style=flag --select=.x {frame} + swirl --select=.y"),
             vec!["warp", "--style=flag", "--select=#a", "+", "swirl", "--select=#b"],
         ),
-        // A selection in one part holds for all of them.
+        // A selection in one part applies to all of them.
         (
             format!("warp --style=flag {frame} + swirl --select=.y"),
             vec!["warp", "--style=flag", "--select=#b", "+", "swirl"],
@@ -234,13 +234,13 @@ fn what_was_done_by_hand_is_kept_or_asked_about() {
     let warped = desk.result(&svg, &["a"], &FLAG);
     let again = ["--inkscape-action=edit", "--inkscape-changes=bend=60%"];
     let plain = element(&desk.result(&warped, &["a"], &again), "a");
-    // Moved with a transform: the other bend is where it was moved to.
+    // The object was moved with a transform; the new bend is applied at its new position.
     let moved = warped.replace(" id='a'", " transform='translate(7,-3)' id='a'");
     let edited = desk.result(&moved, &["a"], &again);
     assert_eq!(attribute(&element(&edited, "a"), "d"), attribute(&plain, "d"));
     assert!(element(&edited, "a").contains("transform=\"matrix(1 0 0 1 7 -3)\""), "{}", element(&edited, "a"));
     assert_eq!(attribute(&element(&desk.result(&edited, &["a"], &again), "a"), "transform"), "matrix(1 0 0 1 7 -3)");
-    // A node was moved: that would be lost.
+    // A node was moved, which would be lost.
     let d = attribute(&element(&warped, "a"), "d");
     let number: String = d[1..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
     let bent = warped.replace(&d, &d.replacen(&number, "3", 1));
@@ -249,7 +249,7 @@ fn what_was_done_by_hand_is_kept_or_asked_about() {
     assert_eq!(element(&given_up, "a"), plain);
 }
 
-/// A drawing may come from anybody, and its recipes with it.
+/// A drawing may come from anybody, and so may its recipes.
 #[test]
 fn recipes_in_drawings_write_no_files() {
     let desk = Desk::new();
@@ -284,7 +284,7 @@ fn artwork_follows_its_guide() {
     let moved = desk.result(&warped.replace(&cage(0), &cage(25)), &["a"], &["--inkscape-action=edit"]);
     let wanted = desk.command_line(&inkscape_drawing(&format!("{art}{}", cage(25))), &["shaper", "--shaper=#k"]);
     assert_eq!(attribute(&element(&moved, "a"), "d"), attribute(&element(&wanted, "a"), "d"));
-    // The guide is gone: the object has a copy of it.
+    // The guide is gone, but the object has a copy of it.
     let without = warped.replace(&cage(0), "");
     let edited = desk.result(&without, &["a"], &["--inkscape-action=edit", "--inkscape-changes=reverse-shaper=true"]);
     let wanted = desk.command_line(&svg, &["shaper", "--shaper=#k", "--reverse-shaper"]);
@@ -314,7 +314,7 @@ fn clones_follow_and_pages_stay_with_the_artwork() {
     assert!(got.contains("<inkscape:page x='0' y='0' width='250' height='225' id='p1'/>"), "{got}");
     assert!(got.contains("x='260' y='0' width='100' height='200' id='p2'"), "{got}");
     assert!(got.contains("position='80,65'"), "{got}");
-    // Without the option, and so by default, the page stays.
+    // Without the option, which is the default, the page stays.
     let got = desk.result(&inkscape_drawing(&format!("{view}{body}")), &["r"], &move_left[..4]);
     assert!(got.contains("viewBox='0 0 200 200'") && !got.contains("--fit"), "{got}");
 }
@@ -356,7 +356,7 @@ fn frame_of(svg: &str, id: &str) -> String {
     recipe.split(' ').find(|w| w.starts_with("--frame=")).unwrap().to_owned()
 }
 
-/// The text of the element with an id. The drawings here hold no two elements of a name inside one another.
+/// Returns the text of the element with an id. The drawings here hold no two elements of a name inside one another.
 fn element(svg: &str, id: &str) -> String {
     let at = svg.find(&format!(" id='{id}'")).unwrap_or_else(|| panic!("no {id}: {svg}"));
     let start = svg[..at].rfind('<').unwrap();

@@ -46,8 +46,8 @@ fn feet(source: &Outline) -> Vec<(f64, f64)> {
     lines.map(|s| (s.start().x, s.end().x)).collect()
 }
 
-/// Criterion: the baseline lands on the curve within the tolerance. On a circle of radius 300 about 200,350 the point at distance s
-/// from the top is 300·(sin(s/300), −cos(s/300)) from the centre, computed here independently of the program.
+/// The baseline lands on the curve within the tolerance. On a circle of radius 300 about 200,350 the point at distance s from the top is
+/// 300·(sin(s/300), −cos(s/300)) from the centre, computed here independently of the program.
 #[test]
 fn the_baseline_lands_on_the_curve() {
     const TOLERANCE: f64 = 0.01;
@@ -106,7 +106,7 @@ fn in_an_envelope_the_baseline_is_the_bottom() {
     }
 }
 
-/// Criterion: under an arch with `--keep verticals`, stems stay vertical within 0.1°.
+/// Under an arch with `--keep verticals`, stems stay vertical within 0.1°.
 #[test]
 fn stems_stay_upright_under_an_arch() {
     let args = [
@@ -125,7 +125,7 @@ fn stems_stay_upright_under_an_arch() {
     let mut worst: f64 = 0.0;
     for s in after.segs() {
         let v = s.end() - s.start();
-        // The diagonals of the N lean by much more than this; a stem that is bent is no line, and missing below.
+        // The diagonals of the N lean by much more than this; a stem that is bent is no line, and would be missing from the count below.
         if !matches!(s, Seg::Line(_)) || v.y.abs() < 20.0 || v.x.abs() > 0.1 * v.y.abs() {
             continue;
         }
@@ -139,12 +139,12 @@ fn stems_stay_upright_under_an_arch() {
     assert!(worst < 0.1, "a stem leans by {worst}°");
 }
 
-/// The letters of a drawing: its subpaths, which in this word are one per letter, from left to right.
+/// Returns the letters of a drawing: its subpaths, which in this word are one per letter, from left to right.
 fn nodes(outline: &Outline) -> Vec<Vec<Point>> {
     outline.subpaths.iter().map(pathwarp::Subpath::anchors).collect()
 }
 
-/// Criterion: `--glyphs rotate` keeps every letter congruent: distances between its nodes agree within 1e-9.
+/// `--glyphs rotate` keeps every letter congruent: distances between its nodes agree within 1e-9.
 #[test]
 fn turned_letters_keep_their_shape() {
     let curves = ["M0,180 C100,20 300,20 400,180", "M100,150 A100,80 0 1 1 300,150 A100,80 0 1 1 100,150 Z"];
@@ -219,9 +219,9 @@ fn letters_that_cannot_be_placed_cause_messages() {
     assert!(code == 2 && said.contains("baseline-capheight"), "{code} {said}");
 }
 
-/// `--spacing even` on a circle of radius 120 about 200,220: lengths are true at half the frame's height h, so that a point whose
-/// x is s right of the middle lies at the angle s / (120 + h), computed here independently of the program. At that height every
-/// letter keeps its width.
+/// `--spacing even` on a circle of radius 120 about 200,220: lengths are true at half the frame's height h, so that a point whose x is s
+/// right of the middle lies at the angle s / (120 + h), computed here independently of the program. At that height every letter keeps
+/// its width.
 #[test]
 fn even_spacing_keeps_letter_widths_at_half_their_height() {
     const RADIUS: f64 = 120.0;
@@ -301,9 +301,9 @@ fn warnings_are_of_ink() {
     assert!(said.contains("`IH` collide"), "{said}");
 }
 
-/// `pathwarp bend` and `pathwarp envelope` treat the output of `pathwarp text` like text: the same frames, the same placement of
-/// letters. Text is laid out in single precision, hence the 1e-3. No pair of the word is kerned: in text, kerning moves letters and
-/// leaves their advances; here it is part of the advances, so the middles of kerned letters would differ by half of it.
+/// `pathwarp bend` and `pathwarp envelope` treat the output of `pathwarp text` like text, with equal frames and placement of letters. Text
+/// is laid out in single precision, hence the 1e-3. No pair of the word is kerned: in text, kerning moves letters and leaves their
+/// advances; here it is part of the advances, so the middles of kerned letters would differ by half of it.
 #[test]
 fn lettering_made_here_is_bent_like_text() {
     let here = crate::support::root();

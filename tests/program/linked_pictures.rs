@@ -1,4 +1,4 @@
-//! Pictures beside a drawing: seen wherever it is shown, and found or put in wherever it goes.
+//! Pictures beside a drawing: visible wherever the drawing is shown, and found or embedded wherever it goes.
 
 use crate::support::editor::{Editor, ask};
 use crate::support::{pathwarp_in, pathwarp_program};
@@ -25,7 +25,7 @@ fn photo() -> Vec<u8> {
     picture.encode_png().unwrap()
 }
 
-/// A folder with the folder `art` of the drawing `d.svg`, whose shape `c` is bent, and of its pictures.
+/// Makes a folder with the folder `art` of the drawing `d.svg`, whose shape `c` is bent, and of its pictures.
 fn folder(links: [&str; 3]) -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     for (name, content) in [
@@ -55,7 +55,7 @@ fn usual() -> TempDir {
     folder(["photo.png", "in/my%20photo.png?v=1#top", "./pic.svg"])
 }
 
-/// What the images of a drawing link to.
+/// Returns the links of a drawing's images.
 fn links(svg: &str) -> Vec<String> {
     let values = svg.split("<image ").skip(1).map(|image| {
         let value = &image[image.find("href=").unwrap() + 5..];
@@ -75,7 +75,7 @@ fn data(link: &str) -> Option<Vec<u8>> {
     Some(STANDARD.decode(link.strip_prefix("data:")?.split_once(";base64,")?.1.trim()).unwrap())
 }
 
-/// Whether the three pictures are seen where the drawing shows them.
+/// Asserts that the three pictures are visible where the drawing shows them.
 #[track_caller]
 fn is_shown(picture: &Pixmap) {
     let at = |x: u32, y: u32| {
@@ -93,7 +93,7 @@ fn drawn(svg: &str) -> Pixmap {
     render(&tree, Size::Native).unwrap()
 }
 
-/// A wave so low that it shows nothing, of the shape alone.
+/// A wave of the shape alone, so low that it is not visible.
 const BENT: [&str; 5] = ["wave", "--height", "0.1", "--select", "#c"];
 
 #[test]
@@ -113,7 +113,7 @@ fn links_lead_to_the_same_files_wherever_the_result_is() {
             let found: Vec<PathBuf> = found.map(|l| file(place.parent().unwrap(), &l)).collect();
             // A drawing that is turned becomes a group.
             assert!(found == own || steps[0] == "affine" && found == own[..2], "{args:?}: {found:?}");
-            // What only looks like a link is none.
+            // Text that only looks like a link stays.
             assert!(text.contains(">href='photo.png'<"), "{text}");
         }
     }
@@ -137,7 +137,7 @@ fn results_without_a_place_hold_their_pictures() {
         assert_eq!(links(&text).iter().map(|l| data(l).unwrap()).collect::<Vec<_>>(), contents, "{args:?}");
         is_shown(&drawn(&text));
     }
-    // A source that could not read its pictures from there holds them.
+    // A result holds its pictures if the source could not read them from there.
     for (to, holds) in [("r.svg", false), ("../r.svg", false), ("../out put/r.svg", true)] {
         assert!(pathwarp_in(&art, &bent(&["d.svg"], &["--embed-recipe", "-o", to]), b"").status.success());
         let source = pathwarp_in(&art, &["unwarp", to], b"").stdout;
@@ -164,7 +164,7 @@ fn asked(editor: &Editor, request: &Value) -> Value {
     ask(&mut editor.socket(), &request.to_string())
 }
 
-/// The canvas, the original, a small picture, and the PNG, also by the command that is copied, of a drawing of which one shape is bent.
+/// The canvas, the original, a small picture, and the PNG of a drawing of which one shape is bent; the copied command gives that PNG, too.
 #[test]
 fn the_editor_shows_them() {
     let dir = usual();
@@ -202,7 +202,7 @@ fn the_editor_shows_them() {
     }
 }
 
-/// Nothing outside of the drawing's folder gets into a result, unless that is allowed.
+/// No file outside of the drawing's folder gets into a result, unless that is allowed.
 #[test]
 fn no_other_file_is_put_in() {
     let secret = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The whole program from outside. All of it is one test binary, so that the program's crates are linked once.
+//! Tests of the whole program from outside. They are one test binary, so that the program's crates are linked once.
 
 #![allow(
     unreachable_pub,

@@ -1,4 +1,4 @@
-//! Drawings for mirrors, looked at from the eye by a ray tracer of the test's own.
+//! Drawings for mirrors, seen from the eye by an independent ray tracer.
 
 use crate::support::{expect_code, root};
 use pathwarp::kurbo::Point;
@@ -16,7 +16,7 @@ fn dot(a: Space, b: Space) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// A drawing as pixels, in its own coordinates.
+/// A drawing as pixels, in its coordinates.
 struct Picture {
     pixels: Pixmap,
     origin: Point,
@@ -53,8 +53,8 @@ impl Picture {
     }
 }
 
-/// The face, 40 mm wide, in a cylinder 60 mm thick: units of the drawing are quarters of a millimetre. Space is x right, y up, z towards
-/// the viewer, from the middle of the foot at 100,248.
+/// The face, 40 mm wide, in a cylinder 60 mm thick: units of the drawing are quarters of a millimetre. In space, x is right, y up and z
+/// towards the viewer, from the middle of the foot at 100,248.
 #[test]
 fn a_face_looks_right_in_its_mirror() {
     let dir = tempfile::tempdir().unwrap();
@@ -96,7 +96,7 @@ fn a_face_looks_right_in_its_mirror() {
             let p = Point::new(17.0 + 2.0 * f64::from(i), 9.0 + 2.0 * f64::from(j));
             let picture = add(add([0.0; 3], right, (p.x - 100.0) * shrunk), up, (248.0 - p.y) * shrunk);
             let d = add(picture, eye, -1.0);
-            // The first meeting with x² + z² = r².
+            // The first intersection with x² + z² = r².
             let (a, b, c) = (
                 d[0] * d[0] + d[2] * d[2],
                 d[0] * eye[0] + d[2] * eye[2],
@@ -121,8 +121,8 @@ fn a_face_looks_right_in_its_mirror() {
     the_mesh_shows_all(&fs::read_to_string(&mesh).unwrap(), radius);
 }
 
-/// Table, mirror and what the eye sees, besides the drawing itself. The size of a page in px is a number of single precision, and so are
-/// its millimetres.
+/// Checks the table, the mirror and the image seen by the eye, besides the drawing itself. The size of a page in px is a number of single
+/// precision, and so is its size in millimetres.
 fn the_mesh_shows_all(obj: &str, radius: f64) {
     let mut name = "";
     let mut counts = [0; 4];
@@ -154,7 +154,7 @@ fn the_mesh_shows_all(obj: &str, radius: f64) {
     assert!(counts[0] == 1 && counts[1] > 20 && counts[2] > 10 && counts[3] == 2, "{counts:?}");
 }
 
-/// There and back: the photograph of a drawing for a mirror, and what the mirror would show.
+/// There and back: a photograph of a drawing for a mirror, and the image that the mirror would show.
 #[test]
 fn a_photograph_of_an_old_drawing_is_restored() {
     let dir = tempfile::tempdir().unwrap();

@@ -41,7 +41,7 @@ fn check(name: &str, deformation: &str, args: &[(&str, &str)], tolerance: Option
     let frame = Frame::new(source.artwork_box(&Selection::default()).unwrap());
     let map = Registry::builtin().get(deformation).unwrap().build_from(&Args::from_pairs(args), &frame).unwrap().map;
     let warped = read(&out);
-    // Compare painted shapes only: a clip path may be written in another form that clips the same, which the pictures test.
+    // Compare painted shapes only: a clip path may be written in another form that clips alike, which the pictures test.
     let everything = Selection::default();
     let shapes: Vec<_> = source.selected(&everything).collect();
     let images: Vec<_> = warped.selected(&everything).collect();

@@ -102,7 +102,7 @@ fn sizes_formats_and_exit_codes() {
     assert!(pathwarp(&["swirl", svg.to_str().unwrap()]).status.success());
 }
 
-/// A bent picture in a drawing looks like the bent drawing that it was rendered from.
+/// A bent picture in a drawing looks like the bent drawing from which it was rendered.
 #[test]
 fn a_picture_in_a_drawing_bends_with_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -218,13 +218,13 @@ fn bent_photographs_stay_jpegs_of_like_quality() {
             let (svg, _) = bent(&drawing(&file, "image/jpeg", attributes), &["--structure", structure]);
             let found = embedded(&svg);
             assert_eq!(found.len(), 1, "{attributes}");
-            // The outline covers this share of the picture's box: pixels beyond it show nothing.
+            // The outline covers this fraction of the picture's box; pixels beyond it show nothing.
             let (w, h) = header_size(&found[0]).unwrap();
             let per_pixel = |bytes: usize, (w, h): (u32, u32)| bytes as f64 / (f64::from(w) * f64::from(h));
             let growth = per_pixel(found[0].len(), (w, h)) / per_pixel(file.len(), size);
             println!("{quality} {attributes}: {w} x {h}, {growth:.2} times the bytes of a pixel");
             assert!(growth < 1.5, "{quality}, {attributes}: {growth}");
-            // It looks like the same drawing with the photograph without loss, edges included.
+            // The result looks like the drawing with a lossless photograph, edges included.
             let (exact, _) = bent(&drawing(&lossless, "image/png", attributes), &["--structure", structure]);
             assert!(embedded(&exact).is_empty() && exact.contains("data:image/png"));
             let (a, b) = (photograph(&svg, 400), photograph(&exact, 400));
@@ -232,27 +232,27 @@ fn bent_photographs_stay_jpegs_of_like_quality() {
             let (mean, over) = (difference.mean_abs, difference.share_over(64));
             println!("{quality} {attributes}, {structure}: mean {mean:.2}, over 64: {over:.5}");
             assert!(mean < 2.5 && over < 0.001, "{quality} {attributes} {structure}: {mean} {over}");
-            // The comparison can fail: without the outline, colours go on beyond the edge.
+            // The comparison can fail: without the outline, colours continue beyond the edge.
             let unclipped = photograph(&svg.replace("clip-path", "data-clip"), 400);
             assert!(compare(&unclipped, &b).unwrap().share_over(64) > 0.01, "{attributes}");
         }
     }
-    // Grey stays grey, and a PNG stays one without loss.
+    // Grey stays grey, and a PNG stays a lossless PNG.
     let mut grey = landscape(400, 240).pixmap;
     grey.pixels_mut().iter_mut().for_each(|p| *p = ColorU8::from_rgba(p.red(), p.red(), p.red(), 255).premultiply());
     let colored = Picture::from(grey).write(PictureFormat::Jpeg { quality: 80 }).unwrap();
     let (svg, said) = bent(&drawing(&colored, "image/jpeg", ""), &[]);
     let found = Picture::read(&embedded(&svg)[0]).unwrap().pixmap;
     assert!(found.pixels().iter().all(|p| p.red().abs_diff(p.blue()) <= 2), "{said}");
-    // A photograph in CMYK becomes RGB, which is said.
+    // A photograph in CMYK becomes RGB, with a warning.
     let inks = include_bytes!("../libraries/raster/pictures/cmyk.jpg");
     let (svg, said) = bent(&drawing(inks, "image/jpeg", ""), &[]);
     assert!(said.contains("CMYK") && embedded(&svg).len() == 1, "{said}");
     assert!(!bent(&drawing(&colored, "image/jpeg", ""), &[]).1.contains("CMYK"));
 }
 
-/// A turned photograph has the size at which it is shown, and comes through to the byte where it is not bent: this one ends with its header,
-/// so decoded and encoded again it would be another.
+/// A turned photograph has the size at which it is shown, and its bytes are unchanged where it is not bent. This one ends with its header,
+/// so decoding and encoding would change it.
 #[test]
 fn turned_photographs_that_are_not_bent_are_not_decoded() {
     // An APP1 segment with orientation (0x0112) = 6: the first row is the right side.

@@ -1,7 +1,7 @@
 //! Every deformation in two examples of its page, each on three samples, compared with the reference pictures in `tests/reference/`.
 //!
 //! `PATHWARP_STORE=1 cargo test --test program pictures::` stores new ones: look at each before committing it.
-//! Only the bundled font is used, so that the pictures are the same on every machine.
+//! Only the bundled font is used, so that the pictures are equal on every machine.
 
 use crate::support::{artwork, expect_code, root, sample, words_into};
 use pathwarp::Seg;
@@ -21,12 +21,12 @@ use std::path::{Path, PathBuf};
 const SAMPLES: [&str; 3] = ["badge.svg", "headline.svg", "lineart.svg"];
 /// Pixels of the longer side of a picture. The pictures of a deformation share a sheet: a row for each example.
 const SIDE: u32 = 200;
-/// A pixel differs when a channel is off by more than this: antialiasing on other processors stays far below.
+/// Difference of a channel beyond which a pixel differs. Antialiasing on other processors stays far below.
 const VISIBLE: u8 = 24;
 /// Fraction of the pixels that may differ.
 const SHARE: f64 = 5e-4;
 
-/// The first two examples that run on any drawing: they name no path of their own, and no photograph.
+/// The first two examples that run on any drawing: they name neither a path nor a photograph.
 fn examples(info: &Info) -> [&'static str; 2] {
     let of_any = |command: &&str| !command.contains("'#") && !command.contains(".jpg");
     let mut all = info.examples.iter().map(|e| e.command).filter(of_any);
@@ -42,7 +42,7 @@ fn bent(folder: &Path, example: &str, sample: &str) -> Vec<u8> {
     fs::read(folder.join("out.svg")).unwrap()
 }
 
-/// Draws a page in a corner of a white square, moved by so many pixels.
+/// Draws a page in a corner of a white square, moved by this many pixels.
 fn draw(svg: &[u8], [x, y]: [f32; 2]) -> Pixmap {
     let read = ReadOptions::default().with_system_fonts(false);
     let tree = usvg_tree::parse_tree(svg, "picture", &read).unwrap();
@@ -70,7 +70,7 @@ fn known(name: &str) -> Pixmap {
     decode_png(&fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))).unwrap()
 }
 
-/// None would match if it were moved by half a pixel.
+/// No reference would match if the picture were moved by half a pixel.
 #[test]
 fn every_deformation_matches_its_reference() {
     let folder = tempfile::tempdir().unwrap();
@@ -152,12 +152,12 @@ fn diagonal(r: Rect) -> f64 {
     r.width().hypot(r.height())
 }
 
-/// Criterion: a straight shaper on the bounding box of the artwork keeps the picture, adds no segments, and keeps lines as lines.
+/// A straight shaper on the bounding box of the artwork keeps the picture, adds no segments, and keeps lines as lines.
 #[test]
 fn a_straight_shaper_changes_nothing() {
     let same = |source: usize, warped: usize| source == warped;
     straight("0%,0% 100%,0% 100%,100% 0%,100%", 1e-4, 2, same, same);
-    // Off by 1e-8, so that the affine case is not recognised: no segment is added. (Pixels say little here: the renderer's circles
+    // Off by 1e-8, so that the affine case is not recognised: no segment is added. (Pixels prove little here: the renderer's circles
     // are polynomials too, and dashes along them move with the error in length.)
     let no_more = |source: usize, warped: usize| warped <= source;
     let any = |_: usize, _: usize| true;

@@ -32,7 +32,7 @@ fn styles_and_shapes_come_from_toml_files() {
         assert!(err.contains(part), "{err}");
         assert!(!dir.path().join("never.svg").exists());
     }
-    // A recipe finds the file relative to its own folder.
+    // A recipe finds the file relative to its folder.
     expect_code(
         0,
         &["warp", "samples/logo.svg", "--style", &at("mine.toml"), "-o", &at("a.svg"), "--write-recipe", &at("r.toml")],

@@ -174,7 +174,7 @@ fn points_are_mapped_line_by_line() {
         "3 4",
     );
     assert_eq!(text(&out.stdout), "7 8\n");
-    // The map has no value beyond the horizon.
+    // The map is not defined beyond the horizon.
     let out = run(&["projective", "--frame", "0,0,100,100", "--target", "0,100 100,100 75,0 25,0"], "50 50\n50 300\n");
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
     assert!(text(&out.stdout).ends_with("nan nan\n"), "{}", text(&out.stdout));

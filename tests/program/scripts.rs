@@ -1,6 +1,6 @@
 //! Text in scripts that its fonts lack, with fonts of this repository alone.
 //!
-//! The truth is what `pathwarp text` makes of each word in the font for it, which the tests of `pathwarp-text` hold to HarfBuzz.
+//! The truth is the result of `pathwarp text` for each word in the font for it, which the tests of `pathwarp-text` compare with HarfBuzz.
 
 use crate::support::{pathwarp_in, root};
 use pathwarp::kurbo::Rect;
@@ -58,7 +58,7 @@ fn moved(content: &str, options: &[&str]) -> (Option<i32>, Vec<Rect>, String) {
     (code, if out.is_empty() { Vec::new() } else { boxes(&out) }, said)
 }
 
-/// What `pathwarp text` makes of a word in one font.
+/// Returns the boxes of `pathwarp text` for a word in one font.
 fn word(text: &str, font: &str) -> Vec<Rect> {
     let (size, file) = (SIZE.to_string(), Path::new(&fonts()).join(font).display().to_string());
     let own = if font.is_empty() { vec![] } else { vec!["--font", &file] };
@@ -67,7 +67,7 @@ fn word(text: &str, font: &str) -> Vec<Rect> {
     boxes(&out)
 }
 
-/// Whether boxes are those of a word, wherever it is.
+/// Asserts that boxes are those of a word, wherever it is.
 #[track_caller]
 fn same(found: &[Rect], expected: &[Rect], within: f64, what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}: {found:?} {expected:?}");
@@ -93,7 +93,7 @@ fn a_word_takes_the_font_of_its_script() {
     }
 }
 
-/// Words of all scripts in one line are as they are alone, in every order and alignment, on a path, and in elements of their own.
+/// Words of all scripts in one line look as they do alone, in every order and alignment, on a path, and in separate elements.
 #[test]
 fn words_keep_their_shape_among_others() {
     let alone: Vec<Vec<Rect>> = WORDS.iter().map(|(text, font)| word(text, font)).collect();
@@ -150,7 +150,7 @@ fn pieces_follow_one_another() {
         ends[2] - ends[0]
     };
     let (thai, khmer) = (advance("สวัสดี", "thai.ttf"), advance("សួស្តី", "khmer.ttf"));
-    // Where the first or last word of a drawing begins.
+    // The position at which the first or last word of a drawing begins.
     let (thai_parts, khmer_parts) = (word("สวัสดี", "thai.ttf").len(), word("សួស្តី", "khmer.ttf").len());
     let first = |content: &str| moved(content, &[]).1[0].x0;
     let last = |content: &str, parts: usize| moved(content, &[]).1.iter().rev().nth(parts - 1).unwrap().x0;
@@ -201,7 +201,7 @@ fn letters_without_a_font_are_named() {
     }
 }
 
-/// Lettering takes what its fonts lack from those given, as drawings do.
+/// Lettering takes letters that its fonts lack from the given fonts, as drawings do.
 #[test]
 fn lettering_takes_other_fonts() {
     let fonts = fonts();

@@ -1,4 +1,4 @@
-//! Photographs that are straightened, and what goes along with their pixels. What files hold is read here, by the formats' own rules.
+//! Photographs that are straightened, and the data that accompanies their pixels. Files are read here by the rules of their formats.
 
 use crate::support::{expect_code, pathwarp_in, sample};
 use pathwarp_raster::{Picture, PictureFormat, Pixmap};
@@ -47,7 +47,7 @@ fn corners_seen(camera: &[[f64; 3]; 3]) -> [(f64, f64); 4] {
     })
 }
 
-/// The place on the board that a pixel shows, by the adjugate of the camera's matrix.
+/// Returns the point of the board that a pixel shows, by the adjugate of the camera's matrix.
 fn on_board(x: f64, y: f64) -> (f64, f64) {
     let [[a, b, c], [d, e, f], [g, h, i]] = *CAMERA;
     let adjugate = [
@@ -59,7 +59,7 @@ fn on_board(x: f64, y: f64) -> (f64, f64) {
     (u / w, v / w)
 }
 
-/// Every square has a colour of its own, neighbours far apart.
+/// Returns a different colour for every square; neighbours are far apart.
 fn color(column: u8, row: u8) -> [u8; 3] {
     [30 * column, 40 * row, if (column + row).is_multiple_of(2) { 220 } else { 20 }]
 }
@@ -110,7 +110,7 @@ fn a_board_comes_out_square_by_square() {
     let whole = "0%,100% 100%,100% 100%,0% 0%,0%";
     let ways: [&[&str]; 3] = [
         &["projective", "photo.png", "--base", &quad, "--target", whole],
-        // The target may have any place and shape: the size comes from the photograph.
+        // The target may have any position and shape: the size comes from the photograph.
         &["projective", "photo.png", "--base", &quad, "--target", "-900,50 -500,50 -500,-1000 -900,-1000"],
         &["projective", "photo.png", "--target", &quad, "--inverse"],
     ];
@@ -119,7 +119,7 @@ fn a_board_comes_out_square_by_square() {
         (p.0 - q.0).hypot(p.1 - q.1)
     };
     let mean = |a: f64, b: f64| (0.5 * (a + b)).round() as u32;
-    // The board is seen at an angle: its true height needs more pixels than its sides have, and no detail of its width is lost.
+    // The board is seen at an angle. Its true height needs more pixels than its sides have, and no detail of its width is lost.
     let width = mean(length(0, 1), length(2, 3));
     let natural = (width, (f64::from(width) * 0.75).round() as u32);
     assert!(natural.1 > mean(length(1, 2), length(3, 0)) + 20);
@@ -149,7 +149,7 @@ fn a_board_comes_out_square_by_square() {
     }
 }
 
-/// Cameras with all kinds of lenses see sheets from all around; the truth is the camera's.
+/// Cameras with all kinds of lenses see sheets from all sides; the truth is the camera's matrix.
 #[test]
 fn photographs_tell_the_proportions_of_what_lies_in_them() {
     let dir = tempfile::tempdir().unwrap();
@@ -179,7 +179,7 @@ fn photographs_tell_the_proportions_of_what_lies_in_them() {
             let mm = said.split("focal length of ").nth(1).and_then(|t| t.split(' ').next()).unwrap();
             assert!(near(mm.parse().unwrap(), 43.27 * lens, 0.05), "{lens}: {said}");
         }
-        // A sheet is upright or lies as it does in space, however it is foreshortened.
+        // A sheet is upright or not as it is in space, however it is foreshortened.
         let upright = sides.0 < sides.1;
         if !near(sides.0, sides.1, 0.01) {
             for sheet in ["a4", "210:297", "297:210"] {
@@ -191,11 +191,11 @@ fn photographs_tell_the_proportions_of_what_lies_in_them() {
     }
     // In the second and the last, a pixel at one corner moves the ratio by more than 3 %.
     assert_eq!(told, 4);
-    // A sheet seen from straight in front does not tell the lens, and needs not to.
+    // A sheet seen from straight in front does not determine the lens, which is not needed then.
     let front = camera((2.1, 2.97), diagonal, picture, [0.0, 0.0, 0.3], 6.0);
     let (ratio, said) = crop(&front, &[]);
     assert!((ratio / (2.1 / 2.97) - 1.0).abs() < 0.005 && said.is_empty(), "{ratio} {said}");
-    // Corners that no camera sees a rectangle in keep the mean of their sides.
+    // Corners that no camera could see of a rectangle keep the mean of their sides.
     let drawn = [
         "projective",
         "photo.png",
@@ -217,7 +217,7 @@ fn photographs_tell_the_proportions_of_what_lies_in_them() {
     assert_eq!(run(dir, &["swirl", "photo.png", "--ratio", "a4", "-o", "out.png"]).0, 2);
 }
 
-/// What the map does with the rest of the photograph, beyond the horizon, is no matter.
+/// The image of the rest of the photograph, beyond the horizon, does not matter.
 #[test]
 fn a_steep_floor_can_be_cropped() {
     let dir = tempfile::tempdir().unwrap();
@@ -281,7 +281,7 @@ fn entry(out: &mut Vec<u8>, tag: u16, kind: u16, count: u32, value: u32) {
     out.extend([count.to_be_bytes(), value.to_be_bytes()].concat());
 }
 
-/// Metadata as a camera writes them, by EXIF 2.32, 4.5: the camera turned by 90°, with notes of its maker, a place and a thumbnail.
+/// Metadata as a camera writes them (EXIF 2.32, 4.5): the camera turned by 90°, its maker's notes, a position and a thumbnail.
 fn exif() -> Vec<u8> {
     let mut out = b"MM\0\x2a\0\0\0\x08".to_vec();
     out.extend(6u16.to_be_bytes());
@@ -364,7 +364,7 @@ fn parts(file: &[u8], head: &[u8]) -> Vec<Vec<u8>> {
 fn photograph(exif: &[u8], profile: Vec<u8>) -> Vec<u8> {
     let pixmap = painted(160, 80, |x, y| [x as u8, 2 * y as u8, (x * y % 251) as u8]);
     let exif = Some(exif.to_vec());
-    // Other tests see to it that metadata are written where the format wants them.
+    // Other tests check that metadata are written at the positions that the format requires.
     Picture { profile: Some(profile), exif, ..Picture::from(pixmap) }.write(JPEG).unwrap()
 }
 
@@ -391,7 +391,7 @@ fn profile_and_exif_go_along() {
             assert_eq!((main[&0x0112], main[&0x0100], main[&0x0101], next), (1, 120, 160, 0), "{out}");
             let exif = directory(tiff, main[&0x8769] as usize).0;
             assert_eq!((exif[&0xa002], exif[&0xa003]), (120, 160));
-            // The maker's notes are where they were, as they may refer to places from the start.
+            // The maker's notes keep their position, since they may contain offsets from the start.
             assert!(tiff[300..].starts_with(b"Maker A\0Its notes") && exif[&0x927c] == 308);
             assert!(!has("THUMBNAIL"), "{out}");
             assert_eq!((has("LATITUDE"), main.contains_key(&0x8825)), (keeps_location, keeps_location), "{out}");
@@ -413,7 +413,7 @@ fn profile_and_exif_go_along() {
     }
 }
 
-/// Pixels are RGB, so a profile for anything else would show them wrong; damaged metadata are of no use. A line says so.
+/// Pixels are RGB, so any other profile would show them wrong; damaged metadata are of no use. A warning reports both.
 #[test]
 fn what_does_not_fit_is_left_out_and_said() {
     let dir = tempfile::tempdir().unwrap();
@@ -479,13 +479,13 @@ fn a_jpeg_cut_short_is_said_to_be() {
     let (code, said) = still("cut.jpg", &["--on-error", "skip"]);
     let lines = said.split("after ").nth(1).and_then(|s| s.split(' ').next()).unwrap().parse::<u32>().unwrap();
     assert!(code == 1 && said.contains(" of 600 lines"), "{code} {said}");
-    // Half of the bytes hold about half of the lines; those are exact, and nothing else is made up.
+    // Half of the bytes hold about half of the lines. Those are exact, and no others are invented.
     assert!((200..400).contains(&lines), "{said}");
     let found = read(dir.join("out.png")).pixmap;
     let all = (4 * lines * expected.width()) as usize;
     assert_eq!(found.data()[..all], expected.data()[..all]);
     assert!(found.data()[all..].iter().all(|b| *b == 0));
-    // The end's mark alone is no loss.
+    // A missing end mark alone is no loss.
     fs::write(dir.join("whole.jpg"), &whole[..whole.len() - 2]).unwrap();
     assert_eq!(still("whole.jpg", &[]), (0, String::new()));
 }

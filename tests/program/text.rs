@@ -26,7 +26,7 @@ fn stages(line: &str) -> Vec<Vec<String>> {
     words(line).split(|w| w == "|").map(<[String]>::to_vec).collect()
 }
 
-/// Runs a pipeline that says no more than that a word that is bent takes its page along.
+/// Runs a pipeline whose only message is that the page of a bent word follows the word.
 #[track_caller]
 fn quiet(stages: &[Vec<String>]) -> Vec<u8> {
     let (drawing, said) = pipeline(stages);
@@ -86,7 +86,7 @@ fn baselines_heights_and_letters_are_recorded_correctly() {
     let doc = Document::read(&drawing, "out", &ReadOptions::default()).unwrap();
     let h = doc.shapes()[0].outline.bounding_box().unwrap();
     near(&[h.y0, h.y1], &[106.9 - 71.4, 106.9]);
-    // Its stems begin 98 units from the origin and end as far from the advance.
+    // Its stems begin 98 units from the origin and end at an equal distance from the advance.
     assert!(h.x0 > 9.0 && h.x0 < 10.5 && (74.1 - h.x1 - h.x0).abs() < 0.5, "{h:?}");
     // The page holds the lines.
     near(&numbers(&text, "viewBox")[0], &[0.0, 0.0, 109.9, 2.0 * 136.2]);
@@ -112,7 +112,7 @@ fn words_fill_a_block() {
     let plain = ink_of_lines(&svg("text LOVE MUSIC --size 100"));
     near(&[ink[1].width()], &[plain[1].width()]);
     near(&[ink[0].width() / ink[0].height()], &[plain[0].width() / plain[0].height()]);
-    // The larger line has the larger heights, so that it can be bent by its own.
+    // The larger line has larger heights, by which it can be bent.
     let scale = ink[0].width() / plain[0].width();
     near(&numbers(&drawing, "data-cap-height").concat(), &[71.4, 71.4 * scale]);
     // Bent into a box, the block fills it edge to edge.
@@ -207,7 +207,7 @@ fn vertical_lines_stay_vertical_under_an_arch() {
     assert!(count(&leaning) < before / 2);
 }
 
-/// A warp without bend changes nothing; with bend it does, and the words keep their names.
+/// A warp without bend changes nothing; with bend it moves outlines, and the words keep their names.
 #[test]
 fn text_into_warp() {
     let word = "text Regatta --size 80";
@@ -227,7 +227,7 @@ fn page(drawing: &str) -> Rect {
     Rect::from_origin_size((n[0], n[1]), (n[2], n[3]))
 }
 
-/// A file to look at has a margin of 6 % of the size; on paper, for machines and in pipes the page is as large as the text.
+/// A file for viewing has a margin of 6 % of the size; on paper, for machines and in pipes the page is as large as the text.
 #[test]
 fn drawings_have_a_margin() {
     let dir = tempfile::tempdir().unwrap();
@@ -243,7 +243,7 @@ fn drawings_have_a_margin() {
     assert_eq!(bare.inflate(6.0, 6.0), page(&file("--size 100")));
     assert_eq!(bare.inflate(3.0, 3.0), page(&file("--size 100 --margin 3")));
     assert_eq!(page(&svg("text LOVE MUSIC --size 100mm")), page(&file("--size 100mm").replace("mm", "")));
-    // Blocks that fill have the same room on all sides.
+    // Blocks that fill have equal margins on all sides.
     let block = file("--size 100 --align fill --gap 4");
     near_rect(page(&block), bounds(block.as_bytes()).inflate(6.0, 6.0));
 }
@@ -330,7 +330,7 @@ fn weights_and_axes_are_set() {
 fn every_command_of_the_guide_runs() {
     let page = fs::read_to_string(root().join("docs/lettering.md")).unwrap();
     let commands: Vec<&str> = page.lines().filter_map(|l| l.strip_prefix("pathwarp ")).collect();
-    // Tables have tests of their own.
+    // Tables have separate tests.
     let commands: Vec<&str> = commands.into_iter().filter(|c| !c.contains("--data")).collect();
     assert!(commands.len() >= 7, "{commands:?}");
     for command in commands {

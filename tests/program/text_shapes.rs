@@ -1,4 +1,4 @@
-//! Text shapes and rings of lettering: how much letters are distorted, and the space between the ends.
+//! Text shapes and rings of lettering: the distortion of letters, and the space between the ends.
 
 use crate::support::{pathwarp_in, root};
 use pathwarp::deform::Registry;
@@ -31,8 +31,8 @@ fn distortion(drawing: &[u8], pairs: &[(&str, &str)]) -> f64 {
     boxes.iter().flat_map(points).map(ratio).fold(0.0, f64::max)
 }
 
-/// On every shape with a single guide, letters keep their proportion in a box that is fitted to the text; in the artwork's own box,
-/// as before, those of wide lines do not. No letter folds.
+/// On every shape with a single guide, letters keep their proportion in a box that is fitted to the text; in the artwork's box, those of
+/// wide lines do not. No letter folds.
 #[test]
 fn letters_keep_their_proportion_on_arches() {
     let texts = [("Hi", 1.5), ("Welcome", 1.5), ("A rather long single line of text", 1.3)];

@@ -53,8 +53,8 @@ fn stained_glass_has_no_gaps() {
     }
 }
 
-/// Merging would join the shared edge with the following segment on one side only. Without a shared edge it does, which shows that
-/// the test can fail.
+/// Merging would join the shared edge with the following segment on one side only. It does so without a shared edge, so the test can
+/// fail.
 #[test]
 fn a_shared_edge_is_not_merged_with_what_follows_it() {
     const WITH_REST: &str = "<path d='M0,50 C10,30 20,40 30,50 C40,60 50,70 60,50 L60,90 0,90 Z'/>";
@@ -104,7 +104,7 @@ fn neighbours_under_different_transforms_write_their_edge_alike() {
             let after = Document::read(out.as_bytes(), "out", &ReadOptions::default()).unwrap();
             let outlines: Vec<&Outline> = after.shapes().iter().map(|s| &*s.outline).collect();
             for pair in outlines.windows(2) {
-                // The right side of the one, and the left side of the other.
+                // The right side of one column, and the left side of the next.
                 let top = |o: &Outline, x: f64| -> Vec<char> {
                     // The cubic term is less than 3.
                     let on = |p: Point| {

@@ -1,4 +1,4 @@
-//! The editor as its page meets it: the program, and messages over its socket.
+//! The editor as seen by its page: the program, and messages over its socket.
 
 use super::events::LAST_RESORT;
 use super::pathwarp_program;
@@ -14,7 +14,7 @@ pub struct Editor {
     pub port: u16,
     /// The token's query.
     pub query: String,
-    /// Without a page the editor ends after seconds, which a test may take between two requests.
+    /// A connection that replaces the page. Without a page the editor ends after seconds, which a test may take between two requests.
     page: Option<TcpStream>,
 }
 
@@ -33,7 +33,7 @@ impl Editor {
         })
     }
 
-    /// Opens a file of a folder, with variables of its own.
+    /// Opens a file of a folder, with separate variables of the environment.
     pub fn with(folder: &Path, file: &str, variables: impl FnOnce(&mut Command)) -> Self {
         let mut command = Command::new(pathwarp_program());
         variables(command.args(["edit", file, "--no-open"]).current_dir(folder));

@@ -1,9 +1,9 @@
-//! Waiting for what other processes do: by blocking calls, so that no clock decides how a test ends.
+//! Waiting for other processes by blocking calls, so that no clock decides how a test ends.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// The last resort, which turns a hang into a failure. Nothing that ends takes so long, however busy a machine is.
+/// Time limit that turns a hang into a failure. Whatever ends takes less, even on a busy machine.
 pub const LAST_RESORT: Duration = Duration::from_secs(1000);
 
 /// Waits until `event` returns.
@@ -50,7 +50,7 @@ mod pipe {
 
         /// Listens to the processes that have the pipe open for writing from now on.
         pub fn hear(&self) -> Heard {
-            // Opened for both, a pipe needs no other side.
+            // A pipe that is opened for reading and writing needs no other side.
             let own = OpenOptions::new().read(true).write(true).open(&self.0).unwrap();
             Heard { lines: BufReader::new(File::open(&self.0).unwrap()), own }
         }

@@ -29,7 +29,7 @@ pub fn drawing(width: &str, height: &str, per_mm: f64) -> String {
     )
 }
 
-/// The same drawing in documents with different units.
+/// Returns that drawing in documents with different units.
 pub fn documents() -> [(&'static str, String); 4] {
     [
         ("px", drawing("302.36220472440942", "226.77165354330708", 96.0 / 25.4)),
@@ -58,13 +58,13 @@ pub fn outlines(svg: &[u8]) -> Vec<Vec<Point>> {
     subpaths.map(|s| points(&s.segs)).filter(|p| !p.is_empty()).collect()
 }
 
-/// The largest distance from a point of `a` to the lines of `b`.
+/// Returns the largest distance from a point of `a` to the lines of `b`.
 pub fn gap(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
     let edges = |lines: &[Vec<Point>]| -> Vec<[Point; 2]> {
         lines.iter().flat_map(|l| l.windows(2)).map(|w| [w[0], w[1]]).collect()
     };
     let lines = Polygon::new(edges(b));
-    // Points on long lines, too.
+    // Include points on long lines.
     let between = |[p, q]: &[Point; 2]| {
         let n = (p.distance(*q) / 0.1).ceil().max(1.0) as usize;
         (0..=n).map(|i| lines.distance(p.lerp(*q, i as f64 / n as f64))).fold(0.0, f64::max)
@@ -72,7 +72,7 @@ pub fn gap(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
     edges(a).iter().map(between).fold(0.0, f64::max)
 }
 
-/// A drawing on a page of 100 mm at some place: a path, a circle, and a group with a transform.
+/// Returns a drawing on a page of 100 mm at x, y: a path, a circle, and a group with a transform.
 pub fn far(x: f64, y: f64) -> String {
     let at = |u: f64, v: f64| format!("{} {}", x + u, y + v);
     format!(

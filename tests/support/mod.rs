@@ -18,7 +18,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().to_owned()
 }
 
-/// Says that a check is skipped, past the test's own captured output: the gate lists such lines at the end.
+/// Reports that a check is skipped, past the test's captured output: the gate lists such lines at the end.
 pub fn skipped(why: impl std::fmt::Display) {
     use std::io::Write as _;
     let _ = std::io::stderr().write_all(format!("skipped: {why}\n").as_bytes());
@@ -44,7 +44,7 @@ pub fn artwork() -> Vec<String> {
     all
 }
 
-/// The program.
+/// Returns the path of the program.
 pub fn pathwarp_program() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_pathwarp"))
 }
@@ -112,7 +112,7 @@ pub fn words(line: &str) -> Vec<String> {
     out
 }
 
-/// The words of an example, whose outputs are called `out.…`, with these in a folder.
+/// Returns the words of an example, in which outputs called `out.…` lie in a folder.
 pub fn words_into(folder: &Path, example: &str) -> Vec<String> {
     let inside = |w: String| {
         if w.starts_with("out") && w.contains('.') { folder.join(w).display().to_string() } else { w }
@@ -120,7 +120,7 @@ pub fn words_into(folder: &Path, example: &str) -> Vec<String> {
     words(example).into_iter().map(inside).collect()
 }
 
-/// A drawing of Inkscape's with the given content.
+/// Returns a drawing in Inkscape's form with the given content.
 pub fn inkscape_drawing(body: &str) -> String {
     format!(
         "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \

@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A folder with plug-ins and a drawing, whose entries are remembered in it as well.
+/// A folder with plug-ins, the cache of their entries, and a drawing.
 pub struct Scratch {
     pub dir: TempDir,
     /// Seconds that a program has for an answer: enough on any machine, unless a test waits for them.
     pub seconds: &'static str,
-    /// Held by the processes of scripts that hold it.
+    /// A pipe that the processes of some scripts hold open.
     held: Pipe,
 }
 
@@ -27,7 +27,7 @@ impl Scratch {
         Self { dir, seconds: "1000", held }
     }
 
-    /// The same shell script, with a pipe that is open until the last of its processes has ended. It needs a listener, or else waits.
+    /// Adds to a shell script a pipe that is open until the last of its processes has ended. The script waits until there is a listener.
     pub fn holding(&self, script: &str) -> String {
         let open = format!("#!/bin/sh\nexec 9>'{}'\n", self.held.path().display());
         script.replacen("#!/bin/sh\n", &open, 1)
@@ -50,7 +50,7 @@ impl Scratch {
         file
     }
 
-    /// A command that runs the program here.
+    /// Returns a command that runs the program in the folder.
     pub fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(pathwarp_program());
         command.args(args).current_dir(self.dir.path()).stdin(Stdio::null());
@@ -85,7 +85,7 @@ pub fn entry(name: &str) -> String {
     )
 }
 
-/// A shell script with that entry, which builds, and answers points by the shell command `answer`; `$line` is the point.
+/// Returns a shell script with that entry, which builds, and answers points by the shell command `answer`; `$line` is the point.
 pub fn script(name: &str, answer: &str) -> String {
     format!(
         r#"#!/bin/sh
@@ -103,7 +103,7 @@ done
     )
 }
 
-/// The path of Python 3, if there is one.
+/// Returns `true` if Python 3 is installed.
 pub fn python() -> bool {
     let found = Command::new("python3").arg("--version").output().is_ok_and(|o| o.status.success());
     if !found {

@@ -4,11 +4,11 @@
 use pathwarp_gimp::{GimpPath, Stroke};
 use std::io::{Cursor, Read, Result, Seek, SeekFrom};
 
-/// A file that counts what is read of it.
+/// A file that counts how often it is read.
 pub(crate) struct Counted<R> {
     file: R,
     pub(crate) bytes: usize,
-    /// Times that it was read or sought in.
+    /// Number of reads and seeks.
     pub(crate) calls: usize,
 }
 
@@ -23,7 +23,7 @@ impl<'a> Counted<Cursor<&'a [u8]>> {
         Self::new(Cursor::new(bytes))
     }
 
-    /// Asserts that reading took a time in proportion to the file: no number in it asks for more calls than there are bytes.
+    /// Asserts that reading took a time in proportion to the file: no number in it causes more calls than there are bytes.
     #[track_caller]
     pub(crate) fn assert_little(&self, of: &str) {
         let most = self.file.get_ref().len() + 64;
@@ -298,7 +298,7 @@ pub(crate) fn tiles(file: &[u8]) -> [Vec<u8>; 3] {
     let pointer = |at: usize| if size == 8 { word(at) << 32 | word(at + 4) } else { word(at) };
     let end_of_properties = |mut at: usize| loop {
         let (kind, length) = (word(at), word(at + 4));
-        // The length word of the colour map is wrong on purpose.
+        // The length word of the colour map is deliberately wrong.
         at += 8 + if kind == 1 { 4 + 3 * word(at + 8) } else { length };
         if kind == 0 {
             return at;

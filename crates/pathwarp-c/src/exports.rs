@@ -23,7 +23,7 @@ const BLOCK: usize = 256;
 pub struct PathwarpWarper(Warper, bool);
 
 impl PathwarpWarper {
-    /// Does something with the warper on all cores, or on the calling thread alone, as its functions need it.
+    /// Calls `work` with the warper on all cores, or on the calling thread alone if its functions need that.
     fn run<T: Send>(&self, work: impl FnOnce(&Warper) -> T + Send) -> T {
         if self.1 { on_all_threads(|| work(&self.0)) } else { on_calling_thread(|| work(&self.0)) }
     }
@@ -53,14 +53,14 @@ pub unsafe extern "C" fn pathwarp_new(
     error: *mut *mut c_char,
 ) -> i32 {
     let made = || {
-        // SAFETY: the header says that these are texts, and arrays of `count` texts.
+        // SAFETY: the header requires texts, and arrays of `count` texts.
         let (name, pairs) = unsafe { (text(name, "name")?, pairs(names, values, count)?) };
         let registry = Registry::builtin();
         let is_edit = pathwarp_engine::edits::info(name).is_some();
         let made = if is_edit { Warper::edit(&registry, name, &pairs) } else { Warper::new(&registry, name, &pairs) };
         Ok((made?, true))
     };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn pathwarp_new_plugin(
     error: *mut *mut c_char,
 ) -> i32 {
     let made = || {
-        // SAFETY: the header says that these are texts, and arrays of `count` texts.
+        // SAFETY: the header requires texts, and arrays of `count` texts.
         let (file, pairs) = unsafe { (text(file, "file")?, pairs(names, values, count)?) };
         let built_in = Registry::builtin();
         let taken: Vec<&str> = built_in.entries().iter().map(|e| e.info().name).collect();
@@ -89,7 +89,7 @@ pub unsafe extern "C" fn pathwarp_new_plugin(
         let name = plugin.info().name;
         Ok((Warper::new(&built_in.with(plugin), name, &pairs)?, true))
     };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
@@ -104,11 +104,11 @@ pub unsafe extern "C" fn pathwarp_new_function(
     error: *mut *mut c_char,
 ) -> i32 {
     let made = || {
-        // SAFETY: the header says that it describes functions.
+        // SAFETY: the header requires a description of functions.
         let (function, abilities, any_thread) = unsafe { Function::read(function)? };
         Ok((Warper::from_function(&Registry::builtin(), Arc::new(function), abilities), any_thread))
     };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
@@ -121,10 +121,10 @@ unsafe fn pairs<'a>(
     values: *const *const c_char,
     count: usize,
 ) -> Result<Vec<(&'a str, &'a str)>, Failed> {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     let (names, values) = unsafe { (array(names, count, "names")?, array(values, count, "values")?) };
     let pair = |(n, v): (&*const c_char, &*const c_char)| {
-        // SAFETY: as the caller says.
+        // SAFETY: the caller guarantees it.
         Ok(unsafe { (text(*n, "an element of names")?, text(*v, "an element of values")?) })
     };
     names.iter().zip(values).map(pair).collect()
@@ -142,11 +142,11 @@ pub unsafe extern "C" fn pathwarp_from_recipe(
     error: *mut *mut c_char,
 ) -> i32 {
     let made = || {
-        // SAFETY: the header says that these are texts.
+        // SAFETY: the header requires texts.
         let (text, folder) = unsafe { (crate::raw::text(text, "text")?, crate::raw::text(folder, "folder")?) };
         Ok((Warper::from_recipe(&Registry::builtin(), text, Path::new(folder), false)?, true))
     };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
@@ -162,11 +162,11 @@ pub unsafe extern "C" fn pathwarp_then(
     error: *mut *mut c_char,
 ) -> i32 {
     let made = || {
-        // SAFETY: the header says that these are warpers that were not released.
+        // SAFETY: the header requires warpers that were not released.
         let (first, second) = unsafe { (value(first, "first")?, value(second, "second")?) };
         Ok((first.0.then(&second.0), first.1 && second.1))
     };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
@@ -180,13 +180,13 @@ pub unsafe extern "C" fn pathwarp_inverse(
     warper: *mut *mut PathwarpWarper,
     error: *mut *mut c_char,
 ) -> i32 {
-    // SAFETY: the header says that it is a warper that was not released.
+    // SAFETY: the header requires a warper that was not released.
     let made = || unsafe { value(of, "of").map(|of| (of.0.inverted(), of.1)) };
-    // SAFETY: the header says that both may be written to.
+    // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
-/// Puts a new warper in its place.
+/// Writes a new warper to `warper`.
 ///
 /// # Safety
 /// `warper` is null, or may be written to.
@@ -197,7 +197,7 @@ unsafe fn new_warper(
     place(warper, "warper")?;
     let (made, any_thread) = made()?;
     let made = hand_over(PathwarpWarper(made, any_thread));
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { put(warper, made) };
     Ok(())
 }
@@ -214,12 +214,12 @@ pub unsafe extern "C" fn pathwarp_set_option(
     error: *mut *mut c_char,
 ) -> i32 {
     let set = || {
-        // SAFETY: the header says that it is a warper, which no other thread uses now, and that these are texts.
+        // SAFETY: the header requires a warper that no other thread uses now, and texts.
         let (warper, name, value) =
             unsafe { (value_mut(warper, "warper")?, text(name, "name")?, text(value, "value")?) };
         Ok(warper.0.set_option(name, value)?)
     };
-    // SAFETY: the header says that `error` may be written to.
+    // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, set) }
 }
 
@@ -237,8 +237,8 @@ pub unsafe extern "C" fn pathwarp_map_points(
 ) -> i32 {
     let map = || {
         let numbers = count.checked_mul(2).ok_or_else(|| wrong(format!("the count {count} is larger than memory")))?;
-        // The points are copied, so that `from` may be `to`.
-        // SAFETY: the header says that it is a warper, and that the numbers are there; both are done with before `to` is written.
+        // The points are copied, since `from` may be `to`.
+        // SAFETY: the header requires a warper and these numbers; both are done with before `to` is written.
         let (warper, from) = unsafe { (value(warper, "warper")?, array(from, numbers, "from")?) };
         let points: Vec<Point> = from.as_chunks().0.iter().map(|[x, y]| Point::new(*x, *y)).collect();
         let finite = || points.iter().filter(|p| p.is_finite());
@@ -250,14 +250,14 @@ pub unsafe extern "C" fn pathwarp_map_points(
             map.points(source, images);
         }
         map.check()?;
-        // SAFETY: the header says that the numbers may be written to; `from`, which may be the same, is not used any more.
+        // SAFETY: the header requires that the numbers may be written to; `from`, which may be the same array, is not used any more.
         let to = unsafe { array_mut(to, numbers, "to")? };
         for (out, p) in to.as_chunks_mut::<2>().0.iter_mut().zip(images) {
             *out = [p.x, p.y];
         }
         Ok(())
     };
-    // SAFETY: the header says that `error` may be written to.
+    // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, map) }
 }
 
@@ -275,17 +275,17 @@ pub unsafe extern "C" fn pathwarp_warp_path(
 ) -> i32 {
     let warp = || {
         place(result, "result")?;
-        // SAFETY: the header says that it is a warper, and a text.
+        // SAFETY: the header requires a warper and a text.
         let (warper, data) = unsafe { (value(warper, "warper")?, text(data, "data")?) };
         let warped = warper.run(|warper| warper.warp_path(data))?.path;
-        // SAFETY: the header says that both may be written to, and `max_error` may be null.
+        // SAFETY: the header requires that both may be written to; `max_error` may be null.
         unsafe {
             put(result, owned_text(&warped.data));
             put(max_error, warped.report.max_error);
         }
         Ok(())
     };
-    // SAFETY: the header says that `error` may be written to.
+    // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, warp) }
 }
 
@@ -312,13 +312,13 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
         if !warnings.is_null() {
             place(warning_count, "warning_count")?;
         }
-        // SAFETY: the header says that it is a warper, and that the bytes are there.
+        // SAFETY: the header requires a warper and these bytes.
         let (warper, bytes) = unsafe { (value(warper, "warper")?, array(bytes, length, "bytes")?) };
-        // SAFETY: the header says that it is NULL or a text.
+        // SAFETY: the header requires NULL or a text.
         let name = if name.is_null() { None } else { Some(Path::new(unsafe { text(name, "name")? })) };
         let warped = warper.run(|warper| warper.warp_drawing(bytes, name))?;
         let (first, count) = owned_bytes(warped.bytes);
-        // SAFETY: the header says that all may be written to, and `report` and `warnings` may be null.
+        // SAFETY: the header requires that all may be written to; `report` and `warnings` may be null.
         unsafe {
             put(result, first);
             put(result_length, count);
@@ -333,7 +333,7 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
         }
         Ok(())
     };
-    // SAFETY: the header says that `error` may be written to.
+    // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, warp) }
 }
 
@@ -353,18 +353,18 @@ pub unsafe extern "C" fn pathwarp_text(
     let set = || {
         place(result, "result")?;
         place(result_length, "result_length")?;
-        // SAFETY: the header says that these are texts, and that `font` may be null.
+        // SAFETY: the header requires texts; `font` may be null.
         let (words, font) =
             unsafe { (text(words, "words")?, if font.is_null() { None } else { Some(text(font, "font")?) }) };
         let (first, count) = owned_bytes(pathwarp_engine::lettering_drawing(words, font, size)?.into_bytes());
-        // SAFETY: the header says that both may be written to.
+        // SAFETY: the header requires that both may be written to.
         unsafe {
             put(result, first);
             put(result_length, count);
         }
         Ok(())
     };
-    // SAFETY: the header says that `error` may be written to.
+    // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, set) }
 }
 
@@ -374,7 +374,7 @@ pub unsafe extern "C" fn pathwarp_text(
 /// It is null, or a warper that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_free(warper: *mut PathwarpWarper) {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { take_back(warper) };
 }
 
@@ -384,7 +384,7 @@ pub unsafe extern "C" fn pathwarp_free(warper: *mut PathwarpWarper) {
 /// It is null, or a text of this library that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_string_free(text: *mut c_char) {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { drop_text(text) };
 }
 
@@ -394,7 +394,7 @@ pub unsafe extern "C" fn pathwarp_string_free(text: *mut c_char) {
 /// It is null, or a list of this library with this count that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_strings_free(texts: *mut *mut c_char, count: usize) {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { drop_texts(texts, count) };
 }
 
@@ -404,6 +404,6 @@ pub unsafe extern "C" fn pathwarp_strings_free(texts: *mut *mut c_char, count: u
 /// They are null, or bytes of this library with this length that were not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_bytes_free(bytes: *mut u8, length: usize) {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { drop_bytes(bytes, length) };
 }

@@ -33,22 +33,22 @@ pub(crate) struct Function {
     data: *mut c_void,
 }
 
-// SAFETY: the header says that `data` may be used by any thread if `any_thread` is set. Otherwise all calls come from the thread that
+// SAFETY: the header requires that any thread may use `data` if `any_thread` is set. Otherwise all calls come from the thread that
 // called the library, by `on_calling_thread`.
 unsafe impl Send for Function {}
-// SAFETY: as above.
+// SAFETY: the reason given for `Send` holds.
 unsafe impl Sync for Function {}
 
 impl Function {
-    /// Reads what C describes: the functions, their abilities, and whether they may be called by any thread.
+    /// Reads a description from C: the functions, their abilities, and `true` if any thread may call them.
     ///
     /// # Safety
     /// `function` is null, or as `pathwarp.h` says.
     pub(crate) unsafe fn read(function: *const PathwarpFunction) -> Result<(Self, Abilities, bool), Failed> {
-        // SAFETY: as the caller says.
+        // SAFETY: the caller guarantees it.
         let f = unsafe { value(function, "function")? };
         let points = f.points.ok_or_else(|| wrong("function.points is NULL".into()))?;
-        // SAFETY: the header says that it is NULL or a text.
+        // SAFETY: the header requires NULL or a text.
         let creases = if f.creases.is_null() { "" } else { unsafe { text(f.creases, "function.creases")? } };
         let creases = pathwarp_plugin::creases(creases.lines().filter(|l| !l.trim().is_empty()));
         let creases = creases.map_err(|fault| wrong(format!("function.creases: {fault}")))?;
@@ -70,7 +70,7 @@ impl Callee for Function {
         let mut to = vec![f64::NAN; ask.numbers() * points.len()];
         let failed = |why: String| Error::input(format!("function.{name}"), why);
         let function = function.ok_or_else(|| failed("is NULL".into()))?;
-        // SAFETY: the header says what it reads and writes: numbers for `points.len()` points.
+        // SAFETY: the header requires that it reads and writes the numbers of `points.len()` points.
         match unsafe { function(self.data, from.as_ptr(), to.as_mut_ptr(), points.len()) } {
             0 => Ok(to),
             status => Err(failed(format!("failed with {status}"))),
@@ -82,10 +82,10 @@ impl Callee for Function {
     }
 }
 
-/// Runs `work` with all of its threads being the calling one.
+/// Runs `work` with the calling thread as its only one.
 pub(crate) fn on_calling_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     thread_local! {
-        // A thread can be part of one pool only, for good.
+        // A thread can join one pool only, for good.
         static ALONE: OnceCell<Option<rayon::ThreadPool>> = const { OnceCell::new() };
     }
     let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok();
@@ -95,7 +95,7 @@ pub(crate) fn on_calling_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-/// Runs `work` on all cores, also where the calling thread once ran something alone.
+/// Runs `work` on all cores, even where the calling thread has run something alone.
 pub(crate) fn on_all_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     static ALL: std::sync::OnceLock<Option<rayon::ThreadPool>> = std::sync::OnceLock::new();
     if rayon::current_thread_index().is_none() {

@@ -31,13 +31,13 @@ impl From<Error> for Failed {
 }
 
 impl Failed {
-    /// The error for a file that cannot be used.
+    /// Makes the error for a file that cannot be used.
     pub(crate) fn input(message: String) -> Self {
         Self(INPUT, message)
     }
 }
 
-/// The error for a wrong argument.
+/// Makes the error for a wrong argument.
 pub(crate) fn wrong(message: String) -> Failed {
     Failed(USAGE, message)
 }
@@ -57,13 +57,13 @@ pub(crate) unsafe fn status(error: *mut *mut c_char, work: impl FnOnce() -> Resu
         // SAFETY: `owned_text` made it, and nobody else has it.
         unsafe { drop_text(message) };
     } else {
-        // SAFETY: not null, and the caller says that it may be written to.
+        // SAFETY: not null, and the caller guarantees that it may be written to.
         unsafe { error.write(message) };
     }
     status
 }
 
-/// A text from C.
+/// Returns a text from C.
 ///
 /// # Safety
 /// `text` is null, or points to bytes that end with a zero and stay as they are while the result is used.
@@ -71,12 +71,12 @@ pub(crate) unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str
     if text.is_null() {
         return Err(wrong(format!("{name} is NULL")));
     }
-    // SAFETY: not null, and the caller says that the bytes end with a zero.
+    // SAFETY: not null, and the caller guarantees that the bytes end with a zero.
     let text = unsafe { CStr::from_ptr(text) };
     text.to_str().map_err(|e| wrong(format!("{name} is not UTF-8 (byte {})", e.valid_up_to())))
 }
 
-/// An array from C. It may be null if it is empty.
+/// Returns an array from C. The pointer may be null if the array is empty.
 ///
 /// # Safety
 /// `first` is null, or points to `count` values that stay as they are while the result is used.
@@ -85,11 +85,11 @@ pub(crate) unsafe fn array<'a, T>(first: *const T, count: usize, name: &str) -> 
         return Ok(&[]);
     }
     check(first, count, name)?;
-    // SAFETY: neither null, nor misaligned, nor too large, and the caller says that the values are there.
+    // SAFETY: neither null, nor misaligned, nor too large, and the caller guarantees that the values are there.
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
 
-/// An array of C that is written to. It may be null if it is empty.
+/// Returns an array of C that is written to. The pointer may be null if the array is empty.
 ///
 /// # Safety
 /// `first` is null, or points to `count` values that nobody else uses while the result is used.
@@ -98,7 +98,7 @@ pub(crate) unsafe fn array_mut<'a, T>(first: *mut T, count: usize, name: &str) -
         return Ok(&mut []);
     }
     check(first, count, name)?;
-    // SAFETY: neither null, nor misaligned, nor too large, and the caller says that nobody else uses the values.
+    // SAFETY: neither null, nor misaligned, nor too large, and the caller guarantees that nobody else uses the values.
     Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
 }
 
@@ -115,36 +115,36 @@ fn check<T>(first: *const T, count: usize, name: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A value behind a handle.
+/// Returns the value behind a handle.
 ///
 /// # Safety
 /// `handle` is null, or came from [`hand_over`] and was not released.
 pub(crate) unsafe fn value<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failed> {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { handle.as_ref() }.ok_or_else(|| wrong(format!("{name} is NULL")))
 }
 
-/// A value behind a handle, to be changed.
+/// Returns the value behind a handle, to be changed.
 ///
 /// # Safety
-/// As [`value`], and nobody else uses it.
+/// `handle` is null, or came from [`hand_over`] and was not released, and nobody else uses it.
 pub(crate) unsafe fn value_mut<'a, T>(handle: *mut T, name: &str) -> Result<&'a mut T, Failed> {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller guarantees it.
     unsafe { handle.as_mut() }.ok_or_else(|| wrong(format!("{name} is NULL")))
 }
 
-/// Checks that a place for a result is there.
+/// Checks that the pointer to a result is not null.
 pub(crate) fn place<T>(result: *mut T, name: &str) -> Result<(), Failed> {
     if result.is_null() { Err(wrong(format!("{name} is NULL"))) } else { Ok(()) }
 }
 
-/// Writes a result to its place, if that is not null.
+/// Writes a result, if its pointer is not null.
 ///
 /// # Safety
 /// `place` is null, or may be written to.
 pub(crate) unsafe fn put<T>(place: *mut T, value: T) {
     if !place.is_null() {
-        // SAFETY: not null, and the caller says that it may be written to.
+        // SAFETY: not null, and the caller guarantees that it may be written to.
         unsafe { place.write(value) };
     }
 }

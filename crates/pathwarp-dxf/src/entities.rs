@@ -1,4 +1,4 @@
-//! Subpaths as entities, one each: exact or flattened.
+//! Writes each subpath as one entity, exact or flattened.
 
 use crate::file::{Codes, MODEL_SPACE, nearest};
 use crate::model::Spline;
@@ -13,8 +13,8 @@ pub(crate) struct Pen<'a> {
     pub(crate) color: Option<[u8; 3]>,
 }
 
-/// Writes a subpath as one entity: exactly if it is all lines and circular arcs, one ellipse, or Bézier curves; arcs among curves become
-/// cubics within a hundredth of the tolerance.
+/// Writes a subpath as one entity. It is exact if it consists of lines and circular arcs, of one ellipse, or of Bézier curves; arcs
+/// among curves become cubics within a hundredth of the tolerance.
 pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
     let near = OF_TOLERANCE * tolerance;
     let segs = merged(subpath, near);
@@ -73,15 +73,15 @@ fn entity<'c>(out: &'c mut Codes, pen: &Pen<'_>, name: &str, class: &str) -> &'c
     out.text(100, class)
 }
 
-/// A vertex with the bulge of the line behind it: the tangent of a quarter of the angle, positive if it runs counter-clockwise.
+/// A vertex with the bulge of the line behind it: the tangent of a quarter of the arc's angle, positive for counter-clockwise arcs.
 type Vertex = (Point, f64);
 
-/// The vertices of lines and circular arcs.
+/// Returns the vertices of lines and circular arcs.
 fn vertices(segs: &[Seg], closed: bool) -> Vec<Vertex> {
     let mut out = Vec::with_capacity(segs.len() + 1);
     for seg in segs {
         match seg {
-            // The bulge of more than half a turn grows without bound.
+            // Beyond half a turn, the bulge grows without bound.
             Seg::Arc(a) if a.sweep.abs() > PI => {
                 out.extend([a.subsegment(0.0, 0.5), a.subsegment(0.5, 1.0)].map(|h| (h.p0, bulge(&h))));
             }
@@ -110,13 +110,13 @@ fn polyline_of(out: &mut Codes, pen: &Pen<'_>, vertices: &[Vertex], closed: bool
     }
 }
 
-/// A circle or a circular arc.
+/// Writes a circle or a circular arc.
 fn arc(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
     let name = if is_whole(a) { "CIRCLE" } else { "ARC" };
     let radius = (a.a.hypot() + a.b.hypot()) / 2.0;
     entity(out, pen, name, "AcDbCircle").point(10, a.center).length(40, radius);
     if !is_whole(a) {
-        // An arc runs counter-clockwise.
+        // DXF's arcs run counter-clockwise.
         let (from, to) = if runs_counter_clockwise(a) { (a.p0, a.p1) } else { (a.p1, a.p0) };
         let degrees = |p: Point| (p - a.center).angle().to_degrees().rem_euclid(360.0);
         out.text(100, "AcDbArc").fine(50, degrees(from)).fine(51, degrees(to));
@@ -127,13 +127,13 @@ fn runs_counter_clockwise(a: &EllipticArc) -> bool {
     a.sweep * a.a.cross(a.b) > 0.0
 }
 
-/// An ellipse or an arc of one.
+/// Writes an ellipse or an arc of one.
 fn ellipse(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
     let (major, minor, shift) = axes(a.a, a.b);
     entity(out, pen, "ELLIPSE", "AcDbEllipse").point(10, a.center).point(11, major.to_point());
     out.length(210, 0.0).length(220, 0.0).length(230, 1.0);
     out.fine(40, (minor.hypot() / major.hypot()).clamp(1e-6, 1.0));
-    // The parameter of the ellipse runs counter-clockwise from its major axis.
+    // DXF's parameter of an ellipse runs counter-clockwise from its major axis.
     let turns = major.cross(minor).signum();
     let (from, to) = if is_whole(a) {
         (0.0, TAU)
@@ -144,7 +144,7 @@ fn ellipse(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
     out.fine(41, from).fine(42, if to > from { to } else { to + TAU });
 }
 
-/// The principal semi-axes of the ellipse c + cos θ·a + sin θ·b, the longer first, and the angle θ of the longer one.
+/// Returns the principal semi-axes of the ellipse c + cos θ·a + sin θ·b, the longer first, and the angle θ of the longer one.
 fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
     // |cos θ·a + sin θ·b|² is largest where tan 2θ = 2a·b / (a² − b²).
     let shift = 0.5 * (2.0 * a.dot(b)).atan2(a.hypot2() - b.hypot2());
@@ -152,8 +152,8 @@ fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
     (a * cos + b * sin, b * cos - a * sin, shift)
 }
 
-/// Segments as one spline: every joint is a triple knot, so corners stay. A closed one ends at the very point it starts from. Its flag for
-/// closed splines stays off: LibreCAD up to 2.2 draws those as periodic ones of the same control points, another curve.
+/// Writes segments as one spline in which every joint is a triple knot, so that corners stay. A closed spline ends at the very point where
+/// it starts. Its flag for closed splines stays off: LibreCAD up to 2.2 would draw a periodic spline of these control points instead.
 fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64) {
     const DEGREE: usize = 3;
     let mut cubics: Vec<CubicBez> = Vec::with_capacity(segs.len());
@@ -173,7 +173,7 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64)
     nurbs(out, pen, &Spline { layer: pen.layer, degree: DEGREE, knots: &knots, points: &points, weights: &[] });
 }
 
-/// The knots of Bézier curves of one degree in a row, at parameters 0, 1, 2 and so on.
+/// Returns the knots of Bézier curves of one degree in a row, at parameters 0, 1, 2 and so on.
 fn joints(degree: usize, count: usize) -> impl Iterator<Item = f64> {
     (0..=count).flat_map(move |joint| {
         let ends = usize::from(joint == 0 || joint == count);
@@ -181,7 +181,7 @@ fn joints(degree: usize, count: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Writes a B-spline curve: rational if its weights differ, planar if all of it is at z = 0.
+/// Writes a B-spline curve, which is rational if its weights differ, and planar if all of it is at z = 0.
 pub(crate) fn nurbs(out: &mut Codes, pen: &Pen<'_>, s: &Spline<'_>) {
     const RATIONAL: i64 = 4;
     const PLANAR: i64 = 8;
@@ -206,10 +206,10 @@ pub(crate) fn nurbs(out: &mut Codes, pen: &Pen<'_>, s: &Spline<'_>) {
     }
 }
 
-/// Share of the tolerance by which an arc may miss a circle and still be written as one.
+/// Fraction of the tolerance by which an arc may miss a circle and still be written as one.
 const OF_TOLERANCE: f64 = 0.1;
 
-/// The segments that have a length: cubics that approximate circles as arcs, and consecutive arcs of one ellipse as one, within `near`.
+/// Returns the segments that have a length. Cubics within `near` of a circle become arcs, and consecutive arcs of one ellipse one arc.
 fn merged(subpath: &Subpath, near: f64) -> Vec<Seg> {
     let mut out: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
     for seg in &subpath.segs {
@@ -230,10 +230,10 @@ fn merged(subpath: &Subpath, near: f64) -> Vec<Seg> {
     out
 }
 
-/// Rounding of angles of arcs that cubics stand for, in radians.
+/// Allowance for the angles of arcs that stand for cubics, in radians.
 const ROUNDING: f64 = 1e-2;
 
-/// Returns `true` if an arc goes on along the ellipse of another, within `near`, up to a full turn.
+/// Returns `true` if an arc continues along the ellipse of another, within `near`, up to a full turn.
 fn is_continued(last: &EllipticArc, next: &EllipticArc, near: f64) -> bool {
     let slack = near.max(1e-9 * last.major());
     let same = last.center.distance(next.center) <= slack
@@ -256,7 +256,7 @@ fn is_whole(arc: &EllipticArc) -> bool {
     (arc.sweep.abs() - TAU).abs() < 1e-9
 }
 
-/// Deepest halving: a curve becomes at most 65536 lines.
+/// Limit on successive halvings: a curve becomes at most 65536 lines.
 const DEEPEST: u32 = 16;
 
 /// Appends the points of a polyline within `tolerance` of a segment, without its first point.
@@ -265,7 +265,7 @@ fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
         Seg::Line(l) => out.push(l.p1),
         Seg::Quad(_) | Seg::Cubic(_) => halve(seg.to_cubic(), tolerance, 0, out),
         Seg::Arc(arc) => {
-            // A small part of the tolerance for cubics, which are needed only to be halved.
+            // Cubics are an intermediate step, which gets a small part of the tolerance.
             let (cubics, lines) = (0.05 * tolerance, 0.95 * tolerance);
             arc.to_cubics(cubics).for_each(|c| halve(c, lines, 0, out));
         }
@@ -275,7 +275,7 @@ fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
     }
 }
 
-/// The most lines that [`flatten`] makes of a segment.
+/// Returns an upper bound for the number of lines that [`flatten`] makes of a segment.
 pub(crate) fn most_lines(seg: &Seg, tolerance: f64) -> f64 {
     match seg {
         Seg::Line(_) => 1.0,
@@ -288,7 +288,7 @@ pub(crate) fn most_lines(seg: &Seg, tolerance: f64) -> f64 {
     }
 }
 
-/// Every halving takes the second differences to a quarter.
+/// Returns an upper bound for the lines of a cubic: every halving divides the second differences by four.
 fn of_cubic(c: &CubicBez, tolerance: f64) -> f64 {
     let halvings = 0.5 * (6.0 / 8.0 * second_difference(c) / tolerance).log2();
     2.0_f64.powf(halvings.ceil().clamp(0.0, f64::from(DEEPEST)))
@@ -299,8 +299,8 @@ fn second_difference(c: &CubicBez) -> f64 {
     second(c.p0, c.p1, c.p2).max(second(c.p1, c.p2, c.p3))
 }
 
-/// A chord is at most an eighth of the largest second derivative away from its curve (the error of linear interpolation); of a
-/// cubic, that derivative is six times a second difference of the control points.
+/// Appends lines for a cubic. A chord is at most an eighth of the largest second derivative away from its curve (the error of linear
+/// interpolation), and that derivative is six times a second difference of the control points.
 fn halve(c: CubicBez, tolerance: f64, depth: u32, out: &mut Vec<Point>) {
     if 6.0 / 8.0 * second_difference(&c) <= tolerance || depth == DEEPEST {
         out.push(c.p3);
@@ -316,7 +316,7 @@ mod tests {
     use super::*;
     use pathwarp::Outline;
 
-    /// The entities of a path, and the numbers of their vertices or control points.
+    /// Returns the names of a path's entities, and the numbers of their vertices or control points.
     fn entities(d: &str) -> Vec<(String, usize)> {
         let outline = Outline::from_svg(d).unwrap();
         let mut out = Codes::new();

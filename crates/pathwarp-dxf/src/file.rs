@@ -1,4 +1,4 @@
-//! A DXF's text: group codes, colours, layers, and the parts of a file around its entities.
+//! The text of a DXF file: group codes, colours, layers, and the parts of a file around its entities.
 
 use crate::model::{Options, Shape};
 use pathwarp::engine::decimal::push_trimmed;
@@ -25,10 +25,10 @@ mod handle {
 /// The handle of the block that entities are part of.
 pub(crate) const MODEL_SPACE: u64 = 0x10;
 
-/// `$INSUNITS`: millimetres.
+/// Value of `$INSUNITS` for millimetres.
 const MILLIMETRES: i64 = 4;
 
-/// Writes everything up to the first entity.
+/// Writes the parts of a file before the first entity.
 pub(crate) fn start(out: &mut Codes, layers: &Layers, options: &Options) {
     header(out, options);
     section(out, "TABLES");
@@ -59,7 +59,7 @@ pub(crate) fn start(out: &mut Codes, layers: &Layers, options: &Options) {
     section(out, "ENTITIES");
 }
 
-/// Writes everything behind the last entity.
+/// Writes the parts of a file after the last entity, and returns the text.
 pub(crate) fn finish(mut out: Codes) -> String {
     end_section(&mut out);
     section(&mut out, "OBJECTS");
@@ -109,7 +109,7 @@ fn end_table(out: &mut Codes) {
     out.text(0, "ENDTAB");
 }
 
-/// Starts an entry of a table. `code` is that of its handle.
+/// Starts an entry of a table. `code` is the group code of its handle.
 fn record<'c>(out: &'c mut Codes, name: &str, code: u16, table: u64, class: &str) -> &'c mut Codes {
     let handle = out.new_handle();
     out.text(0, name).handle(code, handle).handle(330, table).text(100, "AcDbSymbolTableRecord").text(100, class)
@@ -156,14 +156,14 @@ fn blocks(out: &mut Codes) {
 /// The layer that every file has.
 pub(crate) const ZERO: &str = "0";
 
-/// Longest name in characters.
+/// Largest number of characters in a name.
 const LONGEST: usize = 255;
 
 /// The layers, in the order of their first shapes.
 pub(crate) struct Layers {
     /// Name as written, and index of the colour of the first shape.
     pub(crate) all: Vec<(String, u8)>,
-    /// The place of a name as given.
+    /// Index in `all` by the name of a layer as given.
     places: HashMap<String, usize>,
 }
 
@@ -185,13 +185,13 @@ impl Layers {
         out
     }
 
-    /// The name of a shape's layer as written.
+    /// Returns the name of a shape's layer as written.
     pub(crate) fn name(&self, layer: &str) -> &str {
         self.places.get(layer).and_then(|i| self.all.get(*i)).map_or(ZERO, |(name, _)| name)
     }
 }
 
-/// A name as DXF allows it.
+/// Converts a name to the characters that DXF allows.
 fn written(name: &str) -> String {
     let mut out = String::new();
     for c in name.trim().chars().take(LONGEST) {
@@ -209,7 +209,7 @@ fn written(name: &str) -> String {
     if out.is_empty() { ZERO.to_owned() } else { out }
 }
 
-/// The index of black on a light and white on a dark background.
+/// Index of the colour that is black on a light and white on a dark background.
 pub(crate) const FOREGROUND: u8 = 7;
 
 /// The named colours 1 to 6.
@@ -221,7 +221,7 @@ const GREYS: [(u8, u8); 7] = [(8, 128), (9, 192), (250, 51), (251, 91), (252, 13
 /// Brightest channel of the shades of a hue, from the first pair of ten to the last.
 const LEVELS: [f64; 5] = [255.0, 165.0, 127.0, 76.0, 38.0];
 
-/// The nearest colour of the index, and whether it is the very colour.
+/// Returns the index of the nearest colour, and `true` if it is this very colour.
 pub(crate) fn nearest(color: [u8; 3]) -> (u8, bool) {
     if color == [0; 3] || color == [255; 3] {
         return (FOREGROUND, true);
@@ -238,7 +238,7 @@ pub(crate) fn nearest(color: [u8; 3]) -> (u8, bool) {
     (all.min_by_key(|(_, c)| distance(*c)).map_or(FOREGROUND, |(i, _)| i), false)
 }
 
-/// The colours 10 to 249: 24 hues of ten shades, of which every second is half saturated.
+/// Returns one of the colours 10 to 249: 24 hues of ten shades, of which every second is half saturated.
 fn shade(index: u8) -> [u8; 3] {
     /// Hues between two pure colours.
     const PER_SIXTH: f64 = 4.0;
@@ -258,7 +258,7 @@ fn shade(index: u8) -> [u8; 3] {
 /// Decimals of coordinates: a millionth of a micrometre.
 const DECIMALS: usize = 9;
 
-/// Decimals of angles, parameters and ratios, so that a point at a hundred metres is off by less than that.
+/// Decimals of angles, parameters and ratios, so that a point at a hundred metres is off by less than a millionth of a micrometre.
 const FINE: usize = 14;
 
 /// The first handle that tables do not use.
@@ -275,45 +275,45 @@ impl Codes {
         Self { text: String::new(), next: FIRST_HANDLE }
     }
 
-    /// A text.
+    /// Writes a text.
     pub(crate) fn text(&mut self, code: u16, value: &str) -> &mut Self {
         let _ = write!(self.text, "{code:>3}\n{value}\n");
         self
     }
 
-    /// A whole number.
+    /// Writes a whole number.
     pub(crate) fn whole(&mut self, code: u16, value: i64) -> &mut Self {
         let _ = write!(self.text, "{code:>3}\n{value}\n");
         self
     }
 
-    /// A length.
+    /// Writes a length.
     pub(crate) fn length(&mut self, code: u16, value: f64) -> &mut Self {
         self.number(code, value, DECIMALS)
     }
 
-    /// An angle, parameter or ratio.
+    /// Writes an angle, parameter or ratio.
     pub(crate) fn fine(&mut self, code: u16, value: f64) -> &mut Self {
         self.number(code, value, FINE)
     }
 
-    /// A number by as many digits as tell it from all others.
+    /// Writes a number with the fewest digits that determine it.
     pub(crate) fn shortest(&mut self, code: u16, value: f64) -> &mut Self {
         self.number(code, value, value.to_string().len())
     }
 
-    /// A point with x, y and z.
+    /// Writes a point with x, y and z.
     pub(crate) fn point(&mut self, code: u16, p: Point) -> &mut Self {
         self.length(code, p.x).length(code + 10, p.y).length(code + 20, 0.0)
     }
 
-    /// A handle.
+    /// Writes a handle.
     pub(crate) fn handle(&mut self, code: u16, handle: u64) -> &mut Self {
         let _ = write!(self.text, "{code:>3}\n{handle:X}\n");
         self
     }
 
-    /// The handle of a new object.
+    /// Returns the handle of a new object.
     pub(crate) fn new_handle(&mut self) -> u64 {
         self.next += 1;
         self.next - 1
@@ -323,7 +323,7 @@ impl Codes {
         let _ = writeln!(self.text, "{code:>3}");
         let from = self.text.len();
         push_trimmed(&mut self.text, value, decimals);
-        // A real number has a point, by which some readers tell it from a whole one.
+        // Some readers tell a real number from a whole one by its point.
         if !self.text[from..].contains('.') {
             self.text.push_str(".0");
         }
@@ -331,7 +331,7 @@ impl Codes {
         self
     }
 
-    /// The text, in which `$HANDSEED` gets the first free handle.
+    /// Returns the text, in which `$HANDSEED` gets the first free handle.
     pub(crate) fn finish(mut self) -> String {
         let (seed, next) = (Self::SEED, self.next);
         if let Some(at) = self.text.find(seed) {
@@ -340,7 +340,7 @@ impl Codes {
         self.text
     }
 
-    /// Stands for the first free handle until all are known.
+    /// Placeholder for the first free handle until all handles are known.
     pub(crate) const SEED: &str = "{first free handle}";
 }
 
@@ -362,7 +362,7 @@ mod tests {
         assert_eq!(layers.all[1], ("Cut".to_owned(), 3));
     }
 
-    /// Colours as AutoCAD shows them.
+    /// Compares with colours as AutoCAD shows them.
     #[test]
     fn known_colours() {
         for (index, color) in [

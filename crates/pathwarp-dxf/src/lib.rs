@@ -2,11 +2,11 @@
 //!
 //! Every subpath is one entity, as cutters need it. Lines, circles and circular arcs are exact: `LINE`, `CIRCLE`, `ARC`, or an
 //! `LWPOLYLINE` with bulges where they follow one another. An ellipse or an arc of one is an exact `ELLIPSE`. Any other subpath is a
-//! `SPLINE` of degree 3 with triple knots at the joints, exact but for arcs in it. For programs that know no splines,
+//! `SPLINE` of degree 3 with triple knots at the joints, exact except for arcs in it. For programs without splines,
 //! [`Curves::Polylines`] makes it an `LWPOLYLINE` within a tolerance. [`write_splines`] writes curves of any degree with weights.
 //!
 //! Files are of version AC1018 (AutoCAD 2004), the first with true colours: plain text with characters beyond ASCII escaped.
-//! The unit is the millimetre. They hold neither dates nor random ids: the same outlines always give the same text.
+//! The unit is the millimetre. They hold neither dates nor random ids: equal outlines always give equal text.
 //!
 //! Source: Autodesk, *DXF Reference* (2011).
 //!
@@ -34,7 +34,7 @@ use pathwarp::budget::{Budget, Exceeded, cost};
 /// Returns a DXF file with the outlines of these shapes.
 ///
 /// # Errors
-/// Polylines within the tolerance have more segments than the limits allow.
+/// [`Exceeded`] when polylines within the tolerance have more segments than the limits allow.
 pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded> {
     let layers = Layers::of(shapes);
     if options.curves == Curves::Polylines {
@@ -58,7 +58,7 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded
     Ok(file::finish(out))
 }
 
-/// Returns a DXF file with these curves, each an entity `SPLINE` with its own degree, knots and weights.
+/// Returns a DXF file with these curves, each an entity `SPLINE` with its degree, knots and weights.
 #[must_use]
 pub fn write_splines(splines: &[Spline<'_>]) -> String {
     let none = Outline::default();

@@ -10,7 +10,7 @@ use pathwarp::refit::suited;
 pub struct Shape<'a> {
     /// Name of the layer. Characters that DXF forbids become underscores; names that differ only in case are one layer.
     pub layer: &'a str,
-    /// Red, green and blue; `None`: the colour of the layer, black or white by the background.
+    /// Red, green and blue, or `None` for the colour of the layer, which is black or white to contrast with the background.
     pub color: Option<[u8; 3]>,
     /// The outline in millimetres, x to the right and y up.
     pub outline: &'a Outline,
@@ -22,15 +22,15 @@ pub const MAX_DEGREE: usize = 9;
 /// A B-spline curve in space, rational or not, of a degree up to [`MAX_DEGREE`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spline<'a> {
-    /// Name of the layer, as of [`Shape`].
+    /// Name of the layer. Characters that DXF forbids become underscores.
     pub layer: &'a str,
     /// Degree.
     pub degree: usize,
-    /// Clamped knots: the degree and 1 more than points.
+    /// Clamped knots: as many as points, the degree and 1 together.
     pub knots: &'a [f64],
     /// Control points in millimetres, x to the right and y up.
     pub points: &'a [[f64; 3]],
-    /// A positive weight for each control point; none if all are equal.
+    /// A positive weight for each control point; empty if all weights are equal.
     pub weights: &'a [f64],
 }
 
@@ -50,10 +50,9 @@ pub enum Curves {
 pub struct Options {
     /// The form of Bézier curves.
     pub curves: Curves,
-    /// Largest distance of polylines from curves, in mm. Arcs that are this close to circular ones, within a tenth, are written as
-    /// such.
+    /// Largest distance of polylines from curves, in mm. Arcs within a tenth of it from circular ones are written as circular arcs.
     pub tolerance: f64,
-    /// Hold small contours to what [suits](pathwarp::refit::suited) them, too.
+    /// `true` to hold small contours to the tolerance that [suits](pathwarp::refit::suited) their size.
     pub suited: bool,
     /// Width and height of the page in mm.
     pub page: [f64; 2],
@@ -62,7 +61,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Splines on an A4 page, with a tolerance of 0.01 mm.
+    /// Returns options for splines on an A4 page, with a tolerance of 0.01 mm.
     fn default() -> Self {
         let page = [210.0, 297.0];
         Self { curves: Curves::Splines, tolerance: 0.01, suited: false, page, limits: Limits::default() }
@@ -70,7 +69,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The tolerance of a contour.
+    /// Returns the tolerance for a contour.
     pub(crate) fn of_contour(&self, contour: &Subpath) -> f64 {
         if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
     }

@@ -1,9 +1,9 @@
-//! Requests, answers and descriptions of built maps, which the binary and the text form of the protocol share.
+//! Requests, answers and descriptions of built maps, shared by the binary and the text form of the protocol.
 
 use pathwarp::engine::Ask;
 use pathwarp::map::Creases;
 
-/// Returns the command of the text protocol that asks so.
+/// Returns the command of the text protocol for a kind of question.
 pub(crate) fn word(ask: Ask) -> &'static str {
     match ask {
         Ask::Points => "points",

@@ -1,6 +1,6 @@
 //! The protocol as length-prefixed little-endian numbers.
 //!
-//! A message consists of its length in bytes without this prefix (u32), one byte for its kind, and a body.
+//! A message is its length in bytes without this prefix (u32), one byte for its kind, and a body.
 
 use crate::fault::{Fault, MAX_MESSAGE_BYTES, beginning};
 use pathwarp::engine::Ask;
@@ -19,7 +19,7 @@ const REFUSED: u8 = 1;
 /// Size in bytes of the length prefix and the kind.
 const HEAD: usize = 5;
 
-/// Writes the length of a message and its kind. Values of a step may be paths of any length.
+/// Writes the length of a message and its kind. Fails for a long message, since a step's values may be paths of any length.
 fn head(kind: u8, body: usize, out: &mut Vec<u8>) -> Result<(), Fault> {
     let length = u32::try_from(body + 1).map_err(|_| Fault::TooLong(body))?;
     out.extend_from_slice(&length.to_le_bytes());
@@ -54,8 +54,8 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) -> Result<(),
     Ok(())
 }
 
-/// The length of the message at the beginning of `bytes`, once its head has arrived. `body` is the length of the body if it is known; an
-/// error message in its place may have up to [`MAX_MESSAGE_BYTES`].
+/// Returns the length of the message at the beginning of `bytes`, once its head has arrived. `body` is the length of the body if known;
+/// an error message instead of it may have up to [`MAX_MESSAGE_BYTES`].
 pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> String) -> Result<Option<usize>, Fault> {
     let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
     let [a, b, c, d, kind] = *head;
@@ -72,7 +72,7 @@ pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> S
     }
 }
 
-/// The body of a whole message, which [`length`] has measured.
+/// Returns the body of a whole message, which [`length`] has measured.
 pub(crate) fn body(bytes: &[u8]) -> Result<&[u8], Fault> {
     let (head, body) = bytes.split_at(HEAD);
     match head[HEAD - 1] {

@@ -1,4 +1,4 @@
-//! Starts and ends processes. None outlives this one, unless it is killed.
+//! Starts and ends processes. None of them outlives this process, unless it is killed.
 
 use crate::fault::Fault;
 use std::path::Path;
@@ -8,13 +8,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// All running processes.
 static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
 
-/// A process, or `None` once it has been ended, since another may then have its number.
+/// A process, or `None` once it has ended, since another process may then have its number.
 type Shared = Arc<Mutex<Option<Child>>>;
 
-/// Set for programs that are started, since a plug-in that calls pathwarp with itself as a plug-in would start programs endlessly.
+/// Environment variable set for plug-ins. A plug-in that called pathwarp with itself as a plug-in would start programs endlessly.
 const WITHIN: &str = "PATHWARP_WITHIN_PLUGIN";
 
-/// A running program, in a process group of its own where the system has them. Killed and waited for when dropped.
+/// A running program, in a separate process group where the system has them. Killed and waited for when dropped.
 pub(crate) struct Running {
     child: Shared,
 }
@@ -53,12 +53,12 @@ impl Running {
         self.child.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether the process has ended.
+    /// Returns `true` if the process has ended.
     pub(crate) fn has_ended(&self) -> bool {
         self.child().as_mut().is_none_or(has_ended)
     }
 
-    /// Kills the process and its children. Returns its exit status, which is its own if it had already ended.
+    /// Kills the process and its children. Returns its exit status, from before the kill if it had already ended.
     pub(crate) fn end(&mut self) -> Option<ExitStatus> {
         let status = self.child().take().and_then(kill);
         live().retain(|c| !Arc::ptr_eq(c, &self.child));

@@ -32,7 +32,7 @@ impl Plugin {
     /// Starts the program at `path` and reads its entry. Also returns the entry's text.
     ///
     /// # Errors
-    /// The program cannot be started, or its entry violates the protocol.
+    /// A [`Fault`], such as [`Fault::NotStarted`], when the program cannot be started; [`Fault::Entry`] when its entry breaks the protocol.
     pub fn start(path: &Path, reserved: Reserved<'_>) -> Result<(Self, String), Fault> {
         // The system would search PATH for a name without a folder.
         let path = path.canonicalize().map_err(|_| Fault::NoFile)?;
@@ -44,7 +44,7 @@ impl Plugin {
     /// Makes a plug-in of the program at `path` from its known entry, without starting it.
     ///
     /// # Errors
-    /// The entry violates the protocol.
+    /// [`Fault::Entry`] or another [`Fault`] when the entry breaks the protocol.
     pub(crate) fn known(path: &Path, text: &str, reserved: Reserved<'_>) -> Result<Self, Fault> {
         Ok(Self::new(path, &read(text.as_bytes(), reserved)?, None))
     }
@@ -54,25 +54,25 @@ impl Plugin {
         Self { info: entry.info, version: entry.version, abilities: entry.abilities.clone(), program }
     }
 
-    /// The file of the program.
+    /// Returns the file of the program.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.program.path
     }
 
-    /// The end of what the running program has written to standard error, on one line.
+    /// Returns the end of the running program's standard error, on one line.
     #[must_use]
     pub fn said(&self) -> Option<String> {
         self.program.said()
     }
 
-    /// Whether the program gives derivatives itself.
+    /// Returns `true` if the program computes derivatives.
     #[must_use]
     pub fn gives_jacobian(&self) -> bool {
         self.abilities.jacobian
     }
 
-    /// Whether the program gives the inverse itself.
+    /// Returns `true` if the program computes the inverse.
     #[must_use]
     pub fn gives_inverse(&self) -> bool {
         self.abilities.inverse

@@ -68,10 +68,10 @@ struct Written {
 #[derive(Deserialize, Default, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum Domain {
-    /// Everywhere within the edges that it declares.
+    /// Everywhere within the edges that the map declares.
     #[default]
     Plane,
-    /// All points except those for which it answers NaN.
+    /// All points except those for which the map answers NaN.
     Partial,
 }
 
@@ -204,7 +204,7 @@ fn is_kebab(name: &str) -> bool {
     name.len() <= 64 && name.split('-').all(is_word)
 }
 
-/// Writes a value as one would type it.
+/// Writes a value as a user would type it.
 fn typed(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -292,7 +292,7 @@ fn case(c: &WrittenCase) -> Case {
     Case { args: pairs(&c.args), at: c.at, to: c.to, tolerance: c.tolerance }
 }
 
-/// Largest error of the cubics that stand for arcs in paths sent to a program, in user units.
+/// Largest error of the cubics that replace arcs in paths sent to a program, in user units.
 const PATH_ACCURACY: f64 = 1e-6;
 
 /// Writes the frame and the values that are given or have a default, for a program that speaks this version of the protocol: a line

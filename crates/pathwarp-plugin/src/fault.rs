@@ -43,7 +43,7 @@ pub enum Fault {
         /// The end of its standard error.
         said: String,
     },
-    /// A request has more bytes than its length can tell.
+    /// A request has more bytes than its length field can hold.
     #[error(
         "cannot be sent {0} bytes at once, only 4294967294; give it shorter paths, or let it speak the text protocol"
     )]
@@ -77,7 +77,7 @@ pub enum Fault {
     Version {
         /// The version of the entry.
         found: String,
-        /// The version known here.
+        /// The version known to this program.
         known: u32,
     },
     /// Its name is taken by a command or a built-in deformation.
@@ -90,7 +90,7 @@ pub enum Fault {
     Garbage {
         /// The expected answer.
         expected: String,
-        /// The beginning of what it wrote.
+        /// The beginning of its output.
         found: String,
     },
     /// An answer has the wrong number of points.
@@ -152,10 +152,10 @@ pub(crate) fn beginning(bytes: &[u8]) -> String {
     format!("`{shown}`")
 }
 
-/// Environment variable that sets the seconds that a program may take for one answer.
+/// Environment variable for the number of seconds that a program may take for one answer.
 const SECONDS_VARIABLE: &str = "PATHWARP_PLUGIN_SECONDS";
 
-/// Default seconds for one answer, many times what the slowest interpreters need on a busy machine.
+/// Default number of seconds for one answer, ample for slow interpreters on a busy machine.
 const SECONDS: f64 = 10.0;
 
 /// Largest number of points in one request. More are split, so that a program needs little memory and answers in time.
@@ -175,7 +175,7 @@ pub(crate) const MAX_ERROR_BYTES: usize = 1 << 20;
 /// Limit on the part of standard error that messages quote.
 const MAX_QUOTED_BYTES: usize = 300;
 
-/// The time limit for one answer.
+/// Returns the time limit for one answer.
 pub(crate) fn time() -> Duration {
     static TIME: OnceLock<Duration> = OnceLock::new();
     *TIME.get_or_init(|| {

@@ -13,7 +13,7 @@ use std::time::UNIX_EPOCH;
 /// Environment variable that sets the folder of plug-ins.
 pub const FOLDER_VARIABLE: &str = "PATHWARP_PLUGINS";
 
-/// Prefix of the names of programs.
+/// Prefix of the file names of plug-ins.
 const PREFIX: &str = "pathwarp-";
 
 /// The plug-ins that were found.
@@ -28,7 +28,7 @@ pub struct Found {
 /// A program that cannot be used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Broken {
-    /// The name according to the file.
+    /// The plug-in's name, taken from the name of its file.
     pub name: String,
     /// The file.
     pub path: PathBuf,
@@ -36,14 +36,14 @@ pub struct Broken {
     pub fault: Fault,
 }
 
-/// The user's folder of plug-ins.
+/// Returns the user's folder of plug-ins.
 #[must_use]
 pub fn folder() -> Option<PathBuf> {
     let given = env::var_os(FOLDER_VARIABLE).filter(|f| !f.is_empty());
     given.map(PathBuf::from).or_else(|| Some(of_user("XDG_DATA_HOME", ".local/share", "APPDATA")?.join("plug-ins")))
 }
 
-/// The file that caches entries.
+/// Returns the file that caches entries.
 fn cache_file() -> Option<PathBuf> {
     let folder = if cfg!(target_os = "macos") {
         PathBuf::from(env::var_os("HOME")?).join("Library/Caches/pathwarp")
@@ -53,7 +53,7 @@ fn cache_file() -> Option<PathBuf> {
     Some(folder.join("plug-ins.json"))
 }
 
-/// This program's folder within one of the user's folders.
+/// Returns this program's folder within one of the user's folders.
 fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     let var = |name: &str| env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     let base = if cfg!(target_os = "windows") {
@@ -66,7 +66,7 @@ fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     Some(base.join("pathwarp"))
 }
 
-/// The name of the plug-in in the file `path`, which is `pathwarp-NAME` with any extension; on Windows, with that of an executable.
+/// Returns the name of the plug-in in the file `path`, `pathwarp-NAME` with any extension; on Windows, with that of an executable.
 #[must_use]
 pub fn name_of(path: &Path) -> Option<String> {
     if cfg!(target_os = "windows") {
@@ -116,7 +116,7 @@ pub fn installed(reserved: Reserved<'_>, afresh: Option<&str>) -> Found {
 /// Starts the plug-in in one file, which may be in any folder.
 ///
 /// # Errors
-/// The plug-in cannot be used.
+/// A [`Fault`], such as [`Fault::NoFile`], when the plug-in cannot be used.
 pub fn by_file(path: &Path, reserved: Reserved<'_>) -> Result<Plugin, Fault> {
     Plugin::start(path, reserved).map(|(plugin, _)| plugin)
 }
@@ -194,7 +194,7 @@ impl Cache {
 
     /// Stores an entry or a fault.
     fn set(&mut self, path: &Path, entry: Result<&str, &Fault>) {
-        // Nesting is not the program's fault.
+        // The program is not to blame for having been called by a plug-in.
         if entry == Err(&Fault::Nested) {
             return;
         }
@@ -205,7 +205,7 @@ impl Cache {
         self.changed = true;
     }
 
-    /// Writes the file if anything changed. If that fails, programs are started again next time.
+    /// Writes the file if anything has changed. If that fails, programs are started again next time.
     fn write(&self) {
         let Some((file, folder)) = self.file.as_ref().filter(|_| self.changed).and_then(|f| Some((f, f.parent()?)))
         else {

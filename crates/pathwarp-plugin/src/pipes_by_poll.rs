@@ -1,5 +1,5 @@
 //! Handles the three pipes of a program on Unix. One loop writes, reads, and checks the clock, so that neither side can block the
-//! other. With a thread for each pipe, as elsewhere, a short answer takes three times as long.
+//! other, and a short answer waits for no other thread.
 
 use crate::child::Running;
 use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::process::{ChildStderr, ChildStdin, ChildStdout};
 use std::time::{Duration, Instant};
 
-/// Interval of checking whether the program has ended, since a child of it may hold its pipes open.
+/// Interval between checks whether the program has ended, since a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Time for a program to end after closing a pipe, so that its exit status can be reported.
@@ -58,7 +58,7 @@ impl Pipes {
     ) -> Result<Vec<u8>, Fault> {
         let (mut rest, until) = (request, Instant::now() + time());
         loop {
-            // An answer may arrive before all is sent, since points follow a request to build.
+            // An answer may arrive before everything is sent, since points follow a request to build.
             if rest.is_empty()
                 && let Some(length) = whole(&self.incoming)?.filter(|n| *n <= self.incoming.len())
             {
@@ -90,13 +90,13 @@ impl Pipes {
         }
     }
 
-    /// The end of standard error so far.
+    /// Returns the end of standard error so far.
     pub(crate) fn said(&mut self) -> String {
         while self.wait(false, Duration::ZERO)[1] && self.hear().is_ok() {}
         readable(&self.said)
     }
 
-    /// Bytes received after the last answer.
+    /// Returns the bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming
     }
@@ -114,13 +114,13 @@ impl Pipes {
         Ok(rest)
     }
 
-    /// Whether the program has closed its input, possibly after a request was written to the pipe.
+    /// Returns `true` if the program has closed its input, possibly after a request was written to the pipe.
     fn input_is_closed(&self) -> bool {
         let mut fds = [PollFd::new(&self.input, PollFlags::empty())];
         poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).is_ok() && !fds[0].revents().is_empty()
     }
 
-    /// Waits until there is something to do. Returns whether output and errors have something to read, or have ended.
+    /// Waits until there is something to do. Returns `true` for output, and for errors, if there is something to read or the stream ended.
     fn wait(&self, write: bool, time: Duration) -> [bool; 2] {
         let mut fds = vec![PollFd::new(&self.output, PollFlags::IN)];
         fds.extend(self.errors.as_ref().map(|e| PollFd::new(e, PollFlags::IN)));
@@ -165,7 +165,7 @@ impl Pipes {
         if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
     }
 
-    /// The fault of a program that has ended, or closed a stream.
+    /// Returns the fault of a program that has ended, or closed a stream.
     fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Result<(), Fault> {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !(running.has_ended() && self.errors.is_none()) {

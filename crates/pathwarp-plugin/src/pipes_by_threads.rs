@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// Time for a program to end after closing a pipe, so that its exit status can be reported.
 const GRACE: Duration = Duration::from_millis(200);
 
-/// Interval of checking whether the program has ended, since a child of it may hold its pipes open.
+/// Interval between checks whether the program has ended, since a child of it may hold its pipes open.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Capacity of the queue of events. A program that writes more has to wait.
@@ -95,7 +95,7 @@ impl Pipes {
         }
     }
 
-    /// The end of standard error so far.
+    /// Returns the end of standard error so far.
     pub(crate) fn said(&mut self) -> String {
         while let Ok(event) = self.events.try_recv() {
             match event {
@@ -107,7 +107,7 @@ impl Pipes {
         readable(&self.said)
     }
 
-    /// Bytes received after the last answer.
+    /// Returns the bytes received after the last answer.
     pub(crate) fn left_over(&self) -> &[u8] {
         &self.incoming
     }
@@ -122,7 +122,7 @@ impl Pipes {
         if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
     }
 
-    /// The fault of a program that has ended, or closed a stream.
+    /// Returns the fault of a program that has ended, or closed a stream.
     fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Fault {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !running.has_ended() {
@@ -144,7 +144,7 @@ impl Pipes {
     }
 }
 
-/// Starts a thread that forwards what it reads from `pipe`.
+/// Starts a thread that forwards all bytes read from `pipe`.
 fn reading(
     mut pipe: impl Read + Send + 'static,
     happened: SyncSender<Event>,
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn answers_arrive_and_faults_are_told() {
-        // More than a pipe holds.
+        // More bytes than a pipe can hold.
         let request = vec![b'x'; 300_000];
         assert_eq!(ask("head -c 300000 | wc -c | tr -d ' \n'", &request, 6), Ok(b"300000".to_vec()));
         let ended = ask("echo sorry >&2; exit 5", b"", 1).unwrap_err();

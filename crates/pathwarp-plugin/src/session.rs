@@ -33,7 +33,7 @@ pub(crate) struct Session {
     instance: u64,
 }
 
-// Expected answers in the words of messages.
+// Names of expected answers in messages.
 const ENTRY: &str = "its entry as JSON with a line break after it";
 const BUILT: &str = "the answer to `build`";
 
@@ -49,7 +49,7 @@ impl Session {
         Ok((session, entry))
     }
 
-    /// The end of the program's standard error.
+    /// Returns the end of the program's standard error.
     fn said(&mut self) -> String {
         self.pipes.said()
     }
@@ -80,8 +80,8 @@ impl Session {
         }
     }
 
-    /// Asks for batches of a map, which is built first if it is not the last one. All requests are sent at once. Appends the
-    /// numbers of each answer to the batch's list.
+    /// Asks for batches of a map, which is built first if it is not the last one. All requests are sent at once. Appends the numbers of
+    /// each answer to the batch's list.
     fn ask(
         &mut self,
         protocol: Protocol,
@@ -96,7 +96,7 @@ impl Session {
                 Protocol::Binary => binary::batch(*ask, points, &mut request)?,
             }
         }
-        // While the requests are sent, all answers may already arrive.
+        // All answers may arrive while the requests are still being sent.
         let mut limit = batches.iter().map(|(ask, points, _)| answer_bytes(protocol, *ask, points.len())).sum();
         if must_build {
             self.built(protocol, &request, limit)?;
@@ -133,12 +133,12 @@ impl Session {
     }
 }
 
-/// The expected answer to a batch, in the words of messages.
+/// Names the expected answer to a batch in messages.
 fn for_points(count: usize) -> String {
     format!("the answer for {count} {}", if count == 1 { "point" } else { "points" })
 }
 
-/// The largest size of the answer for `count` points, in bytes.
+/// Returns the largest size of the answer for `count` points, in bytes.
 fn answer_bytes(protocol: Protocol, ask: Ask, count: usize) -> usize {
     let body = match protocol {
         Protocol::Text => MAX_LINE_BYTES * count,
@@ -154,12 +154,12 @@ struct JsonScan {
     depth: usize,
     in_text: bool,
     escaped: bool,
-    /// Whether the closing brace has been seen.
+    /// `true` if the closing brace has been seen.
     closed: bool,
 }
 
 impl JsonScan {
-    /// The length up to the line break after the object, once that has arrived.
+    /// Returns the length up to the line break after the object, once that has arrived.
     fn end(&mut self, bytes: &[u8]) -> Result<Option<usize>, Fault> {
         let garbage = || Fault::Garbage { expected: ENTRY.into(), found: beginning(bytes) };
         for (i, b) in bytes.iter().enumerate().skip(self.seen) {
@@ -198,14 +198,14 @@ impl Instance {
     }
 }
 
-/// After the program has failed to answer in time this many times, it is not asked again.
+/// Number of timeouts after which a program is not asked again.
 const MAX_TIMEOUTS: usize = 3;
 
 /// A program with its processes.
 pub(crate) struct Program {
     pub(crate) path: PathBuf,
     pub(crate) protocol: Protocol,
-    /// Maximum number of processes, cached since the system takes longer to tell it than a request.
+    /// Maximum number of processes, cached because asking the system takes longer than a request.
     max_processes: usize,
     state: Mutex<State>,
     returned: Condvar,
@@ -214,13 +214,13 @@ pub(crate) struct Program {
 #[derive(Default)]
 struct State {
     idle: Vec<Session>,
-    /// All processes, idle or not.
+    /// Number of all processes, idle or not.
     running: usize,
     silent: usize,
 }
 
 impl Program {
-    /// The work of encoding and decoding on this side alone, in evaluations of a net.
+    /// Returns the work of encoding and decoding in this process alone, in evaluations of a net.
     pub(crate) fn work(&self) -> f64 {
         match self.protocol {
             Protocol::Text => 16.0,
@@ -236,7 +236,7 @@ impl Program {
         Self { path, protocol, max_processes, state: Mutex::new(state), returned: Condvar::new() }
     }
 
-    /// The end of the standard error of idle processes.
+    /// Returns the end of the standard error of idle processes.
     pub(crate) fn said(&self) -> Option<String> {
         let all: Vec<String> = self.state().idle.iter_mut().map(Session::said).filter(|s| !s.is_empty()).collect();
         all.into_iter().reduce(|a, b| if a == b { a } else { format!("{a} | {b}") })
@@ -255,7 +255,7 @@ impl Program {
         Ok(out)
     }
 
-    /// Asks for the values of `points` and the jets of `others`; at once with the binary protocol, if they are few enough.
+    /// Asks for the values of `points` and the jets of `others`, in one request with the binary protocol if they are few enough.
     pub(crate) fn ask_both(
         &self,
         instance: &Instance,

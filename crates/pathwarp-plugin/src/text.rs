@@ -22,7 +22,7 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
     out.extend_from_slice(text.as_bytes());
 }
 
-/// The length of the answer to `build` at the beginning of `bytes`, up to the line `ok`, or one that begins with `error`.
+/// Returns the length of the answer to `build` at the beginning of `bytes`, up to the line `ok`, or a line that begins with `error`.
 pub(crate) fn build_length(bytes: &[u8]) -> Option<usize> {
     let mut at = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
@@ -68,7 +68,7 @@ fn size(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite())
 }
 
-/// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`. The domain is where the level of an edge is positive.
+/// Reads `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`. Where an edge's level is positive, the map is defined.
 fn crease(text: &str, edge: bool) -> Option<Crease> {
     let mut words = text.split_whitespace();
     let shape = words.next()?;
@@ -87,7 +87,7 @@ fn crease(text: &str, edge: bool) -> Option<Crease> {
 /// Reads creases and edges as programs declare them: `line A B C [X0 Y0 X1 Y1]` or `circle X Y R`, each perhaps after `crease` or `edge`.
 ///
 /// # Errors
-/// [`Fault::Crease`] for a text that is none of them.
+/// [`Fault::Crease`] for a text that is none of these.
 pub fn creases<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Creases, Fault> {
     let mut out = Creases::default();
     for text in texts {
@@ -106,7 +106,7 @@ pub(crate) struct LineCount {
 }
 
 impl LineCount {
-    /// The length of the first `wanted` lines, once they have arrived. A single line that begins with `error` is a whole answer.
+    /// Returns the length of the first `wanted` lines, once they have arrived. A single line that begins with `error` is a whole answer.
     pub(crate) fn length(&mut self, bytes: &[u8], wanted: usize) -> Option<usize> {
         for (i, b) in bytes.iter().enumerate().skip(self.seen) {
             if *b == b'\n' {

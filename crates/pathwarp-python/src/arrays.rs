@@ -11,7 +11,7 @@ const BLOCK: usize = 256;
 /// Points that a thread takes at a time.
 const CHUNK: usize = 16 * 1024;
 
-/// The bounding box of the finite points.
+/// Returns the bounding box of the finite points.
 pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
     let mut all: Option<[f64; 4]> = None;
     for p in points.rows() {
@@ -24,7 +24,7 @@ pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
     all.map(|[x0, y0, x1, y1]| Rect::new(x0, y0, x1, y1))
 }
 
-/// Maps `from` to `to`, of the same shape; without `from`, `to` in place. Points are left out once `stop` is `true`.
+/// Maps `from` to `to`, which has its shape, or `to` in place without `from`. Points are left unmapped once `stop` is `true`.
 pub(crate) fn map(
     map: &PointMap,
     from: Option<ArrayView2<'_, f64>>,
@@ -42,7 +42,7 @@ pub(crate) fn map(
 }
 
 fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
-    // A function of Python is called with as many points as there are.
+    // A function of Python gets as many points as possible at once.
     let block = if map.prefers_batches() { CHUNK } else { BLOCK }.min(to.nrows().max(1));
     let (mut source, mut image) = (vec![Point::ORIGIN; block], vec![Point::ORIGIN; block]);
     for start in (0..to.nrows()).step_by(block) {
@@ -81,7 +81,7 @@ fn read(from: ArrayView2<'_, f64>, points: &mut [Point]) {
     }
 }
 
-/// The Jacobians at `points`: `out[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]].
+/// Writes the Jacobians at `points`: `out[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]].
 pub(crate) fn jacobian(
     map: &PointMap,
     points: ArrayView2<'_, f64>,

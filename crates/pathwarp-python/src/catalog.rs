@@ -1,4 +1,4 @@
-//! The deformations and options that there are, as JSON for the Python half.
+//! The available deformations and options, as JSON for the Python half.
 
 use pathwarp::deform::{Info, Registry};
 use pathwarp::param::{Kind, Param};
@@ -26,7 +26,7 @@ fn deformation(registry: &Registry, info: &Info) -> Value {
         Some(Kind::NameOrFile(names) | Kind::Choice(names)) => names,
         _ => &[],
     };
-    // A preset's name may belong to a deformation, or to another's preset.
+    // The name of a preset may be that of a deformation, or of another deformation's preset.
     let own = |name: &&&str| {
         let meaning = pathwarp_engine::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
         registry.get(name).is_none() && meaning

@@ -4,7 +4,7 @@ use pathwarp_engine::{Error, ErrorKind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The exception for an error.
+/// Returns the exception for an error.
 pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let class = match error.kind {
         ErrorKind::Usage => "UsageError",
@@ -31,7 +31,7 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     built().map_or_else(|e: PyErr| e, PyErr::from_value)
 }
 
-/// An exception about a wrong argument.
+/// Returns an exception about a wrong argument.
 pub(crate) fn usage(py: Python<'_>, message: &str) -> PyErr {
     let made = py.import("pathwarp._errors").and_then(|m| m.getattr("UsageError")).and_then(|c| c.call1((message,)));
     made.map_or_else(|e| e, PyErr::from_value)

@@ -21,7 +21,7 @@ struct Raised {
     exceptions: Vec<(String, PyErr)>,
 }
 
-/// Exceptions kept at most: those that others overtook are never passed on.
+/// Limit on the exceptions kept. Most are never passed on, because another came first.
 const KEPT: usize = 64;
 
 impl Function {
@@ -29,13 +29,13 @@ impl Function {
         Self { call, raised: Mutex::default() }
     }
 
-    /// Returns the exception that the message of an error tells of.
+    /// Returns the exception for which the message of an error stands.
     pub(crate) fn raised(&self, py: Python<'_>, message: &str) -> Option<PyErr> {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
         raised.exceptions.iter().find(|(text, _)| message.contains(text)).map(|(_, e)| e.clone_ref(py))
     }
 
-    /// Keeps an exception, and returns the error that stands for it until it reaches Python.
+    /// Keeps an exception, and returns the error that represents it until it reaches Python.
     fn keep(&self, exception: PyErr) -> Error {
         let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
         raised.last += 1;
@@ -70,7 +70,7 @@ impl Callee for Function {
         Error::input("function", format!("gives no numbers at {},{}", at.x, at.y))
     }
 
-    /// An array of many points costs little more than one of few.
+    /// Returns a small number, since the cost of a call depends little on the number of points.
     fn work(&self) -> f64 {
         4.0
     }

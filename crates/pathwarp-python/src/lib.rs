@@ -1,5 +1,5 @@
-//! The native half of the Python package `pathwarp`. The other half, in `python/pathwarp`, turns Python's values into the text
-//! that [`pathwarp_engine`] takes, so that both the command line and Python mean the same by them.
+//! The native half of the Python package `pathwarp`. The other half, in `python/pathwarp`, converts Python's values to the text
+//! that [`pathwarp_engine`] reads, so that values have one meaning in Python and on the command line.
 
 mod arrays;
 mod catalog;
@@ -24,7 +24,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
-        // NumPy's functions are looked up with the first array, which panics where Ctrl-C comes meanwhile: so that is done here.
+        // NumPy's functions are looked up with the first array, which panics if Ctrl-C comes meanwhile. Create one now.
         drop(numpy::PyArray1::<f64>::zeros(m.py(), 0, false));
         m.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -2,7 +2,7 @@
 
 use pathwarp::kurbo::{BezPath, PathEl, Point};
 
-/// The path of verbs and coordinates, or the problem with them.
+/// Returns the path of verbs and coordinates, or the problem with them.
 pub(crate) fn path(verbs: &str, coordinates: &[f64]) -> Result<BezPath, String> {
     let mut numbers = coordinates.chunks_exact(2).map(|p| Point::new(p[0], p[1]));
     let mut next = || numbers.next().ok_or_else(|| "there are fewer coordinates than the verbs take".to_owned());
@@ -32,7 +32,7 @@ pub(crate) fn path(verbs: &str, coordinates: &[f64]) -> Result<BezPath, String> 
     Ok(path)
 }
 
-/// The verbs and coordinates of a path.
+/// Returns the verbs and coordinates of a path.
 pub(crate) fn verbs(path: &BezPath) -> (String, Vec<f64>) {
     let (mut verbs, mut coordinates) = (String::new(), Vec::new());
     let mut add = |verb, points: &[Point]| {

@@ -1,4 +1,4 @@
-//! Plug-ins that are programs: those of the user's folder, and those in files.
+//! Plug-ins that are separate programs, in the user's folder or in given files.
 
 use crate::errors::usage;
 use pathwarp::deform::{Deformation, Registry};

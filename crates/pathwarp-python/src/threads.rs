@@ -1,5 +1,5 @@
 //! Threads that survive `fork`, and work on them that Ctrl-C ends. Python forks processes (multiprocessing, Spark), and a child has none
-//! of its parent's threads, so a pool that was started before would never answer. Each process has its own, started when it is first used.
+//! of its parent's threads, so a pool started before would never answer. Each process therefore starts a pool when it first needs one.
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -18,10 +18,10 @@ struct Pool {
 
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 
-/// Number of threads; 0: one per core, or as the environment variable `RAYON_NUM_THREADS` says.
+/// Number of threads. 0 means the value of the environment variable `RAYON_NUM_THREADS`, or one per core.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// Time between two looks at Python's signals while work goes on.
+/// Interval of checking Python's signals during work.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Sets the number of threads; 0 means one per core. Results do not depend on it.
@@ -30,7 +30,7 @@ pub(crate) fn use_threads(count: usize) {
     THREADS.store(count, Ordering::Relaxed);
 }
 
-/// A switch that ends work. It is static, as the work's limits hold it, and used again later.
+/// A switch that ends work. It is static because the work's limits hold it, and is reused later.
 struct Switch(&'static AtomicBool);
 
 static SWITCHES: Mutex<Vec<&'static AtomicBool>> = Mutex::new(Vec::new());
@@ -49,14 +49,14 @@ impl Drop for Switch {
     }
 }
 
-/// The end of work.
+/// State shared by work and the thread that waits for its end.
 #[derive(Default)]
 struct End {
     reached: Mutex<bool>,
     news: Condvar,
 }
 
-/// Tells the end when it is dropped, also by a panic.
+/// Signals the end when it is dropped, even by a panic.
 struct Ending<E: AsRef<End>>(E);
 
 impl<E: AsRef<End>> Drop for Ending<E> {
@@ -74,8 +74,8 @@ impl AsRef<Self> for End {
 }
 
 impl End {
-    /// Waits without the interpreter's lock. In between `poll` is called, and Python's signals are looked at; if one of them raises an
-    /// exception, the switch is turned, and the exception is returned at the end, or after as many looks as `patience`.
+    /// Waits without the interpreter's lock. Meanwhile, it calls `poll` and checks Python's signals. If one of them raises an exception,
+    /// the switch is turned, and the exception is returned at the end, or after `patience` more checks.
     fn wait(
         &self,
         py: Python<'_>,
@@ -102,8 +102,8 @@ impl End {
     }
 }
 
-/// Calls `work` on the threads of this process, without the interpreter's lock. Ctrl-C turns the switch that it gets, and is raised when it
-/// has ended.
+/// Calls `work` on the threads of this process, without the interpreter's lock. Ctrl-C turns the switch passed to `work`, and is raised
+/// when `work` has ended.
 pub(crate) fn on_threads<T: Send>(py: Python<'_>, work: impl FnOnce(&'static AtomicBool) -> T + Send) -> PyResult<T> {
     let switch = Switch::take();
     let stop = switch.0;
@@ -121,8 +121,8 @@ pub(crate) fn on_threads<T: Send>(py: Python<'_>, work: impl FnOnce(&'static Ato
     waited.and_then(|()| done(result.into_inner()))
 }
 
-/// As [`on_threads`] for work that owns what it needs: after Ctrl-C it is left alone soon, whatever it is at. `poll` is called from time to
-/// time.
+/// Calls `work`, which owns its data, on the threads of this process, without the interpreter's lock. After Ctrl-C, it returns soon, even
+/// if `work` goes on. `poll` is called from time to time.
 pub(crate) fn on_threads_alone<T: Send + 'static>(
     py: Python<'_>,
     poll: impl FnMut() -> PyResult<()>,
@@ -137,10 +137,10 @@ pub(crate) fn on_threads_alone<T: Send + 'static>(
     let result = Arc::new(Mutex::new(None));
     let (ending, place) = (Ending(Arc::clone(&end)), Arc::clone(&result));
     pool.spawn(move || {
-        // In this order: the switch is free, and then the end is told.
+        // In this order: the switch is released before the end is signalled.
         let _ending = ending;
         let _switch = switch;
-        // A panic must not end the process; without a result it is reported.
+        // A panic must not end the process; the missing result is reported.
         let worked = catch_unwind(AssertUnwindSafe(|| work(stop)));
         *place.lock().unwrap_or_else(PoisonError::into_inner) = worked.ok();
     });
@@ -154,8 +154,8 @@ fn done<T>(result: LockResult<Option<T>>) -> PyResult<T> {
     result.ok_or_else(|| PyRuntimeError::new_err("pathwarp failed; please report it"))
 }
 
-/// The threads of this process. `None` if it may start none, and on one of them, as in a function that a map calls: there is no other to
-/// wait for then, and work is done at once.
+/// Returns the threads of this process. `None` if it may start none, or if the caller is one of them, as in a function that a map calls:
+/// work must then be done at once.
 fn pool() -> Option<Arc<ThreadPool>> {
     if rayon::current_thread_index().is_some() {
         return None;
@@ -169,7 +169,7 @@ fn pool() -> Option<Arc<ThreadPool>> {
     if let Some(old) = current.replace(Pool { process, threads, pool: Arc::clone(&pool) })
         && old.process != process
     {
-        // Its threads do not exist here; ending them could wait for ever.
+        // Its threads do not exist in this process; ending them could wait for ever.
         std::mem::forget(old);
     }
     Some(pool)

@@ -34,7 +34,7 @@ pub(crate) struct Warper {
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 
-/// The name of a deformation, its parameters with their values, and whether it is inverted.
+/// The name of a deformation, its parameters with their values, and `true` if it is inverted.
 type TypedStep = (String, Vec<(String, Vec<String>)>, bool);
 
 #[pymethods]
@@ -259,7 +259,7 @@ impl Warper {
             Ok(d) => (PyBytes::new(py, &d.bytes), d.report, d.warnings, d.notes).into_bound_py_any(py),
             Err(e) => match self.exception(py, &e) {
                 e if e.is_instance_of::<PyException>(py) => e.into_bound_py_any(py),
-                // Ctrl-C while the exception was made.
+                // Ctrl-C came while the exception was made.
                 e => Err(e),
             },
         };
@@ -276,7 +276,7 @@ impl Warper {
         result.map_err(|e| self.exception(py, &e))
     }
 
-    /// The exception for an error: what a function raised, if the error tells of that.
+    /// Returns the exception for an error: the one that a function raised, if the error stands for it.
     fn exception(&self, py: Python<'_>, error: &Error) -> PyErr {
         let raised = self.functions.iter().find_map(|f| f.raised(py, &error.message));
         raised.unwrap_or_else(|| exception(py, error))
@@ -319,7 +319,7 @@ fn done<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
     result.map_err(|e| exception(py, &e))
 }
 
-/// The report of a path.
+/// Returns the report of a path.
 fn report<'py>(py: Python<'py>, warped: &pathwarp_engine::Path) -> PyResult<Bound<'py, PyDict>> {
     let r = &warped.path.report;
     let out = PyDict::new(py);

@@ -1,7 +1,7 @@
-//! Points per second of the maps in batches on one thread, and a million vertices from OBJ to OBJ: `cargo bench -p pathwarp-solid`.
-//!
-//! Each figure is the best of several rounds over a million points by processor time, which other programs on the machine disturb
-//! least, with the bytes read and written per second, and a plain copy of the same points for comparison.
+//! Measures points per second of the maps in batches on one thread, and the deformation of a model of a million vertices from OBJ to
+//! OBJ: `cargo bench -p pathwarp-solid`. Each figure is the best of several rounds over a million points. It is processor time, which
+//! other programs on the machine disturb least, and stands beside the bytes read and written per second and the time of a plain copy
+//! of the points.
 
 #![allow(clippy::print_stdout)]
 
@@ -19,7 +19,7 @@ use std::hint::black_box;
 const POINTS: usize = 1_000_000;
 const ROUNDS: usize = 40;
 
-/// The best time of a batch, in seconds.
+/// Returns the best time of a batch, in seconds.
 fn best(points: &[DVec3], work: impl Fn(&mut [DVec3])) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..ROUNDS {
@@ -37,7 +37,7 @@ fn show(name: &str, seconds: f64) {
     println!("{name:32} {:8.1} M points/s {:8.2} GB/s", POINTS as f64 / seconds / 1e6, bytes / seconds / 1e9);
 }
 
-/// Name, deformation and parameters.
+/// Name, deformation and parameters of each case.
 const CASES: [(&str, &str, Pairs); 11] = [
     (
         "collineation",
@@ -56,7 +56,7 @@ const CASES: [(&str, &str, Pairs); 11] = [
     ("bend of degree 3", "bend", &[("skeleton", "0,50,50 33,50,50 66,55,45 100,70,40")]),
 ];
 
-/// A bumpy ball of a million vertices and quads, as OBJ.
+/// Returns a bumpy ball of a million vertices and quads, as OBJ.
 fn ball() -> String {
     const SIDE: usize = 1000;
     let mut out = String::new();
@@ -72,7 +72,7 @@ fn ball() -> String {
     out
 }
 
-/// Reads, deforms and writes a model, and shows the processor time of all threads.
+/// Reads, deforms and writes a model, and prints the processor time of all threads.
 fn whole() {
     let text = ball();
     let mut best = [f64::INFINITY; 3];

@@ -47,7 +47,7 @@ pub struct NamedShape<'a> {
     pub even_odd: bool,
 }
 
-/// The reason why a mesh cannot be made.
+/// An error that prevents artwork from becoming a mesh or polylines.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -82,7 +82,8 @@ pub enum Error {
 /// `budget` counts the sides of the triangles as segments.
 ///
 /// # Errors
-/// A point has no image on the surface, or a shape needs too many triangles.
+/// [`Error::NoPlace`] when a point has no image on the surface, [`Error::TooMany`] when a shape exceeds the budget,
+/// [`Error::Tessellation`] when a shape cannot be filled.
 pub fn filled(
     shapes: &[NamedShape<'_>],
     space: &SurfaceFn<'_>,
@@ -92,10 +93,10 @@ pub fn filled(
     scene(&[(shapes.to_vec(), space)], tolerance, budget)
 }
 
-/// Writes filled shapes on several surfaces as one mesh in OBJ.
+/// Writes filled shapes on several surfaces as one mesh in OBJ format.
 ///
 /// # Errors
-/// A point has no image on its surface, or a shape needs too many triangles.
+/// [`Error::NoPlace`], [`Error::TooMany`] or [`Error::Tessellation`] with the name of the first shape that fails.
 pub fn scene(
     groups: &[(Vec<NamedShape<'_>>, &SurfaceFn<'_>)],
     tolerance: f64,
@@ -114,7 +115,7 @@ pub fn scene(
 /// Fills a shape with triangles in the plane of the drawing, within `tolerance` (user units) of its outline.
 ///
 /// # Errors
-/// The shape needs too many points, or cannot be filled.
+/// [`Error::TooMany`] when the shape exceeds the budget, [`Error::Tessellation`] when it cannot be filled.
 pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<FlatMesh, Error> {
     let polygons = polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?;
     fill(shape, &polygons)
@@ -123,7 +124,7 @@ pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<F
 /// Returns the outlines of the shapes as polylines in OBJ format, within `tolerance` (user units) of their images in space.
 ///
 /// # Errors
-/// A point has no image on the surface, or the shapes need more segments than `budget` has.
+/// [`Error::NoPlace`] when a point has no image on the surface, [`Error::TooMany`] when the shapes exceed the budget.
 pub fn outlines(
     shapes: &[NamedShape<'_>],
     space: &SurfaceFn<'_>,
@@ -176,20 +177,20 @@ fn polygons(
     Ok(out)
 }
 
-/// Charges for segments of a shape.
+/// Charges the budget for segments of a shape.
 fn spend(shape: &str, segments: f64, budget: &Budget) -> Result<(), Error> {
     let spent = budget.spend(cost::SEGMENT * segments);
     spent.map_err(|exceeded| Error::TooMany { shape: shape.to_owned(), exceeded })
 }
 
-/// Appends the points of a segment after its first.
+/// Appends points of a segment, without its first, whose chords are within `tolerance` of the image.
 fn flatten(
     seg: &Seg,
     place: &impl Fn(Point) -> Result<Point3, Error>,
     tolerance: f64,
     out: &mut Vec<Point>,
 ) -> Result<(), Error> {
-    // Start with quarters, so as not to miss a symmetric bend.
+    // Start with quarters, so that a symmetric bend is not missed.
     let mut stack: Vec<(f64, f64, u32)> =
         (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect();
     if let Seg::Line(_) = seg {
@@ -285,7 +286,7 @@ fn to_surface(
     let mut points = placed?;
     let mut triangles = flat.triangles;
     count(triangles.len())?;
-    // Edges known to be close enough.
+    // Edges whose middles are within the tolerance.
     let mut close: HashSet<Edge> = HashSet::new();
     for _ in 0..MAX_ROUNDS {
         let mut middles: HashMap<Edge, u32> = HashMap::new();
@@ -334,7 +335,7 @@ fn split(t: [u32; 3], middles: &HashMap<Edge, u32>, out: &mut Vec<[u32; 3]>) {
     }
 }
 
-/// Writes the text of a file.
+/// The text of an OBJ file, and the number of its vertices.
 struct ObjWriter {
     text: String,
     vertices: usize,
@@ -446,7 +447,7 @@ mod tests {
                     assert!((radius(m[0], m[1]) - RADIUS).abs() <= tolerance * 1.01);
                 }
             }
-            // No cracks: inner edges have two triangles, and edges with one triangle form closed rings.
+            // No cracks: inner edges have two triangles, and edges of one triangle form closed rings.
             let mut edges = HashMap::new();
             for t in &f {
                 for (i, j) in [(0, 1), (1, 2), (2, 0)] {

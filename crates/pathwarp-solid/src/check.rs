@@ -1,6 +1,6 @@
 //! Checks the properties that every deformation of space must have.
 //!
-//! [`entry`] checks the parameter table, Jacobians against finite differences, batches, the inverse there and back, laws and cases.
+//! [`entry`] checks the parameter table, Jacobians against finite differences, batches, inverses, laws and cases.
 
 use crate::deform::{Deformation3, Law3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
@@ -51,7 +51,7 @@ fn build(entry: &dyn Deformation3, pairs: Pairs) -> Result<Arc<dyn Map3>, pathwa
     entry.build_from(&Args::from_pairs(pairs), &frame()).map(|b| b.map)
 }
 
-/// Points of the frame where the map is defined, away from likely creases.
+/// Returns points of the frame at which the map is defined, away from likely creases.
 fn samples(map: &dyn Map3) -> Vec<DVec3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -61,7 +61,7 @@ fn samples(map: &dyn Map3) -> Vec<DVec3> {
 }
 
 fn derivatives(map: &dyn Map3, faults: &mut Vec<String>) {
-    /// Central differences: truncation h², rounding ε/h; both near 1e-8 here.
+    /// Step of central differences: their truncation error h² and rounding error ε/h are both near 1e-8 here.
     const H: f64 = 1e-4;
     let ps = samples(map);
     let (mut jets, mut points) = (vec![Jet3::default(); ps.len()], ps.clone());
@@ -107,12 +107,12 @@ fn inverse(map: &Arc<dyn Map3>, faults: &mut Vec<String>) {
     }
 }
 
-/// Distance of `b` from the line through `a` and `c`.
+/// Returns the distance of `b` from the line through `a` and `c`.
 fn off_line(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     (b - a).cross((c - a).normalize_or_zero()).length()
 }
 
-/// Distance of the image of a point in a triangle from the plane of the corners' images.
+/// Returns the distance of the image of a point in a triangle from the plane of the corners' images.
 fn off_plane(m: &dyn Map3, p: DVec3) -> f64 {
     let [a, b, c] = [p, DVec3::new(97.0 - p.x, 11.0, p.z), DVec3::new(p.y, 90.0, 45.0)].map(|p| m.point(p));
     let inner = 0.5 * p + 0.3 * DVec3::new(97.0 - p.x, 11.0, p.z) + 0.2 * DVec3::new(p.y, 90.0, 45.0);
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// Flat and huge models: a map or an error, never a panic.
+    /// On flat and huge models, every deformation gives a map or an error, and never panics.
     #[test]
     fn degenerate_frames_are_survived() {
         for size in [DVec3::ZERO, DVec3::new(100.0, 0.0, 50.0), DVec3::splat(1e-200), DVec3::splat(1e99)] {

@@ -1,10 +1,10 @@
-//! Lattices of any hull: extended free-form deformation.
+//! Extended free-form deformation, by lattices of any shape.
 //!
 //! > F(p) = X̂(u) with X(u) = p
 //!
-//! where X is the volume of a lattice whose control points need not be regular, such as a ring around an axis, and X̂ that of the
-//! lattice with moved points and weights (S. Coquillart, *Extended free-form deformation*, SIGGRAPH 1990). Nothing moves outside the
-//! hull, so its faces are creases.
+//! where X is the volume of a lattice whose control points need not be regular, such as a ring around an axis, and X̂ the volume of
+//! the lattice with moved points and weights (S. Coquillart, *Extended free-form deformation*, SIGGRAPH 1990). Nothing moves outside
+//! the hull, so its faces are creases.
 
 use crate::lattice::{Lattice3, LatticeMap3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
@@ -14,27 +14,27 @@ use pathwarp::Error;
 use pathwarp::budget::Budget;
 use std::sync::Arc;
 
-/// Extended free-form deformation of space.
+/// Extended free-form deformation of space by two lattices, before and after the change.
 #[derive(Debug, Clone)]
 pub(crate) struct HullMap {
     region: Box3,
     cells: [usize; 3],
     hull: Arc<LatticeMap3>,
     moved: Arc<LatticeMap3>,
-    /// The local coordinates of a point.
+    /// Finds the local coordinates of a point by inverting the hull's map.
     inner: NewtonInverse3,
 }
 
-/// Part of the region's size up to which local coordinates are found beyond it.
+/// Margin around the region in which local coordinates are found, as a fraction of its size.
 const BEYOND: f64 = 1.0 / 16.0;
 
 impl HullMap {
-    /// Makes the map from a hull, and the same lattice with changed points and weights.
+    /// Makes the map from a hull and the lattice with changed points and weights.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a hull that folds or is flat.
+    /// [`Error::Usage`] when the hull folds or is flat.
     pub(crate) fn new(hull: &Lattice3, moved: &Lattice3) -> Result<Self, Error> {
-        /// Places along each axis at which the hull's orientation is compared.
+        /// Points along each axis at which the hull's orientation is compared.
         const PLACES: u32 = 12;
         let region = hull.region();
         let [x, y] = [hull, moved].map(|l| Arc::new(LatticeMap3::new(l, true)));
@@ -57,14 +57,14 @@ impl HullMap {
         Self { region, cells, hull, moved, inner }
     }
 
-    /// The local coordinates of a point in the hull, and their derivatives.
+    /// Returns the local coordinates of a point in the hull, and their derivatives.
     pub(crate) fn local(&self, p: DVec3) -> Option<Jet3> {
-        /// Rounding of local coordinates.
+        /// Distance from a face, as a fraction of the region, that counts as rounding.
         const ROUNDING: f64 = 1e-12;
         self.inner.solve(p).filter(|u| self.depth(u.p) >= -ROUNDING)
     }
 
-    /// The distance of local coordinates from the nearest face, as a share of the region; positive inside.
+    /// Returns the distance of local coordinates from the nearest face, as a fraction of the region; positive inside.
     fn depth(&self, u: DVec3) -> f64 {
         ((u - self.region.min).min(self.region.max - u) / self.region.size()).min_element()
     }

@@ -1,4 +1,4 @@
-//! Lattices of control points in space: free-form deformation.
+//! Free-form deformation of space by lattices of control points.
 //!
 //! > X(s,t,u) = Σₖ Σⱼ Σᵢ Nᵢ(s) Nⱼ(t) Nₖ(u) wᵢⱼₖ (xᵢⱼₖ, yᵢⱼₖ, zᵢⱼₖ, 1)
 //!
@@ -25,7 +25,7 @@ pub struct Lattice3 {
     region: Box3,
     degree: [usize; 3],
     cells: [usize; 3],
-    /// Regular positions along x, y and z, from 0 to 1.
+    /// Regular positions along x, y and z, from 0 to 1, by number.
     places: [Vec<f64>; 3],
     /// Displacements from the regular positions, with x running fastest.
     moves: Vec<DVec3>,
@@ -42,7 +42,7 @@ enum Piece {
 }
 
 impl Lattice3 {
-    /// Makes a lattice that is the identity, with `degree` (at least 1) and the number of Bézier pieces, `cells`, along each axis. A
+    /// Makes a lattice that is the identity, with a `degree` of at least 1 and a number of Bézier pieces, `cells`, along each axis. A
     /// Bézier lattice has a single piece.
     #[must_use]
     pub fn regular(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Self {
@@ -52,25 +52,25 @@ impl Lattice3 {
         Self { region, degree, cells, places, moves: vec![DVec3::ZERO; count], weights: vec![1.0; count] }
     }
 
-    /// Degrees along the axes.
+    /// Returns the degrees along the axes.
     #[must_use]
     pub fn degree(&self) -> [usize; 3] {
         self.degree
     }
 
-    /// Bézier pieces along the axes.
+    /// Returns the numbers of Bézier pieces along the axes.
     #[must_use]
     pub fn cells(&self) -> [usize; 3] {
         self.cells
     }
 
-    /// The box that the lattice deforms.
+    /// Returns the box that the lattice deforms.
     #[must_use]
     pub fn region(&self) -> Box3 {
         self.region
     }
 
-    /// Numbers of control points along the axes.
+    /// Returns the numbers of control points along the axes.
     #[must_use]
     pub fn size(&self) -> [usize; 3] {
         [0, 1, 2].map(|a| self.places[a].len())
@@ -82,26 +82,26 @@ impl Lattice3 {
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// Whether a control point exists.
+    /// Returns `true` if a control point exists.
     #[must_use]
     pub fn has(&self, node: [usize; 3]) -> bool {
         node.iter().zip(self.size()).all(|(n, size)| *n < size)
     }
 
-    /// The position of a control point in the order of [`nodes`](Self::nodes).
+    /// Returns the index of a control point in the order of [`nodes`](Self::nodes).
     #[must_use]
     pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.places[1].len() + j) * self.places[0].len() + i
     }
 
-    /// The position of a control point in the identity.
+    /// Returns the position of a control point in the identity.
     #[must_use]
     pub fn regular_point(&self, node: [usize; 3]) -> DVec3 {
         let at = |a: usize| self.places[a][node[a]];
         self.region.min + DVec3::new(at(0), at(1), at(2)) * self.region.size()
     }
 
-    /// The position of a control point.
+    /// Returns the position of a control point.
     #[must_use]
     pub fn point(&self, node: [usize; 3]) -> DVec3 {
         self.regular_point(node) + self.moves[self.index(node)]
@@ -119,7 +119,7 @@ impl Lattice3 {
         self.moves[n] += v;
     }
 
-    /// The weight of a control point.
+    /// Returns the weight of a control point.
     #[must_use]
     pub fn weight(&self, node: [usize; 3]) -> f64 {
         self.weights[self.index(node)]
@@ -131,7 +131,7 @@ impl Lattice3 {
         self.weights[n] = w;
     }
 
-    /// Whether a control point differs from its regular position by more than rounding, or its weight from 1.
+    /// Returns `true` if a control point differs from its regular position by more than rounding, or its weight from 1.
     #[must_use]
     pub fn is_changed(&self, node: [usize; 3]) -> bool {
         let size = self.region.diagonal() + self.region.min.length();
@@ -146,7 +146,7 @@ impl Lattice3 {
         Self { region, moves: self.moves.iter().map(|v| *v * scale).collect(), ..self.clone() }
     }
 
-    /// The influences of control points on `p`, with their numbers: Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
+    /// Returns the influences of control points on `p`, with their numbers: Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
     #[must_use]
     pub fn influence(&self, p: DVec3) -> Vec<([usize; 3], f64)> {
         let at = ((p - self.region.min) / self.region.size()).to_array();
@@ -166,7 +166,7 @@ impl Lattice3 {
         out
     }
 
-    /// The coordinates of one cell, from −1 to 1.
+    /// Returns the coordinates of one cell, from −1 to 1.
     fn local(&self, cell: [usize; 3]) -> Local {
         let cells = DVec3::from_array(self.cells.map(|c| c as f64));
         let middle = (DVec3::from_array(cell.map(|c| c as f64)) + 0.5) / cells;
@@ -174,7 +174,7 @@ impl Lattice3 {
         Local { middle: self.region.min + middle * size, scale: 2.0 * cells / size }
     }
 
-    /// The polynomials of one cell.
+    /// Returns the polynomials of one cell.
     fn piece(&self, cell: [usize; 3]) -> Piece {
         let matrices = [0, 1, 2].map(|a| bspline::extraction(self.degree[a], self.cells[a]).swap_remove(cell[a]));
         let size = self.degree.map(|d| d + 1);
@@ -189,7 +189,7 @@ impl Lattice3 {
         }
     }
 
-    /// The Bézier coefficients of one cell of a spline with these coefficients.
+    /// Returns the Bézier coefficients of one cell of a spline with the coefficients `c`.
     fn bezier<const C: usize>(&self, cell: [usize; 3], matrices: &[Vec<Vec<f64>>; 3], c: &[[f64; C]]) -> Vec<[f64; C]> {
         let [a, b, d] = matrices;
         let mut out = Vec::with_capacity(a.len() * b.len() * d.len());
@@ -213,7 +213,7 @@ impl Lattice3 {
     }
 }
 
-/// Distance from the faces, relative to the coordinates, within which outside points count as inside.
+/// Distance from the faces, relative to the coordinates, within which points outside count as inside.
 const ROUNDING: f64 = 1e-12;
 
 /// Free-form deformation of space by a [`Lattice3`] of control points.
@@ -236,7 +236,7 @@ pub struct LatticeMap3 {
     cells: [usize; 3],
     /// The pieces, with x running fastest.
     pieces: Arc<[(Local, Piece)]>,
-    /// Whether the outermost pieces continue beyond the region.
+    /// `true` if the outermost pieces continue beyond the region.
     extended: bool,
 }
 
@@ -257,7 +257,7 @@ impl LatticeMap3 {
         }
     }
 
-    /// The piece at `p`; `None` outside the region, where nothing moves.
+    /// Returns the piece at `p`, or `None` outside the region, where nothing moves.
     fn piece(&self, p: DVec3) -> Option<&(Local, Piece)> {
         if !self.extended && !self.inside.contains(p) {
             return None;
@@ -271,7 +271,7 @@ impl LatticeMap3 {
         self.pieces.get((at(2) * self.cells[1] + at(1)) * self.cells[0] + at(0))
     }
 
-    /// The piece that applies to a whole box, or `Some(None)` if nothing moves there. `None` if a crease may cross the box.
+    /// Returns the piece that applies to a whole box, `Some(None)` if nothing moves there, or `None` if a crease may cross the box.
     fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
         let slack = 4.0 * (self.inside.max - self.region.max);
         let within = self.extended || self.inside.contains(on.min) && self.inside.contains(on.max);
@@ -279,15 +279,15 @@ impl LatticeMap3 {
             let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
             return beside.then_some(None);
         }
-        // Compare the cells of the corners, which are moved inwards except along an axis on which the box is flat, since it may lie in
-        // a crease.
+        // Compare the cells of the corners, moved inwards. Along an axis on which the box is flat they are not moved: the box may lie in a
+        // crease.
         let middle = on.center();
         let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
         let same = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
         same.then(|| self.piece(middle))
     }
 
-    /// The common denominator at `p`, which is positive where the map is defined.
+    /// Returns the common denominator at `p`, which is positive where the map is defined.
     fn denominator(&self, p: DVec3) -> f64 {
         match self.piece(p) {
             Some((local, Piece::Quotient(t))) => t.at((p - local.middle) * local.scale)[3],

@@ -1,4 +1,4 @@
-//! Pictures of meshes: a small rasterizer with depth and shading.
+//! Pictures of meshes, drawn by a small rasterizer with a depth buffer and shading.
 
 use crate::mesh::{Mark, Mesh, PolygonKind};
 use crate::settings::Box3;
@@ -8,22 +8,22 @@ use glam::{DMat3, DVec3};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera3 {
     eye: DVec3,
-    /// Rows: right, up and forward.
+    /// Rows: the directions right, up and forward.
     axes: DMat3,
     /// Half the height of the view at distance 1.
     half: f64,
 }
 
-/// Nothing nearer than this is drawn, as a fraction of the distance to the middle of the scene.
+/// Depth below which nothing is drawn, as a fraction of the distance to the middle of the scene.
 const NEAR: f64 = 1e-3;
 
 impl Camera3 {
-    /// A camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` if the box is not all in front of the eye.
+    /// Makes a camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` unless the box is in front of the eye.
     #[must_use]
     pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
         let to = scene.center() - eye;
         let forward = to.try_normalize()?;
-        // Looking straight down, the back of the scene is at the top of the picture.
+        // Seen straight from above, the back of the scene is at the top of the picture.
         let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
         let axes = DMat3::from_cols(right, right.cross(forward), forward).transpose();
         let sight = |p: DVec3| axes * (p - eye);
@@ -37,13 +37,13 @@ impl Camera3 {
         Some(Self { eye, axes, half: half * 1.04 })
     }
 
-    /// A camera that looks at the middle of a box from this direction, twice the diagonal of the box away.
+    /// Makes a camera that looks at the middle of a box from this direction, twice the box's diagonal away.
     #[must_use]
     pub fn towards(direction: DVec3, scene: Box3) -> Option<Self> {
         Self::at(scene.center() + direction.try_normalize()? * 2.0 * scene.diagonal(), scene)
     }
 
-    /// The place of a point in a square picture of `side` pixels, and its depth.
+    /// Returns the position of a point in a square picture of `side` pixels, and its depth.
     fn project(&self, p: DVec3, side: f64) -> DVec3 {
         let q = self.axes * (p - self.eye);
         let k = 0.5 * side / (self.half * q.z);
@@ -60,13 +60,13 @@ const PALETTE: [[f64; 3]; 6] = [
     [0.58, 0.47, 0.70],
     [0.62, 0.55, 0.45],
 ];
-/// Colour of back faces, seen through openings or where a map turned faces over.
+/// Colour of back faces, which are seen through openings or where a map turned faces over.
 const INSIDE: [f64; 3] = [0.75, 0.72, 0.68];
 const GUIDE: [f64; 3] = [0.80, 0.10, 0.35];
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 2;
 
-/// How many samples [`draw`] looks at for a mesh: all those in the bounding box of each triangle.
+/// Returns the number of samples that [`draw`] examines for a mesh: all in the bounding box of each triangle.
 #[must_use]
 pub fn samples(mesh: &Mesh, camera: &Camera3, side: usize) -> f64 {
     let fine = (side * SAMPLES) as f64;
@@ -174,7 +174,7 @@ impl Canvas {
         }
     }
 
-    /// The pixels, each the mean of its samples.
+    /// Returns the pixels, each the mean of its samples.
     fn pixels(&self) -> Vec<u8> {
         let side = self.side / SAMPLES;
         let mut out = Vec::with_capacity(4 * side * side);

@@ -1,4 +1,4 @@
-//! Recipes of deformations of space, applied one after another and composed into one map.
+//! Recipes of deformations of space: steps that are applied one after another and composed into one map.
 
 use crate::deform::{Built3, Registry3};
 use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
@@ -10,16 +10,16 @@ use pathwarp::{Error, GeometryError};
 use std::fmt;
 use std::sync::Arc;
 
-/// A recipe with every parameter settled.
+/// A recipe whose steps have been built.
 #[derive(Clone)]
 pub struct BuiltRecipe3 {
     /// All steps composed.
     pub map: Chain3,
     /// The steps one by one.
     pub steps: Vec<Built3>,
-    /// What percentages in each step referred to.
+    /// The box of each step, to which its percentages refer.
     pub frames: Vec<Frame3>,
-    /// What searches for inverses spend from.
+    /// The budget that searches for inverses charge.
     budget: Arc<Budget>,
 }
 
@@ -39,22 +39,22 @@ impl BuiltRecipe3 {
         }
     }
 
-    /// The limit that searches for an inverse have exceeded, if any. If there is one, discard results computed with the map.
+    /// Returns the limit that searches for an inverse have exceeded, if any. Results computed with the map must then be discarded.
     #[must_use]
     pub fn exceeded(&self) -> Option<Exceeded> {
         self.budget.exceeded()
     }
 }
 
-/// How far outside the frame a solution of Newton's method is accepted, as a fraction of the diagonal.
+/// Distance outside the frame up to which solutions of Newton's method are accepted, as a fraction of the diagonal.
 const REACH: f64 = 0.25;
-/// How many smooth pieces of a map along each axis Newton's method is prepared for.
+/// Smooth pieces of a map along each axis that Newton's method allows for.
 const PIECES: [usize; 3] = [4; 3];
 
-/// Places along each axis of a box.
+/// Grid points along each axis of a box.
 const GRID: usize = 12;
 
-/// A grid of places all over a box, corners included.
+/// Returns a grid of points all over a box, corners included.
 fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
     let at = |i: usize| i as f64 / (GRID - 1) as f64;
     let place = move |k: usize| DVec3::new(at(k % GRID), at(k / GRID % GRID), at(k / (GRID * GRID)));
@@ -62,7 +62,7 @@ fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
     (0..GRID.pow(3)).map(move |k| from + place(k) * size)
 }
 
-/// A place in a box where a map turns space inside out, unless it does so everywhere.
+/// Returns a point of a box at which a map turns space inside out, unless it does so everywhere.
 fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -73,21 +73,21 @@ fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
 }
 
 /// Builds every step of a recipe. Percentages refer to `frame` in the first step, and to the bounding box of the points mapped so far in
-/// later ones. As in the plane, a recipe of inverse steps only undoes its reverse: then `points` are those of a result, `frame` is the
-/// frame of its source, and the boxes in between are found by iteration, with a warning if they do not settle.
+/// later ones. If all of several steps are inverse, the recipe undoes its reverse: then `points` belong to a result, `frame` to its source,
+/// and the boxes in between are found by iteration, with a warning if they do not settle.
 ///
 /// # Errors
-/// A deformation is unknown, or building a step fails.
+/// [`Error::Input`] when a deformation is unknown, and the error of the first step that cannot be built.
 pub fn build(recipe: &Recipe, registry: &Registry3, frame: Frame3, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
     build_within(recipe, registry, frame, points, &Arc::new(Budget::new(Limits::none())))
 }
 
-/// Like [`build`], within a budget. It is charged for mapping the points through each step, and for mapping all of them once more by the
-/// whole map. Inverses that search also spend from it, for as long as they are used, what each search takes beyond [`Map3::work`]: once
-/// nothing is left they are undefined everywhere, and [`BuiltRecipe3::exceeded`] tells.
+/// Builds every step of a recipe, as [`build`] does, within a budget. The budget is charged for mapping the points through each step and
+/// once more by the whole map. Later, inverses that search charge it for work beyond [`Map3::work`]. Once nothing is left, they are
+/// undefined everywhere, and [`BuiltRecipe3::exceeded`] returns the limit.
 ///
 /// # Errors
-/// As for [`build`], and [`GeometryError::Limit`] if the budget does not allow so many.
+/// The errors of [`build`], and [`GeometryError::Limit`] when the budget does not allow so many evaluations.
 pub fn build_within(
     recipe: &Recipe,
     registry: &Registry3,
@@ -104,7 +104,7 @@ pub fn build_within(
     Ok(out)
 }
 
-/// Charges the budget for evaluations of a map.
+/// Charges the budget for evaluations of a map at `places` points.
 fn count(budget: &Budget, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
     budget.spend(places as f64 * map.work()).map_err(GeometryError::Limit)
 }
@@ -144,8 +144,8 @@ fn built(
     Ok(out)
 }
 
-/// Builds the inverse of a recipe of several steps. The boxes of all steps and the points of the source are computed from each other in
-/// turn until the boxes settle.
+/// Builds the inverse of a recipe of several steps. The boxes of the steps depend on the points of the source, which depend on the boxes:
+/// both are computed in turn until the boxes settle.
 fn undo(
     recipe: &Recipe,
     registry: &Registry3,
@@ -153,7 +153,7 @@ fn undo(
     images: &[DVec3],
     budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
-    /// Boxes that differ by less than this fraction of their size are the same.
+    /// Boxes that differ by less than this fraction of their size count as equal.
     const SETTLED: f64 = 1e-12;
     const MAX_ROUNDS: usize = 64;
     let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), budget)?;
@@ -189,7 +189,7 @@ fn undo(
     Ok(out)
 }
 
-/// The distance between the corners of two boxes, as a fraction of their size.
+/// Returns the distance between the corners of two boxes, as a fraction of their size.
 fn apart(a: &Box3, b: &Box3) -> f64 {
     a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal()
 }
@@ -208,7 +208,7 @@ fn inverted(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Bu
     Ok(built)
 }
 
-/// The inverse of a map: its own, or by Newton's method over a box.
+/// Returns the inverse of a map, in closed form if the map has one, or by Newton's method over a box.
 fn inverse(map: &Arc<dyn Map3>, bounds: &Box3, budget: &Arc<Budget>) -> Arc<dyn Map3> {
     let newton = || -> Arc<dyn Map3> {
         Arc::new(NewtonInverse3::new(Arc::clone(map), *bounds, REACH * bounds.diagonal(), PIECES))

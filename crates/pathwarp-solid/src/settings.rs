@@ -1,14 +1,14 @@
-//! Typed access to parameter values: lengths, points and boxes in space.
+//! Typed access to parameter values in space: lengths, points and boxes.
 
 use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Args, Axis, Frame, Length, LengthUnit, NamedText, Param, Settings};
 
-/// Millimetres in a px.
+/// Millimetres per px.
 const MM_PER_PX: f64 = 25.4 / 96.0;
 
-/// What a percentage is a percentage of: the frame's size along an axis, or its diagonal.
+/// The length to which a percentage refers: the frame's size along an axis, or its diagonal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// The width.
@@ -21,23 +21,23 @@ pub enum Extent {
     Diagonal,
 }
 
-/// The box to which percentages refer, and the size of a unit.
+/// The box to which percentages refer, and the size of a unit of length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame3 {
     /// The box, usually the model's.
     pub bounds: Box3,
-    /// Units of the model in a millimetre: 1, as 3D printing software assumes, unless the file format says otherwise.
+    /// Units of the model per millimetre: 1, as 3D printing software assumes, unless the file format defines another unit.
     pub units_per_mm: f64,
 }
 
 impl Frame3 {
-    /// A frame in which a unit is a millimetre.
+    /// Makes a frame in which a unit is a millimetre.
     #[must_use]
     pub fn new(bounds: Box3) -> Self {
         Self { bounds, units_per_mm: 1.0 }
     }
 
-    /// The front of the box as a frame in the plane, for values that are read as in the plane.
+    /// Returns the front of the box as a frame in the plane, for values that have no third dimension.
     #[must_use]
     pub fn front(&self) -> Frame {
         let Box3 { min, max } = self.bounds;
@@ -64,33 +64,33 @@ pub struct Settings3<'a> {
 }
 
 impl<'a> Settings3<'a> {
-    /// Checks `args` against the table, as [`Settings::new`] does. `front` is [`Frame3::front`] of `frame`.
+    /// Checks `args` against the parameter table. `front` is [`Frame3::front`] of `frame`.
     ///
     /// # Errors
-    /// As [`Settings::new`].
+    /// [`Error::Usage`] or [`Error::Missing`], naming the parameter.
     pub fn new(params: &'a [Param], args: &'a Args, frame: &'a Frame3, front: &'a Frame) -> Result<Self, Error> {
         Ok(Self { flat: Settings::new(params, args, front)?, frame })
     }
 
-    /// The settings of the plane, for values that need no third dimension: flags, numbers, angles, words, texts and files.
+    /// Returns the settings of the plane, for values without a third dimension: flags, numbers, angles, words, texts and files.
     #[must_use]
     pub fn flat(&self) -> &Settings<'a> {
         &self.flat
     }
 
-    /// The box to which percentages refer.
+    /// Returns the box to which percentages refer.
     #[must_use]
     pub fn bounds(&self) -> Box3 {
         self.frame.bounds
     }
 
-    /// The last value given for a text parameter, or its default.
+    /// Returns the last value given for a text parameter, or its default.
     #[must_use]
     pub fn last(&self, name: &str) -> Option<&'a str> {
         self.flat.texts(name).last().copied()
     }
 
-    /// The words of all values of a text parameter, split at white space.
+    /// Returns the words of all values of a text parameter, split at white space.
     #[must_use]
     pub fn words(&self, name: &str) -> Vec<&'a str> {
         self.flat.texts(name).into_iter().flat_map(str::split_whitespace).collect()
@@ -99,7 +99,7 @@ impl<'a> Settings3<'a> {
     /// Reads a length from a text parameter, in units of the model.
     ///
     /// # Errors
-    /// `text` is not a length. The message names the parameter.
+    /// [`Error::Usage`], naming the parameter, when `text` is not a length.
     pub fn length_in(&self, name: &str, text: &str, along: Extent) -> Result<f64, Error> {
         let length: Length = text.trim().parse().map_err(|e| Error::usage(name, text, format!("{e}")))?;
         if length.unit == LengthUnit::Percent {
@@ -111,7 +111,7 @@ impl<'a> Settings3<'a> {
     /// Reads a vector `dx,dy,dz` of lengths from a text parameter.
     ///
     /// # Errors
-    /// `text` is not three lengths. The message names the parameter.
+    /// [`Error::Usage`], naming the parameter, when `text` is not three lengths.
     pub fn vector_in(&self, name: &str, text: &str) -> Result<DVec3, Error> {
         let parts: Vec<&str> = text.split(',').collect();
         let [x, y, z] = parts[..] else {
@@ -124,7 +124,7 @@ impl<'a> Settings3<'a> {
     /// Reads a point `x,y,z` from a text parameter. Percentages count from the left, bottom and back of the frame.
     ///
     /// # Errors
-    /// `text` is not a point. The message names the parameter.
+    /// [`Error::Usage`], naming the parameter, when `text` is not a point.
     pub fn point_in(&self, name: &str, text: &str) -> Result<DVec3, Error> {
         let mut p = self.vector_in(name, text)?.to_array();
         for ((v, word), origin) in p.iter_mut().zip(text.split(',')).zip(self.frame.bounds.min.to_array()) {
@@ -135,26 +135,26 @@ impl<'a> Settings3<'a> {
         Ok(DVec3::from_array(p))
     }
 
-    /// The point given for a text parameter; `None` if there is neither a value nor a default.
+    /// Returns the point given for a text parameter, or `None` if there is neither a value nor a default.
     ///
     /// # Errors
-    /// As [`Settings3::point_in`].
+    /// [`Error::Usage`], naming the parameter, when the value is not a point.
     pub fn point_if(&self, name: &str) -> Result<Option<DVec3>, Error> {
         self.last(name).map(|t| self.point_in(name, t)).transpose()
     }
 
-    /// Points `x,y,z x,y,z …` given for a text parameter.
+    /// Returns the points `x,y,z x,y,z …` given for a text parameter.
     ///
     /// # Errors
-    /// As [`Settings3::point_in`].
+    /// [`Error::Usage`], naming the parameter, when a word is not a point.
     pub fn points(&self, name: &str) -> Result<Vec<DVec3>, Error> {
         self.words(name).into_iter().map(|w| self.point_in(name, w)).collect()
     }
 
-    /// Pairs of points `x,y,z:x,y,z …` given for a text parameter.
+    /// Returns the pairs of points `x,y,z:x,y,z …` given for a text parameter.
     ///
     /// # Errors
-    /// A word is not a pair of points.
+    /// [`Error::Usage`], naming the parameter, when a word is not a pair of points.
     pub fn point_pairs(&self, name: &str) -> Result<Vec<(DVec3, DVec3)>, Error> {
         let pair = |word: &str| {
             let wrong = || Error::usage(name, word, "is not FROM:TO, such as 10,20,5:15,25,5");
@@ -164,10 +164,10 @@ impl<'a> Settings3<'a> {
         self.words(name).into_iter().map(pair).collect()
     }
 
-    /// The box given for a text parameter as `x,y,z,w,h,d`. `None` if it is not given, or is the word `model`, which means the frame.
+    /// Returns the box given for a text parameter as `x,y,z,w,h,d`. `None` if it is not given, or is the word `model`, meaning the frame.
     ///
     /// # Errors
-    /// The value is not a box, or the box has no volume.
+    /// [`Error::Usage`], naming the parameter, when the value is not a box with a volume.
     pub fn box_if(&self, name: &str) -> Result<Option<Box3>, Error> {
         let Some(text) = self.last(name).filter(|t| *t != "model") else { return Ok(None) };
         let words: Vec<&str> = text.split(',').collect();
@@ -180,10 +180,10 @@ impl<'a> Settings3<'a> {
         if size.min_element() > 0.0 { Ok(Some(Box3 { min, max: min + size })) } else { Err(wrong()) }
     }
 
-    /// Three whole numbers from 1 to `max`, such as `4x3x2`, or one number for all three; `None` if not given.
+    /// Returns three whole numbers from 1 to `max`, such as `4x3x2`; one number stands for all three. `None` if not given.
     ///
     /// # Errors
-    /// The value is something else.
+    /// [`Error::Usage`], naming the parameter, when the value is anything else.
     pub fn counts_if(&self, name: &str, max: usize) -> Result<Option<[usize; 3]>, Error> {
         let Some(text) = self.last(name) else { return Ok(None) };
         let number = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=max).contains(n));
@@ -195,16 +195,16 @@ impl<'a> Settings3<'a> {
         }
     }
 
-    /// The contents of the file named by a parameter.
+    /// Returns the contents of the file named by a parameter.
     ///
     /// # Errors
-    /// The file has not been read.
+    /// [`Error::Input`] when the file has not been read.
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
         self.flat.file_if(name)
     }
 }
 
-/// A point for messages, to six decimals.
+/// Formats a point for messages, to six decimals.
 pub(crate) fn show(p: DVec3) -> String {
     let round = |v: f64| pathwarp::engine::decimal::trimmed(v, 6);
     format!("{},{},{}", round(p.x), round(p.y), round(p.z))
@@ -220,50 +220,50 @@ pub struct Box3 {
 }
 
 impl Box3 {
-    /// The smallest box around two points.
+    /// Returns the smallest box around two points.
     #[must_use]
     pub fn new(a: DVec3, b: DVec3) -> Self {
         Self { min: a.min(b), max: a.max(b) }
     }
 
-    /// The smallest box around the finite ones among `points`; `None` if there are none.
+    /// Returns the smallest box around the finite points among `points`, or `None` if there are none.
     #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let finite = points.into_iter().filter(|p| p.is_finite());
         finite.map(|p| Self { min: p, max: p }).reduce(|a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) })
     }
 
-    /// Width, height and depth.
+    /// Returns width, height and depth.
     #[must_use]
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }
 
-    /// The centre.
+    /// Returns the centre.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// The length of the diagonal.
+    /// Returns the length of the diagonal.
     #[must_use]
     pub fn diagonal(&self) -> f64 {
         self.size().length()
     }
 
-    /// Whether `p` is inside or on the boundary.
+    /// Returns `true` if `p` is inside or on the boundary.
     #[must_use]
     pub fn contains(&self, p: DVec3) -> bool {
         p.cmpge(self.min).all() && p.cmple(self.max).all()
     }
 
-    /// The box with every face moved outwards by `by`.
+    /// Returns the box with every face moved outwards by `by`.
     #[must_use]
     pub fn inflate(&self, by: DVec3) -> Self {
         Self { min: self.min - by, max: self.max + by }
     }
 
-    /// The eight corners; x changes fastest.
+    /// Returns the eight corners; x changes fastest.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {

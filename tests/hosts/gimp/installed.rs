@@ -1,4 +1,4 @@
-//! Runs an installed GIMP without a screen, and reads what it says about paths.
+//! Runs an installed GIMP without a screen, and reads its output about paths.
 
 use pathwarp_gimp::{GimpPath, Stroke};
 use std::fs;

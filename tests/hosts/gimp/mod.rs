@@ -1,4 +1,4 @@
-//! GIMP's own view of the files written for it, and its plug-in at work, where it is installed.
+//! GIMP's view of the files written for it, and its plug-in at work, where it is installed.
 
 mod gimp_2;
 mod gimp_3;

@@ -101,7 +101,7 @@ fn the_plug_in_works_in_gimp_3() {
     let why = answer["said"][1].as_str().unwrap();
     assert!(why.contains("Line") && !why.contains("paths.json"), "{why}");
     let found = read(text.as_bytes()).unwrap();
-    // The command line gives the same points.
+    // The command line gives equal points.
     let input = |name: &str| format!("{}#{name}", at("in.json"));
     let commands: [&[&str]; 5] = [
         &["shaper", "--shaper", &input("Cage")],

@@ -1,4 +1,4 @@
-//! Small drawings with everything that Inkscape computes a shape from. The page is 200 px wide and high.
+//! Small drawings with all objects from which Inkscape computes a shape. The page is 200 px wide and high.
 
 /// Name and content.
 pub const DRAWINGS: &[(&str, &str)] = &[

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The seconds after which a run hangs, as with a window that shows a message. The largest of Inkscape's examples take several.
+/// The seconds after which a run counts as hanging, as with a window that shows a message. Inkscape's largest examples take several.
 const LAST_RESORT: &str = "1000";
 
 /// A command that ends after the last resort.
@@ -67,15 +67,15 @@ pub fn edit(folder: &Path, names: &[String]) {
         run.arg("-a").arg(program());
     }
     let log = File::create(folder.join("log")).unwrap();
-    // A profile of its own, so that the user's is neither read nor changed.
+    // A separate profile, so that the user's is neither read nor changed.
     run.arg("--shell").env("INKSCAPE_PROFILE_DIR", folder.join("profile")).current_dir(folder);
     run.stdin(File::open(folder.join("script")).unwrap()).stdout(log.try_clone().unwrap()).stderr(log);
-    // How Inkscape ends does not matter; what it has saved is looked at.
+    // The way Inkscape ends does not matter; its saved files are examined.
     let ended = run.status().unwrap().code();
     assert!(!matches!(ended, Some(124 | 137)), "Inkscape hangs: {}", fs::read_to_string(folder.join("log")).unwrap());
 }
 
-/// Returns `true` if there is a screen that nobody sees, which effects need, else prints a remark.
+/// Returns `true` if there is a virtual screen, which effects need, else prints a remark.
 pub fn has_screen() -> bool {
     let found = Command::new("xvfb-run").arg("--help").output().is_ok();
     if !found {
@@ -97,7 +97,7 @@ pub fn convert(folder: &Path, args: &[&str]) {
 }
 
 fn finish(run: &mut Command, folder: &Path) {
-    // A program in the folder stands in for the browser.
+    // A program in the folder replaces the browser.
     let run = run.env("INKSCAPE_PROFILE_DIR", folder.join("profile")).env("BROWSER", folder.join("browser"));
     let run = run.current_dir(folder).stdin(Stdio::null());
     let out = run.output().unwrap();

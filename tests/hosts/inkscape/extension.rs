@@ -1,4 +1,4 @@
-//! The extension in an installed Inkscape: its effects run in a window that nobody sees, on documents as Inkscape saves them.
+//! The extension in an installed Inkscape: its effects run on a virtual screen, on documents as Inkscape saves them.
 
 use super::editor;
 use crate::support::{inkscape_drawing, pathwarp};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A drawing with everything that can be selected. The text is in the bundled font, whatever is installed.
+/// A drawing with every kind of object that can be selected. The text is in the bundled font, whatever is installed.
 const BODY: &str = "<g id='layer' inkscape:groupmode='layer' inkscape:label='Layer 1'>\
     <path id='a' style='fill:#c03030' d='M 20,20 H 60 V 60 H 20 Z'/><path id='b' style='fill:#30c030' d='M 80,20 H 120 V 60 Z'/>\
     <path id='c' style='fill:#3030c0' d='M 140,20 H 180 V 60 Z'/>\
@@ -45,7 +45,7 @@ pub fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))
 }
 
-/// Installs the extension into a profile. `Edit warp again` also comes with a change typed in, as actions cannot type.
+/// Installs the extension into a profile. `Edit warp again` is also installed with a change filled in, since actions cannot type.
 pub fn install(profile: &Path) {
     let folder = profile.join("extensions");
     let done = pathwarp(&["install", "inkscape", "--folder", folder.to_str().unwrap()]);
@@ -59,7 +59,7 @@ pub fn install(profile: &Path) {
     fs::write(home.join("edited.inx"), text).unwrap();
 }
 
-/// A folder with a profile that has the extension, and a document with this content, which is `source.svg` there.
+/// Makes a folder with a profile that has the extension, and a document with this content, which is `source.svg` there.
 pub fn workplace(body: &str) -> (TempDir, String) {
     let dir = tempfile::tempdir().unwrap();
     install(&dir.path().join("profile"));
@@ -98,7 +98,7 @@ fn effects_run_in_inkscape() {
     };
     assert_eq!(remembers(&warped), ["a", "b", "c", "g", "u", "t", "upper"], "after saving");
 
-    // Open what was saved: release, edit, move by hand, edit again; then the whole page.
+    // Open the saved file: release, edit, move by hand, edit again; then the whole page.
     let actions = format!(
         "select-by-id:a,g;org.pathwarp.release.noprefs;select-clear;select-by-id:b;org.pathwarp.edited.noprefs;select-clear;\
          select-by-id:c;transform-translate:10,0;org.pathwarp.edited.noprefs;export-filename:{};export-do;select-clear;\
@@ -127,7 +127,7 @@ fn effects_run_in_inkscape() {
     assert_near(&numbers(&page, "layer"), &numbers(&read(&out), "layer"), "the page");
 }
 
-/// The same by the command line.
+/// Returns the result of the command line.
 fn by_command_line(folder: &Path, source: &str) -> String {
     let (mut from, to): (PathBuf, PathBuf) = (folder.join("step.svg"), folder.join("next.svg"));
     fs::write(&from, source).unwrap();

@@ -1,4 +1,4 @@
-//! *Bend by hand…* in an installed Inkscape, with a program in the place of the user and the browser.
+//! *Bend by hand…* in an installed Inkscape, with a program in the role of the user and the browser.
 
 use super::editor;
 use super::extension::{assert_near, numbers, read, run, workplace};
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const BODY: &str = "<path id='a' d='M 20,20 H 60 V 60 H 20 Z'/><path id='b' d='M 80,20 H 120 V 60 Z'/>";
 
-/// Stands in for the user and the browser: `keep`s the result, or closes the page.
+/// Plays the user and the browser: `keep`s the result, or closes the page.
 fn user(folder: &Path, does: &str) {
     let opener = folder.join("browser");
     let web = root().join("crates/pathwarp-editor/web");
@@ -52,7 +52,7 @@ fn bending_by_hand_comes_back_to_inkscape() {
     let line = recipe(&bent, "b").expect("the object remembers its steps");
     assert_eq!(recipe(&bent, "a"), None, "what is not selected stays");
     assert_near(&numbers(&bent, "a"), &numbers(&source, "a"), "a");
-    // The command line of the same words has the same effect.
+    // Those words on the command line have the same effect.
     let words: Vec<String> = line
         .split('\'')
         .enumerate()

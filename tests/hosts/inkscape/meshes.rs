@@ -1,4 +1,4 @@
-//! Bent mesh gradients in an installed Inkscape, which alone draws them, and in PDF, which has them too.
+//! Bent mesh gradients in an installed Inkscape, the only program that draws them, and in PDF, which has them too.
 
 use super::editor;
 use crate::support::pathwarp_in;
@@ -23,7 +23,7 @@ const DRAWING: &str = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http
     <use xlink:href='#a' transform='translate(270 20) rotate(8)'/>\
     <path d='M200 220q40-60 80 0t80 0' style='fill:none;stroke:url(#again);stroke-width:24' transform='translate(-170 20)'/></svg>";
 
-/// A map whose inverse is plain: a sine along x, and then one along y.
+/// A map with a simple inverse: a sine along x, and then one along y.
 const THERE: [&str; 2] = ["x + 6*sin(y/30)", "y + 8*sin((x + 6*sin(y/30))/25)"];
 
 fn back([x, y]: [f64; 2]) -> [f64; 2] {
@@ -53,7 +53,7 @@ impl Picture {
         self.data.len() / 3 / self.width
     }
 
-    /// The largest difference from any pixel around a place in px, since edges are smoothed. `None` beyond the picture.
+    /// Returns the largest difference from any pixel around a point in px, since edges are smoothed; `None` beyond the picture.
     fn off(&self, wanted: &[u8], [x, y]: [f64; 2], scale: f64) -> Option<u8> {
         let [i, k] = [x * scale, y * scale].map(|v| v.floor() as isize);
         let around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [i + a, k + b]));
@@ -67,7 +67,7 @@ impl Picture {
     }
 }
 
-/// The share of pixels of the result that differ by more than 3 % from the source's at the place where they come from.
+/// Returns the fraction of pixels of the result that differ by more than 3 % from the pixels of the source from which they come.
 fn wrong(source: &Picture, result: &Picture, scale: f64) -> f64 {
     const MOST: u8 = 8;
     let all: Vec<bool> = (0..result.height())

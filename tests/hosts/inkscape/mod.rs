@@ -15,7 +15,7 @@ use pathwarp_svg::usvg_tree::parse_tree;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Drawings of which only a part is warped. In the others, the part that stays is live, and Inkscape may well compute it again.
+/// Drawings of which only a part is warped. In the others, the part that stays is live, and Inkscape may compute it again.
 const IN_PART: [&str; 5] = ["3D box", "path effect of a group", "clip path and mask", "clones", "texts"];
 
 /// Largest mean difference, of 255.
@@ -31,7 +31,7 @@ fn difference(a: &Path, b: &Path) -> f64 {
         let side = f64::from(tree.size().width().max(tree.size().height()));
         on_white(rendered(&tree, SIZE, Affine::scale(f64::from(SIZE) / side)))
     });
-    // All is opaque now.
+    // Both pictures are opaque now.
     pathwarp_oracle::difference(&a, &b).mean * 4.0 / 3.0
 }
 
@@ -45,7 +45,7 @@ fn warped(folder: &Path, files: &[PathBuf], ways: &[&str]) -> Vec<String> {
             let mut args = vec!["warp", "--style", "arch", file.to_str().unwrap(), "-q", "-o", &to];
             args.extend(way.split_whitespace());
             let done = pathwarp(&args);
-            // 1: something in the file cannot be warped, and is reported.
+            // Exit code 1: something in the file cannot be warped, and is reported.
             assert!(matches!(done.status.code(), Some(0 | 1)), "{args:?}\n{}", String::from_utf8_lossy(&done.stderr));
             out.push(name);
         }
@@ -69,7 +69,7 @@ fn inkscape_leaves_what_is_warped_alone() {
     };
     let files: Vec<PathBuf> = DRAWINGS.iter().map(|(name, body)| source(name, body)).collect();
     let ways = ["", " --structure flatten", " --strokes outline", " --strokes keep", " --select #a"];
-    // A clip path is not selected by itself; it follows what it clips.
+    // A clip path is not selected by itself; it follows the object that it clips.
     let (clipping, others): (Vec<_>, Vec<_>) =
         files.iter().cloned().partition(|f| f.ends_with("clip path and mask.svg"));
     let mut names = warped(folder, &others, &ways);
@@ -84,7 +84,7 @@ fn inkscape_leaves_what_is_warped_alone() {
     if let Some(examples) = editor::examples() {
         names.extend(warped(folder, &examples, &ways[..1]));
     }
-    // The comparison can fail: a path that says it is a star is drawn as one.
+    // The comparison can fail: a path with the attributes of a star is drawn as a star.
     let star = fs::read_to_string(folder.join("star.svg")).unwrap();
     let live = "<path sodipodi:type='star' sodipodi:sides='5' sodipodi:cx='100' sodipodi:cy='100' sodipodi:r1='80' \
                 sodipodi:r2='32' sodipodi:arg1='-1.57' sodipodi:arg2='-0.94' ";

@@ -1,4 +1,4 @@
-//! What an author of a plug-in meets: values that arrive whole, checks that tell the truth, words on standard error.
+//! Experiences of a plug-in's author: values arrive whole, checks find mistakes, and standard error is shown.
 
 use crate::support::plugins::{Scratch, python};
 use std::fs;
@@ -17,7 +17,7 @@ fn template(s: &Scratch, name: &str, changes: &[(&str, &str)]) -> String {
 }
 
 const POINT: &str = "return x, y + self.height * math.sin(self.waves * x)";
-/// The beginning of the template's laws: what follows is taken out of the entry.
+/// The beginning of the template's laws: the text from there on is removed from the entry.
 const LAWS: &str = "    \"laws\": [";
 
 /// A template whose map answers `point`, with these laws and no cases.
@@ -62,7 +62,7 @@ fn repeated_values_and_texts_arrive_whole() {
     let far = values["far"].as_array().unwrap();
     let mm: f64 = far[0].as_str().unwrap().parse().unwrap();
     assert!((mm - 96.0 / 25.4).abs() < 1e-9 && far[1] == "5", "{said}");
-    // A program of the first version goes on getting the last value.
+    // A program of the first version still gets only the last value.
     let text = fs::read_to_string(s.file("pathwarp-rep.py")).unwrap();
     fs::write(s.file("pathwarp-rep.py"), text.replace("\"pathwarp-plugin\": 2", "\"pathwarp-plugin\": 1")).unwrap();
     let (_, said) = s.expect(3, &["rep", "in.svg", "--plugin", &file, "-o", "out.svg", "--n", "1", "--n", "2"]);
@@ -105,7 +105,7 @@ fn checks_tell_of_crashes_of_edges_and_of_two_answers() {
     assert!(told.contains("gives two answers for the point 3.7,4.3: ") && !told.contains("refitting"), "{told}");
 }
 
-/// The check tells each mistake by its kind, in words that an author finds in the entry or can write into the program.
+/// The check reports each mistake by its kind, in words that an author finds in the entry or can write into the program.
 #[test]
 fn mistakes_are_told_by_their_kind() {
     if !python() {
@@ -179,12 +179,12 @@ fn people_print() {
     assert!(said.contains("pathwarp-loud.py said: I was built"), "{said}");
     let (_, said) = s.expect(0, &["check", &file]);
     assert!(said.contains("pathwarp-loud.py said: I was built"), "{said}");
-    // Much of it is shown in part.
+    // A part of a long text is shown.
     let flood = "print(\"x\" * 100_000, file=sys.stderr)\n        self.height = float";
     let file = template(&s, "flood", &[(loud, flood)]);
     let (_, said) = s.expect(0, &["flood", "in.svg", "--plugin", &file, "-o", "out.svg"]);
     assert!(said.contains("said: …xxx") && said.len() < 2000, "{} bytes", said.len());
-    // Into the protocol.
+    // Text on standard output breaks the protocol.
     let file = template(&s, "lost", &[(loud, "print(\"hello\")\n        self.height = float")]);
     let (_, said) = s.expect(3, &["lost", "in.svg", "--plugin", &file, "-o", "out.svg"]);
     assert!(said.contains("`hello") && said.contains("standard error") && said.contains("file=sys.stderr"), "{said}");

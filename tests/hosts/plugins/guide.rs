@@ -7,12 +7,12 @@ use std::f64::consts::PI;
 use std::fs;
 use std::process::Command;
 
-/// The guide's crate, as a module whose test runs with these.
+/// The guide's crate, as a module whose test runs with the tests here.
 #[path = "swell.rs"]
 #[allow(dead_code, reason = "nobody calls its `main` here")]
 mod swell;
 
-/// The formula of all roads, in the box 0,0,80,40 and with an amount of 80 %.
+/// Returns the formula of all of the guide's ways, in the box 0,0,80,40 and with an amount of 80 %.
 fn swollen(p: Point) -> Point {
     Point::new(p.x, 20.0 + (p.y - 20.0) * (1.0 + 0.8 * (PI * p.x / 80.0).sin().powi(2)))
 }
@@ -70,7 +70,7 @@ fn shell(scratch: &Scratch, commands: &str) {
     assert!(out.status.success(), "{commands}\n{}\n{}", text(&out.stdout), text(&out.stderr));
 }
 
-/// Makes a change: the lines that begin with a space or a minus become those that begin with a space or a plus.
+/// Makes a change: lines that begin with a space or a minus become those that begin with a space or a plus.
 fn change(scratch: &Scratch, diff: &str) {
     let (head, body) = diff.split_once('\n').unwrap();
     let file = scratch.file(head.strip_prefix("--- ").unwrap());
@@ -90,7 +90,7 @@ fn with_logo() -> Scratch {
     scratch
 }
 
-/// The plug-in of a file maps points as the formula does.
+/// Asserts that the plug-in of a file maps points by the formula.
 fn assert_swells(scratch: &Scratch, name: &str, file: &str) {
     let points: Vec<Point> = (0..40).map(|i| Point::new(2.0 * f64::from(i), 35.0 - f64::from(i))).collect();
     let list: String = points.iter().map(|p| format!("{} {}\n", p.x, p.y)).collect();
@@ -125,7 +125,7 @@ fn the_road_in_rust() {
     let file = "pathwarp-swell-fast/target/release/pathwarp-swell-fast";
     assert_swells(&scratch, "swell-fast", file);
     assert!(scratch.file("swollen-fast.svg").exists());
-    // The check sees a wrong derivative.
+    // The check finds a wrong derivative.
     let source = scratch.file("pathwarp-swell-fast/src/main.rs");
     let wrong =
         fs::read_to_string(&source).unwrap().replace("(y - self.middle) * slope, 0.0, growth]", "0.0, 0.0, growth]");
@@ -142,8 +142,8 @@ fn the_road_in_shell() {
     assert_swells(&scratch, "swell-sh", "./pathwarp-swell-sh.sh");
 }
 
-/// The program of the road by a crate is the module above, which is compiled and tested here; its other commands are those of the workspace, whose
-/// tests run them.
+/// The guide's way by a crate has the module above as its program, which is compiled and tested here. Its other commands are commands of
+/// the workspace, whose tests run them.
 #[test]
 fn the_road_by_a_crate() {
     let blocks = blocks("A crate");
@@ -157,7 +157,7 @@ fn the_road_by_a_crate() {
     assert!(commands.contains("-p pathwarp-ripple") && manifest.contains("name = \"pathwarp-ripple\""));
 }
 
-/// `new-plugin` writes nothing over what exists, and refuses names that no deformation can have.
+/// `new-plugin` overwrites no file, and refuses names that no deformation can have.
 #[test]
 fn new_plug_ins_replace_nothing() {
     let scratch = Scratch::new();

@@ -1,4 +1,4 @@
-//! Plug-ins in Python, and the examples that are programs of their own: they give what a built-in deformation gives.
+//! Plug-ins in Python, and the examples that are separate programs, give the results of a built-in deformation.
 
 use crate::support::plugins::{Scratch, entry, python, text};
 use crate::support::{program, root, sample};
@@ -17,7 +17,7 @@ fn ripples() -> Vec<PathBuf> {
     all
 }
 
-/// The same deformation compiled in.
+/// Returns the program with that deformation compiled in.
 fn compiled_in() -> PathBuf {
     program("pathwarp-ripple")
 }
@@ -28,7 +28,7 @@ fn paths(svg: &str) -> Vec<Outline> {
     svg.split(" d=\"").skip(1).map(|rest| Outline::from_svg(rest.split('"').next().unwrap()).unwrap()).collect()
 }
 
-/// Both drawings show the same within `tolerance`.
+/// Asserts that both drawings agree within `tolerance`.
 fn assert_same(a: &Path, b: &Path, tolerance: f64) {
     let [a, b] = [a, b].map(|f| paths(&fs::read_to_string(f).unwrap()));
     assert!(!a.is_empty() && a.len() == b.len());
@@ -60,7 +60,7 @@ fn a_program_gives_what_the_compiled_in_deformation_gives() {
     }
 }
 
-/// By numbers, values and derivatives are asked for together. A program may answer one request before it reads the next.
+/// By numbers, values and derivatives are requested together. A program may answer one request before it reads the next.
 #[test]
 fn requests_that_come_together_may_be_answered_one_by_one() {
     if !python() {
@@ -112,7 +112,7 @@ fn the_examples_and_built_in_deformations_pass_the_check() {
     }
 }
 
-/// A drawing of `n` curves in one path.
+/// Returns a drawing of `n` curves in one path.
 fn logo(n: usize) -> String {
     let mut d = "M0,0".to_owned();
     for i in 0..n {
@@ -126,8 +126,8 @@ fn logo(n: usize) -> String {
     format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 900 800'><path d='{d}'/></svg>")
 }
 
-/// By lines of text, a Python plug-in warps 500 segments in under a second of processor time, its own and Python's start included; ten are
-/// allowed, as machines differ and do other things at the same time.
+/// By lines of text, a Python plug-in warps 500 segments in about a second of processor time, including Python's start. Ten seconds are
+/// allowed, since machines differ and have other load.
 #[test]
 fn five_hundred_segments_in_python_take_about_a_second() {
     if !python() {

@@ -1,4 +1,4 @@
-//! The work of a refit is counted by the parts of the map, and images that leave the range of numbers are errors.
+//! The work of a refit is counted by the parts of the map, and images beyond the range of numbers are errors.
 
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::deform::Registry;
@@ -56,7 +56,7 @@ fn the_limit_holds_within_a_single_segment() {
     assert!(warp_path(&line, &*oscillating, &Options::new(1e-3)).is_ok());
 }
 
-/// A quilt of two by two patches, the identity but for a control point far out, undone.
+/// Returns a recipe that undoes a quilt of two by two patches, the identity except for a control point far out.
 fn far_quilt() -> Recipe {
     let mut points: Vec<Vec<[f64; 2]>> =
         (0..7).map(|j| (0..7).map(|i| [f64::from(i) * 100.0 / 6.0, f64::from(j) * 100.0 / 6.0]).collect()).collect();
@@ -70,17 +70,17 @@ fn far_quilt() -> Recipe {
     Recipe { steps: vec![step] }
 }
 
-/// Found by fuzzing: it took 20 seconds. Counted wherever the budget comes from, and whatever asks the inverse.
+/// Found by fuzzing: this took 20 seconds. The work counts, wherever the budget comes from and whatever uses the inverse.
 #[test]
 fn searching_in_vain_is_counted() {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
     let small = || Arc::new(Budget::new(Limits::default().with(Limit::Work, 1e6)));
     let limited = |e: &GeometryError| matches!(e, GeometryError::Limit(e) if e.limit == Limit::Work);
-    // By the refit alone.
+    // The refit alone counts the work.
     let free = map(&far_quilt());
     let e = warp_path(&path(), &*free, &Options::new(0.01).with_budget(small())).unwrap_err();
     assert!(limited(&e), "{e:?}");
-    // By the recipe: then every use of the map counts, and says so.
+    // With the recipe's budget, every use of the map counts and is reported.
     let budget = small();
     let outline = path();
     let built =
@@ -92,13 +92,13 @@ fn searching_in_vain_is_counted() {
         built.failure().is_none()
     });
     let asked = asked.count() as f64;
-    // Fewer than if all of them had a source.
+    // Fewer calls than if all points had a source.
     assert!(asked < 1e6 / built.map.cost().work, "{asked}");
     assert!(matches!(built.failure(), Some(Error::Geometry(e)) if limited(&e)));
     assert!(built.map.point(place(0)).is_nan());
 }
 
-/// Values are those of the same map without a budget, bit by bit.
+/// Values are equal to those of the map without a budget, bit by bit.
 #[test]
 fn counting_changes_no_value() {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
@@ -136,7 +136,7 @@ fn placing_the_steps_of_a_recipe_is_counted() {
     assert!(matches!(build(1e3).err().unwrap(), Error::Geometry(GeometryError::Limit(_))));
 }
 
-/// Found by fuzzing: the tolerance was missed, by rounding of coordinates beyond 1e15, and no place said so.
+/// Found by fuzzing: rounding of coordinates beyond 1e15 exceeded the tolerance, and no point was reported.
 #[test]
 fn a_missed_tolerance_is_always_reported() {
     let swirl = map(&recipe(&[("swirl", &[])]));
@@ -182,12 +182,12 @@ fn coordinates_without_resolution_are_reported() {
             let r = &warped.report;
             let resolution = r.resolution.unwrap_or_else(|| panic!("{data}: {r:?}"));
             assert!(resolution > 0.01 && r.max_error >= resolution && !r.unresolved.is_empty(), "{data}: {r:?}");
-            // Numbers of the largest size are rounded to steps of this size; there is some room for sums.
+            // The largest numbers are rounded to steps of this size; sums get some room.
             let step = outline.extent().max(Outline::from(&warped.path).extent()) * f64::EPSILON;
             assert!(resolution >= step && resolution < 1e4 * step, "{data}: {resolution}");
         }
     }
-    // Nothing is said where numbers are fine enough, even if the tolerance is missed for another reason.
+    // Where numbers are fine enough nothing is reported, even if the tolerance is missed for another reason.
     for tolerance in [1e-2, 1e-8] {
         let near = warp_path(&path(), &*bend, &Options::new(tolerance)).unwrap().report;
         assert_eq!(near.resolution, None);

@@ -10,12 +10,12 @@ const REGION: Rect = Rect::new(-8.0, 4.0, 56.0, 36.0);
 /// A fraction of big integers.
 type Q = RBig;
 
-/// A floating-point number exactly.
+/// Returns the exact value of a floating-point number.
 fn q(v: f64) -> Q {
     Q::try_from(v).unwrap()
 }
 
-/// All Bernstein polynomials of a degree with their derivatives.
+/// Returns all Bernstein polynomials of a degree with their derivatives.
 fn bernstein(n: usize, t: &Q) -> Vec<[Q; 2]> {
     let values = |n: usize| -> Vec<Q> {
         let power = |v: &Q, k: usize| (0..k).fold(Q::ONE, |p, _| p * v);
@@ -27,12 +27,12 @@ fn bernstein(n: usize, t: &Q) -> Vec<[Q; 2]> {
     own.into_iter().enumerate().map(|(i, b)| [b, q(n as f64) * (at(i.checked_sub(1)) - at(Some(i)))]).collect()
 }
 
-/// The value of Σ B·w·P / Σ B·w with its derivatives by x and y, rounded once.
+/// Returns the value of Σ B·w·P / Σ B·w with its derivatives by x and y, rounded once.
 fn by_definition(l: &Lattice, p: Point) -> [Vec2; 3] {
     let (width, height) = (q(REGION.width()), q(REGION.height()));
     let across = bernstein(l.columns() - 1, &((q(p.x) - q(REGION.x0)) / &width));
     let up = bernstein(l.rows() - 1, &((q(p.y) - q(REGION.y0)) / &height));
-    // The sums of w·x, w·y and w: their values and derivatives.
+    // Values and derivatives of the sums of w·x, w·y and w.
     let mut sums: [[Q; 3]; 3] = Default::default();
     for (j, up) in up.iter().enumerate() {
         for (i, across) in across.iter().enumerate() {

@@ -1,20 +1,20 @@
-//! Moved by ten million units together with its artwork, every deformation gives the same map: `expr` alone is written in coordinates.
+//! Moved by ten million units together with its artwork, every deformation gives an equal map. Only `expr` is written in coordinates.
 
 use pathwarp::deform::{Built, Registry};
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::{Map, inverse_over};
 use pathwarp::param::{Args, Frame};
 
-/// Far enough that rounding 1 unit relative to the coordinates is a ten-millionth, and exact in binary.
+/// An offset so large that a unit is a ten-millionth of the coordinates; exact in binary.
 const FAR: Vec2 = Vec2::new(1e7, -1.2e7);
 const FRAME: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
-/// Largest difference, as a share of the frame's width.
+/// Largest difference, as a fraction of the frame's width.
 const SAME: f64 = 1e-8;
 
-/// A deformation, and settings with `@` before each x,y that is a place.
+/// A deformation, and settings with `@` before each x,y that is a point.
 type Setting = (&'static str, &'static [(&'static str, &'static str)]);
 
-/// Settings of every deformation but `expr`.
+/// Settings of every deformation except `expr`.
 const SETTINGS: &[Setting] = &[
     (
         "shaper",
@@ -108,7 +108,7 @@ M@5,70C@20,70 @30,60 @50,66C@70,72 @80,70 @95,70M@0,100C@20,105 @30,95 @50,100C@
     ("affine", &[("rotate", "20"), ("scale-x", "80%"), ("skew-x", "15")]),
 ];
 
-/// The value with its marked places moved.
+/// Returns the value with its marked points moved.
 fn moved(value: &str, by: Vec2) -> String {
     let mut parts = value.split('@');
     let mut out = parts.next().unwrap_or_default().to_owned();
@@ -123,7 +123,7 @@ fn moved(value: &str, by: Vec2) -> String {
     out
 }
 
-/// The setting built for a frame of 100 × 100 that is moved.
+/// Builds the setting for a frame of 100 × 100 that is moved.
 fn built((name, pairs): &Setting, by: Vec2) -> Built {
     let mut args = Args::new();
     for (key, value) in *pairs {
@@ -142,14 +142,14 @@ fn every_deformation_is_the_same_far_from_the_origin() {
         let back = inverse_over(far.map.clone(), FRAME + FAR);
         let [mut worst, mut returned] = [0.0f64; 2];
         for k in 0..400_u32 {
-            // Multiples of 1/64, which are the same far away.
+            // Multiples of 1/64 are exact far away, too.
             let at = |n: u32| f64::from((k * n) % 6400) / 64.0;
             let p = Point::new(at(997), at(2213));
             let (a, b) = (near.map.point(p), far.map.point(p + FAR));
             if a.is_finite() || b.is_finite() {
                 worst = worst.max((b - FAR).distance(a)).max(if a.is_finite() && b.is_finite() { 0.0 } else { 1.0 });
             }
-            // There and back, to some place of the same image where the map folds.
+            // Where the map folds, the way there and back ends at some point with an equal image.
             let p = back.point(b);
             if p.is_finite() {
                 returned = returned.max(far.map.point(p).distance(b));

@@ -1,4 +1,4 @@
-//! Nodes that a shape does not need go, however many there are and whatever creases the map has.
+//! Nodes that a shape does not need are removed, however many there are and whatever creases the map has.
 
 use pathwarp::check::frame;
 use pathwarp::deform::{Registry, Swirl};
@@ -10,7 +10,7 @@ use pathwarp::{Outline, Seg, Subpath};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A circle of `n` cubics within the frame of checks.
+/// Returns a circle of `n` cubics within the frame of checks.
 fn circle(n: usize) -> Outline {
     let step = TAU / n as f64;
     let at = |i: usize| Vec2::from_angle(step * (i % n) as f64);
@@ -25,7 +25,7 @@ fn circle(n: usize) -> Outline {
     Outline { subpaths: vec![Subpath { start: segs[0].start(), segs, closed: true }] }
 }
 
-/// The same circle of two arcs.
+/// Returns that circle as two arcs.
 fn arcs() -> Outline {
     Outline::from_svg("M83,47A31,31 0 0 1 21,47A31,31 0 0 1 83,47Z").unwrap()
 }
@@ -36,7 +36,7 @@ fn warped(outline: &Outline, map: &dyn Map, tolerance: f64) -> Option<PathReport
     Some(report)
 }
 
-/// The demos of all deformations that fit curves: affine ones move control points, and some are not defined on all of the circle.
+/// Returns the demos of all deformations that fit curves: affine ones move control points, and some are not defined on all of the circle.
 fn maps() -> Vec<(&'static str, Arc<dyn Map>)> {
     let registry = Registry::builtin();
     let built = registry.entries().iter().map(|entry| {
@@ -84,7 +84,7 @@ fn a_hundred_thousand_nodes_are_few_pieces() {
     assert!(many <= two + 1, "{many} pieces, {two} of two arcs");
 }
 
-/// The part of a segment between two parameters.
+/// Returns the part of a segment between two parameters.
 fn part(seg: &Seg, from: f64, to: f64) -> Seg {
     match seg {
         Seg::Arc(a) => Seg::Arc(a.subsegment(from, to)),
@@ -92,14 +92,14 @@ fn part(seg: &Seg, from: f64, to: f64) -> Seg {
     }
 }
 
-/// A segment in equal parts of its parameter.
+/// Returns a segment in equal parts of its parameter.
 fn divided(seg: &Seg, n: usize) -> Outline {
     let at = |i: usize| i as f64 / n as f64;
     let segs = (0..n).map(|i| part(seg, at(i), at(i + 1))).collect();
     Outline { subpaths: vec![Subpath { start: seg.start(), segs, closed: false }] }
 }
 
-/// The number of pieces if each reaches as far as a single one can.
+/// Returns the number of pieces if each reaches as far as a single one can.
 fn greedy(seg: &Seg, map: &dyn Map, tolerance: f64) -> usize {
     let fits = |from: f64, to: f64| {
         let alone = divided(&part(seg, from, to), 1);
@@ -107,7 +107,7 @@ fn greedy(seg: &Seg, map: &dyn Map, tolerance: f64) -> usize {
     };
     let (mut from, mut pieces, mut step) = (0.0, 0, 0.1);
     while from < 1.0 {
-        // Gallop until a piece misses, and bisect: closely, since at a crease a remainder would be a piece of its own.
+        // Gallop until a piece misses, then bisect closely, since at a crease a remainder would be one more piece.
         let (mut low, mut high) = (from, f64::INFINITY);
         while low < 1.0 && high - low > 1e-9 {
             let to = if high.is_finite() { 0.5 * (low + high) } else { f64::min(low + step, 1.0) };
@@ -120,8 +120,8 @@ fn greedy(seg: &Seg, map: &dyn Map, tolerance: f64) -> usize {
     pieces
 }
 
-/// One long segment takes hardly more than a greedy search. The same curve in parts is counted, too. A part of all cases; `EVERY=1` is all
-/// of them.
+/// One long segment takes hardly more pieces than a greedy search, and so does this curve in parts. By default only a part of the cases
+/// runs; `EVERY=1` runs them all.
 #[test]
 fn one_long_segment_has_as_many_pieces_as_a_greedy_search_finds() {
     let every: usize = std::env::var("EVERY").map_or(16, |n| n.parse().unwrap());
@@ -165,7 +165,7 @@ fn a_line_under_nine_waves_takes_nine_pieces() {
     assert!(pieces <= 9, "{pieces}");
 }
 
-/// A polygon of places at angles from `from` on, closed.
+/// Returns a closed polygon of points.
 fn polygon(places: impl Iterator<Item = Point>) -> Outline {
     let mut all: Vec<Point> = places.collect();
     all.push(all[0]);
@@ -173,7 +173,7 @@ fn polygon(places: impl Iterator<Item = Point>) -> Outline {
     Outline { subpaths: vec![Subpath { start: all[0], segs, closed: true }] }
 }
 
-/// Chords of a circle, each of which turns by less than a corner.
+/// Returns chords of a circle, each of which turns by less than a corner.
 fn chords(middle: Point, radius: f64, n: usize) -> impl Iterator<Item = Point> {
     (0..n).map(move |i| middle + Vec2::from_angle(TAU * i as f64 / n as f64) * radius)
 }
@@ -192,7 +192,7 @@ fn flattened_circles_are_few_pieces_where_some_chords_stay_straight() {
 
 #[test]
 fn what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many() {
-    // Far from the swirl.
+    // The circle is far from the swirl.
     let swirl = Swirl::new(Point::new(60.0, 40.0), 25.0).build().unwrap().map;
     let away = Point::new(500.0, 500.0);
     let flattened = warped(&polygon(chords(away, 20.0, 1500)), &swirl, 0.02).unwrap();

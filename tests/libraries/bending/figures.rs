@@ -1,7 +1,7 @@
-//! The figures by which thresholds of the refit were chosen: pieces and work over a fixed sample. A threshold that is moved
-//! without need makes one of them grow.
+//! Pieces and work of the refit over a fixed sample, by which its thresholds were chosen. A threshold that is moved without need makes
+//! one of these figures grow.
 //!
-//! Work is counted in calls of the map, of one batch or one jet each: unlike time, it is the same on every machine.
+//! Work is counted in calls of the map, of one batch or one jet each. Unlike time, it is equal on every machine.
 
 use pathwarp::kurbo::{CubicBez, Point};
 use pathwarp::map::{Class, Enclosure, Formula, Jet, Map, Real};
@@ -48,7 +48,7 @@ impl Map for Counted<'_> {
     }
 }
 
-/// A map that declares nothing about itself.
+/// A map without any declaration.
 struct Waves;
 impl Formula for Waves {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -72,7 +72,7 @@ impl Random {
     }
 }
 
-/// Smooth cubics as in drawings, wild ones, cubics with a coincident handle, and arcs of flat ellipses.
+/// Returns smooth cubics as in drawings, wild ones, cubics with a coincident handle, and arcs of flat ellipses.
 fn segments() -> Vec<Seg> {
     let mut r = Random(11);
     (0..240)
@@ -101,7 +101,7 @@ fn segments() -> Vec<Seg> {
         .collect()
 }
 
-/// Closed curves of many smoothly joined segments, some much shorter than their neighbours.
+/// Returns closed curves of many smoothly joined segments, some much shorter than their neighbours.
 fn runs() -> Vec<Outline> {
     let mut r = Random(5);
     (0..12)
@@ -130,7 +130,7 @@ fn runs() -> Vec<Outline> {
         .collect()
 }
 
-/// Pieces and calls of the map for all outlines under all maps, at each tolerance.
+/// Returns pieces and calls of the map for all outlines under all maps, at each tolerance.
 fn figures(outlines: &[Outline], options: impl Fn(f64) -> Options) -> [[usize; 2]; 4] {
     TOLERANCES.map(|tolerance| {
         let (mut pieces, mut calls) = (0, 0);

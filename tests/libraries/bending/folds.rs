@@ -1,4 +1,4 @@
-//! `bend` warns of folds where there is artwork, and only there.
+//! `bend` warns of folds on the artwork, and only there.
 
 use pathwarp::Outline;
 use pathwarp::deform::Registry;
@@ -22,7 +22,7 @@ const ALONG: [&str; 6] = [
     "M0 0L50 20L100 0",
 ];
 
-/// Whether a bend warns of a fold, and the share of evenly spaced places on the artwork that it turns over.
+/// Returns `true` if a bend warns of a fold, and the fraction of evenly spaced points of the artwork that it turns over.
 fn bent(outline: &Outline, args: &[(&str, &str)]) -> (bool, f64) {
     let recipe = Recipe { steps: vec![Step::new("bend", Args::from_pairs(args))] };
     let frame = Frame::new(outline.bounding_box().unwrap());

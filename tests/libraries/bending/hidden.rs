@@ -1,5 +1,5 @@
-//! Nothing hides between samples: maps with features much smaller than the segments that run over them. What comes out is measured
-//! densely, at places that have nothing to do with those of the fitter.
+//! Nothing hides between samples: maps with features much smaller than the segments that run over them. Results are measured densely, at
+//! parameters unrelated to those of the fitter.
 
 use pathwarp::deform::{Ffd, Mesh, Registry};
 use pathwarp::kurbo::{Affine, Point, Rect};
@@ -27,7 +27,7 @@ fn map_of(name: &str, args: &[(&str, &str)]) -> Arc<dyn Map> {
     Registry::builtin().get(name).unwrap().build_from(&Args::from_pairs(args), &Frame::new(BOX)).unwrap().map
 }
 
-/// The largest distance of the true image from a path, by about `samples` of each segment, an irrational share of their spacing apart.
+/// Returns the largest distance of the true image from a path, by about `samples` of each segment, offset by an irrational fraction.
 fn off(outline: &Outline, map: &dyn Map, warped: &RefittedPath, samples: usize) -> f64 {
     let place = |i: usize| (i as f64 + 0.5 + 0.4 * (i as f64 * 0.754_877_666_2).fract()) / (samples as f64 + 1.0);
     let points: Vec<Point> =
@@ -35,7 +35,7 @@ fn off(outline: &Outline, map: &dyn Map, warped: &RefittedPath, samples: usize) 
     far(&points, &[Run::of(&warped.path.curves()).sampled(8, TOLERANCE)]).0
 }
 
-/// What became of paths under maps.
+/// Outcomes of paths under maps.
 #[derive(Default)]
 struct Found {
     right: usize,
@@ -43,7 +43,7 @@ struct Found {
     warned: Vec<String>,
     /// Refused with an error.
     refused: usize,
-    /// Beyond the tolerance in silence, or not even said to be checked.
+    /// Beyond the tolerance without a report, or not even reported as checked.
     silent: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ impl Found {
         }
     }
 
-    /// None is wrong in silence, and at most so many are given up.
+    /// Asserts that no result is wrong without a report, and that at most `given_up` are refused or reported.
     #[track_caller]
     fn judge(&self, given_up: usize) {
         assert!(self.silent.is_empty(), "{} of {}:\n{}", self.silent.len(), self.right, self.silent.join("\n"));
@@ -123,7 +123,7 @@ fn small_swirls() {
     found.judge(0);
 }
 
-/// Every built-in map says how closely its curves must be looked at, and so does its inverse.
+/// Every built-in map declares how closely its curves must be sampled, and so does its inverse.
 #[test]
 fn built_in_maps_are_not_merely_sampled() {
     let frame = check::frame();
@@ -147,7 +147,7 @@ fn built_in_maps_are_not_merely_sampled() {
     assert!(seen > Registry::builtin().entries().len() * 3 / 2, "{seen}");
 }
 
-/// A formula with features down to a thousandth of the frame.
+/// Returns a formula with features down to a thousandth of the frame.
 fn formula(r: &mut Random) -> String {
     let (at, y, share) = (r.between(40.0, 360.0), r.between(20.0, 280.0), r.between(0.0, 1.0));
     let width = 400.0 * 10f64.powf(r.between(-3.0, -1.0));
@@ -176,7 +176,7 @@ enum Kind {
 
 const KINDS: [Kind; 5] = [Kind::Wave, Kind::Small, Kind::Formula, Kind::Grid, Kind::Style];
 
-/// One of them, in words, and how many samples of a segment show it.
+/// Returns a map of a kind, its description, and the samples of a segment that show its features.
 fn any_map(kind: Kind, r: &mut Random) -> (String, Arc<dyn Map>, usize) {
     let text = |v: f64| format!("{v}");
     let n = (1 + r.below(300)) as f64;
@@ -250,7 +250,7 @@ fn any_map(kind: Kind, r: &mut Random) -> (String, Arc<dyn Map>, usize) {
     (format!("{name} {args:?}"), map_of(name, &pairs), if kind == Kind::Wave { 30 * n as usize + 997 } else { 9973 })
 }
 
-/// Random maps of a kind over all shapes.
+/// Runs random maps of a kind over all shapes.
 fn sweep(kind: Kind, seed: u64, count: usize) -> Found {
     let (mut r, mut found) = (Random::new(seed), Found::default());
     for i in 0..count {
@@ -260,7 +260,7 @@ fn sweep(kind: Kind, seed: u64, count: usize) -> Found {
     found
 }
 
-/// Chains of two of any kinds.
+/// Runs chains of two maps of any kinds over all shapes.
 fn chains(seed: u64, count: usize) -> Found {
     let (mut r, mut found) = (Random::new(seed), Found::default());
     for i in 0..count {
@@ -283,7 +283,7 @@ fn nothing_hides_in_random_chains() {
     chains(1, 16).judge(4);
 }
 
-/// `cargo test --release --test libraries hidden -- --ignored --nocapture`; `docs/benchmarks.md` has the counts.
+/// Run with `cargo test --release --test libraries hidden -- --ignored --nocapture`; `docs/benchmarks.md` has the counts.
 #[test]
 #[ignore = "thousands of maps take minutes"]
 fn nothing_hides_in_thousands_of_maps() {

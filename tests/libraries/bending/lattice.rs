@@ -1,5 +1,5 @@
-//! Free-form deformation against its definition (de Casteljau's algorithm, de Boor's recursion), and what is promised of its
-//! images and borders.
+//! Free-form deformation against its definition (de Casteljau's algorithm, de Boor's recursion), and the promises about its images and
+//! borders.
 
 use pathwarp::kurbo::{CubicBez, Line, ParamCurve, PathEl, Point, Rect, Shape, Vec2};
 use pathwarp::map::{AffineMap, Class, Creases, Jet, Lattice, LatticeMap, Map, RationalBezier};
@@ -9,7 +9,7 @@ use pathwarp_oracle::Random;
 
 const REGION: Rect = Rect::new(20.0, 10.0, 120.0, 90.0);
 
-/// All points moved by up to `by` (share of a cell), weights between 1/w and w.
+/// Returns a lattice with all points moved by up to `by` (fraction of a cell), and weights between 1/w and w.
 fn random(degree: [usize; 2], cells: [usize; 2], by: f64, w: f64, seed: u64) -> Lattice {
     let mut l = Lattice::regular(REGION, degree, cells);
     let mut r = Random::new(seed);
@@ -73,7 +73,7 @@ fn values_are_de_casteljaus_at_every_degree() {
     }
 }
 
-/// A line of constant s is the Bézier curve of the `H_j(s)`, exactly, as one cubic.
+/// A line of constant s becomes the Bézier curve of the `H_j(s)`, exactly, as one cubic.
 #[test]
 fn iso_lines_are_exact() {
     for (m, n) in [(3, 3), (2, 3), (5, 3), (3, 2), (10, 3)] {
@@ -101,7 +101,7 @@ fn iso_lines_are_exact() {
             for (got, want) in [(p0, expected.p0), (p1, expected.p1), (p2, expected.p2), (p3, expected.p3)] {
                 assert!(got.distance(want) < 1e-8, "{m}x{n} {s}: {got:?} {want:?}");
             }
-            // The exact image says the same.
+            // The exact image gives the same curve.
             let exact = map.image(&RationalBezier::from_seg(&line).unwrap()).unwrap();
             assert_eq!(exact.degree(), (m + n).max(n));
             assert!(exact.eval(0.4).distance(expected.eval(0.4)) < 1e-11);
@@ -125,7 +125,7 @@ fn exact_images_of_cubics_and_arcs() {
             assert!(image.eval(t).distance(map.point(source.eval(t))) < 1e-11);
         }
     }
-    // Across the border there is none; wholly outside it is the curve itself.
+    // Across the border there is no exact image; wholly outside it is the curve itself.
     let map = LatticeMap::new(&random([3, 2], [1, 1], 1.0, 1.0, 9), false);
     let across = RationalBezier::polynomial(&[Point::new(0.0, 30.0), Point::new(60.0, 40.0)]);
     assert!(map.image(&across).is_none());
@@ -151,7 +151,7 @@ fn nothing_moves_outside() {
     assert!(same(segs[0], drawn[0]) && same(segs[1], drawn[1]));
     let last = segs[segs.len() - 1];
     assert!((0..=4).all(|i| last.eval(f64::from(i) / 4.0).distance(drawn[3].eval(f64::from(i) / 4.0)) < 1e-13));
-    // The line through the region: straight to the border, curved inside, straight on.
+    // The line through the region is straight to the border, curved inside, and straight again.
     let inner = &segs[2..segs.len() - 1];
     assert!(
         matches!(inner[0], pathwarp::kurbo::PathSeg::Line(s) if s.p1.distance((20.0, 50.0).into()) < 1e-9),
@@ -162,15 +162,15 @@ fn nothing_moves_outside() {
         matches!(inner[inner.len() - 1], pathwarp::kurbo::PathSeg::Line(s) if s.p0.distance((120.0, 50.0).into()) < 1e-9)
     );
     assert!(inner.len() == 3);
-    // A line that passes by the region above it is not split, though it crosses the border's lines prolonged.
+    // A line that passes above the region is not split, though it crosses the prolonged lines of the border.
     let mut creases = Creases::default();
     map.creases(&mut creases);
     assert!(creases.splits(&Seg::Line(Line::new((0.0, 5.0), (140.0, 5.0)))).is_empty());
     assert_eq!(creases.splits(&Seg::Line(Line::new((0.0, 15.0), (140.0, 15.0)))).len(), 2);
 }
 
-/// With k + 1 rows frozen the first k derivatives agree across the border and the next does not: measured by one-sided
-/// difference quotients of order k and k + 1 on both sides.
+/// With k + 1 rows frozen, the first k derivatives agree across the border and the next does not, by one-sided difference quotients of
+/// order k and k + 1 on both sides.
 #[test]
 fn frozen_rows_make_smooth_joints() {
     let degree = 5;
@@ -184,7 +184,7 @@ fn frozen_rows_make_smooth_joints() {
                 }
             }
             let map = LatticeMap::new(&l, false);
-            // F(p) − p inside, in powers of the distance d to the border: the order of the first that does not vanish.
+            // F(p) − p inside, in powers of the distance d to the border. The order is that of the first power that does not vanish.
             let at = |d: f64| {
                 let p = Point::new(REGION.x0 + d, 47.0);
                 (map.point(p) - p).hypot()
@@ -221,7 +221,7 @@ fn spline_lattices_follow_their_definition_and_join_smoothly() {
             let l = random(degree, cells, 1.5, w, 11);
             let map = LatticeMap::new(&l, true);
             for p in grid(REGION, 12) {
-                // The influences are computed by themselves: basis functions, not patches.
+                // The influences are computed independently, by basis functions instead of patches.
                 let by_influence =
                     l.influence(p).into_iter().fold(Vec2::ZERO, |sum, ((i, j), r)| sum + l.point(i, j).to_vec2() * r);
                 assert!(map.point(p).distance(by_influence.to_point()) < 1e-11);
@@ -282,7 +282,7 @@ fn the_inverse_undoes_and_says_where_it_cannot() {
             let q = back.point(map.point(p));
             assert!(q.distance(p) < 1e-11, "{degree:?} {cells:?} {p:?} {q:?}");
         }
-        // The drawing there and back: within the tolerance each way.
+        // The drawing is mapped there and back, within the tolerance each way.
         let art = Outline::from_svg("M10,50 L130,55 M70,50 m-20,0 a20,20 0 1 0 40,0 a20,20 0 1 0 -40,0").unwrap();
         let there = warp_path(&art, &map, &Options::new(1e-4)).unwrap();
         let again = warp_path(&Outline::from(&there.path), &*back, &Options::new(1e-4)).unwrap();
@@ -290,7 +290,7 @@ fn the_inverse_undoes_and_says_where_it_cannot() {
         assert!(worst < 1e-3, "{degree:?} {cells:?} {worst}");
         assert!(again.path.bounding_box().is_finite());
     }
-    // Beyond what the extended region's surroundings cover there is no answer.
+    // Outside of the surroundings that an extended region covers, there is no answer.
     let map = LatticeMap::new(&random([3, 3], [1, 1], 0.3, 1.0, 2), true);
     let back = map.inverse().unwrap();
     assert!(back.point(Point::new(1e6, 0.0)).is_nan());
@@ -299,7 +299,7 @@ fn the_inverse_undoes_and_says_where_it_cannot() {
     }
 }
 
-/// Beyond its region an extended lattice may fold back over itself: the preimage in the region goes first.
+/// Beyond its region an extended lattice may fold back over itself; the preimage in the region then takes precedence.
 #[test]
 fn the_region_goes_before_its_surroundings() {
     let region = Rect::new(20.0, 20.0, 220.0, 220.0);

@@ -1,4 +1,4 @@
-//! Thresholds of the refit at work: cases that only one of them decides.
+//! Cases that a single threshold of the refit decides.
 
 use pathwarp::kurbo::{CubicBez, ParamCurveNearest, PathEl, Point, Vec2};
 use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
@@ -22,7 +22,7 @@ fn only_lines(w: &RefittedPath) -> bool {
 /// Bends the plane on both sides of x = 500, and lifts the right side by a height.
 struct Step(f64);
 
-/// One side of it.
+/// One side of a [`Step`].
 struct Side(f64);
 impl Formula for Side {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -51,7 +51,7 @@ fn a_tear_is_bridged_by_a_line_unless_it_is_rounding() {
     assert_eq!(pieces(0.002), smooth + 1);
 }
 
-/// The smoothly joined segments on both sides of a tear are merged; from one side's limit to the other's there is a line.
+/// Smoothly joined segments on both sides of a tear are merged; a line joins the limits of the two sides.
 #[test]
 fn a_tear_between_merged_segments_is_bridged_by_a_line() {
     let d = "M400 300C420 300 440 300 460 300S520 300 540 300S580 300 600 300";
@@ -78,7 +78,7 @@ fn a_tear_between_merged_segments_is_bridged_by_a_line() {
     }
 }
 
-/// Nodes on a tear between segments on one side of it: the image has no gap.
+/// Segments on one side of a tear that touch it in a node have an image without a gap.
 #[test]
 fn a_tear_that_is_touched_in_a_node_is_not_crossed() {
     for d in ["M600 300L500 310L600 340", "M600 280C560 280 500 290 500 310S560 340 600 340"] {

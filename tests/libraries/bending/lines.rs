@@ -1,4 +1,4 @@
-//! Lines of lettering in shapes: stems, folds, heights, gaps and the outline of the shape, measured on what comes out.
+//! Lines of lettering in shapes: stems, folds, heights, gaps and the outline of the shape, measured on the results.
 
 use pathwarp::deform::{Built, Envelope, Lines};
 use pathwarp::kurbo::{Affine, BezPath, ParamCurve, ParamCurveNearest, Point, Rect, Shape};
@@ -7,14 +7,14 @@ use pathwarp::{Outline, refit};
 
 const SHAPES: &str = include_str!("../../../samples/shapes.svg");
 
-/// The names and paths of the sample shapes.
+/// Returns the names and paths of the sample shapes.
 fn shapes() -> Vec<(&'static str, Outline)> {
     let attribute = |line: &'static str, name: &str| Some(line.split_once(name)?.1.split_once('"')?.0);
     let named = SHAPES.lines().filter_map(|l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?)));
     named.map(|(name, d)| (name, Outline::from_svg(d).unwrap())).collect()
 }
 
-/// Blocks as high as capitals and about as wide, line by line.
+/// Returns blocks as high as capitals and about as wide, line by line.
 fn letters(lines: &[&str]) -> Vec<(usize, Letter)> {
     let mut out = Vec::new();
     for (row, line) in lines.iter().enumerate() {
@@ -41,7 +41,7 @@ fn put(letters: &[(usize, Letter)], shape: &Outline, lines: Lines) -> Result<Bui
     Envelope::new(frame, shape).letters(all).lines(lines).build()
 }
 
-/// The outlines of all letters where the map takes them from.
+/// Returns the outlines of all letters at their positions in the map's source.
 fn sources(built: &Built, letters: &[(usize, Letter)]) -> Vec<(usize, Outline, Rect)> {
     let place = |k: usize| built.placement.letters.get(k).map_or(Affine::IDENTITY, |p| p[0]);
     let one = |(k, (row, l)): (usize, &(usize, Letter))| {
@@ -59,7 +59,7 @@ const WORDS: [&[&str]; 4] = [
     &["EAT", "SLEEP", "SURF", "REPEAT"],
 ];
 
-/// In every shape: nothing folds, stems stand, and the lowest letter is at least a third as high as the highest, at its lowest place.
+/// In every shape nothing folds, stems stand, and at its lowest point the lowest letter is at least a third as high as the highest.
 #[test]
 fn letters_stand_and_are_alike() {
     let all = shapes();
@@ -89,7 +89,7 @@ fn letters_stand_and_are_alike() {
     }
 }
 
-/// What is fitted lies in the shape, and the lines keep one distance.
+/// Fitted letters lie in the shape, and the lines keep one distance.
 #[test]
 fn letters_fill_the_shape_and_keep_their_distance() {
     let letters = letters(&["LOVE", "MUSIC", "ALWAYS"]);
@@ -105,7 +105,7 @@ fn letters_fill_the_shape_and_keep_their_distance() {
                 assert!(path.winding(p) != 0 || off() < 2e-3 * size, "{name}: {p:?} is {} outside", off());
             }
         }
-        // The bottom of a line and the top of the next one at the same places.
+        // The bottom of a line and the top of the next one at equal x.
         let at = |row: usize, x: f64, top: bool| {
             sources.iter().filter(|s| s.0 == row).find_map(|(_, _, b)| {
                 let [x0, x1] = [b.x0, b.x1].map(|x| built.map.point(Point::new(x, b.y0)).x);
@@ -128,7 +128,7 @@ fn letters_fill_the_shape_and_keep_their_distance() {
     }
 }
 
-/// More lines than a shape can hold are refused by name; one map for all still takes them.
+/// More lines than a shape can hold are refused by name; one map for all still accepts them.
 #[test]
 fn a_line_without_room_is_named() {
     let shapes = shapes();

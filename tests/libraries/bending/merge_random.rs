@@ -9,7 +9,7 @@ use pathwarp::{Outline, Seg, Subpath};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// A knot: its place, direction, and the lengths of the handles before and after it.
+/// A knot: its position, direction, and the lengths of the handles before and after it.
 type Knot = (Point, f64, [f64; 2]);
 
 fn knot() -> impl Strategy<Value = Knot> {
@@ -17,7 +17,7 @@ fn knot() -> impl Strategy<Value = Knot> {
     ((0.0..1000.0f64, 0.0..1000.0f64), 0.0..TAU, [handle(), handle()]).prop_map(|(p, a, h)| (p.into(), a, h))
 }
 
-/// Smoothly joined cubics between random knots, each cut at random places: curvature jumps at the knots and not at the cuts.
+/// Smoothly joined cubics between random knots, each cut at random parameters: curvature jumps at the knots and not at the cuts.
 fn spline() -> impl Strategy<Value = Vec<Seg>> {
     let cuts = prop::collection::vec(0.02..0.98f64, 0..3);
     prop::collection::vec((knot(), cuts), 3..8).prop_map(|knots| {
@@ -32,7 +32,7 @@ fn spline() -> impl Strategy<Value = Vec<Seg>> {
     })
 }
 
-/// Points along a smooth closed curve with random harmonics, joined by Hermite cubics: few nodes would do.
+/// Points along a smooth closed curve with random harmonics, joined by Hermite cubics. A few nodes would suffice.
 fn blob() -> impl Strategy<Value = Vec<Seg>> {
     let harmonics = prop::array::uniform6(-0.25..0.25f64);
     (harmonics, 50.0..450.0f64, 6usize..40, prop::array::uniform32(0.0..0.8f64)).prop_map(|(h, size, n, jitter)| {
@@ -55,7 +55,7 @@ fn blob() -> impl Strategy<Value = Vec<Seg>> {
     })
 }
 
-/// The parts of a cubic between random parameters; parts share their ends bit by bit.
+/// Appends the parts of a cubic between random parameters; parts share their ends bit by bit.
 fn cut(c: CubicBez, mut at: Vec<f64>, out: &mut Vec<Seg>) {
     at.sort_by(f64::total_cmp);
     at.dedup_by(|a, b| *a - *b < 1e-3);
@@ -69,7 +69,7 @@ fn cut(c: CubicBez, mut at: Vec<f64>, out: &mut Vec<Seg>) {
     }
 }
 
-/// The steepest have a slope of one.
+/// Waves of which the steepest have a slope of one.
 fn waves() -> impl Strategy<Value = Waves> {
     (prop::array::uniform2(60.0..1500.0f64), prop::array::uniform2(0.0..0.16f64)).prop_map(|(length, steep)| Waves {
         length,
@@ -127,8 +127,8 @@ fn spline_through(nodes: &[(f64, f64)]) -> Vec<Seg> {
     (0..nodes.len() / 3).map(|k| cubic(&nodes[3 * k..3 * k + 4])).collect()
 }
 
-/// A cubic with a tiny first handle that hooks out by 1.4 times the tolerance and back, between two foot points at which it has
-/// nearly the same direction. A random case found it.
+/// A cubic with a tiny first handle hooks out by 1.4 times the tolerance and back, between two foot points at which it has nearly one
+/// direction. A random case found it.
 #[test]
 fn a_hook_between_foot_points_is_seen() {
     let nodes = [
@@ -152,7 +152,7 @@ fn a_hook_between_foot_points_is_seen() {
     holds(&segs, &map, 3.0, false).unwrap();
 }
 
-/// Fourteen waves of two thirds of the tolerance along one segment. A random case found it.
+/// Fourteen waves of two thirds of the tolerance run along one segment. A random case found them.
 #[test]
 fn waves_shorter_than_a_segment_are_seen() {
     let segs = spline_through(&[
@@ -175,8 +175,7 @@ fn waves_shorter_than_a_segment_are_seen() {
     holds(&segs, &map, 3.0, false).unwrap();
 }
 
-/// Merged cubics that bulge by 1.075 times the tolerance between two foot points, where the image turns sharply. Random cases found
-/// them.
+/// Merged cubics bulge by 1.075 times the tolerance between two foot points, where the image turns sharply. Random cases found them.
 #[test]
 fn bulges_of_the_cubic_between_foot_points_are_seen() {
     let segs = spline_through(&[

@@ -1,4 +1,4 @@
-//! Where nodes go in glyphs and icons: the figures of docs/benchmarks.md.
+//! Positions of nodes in glyphs and icons: the figures of docs/benchmarks.md.
 
 use super::nodes::built_in;
 use pathwarp::kurbo::{BezPath, Point, Rect, Vec2};
@@ -8,7 +8,7 @@ use pathwarp::{Outline, Seg, Subpath};
 use pathwarp_oracle::{arriving, cubics, leaving, turn};
 use std::sync::Arc;
 
-/// The names of fonts and of the icons, each with their outlines.
+/// Returns the names of fonts and of the icons, each with its outlines.
 fn drawings() -> Vec<(String, Vec<Outline>)> {
     let fonts = std::env::var("FONTS").unwrap_or_default();
     let style = pathwarp_text::TextStyle { size: 1000.0, ..Default::default() };
@@ -30,7 +30,7 @@ fn drawings() -> Vec<(String, Vec<Outline>)> {
     out
 }
 
-/// Maps as the program makes them for a drawing in this box.
+/// Returns maps as the program makes them for a drawing in this box.
 fn usual(frame: Rect) -> Vec<(&'static str, Arc<dyn Map>)> {
     let (Rect { x0, y0, x1, y1 }, w) = (frame, frame.width());
     let r = 0.6 * w.max(frame.height());
@@ -47,7 +47,7 @@ fn usual(frame: Rect) -> Vec<(&'static str, Arc<dyn Map>)> {
     out
 }
 
-/// The places of a closed subpath's nodes that are its structure, by their definition.
+/// Returns the indices of a closed subpath's nodes that are its structure, by their definition.
 fn structure(sub: &Subpath) -> Vec<usize> {
     let n = sub.segs.len();
     let axis = |v: Vec2| (0..2).find(|c| [v.x, v.y][*c].abs() <= 0.0087 * v.hypot());
@@ -64,7 +64,7 @@ fn structure(sub: &Subpath) -> Vec<usize> {
     (0..n).filter(|i| is_structure(*i)).collect()
 }
 
-/// Returns `true` if the result has a node at the image of a node of the source, or at the extreme of the image that lies within 20° of turn.
+/// Returns `true` if the result has a node at the image of a node of the source, or at the image's extreme within a turn of 20° from it.
 fn is_kept(sub: &Subpath, i: usize, map: &dyn Map, nodes: &[(Point, [Vec2; 2])], near: f64) -> bool {
     let n = sub.segs.len();
     let image = map.jet(sub.segs[i].start()).p;
@@ -97,7 +97,7 @@ fn nodes_of(path: &BezPath) -> Vec<(Point, [Vec2; 2])> {
     (0..all.len()).map(|i| (all[i].p0, [arriving(&all[before(i)]), leaving(&all[i])])).collect()
 }
 
-/// The figures of docs/benchmarks.md, which has the command.
+/// Prints the figures of docs/benchmarks.md, which has the command.
 #[test]
 #[ignore = "takes minutes"]
 fn figures() {

@@ -1,4 +1,4 @@
-//! Nodes where a type designer puts them: at extremes, with handles along the axes, and the same on both sides of an axis of symmetry.
+//! Nodes as a type designer puts them: at extremes, with handles along the axes, and alike on both sides of an axis of symmetry.
 
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveExtrema, PathSeg, Point, Rect, Vec2};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// The frame of all maps, symmetrical about both axes.
 const SIZE: f64 = 100.0;
 
-/// A deformation of the registry, in a frame.
+/// Builds a deformation of the registry, in a frame.
 pub(super) fn built_in(name: &str, args: &[(&str, &str)], frame: Rect) -> Arc<dyn Map> {
     Registry::builtin().get(name).unwrap().build_from(&Args::from_pairs(args), &Frame::new(frame)).unwrap().map
 }
@@ -21,7 +21,7 @@ fn built(name: &str, args: &[(&str, &str)]) -> Arc<dyn Map> {
     built_in(name, args, Rect::new(-SIZE, -SIZE, SIZE, SIZE))
 }
 
-/// Maps that are symmetrical about x = 0.
+/// Returns maps that are symmetrical about x = 0.
 fn symmetrical() -> [Arc<dyn Map>; 8] {
     let style = |style: &str, bend: &str| built("warp", &[("style", style), ("bend", bend)]);
     [
@@ -40,8 +40,8 @@ fn mirrored(p: Point) -> Point {
     Point::new(-p.x, p.y)
 }
 
-/// Half of a contour, from a point at the top of the axis to one at its bottom: smooth joints and corners, extremes with handles along the
-/// axes, lines, and nodes anywhere.
+/// Returns half of a contour, from a point at the top of the axis to one at its bottom: smooth joints and corners, extremes with handles
+/// along the axes, lines, and nodes anywhere.
 fn half(random: &mut Random) -> Vec<Seg> {
     let count = 1 + random.below(5);
     let mut nodes: Vec<(Point, Vec2)> = Vec::new();
@@ -63,14 +63,14 @@ fn half(random: &mut Random) -> Vec<Seg> {
         if random.below(6) == 0 {
             out.push(Seg::Line(pathwarp::kurbo::Line::new(p, q)));
         } else if random.below(4) == 0 {
-            // In two parts, with a node anywhere.
+            // Cut in two, with a node anywhere.
             let t = random.between(0.2, 0.8);
             out.extend([cubic.subsegment(0.0..t), cubic.subsegment(t..1.0)].map(Seg::Cubic));
         } else {
             out.push(Seg::Cubic(cubic));
         }
     }
-    // Each begins where the one before ends, to the last bit.
+    // Each segment begins where the one before ends, to the last bit.
     let mut joined: Vec<Seg> = Vec::new();
     for s in out {
         joined.push(match (joined.last(), s) {
@@ -91,7 +91,7 @@ fn mirror(s: &Seg) -> Seg {
     }
 }
 
-/// A contour that is symmetrical about x = 0.
+/// Returns a contour that is symmetrical about x = 0.
 fn drawing(random: &mut Random) -> Outline {
     let mut segs = half(random);
     segs.extend(segs.clone().iter().rev().map(mirror));
@@ -102,7 +102,7 @@ fn cubics(path: &BezPath) -> Vec<CubicBez> {
     path.segments().map(|s| s.to_cubic()).collect()
 }
 
-/// The largest distance of a control point from that of the nearest mirrored piece.
+/// Returns the largest distance between a control point and its counterpart in the nearest mirrored piece.
 fn asymmetry(all: &[CubicBez]) -> f64 {
     let off = |a: &CubicBez, b: &CubicBez| {
         let b = [b.p3, b.p2, b.p1, b.p0].map(mirrored);
@@ -150,7 +150,7 @@ fn symmetrical_drawings_stay_symmetrical_node_by_node() {
     assert!(failed.is_empty(), "{} of {}: {:#?}", failed.len(), 16 * all, &failed[..failed.len().min(12)]);
 }
 
-/// How far pieces go beyond both of their ends in a direction of an axis, and how far handles at smooth extremes are off it.
+/// Returns the distance by which pieces pass both of their ends along an axis, and the distance of handles at smooth extremes from it.
 fn missed(path: &BezPath) -> (f64, f64) {
     let all: Vec<CubicBez> = cubics(path);
     let (mut beyond, mut off) = (0.0f64, 0.0f64);
@@ -184,7 +184,7 @@ fn missed(path: &BezPath) -> (f64, f64) {
 }
 
 /// Between its nodes the image is monotone in either coordinate, so a piece within the tolerance of it passes its ends by the tolerance at
-/// most; an extreme that was missed would pass them by more.
+/// most. A missed extreme would pass them by more.
 #[test]
 fn every_extreme_of_the_result_has_a_node_with_handles_along_the_axis() {
     let (mut random, tolerance) = (Random::new(7), 0.02);

@@ -1,5 +1,5 @@
-//! Random segments under random maps: the refit stays within its budget, its output is finite and within the tolerance, or the
-//! report says that it is not. The generators prefer degenerate cases: points that coincide, or are collinear, or nearly so.
+//! Random segments under random maps: the refit stays within its budget, and its output is finite and within the tolerance, or the
+//! report warns. The generators prefer degenerate cases: points that coincide, or are collinear, or nearly so.
 
 mod cases;
 pub(crate) mod maps;
@@ -13,7 +13,7 @@ use pathwarp::{Outline, Seg, Subpath};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// Coordinates on a coarse grid, which often coincide or line up; some are off it by a hair.
+/// Coordinates on a coarse grid, which often coincide or line up; some are slightly off it.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => (0u8..=8).prop_map(|i| f64::from(i) * 125.0),
@@ -41,7 +41,7 @@ fn seg() -> impl Strategy<Value = Seg> {
     ]
 }
 
-/// The steepest fold over.
+/// Waves of which the steepest fold over.
 fn waves() -> impl Strategy<Value = Waves> {
     let pair = |range: std::ops::Range<f64>| prop::array::uniform2(range);
     (pair(30.0..1500.0), pair(0.0..0.25), pair(0.0..TAU)).prop_map(|(length, steep, phase)| Waves {
@@ -65,7 +65,7 @@ fn holds(seg: Seg, map: &dyn Map, options: &Options) -> Result<(), TestCaseError
         let e = pathwarp_oracle::distance(&seg, map, &w.path, 1000, tolerance);
         prop_assert!(e <= tolerance * 1.0005 + 1e-9, "{} {:?}", e / tolerance, w.report);
     }
-    // Skip segments that are their own reverse.
+    // Skip segments that are equal to their reverse.
     if seg.reversed() == seg {
         return Ok(());
     }

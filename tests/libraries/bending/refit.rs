@@ -18,7 +18,7 @@ fn maps() -> [(&'static str, Box<dyn Map>); 3] {
     ]
 }
 
-/// Number of segments, and error ÷ tolerance.
+/// Returns the number of segments, and error ÷ tolerance.
 fn measure(seg: Seg, map: &dyn Map, tolerance: f64) -> (usize, f64) {
     let w = warp_path(&single(seg), map, &Options::new(tolerance)).unwrap();
     assert!(w.report.unresolved.is_empty(), "{seg:?}: budget");
@@ -29,7 +29,7 @@ fn cubic(p: [(f64, f64); 4]) -> Seg {
     Seg::Cubic(CubicBez::new(p[0], p[1], p[2], p[3]))
 }
 
-/// All icons under all maps at all tolerances. Run with `--release -- --ignored --nocapture`.
+/// Refits all icons under all maps at all tolerances. Run with `--release -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes; needs the fetched icons"]
 #[allow(clippy::print_stdout)]
@@ -69,7 +69,7 @@ fn corpus_has_no_violation() {
     assert_eq!(bad, 0);
 }
 
-/// As above for merged paths, subpath by subpath.
+/// Refits all icons as merged paths, and measures them subpath by subpath. Run with `--release -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes; needs the fetched icons"]
 #[allow(clippy::print_stdout)]
@@ -144,8 +144,8 @@ fn merging_saves_nodes_and_keeps_the_tolerance_corners_and_smoothness() {
 }
 
 /// A merged cubic begins to turn sharply just before the joint of a long line and a short round corner, between the line's last two
-/// samples: errors of 1.27, 1.02 and 1.01 times the tolerance, in shapes of the icons. That of the third is highest between the last of
-/// the closer samples and the joint.
+/// samples: errors of 1.27, 1.02 and 1.01 times the tolerance, in shapes of the icons. The third error peaks between the last of the
+/// closer samples and the joint.
 #[test]
 fn errors_beside_a_joint_at_which_the_cubic_turns_are_seen() {
     let bookmark = "M125,125 C125,55.96440627115075 180.96440627115075,0 250,0 L750,0 C819.0355937288492,0 875,55.96440627115075 \
@@ -244,7 +244,7 @@ fn points(el: &pathwarp::kurbo::PathEl) -> Vec<Point> {
 #[test]
 fn failure_modes_stay_within_the_tolerance() {
     let cases = [
-        // Near-cusps that sixteen even samples step over.
+        // A near-cusp that sixteen even samples step over.
         cubic([(200.0, 200.0), (800.0, 790.0), (205.0, 800.0), (800.0, 200.0)]),
         cubic([(492.5, 596.3), (524.6, 443.8), (479.9, 654.5), (509.9, 513.0)]),
         // Out and back along a line.
@@ -252,7 +252,7 @@ fn failure_modes_stay_within_the_tolerance() {
         cubic([(100.0, 500.0), (900.0, 500.0), (100.0, 500.0), (600.0, 500.0)]),
         // A closed cubic.
         cubic([(500.0, 300.0), (900.0, 900.0), (100.0, 900.0), (500.0, 300.0)]),
-        // Coincident handles: at one end, at both, all but one.
+        // Coincident handles at one end, at both, and all but one.
         cubic([(100.0, 200.0), (100.0, 200.0), (500.0, 700.0), (800.0, 300.0)]),
         cubic([(100.0, 200.0), (100.0, 200.0), (800.0, 300.0), (800.0, 300.0)]),
         cubic([(100.0, 200.0), (100.0, 200.0), (100.0, 200.0), (800.0, 900.0)]),
@@ -340,7 +340,7 @@ fn images_straight_to_rounding_become_lines() {
             assert!(pathwarp_oracle::largest_turn(&pathwarp_oracle::cubics(&w.path)) < 1e-3, "{height}");
         }
     }
-    // No line if that would use a large share of the tolerance, or make a corner.
+    // An image does not become a line if that takes much of the tolerance, or makes a corner.
     let w = warp_path(&outline, &Ripple(1e-7), &Options::new(1e-6)).unwrap();
     assert!(!w.path.elements().iter().any(|e| matches!(e, pathwarp::kurbo::PathEl::LineTo(_))));
     let hook = cubic([(100.0, 100.0), (100.0, 100.0 + 1e-6), (600.0, 100.0), (900.0, 100.0)]);

@@ -1,4 +1,4 @@
-//! Shapes that come again, as letters do: their cubics are carried from place to place, and stay within the tolerance.
+//! Shapes that come again, as letters do: their cubics are moved from one to the next, and stay within the tolerance.
 
 use pathwarp::Outline;
 use pathwarp::engine::KnownShapes;
@@ -15,7 +15,7 @@ const LETTERS: [&str; 3] = [
     "M1 4C3 1 5 1 6 4 6.5 5.5 7 7 8 8 8.7 8.7 9 9.5 8.8 10.5 8.5 12 7 13 5 13 3.5 13 2.2 12.4 1.5 11.5 1.1 11 0.9 10 1 9Z",
 ];
 
-/// Lines of text, one outline each. Places are rounded as in single precision.
+/// Returns lines of text, one outline each. Positions are rounded as in single precision.
 fn lines(count: usize) -> Vec<Outline> {
     let line = |k: usize| {
         let letters = (0..60).map(|i| {
@@ -34,7 +34,7 @@ fn maps() -> [Box<dyn Map>; 4] {
     [Box::new(Bicubic::mild()), Box::new(Bicubic::strong()), Box::new(Rational::new()), Box::new(Ripple(40.0))]
 }
 
-/// Every subpath of the result against the image of its own.
+/// Compares every subpath of the result with the image of its source.
 fn assert_within(line: &Outline, w: &RefittedPath, map: &dyn Map, tolerance: f64) {
     assert!(w.report.max_error <= tolerance && w.report.unresolved.is_empty());
     let out = Outline::from(&w.path);
@@ -62,7 +62,7 @@ fn letters_stay_within_the_tolerance() {
     }
 }
 
-/// Counts values and jets.
+/// A map that counts values and jets.
 struct Counted<'a>(&'a dyn Map, AtomicUsize);
 
 impl Map for Counted<'_> {

@@ -1,4 +1,4 @@
-//! Reports: exact images are reported as exact, and places at which the work budget ran out are listed.
+//! Reports: exact images are reported as exact, and points at which the work budget ran out are listed.
 
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::engine::RESOLUTION;
@@ -56,7 +56,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     for tolerance in [10.0, 1.0, 0.01] {
         let w = warp_path(&outline, &map, &Options::new(tolerance).with_nodes(Nodes::Source)).unwrap();
         let out = pathwarp_oracle::cubics(&w.path);
-        // In the order of the path.
+        // The nodes come in the order of the path.
         let mut nodes = out.iter().map(|c| c.p3);
         for s in outline.segs() {
             let want = map.point(s.end());
@@ -66,7 +66,7 @@ fn without_merging_every_node_of_the_source_stays_a_node() {
     }
 }
 
-/// Torn along x = 500, without declaring a crease.
+/// A map torn along x = 500, without declaring a crease.
 struct Torn;
 impl Map for Torn {
     fn jet(&self, p: Point) -> Jet {
@@ -94,7 +94,7 @@ fn misfits_are_reported_with_their_place() {
                 assert!(!r.unresolved.is_empty(), "{d} {tolerance}");
                 assert!(r.unresolved.iter().all(|p| (p.x - 500.0).abs() < 1e-3), "{d}: {:?}", r.unresolved);
                 assert!(r.max_error > tolerance && r.assurance == Assurance::Sampled, "{d} {tolerance}: {r:?}");
-                // The stated error is that of the line across the tear: half of its length, unless it comes near the image elsewhere.
+                // The reported error is that of the line across the tear: half of its length, unless it comes near the image elsewhere.
                 let image: Vec<Point> = (0..=4000).map(|i| Torn.point(seg.eval(f64::from(i) / 4000.0))).collect();
                 let off = |p: Point| image.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min).sqrt();
                 let places = w.path.segments().flat_map(|s| (0..=40).map(move |i| s.eval(f64::from(i) / 40.0)));
@@ -141,7 +141,7 @@ fn the_budget_ends() {
     }
 }
 
-/// Found by fuzzing: with a tolerance that rounding exceeds by less than a billionth, no place was named.
+/// Found by fuzzing: with a tolerance that rounding exceeds by less than a billionth, no point was named.
 #[test]
 fn a_tolerance_below_rounding_names_a_place() {
     let far = Outline::from_svg("M11e9 3h2v5").unwrap();
@@ -223,8 +223,8 @@ impl Formula for Pole {
     }
 }
 
-/// Near a pole, the rounding of the source is seen through a lens: what is stated covers it. Places of lines that need no rounding, closer and
-/// closer to the pole, have images that are exact to a few digits of their own.
+/// Near a pole, the rounding of the source is magnified, and the reported error covers it. Closer and closer to the pole, points of lines
+/// that need no rounding have images that are exact to a few digits.
 #[test]
 fn the_error_near_a_pole_is_at_least_the_true_one() {
     for d in ["M26 7L90 11", "M26 64L90 0", "M90 90L26 -38", "M26 7Q58 8 90 11"] {

@@ -20,8 +20,8 @@ fn shaper(pairs: &[(&str, &str)]) -> Result<Arc<dyn Map>, Error> {
     Ok(Arc::new(built.map))
 }
 
-/// Criterion: a straight line on an iso-line comes out as exactly one cubic with the exact control points. The exact ones come
-/// from de Casteljau on the completed net, its inner points by equation (7) as printed.
+/// A straight line on an iso-line becomes exactly one cubic with the exact control points. These come from de Casteljau's algorithm on
+/// the completed net, whose inner points follow from equation (7) as printed.
 #[test]
 fn iso_lines_are_exactly_one_cubic() {
     let map = shaper(&[("shaper", CAGE)]).unwrap();
@@ -50,7 +50,7 @@ fn iso_lines_are_exactly_one_cubic() {
     }
 }
 
-/// The net of `CAGE`, inner points by the paper's equation (7).
+/// Returns the net of `CAGE`, with inner points by the paper's equation (7).
 fn net() -> [[Point; 4]; 4] {
     let p = |x: f64, y: f64| Point::new(x, y);
     let mut n = [
@@ -73,7 +73,7 @@ fn net() -> [[Point; 4]; 4] {
     n
 }
 
-/// The identity, said in a way that no shortcut recognises.
+/// The identity, in a form that no shortcut recognises.
 struct Plain;
 impl Formula for Plain {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
@@ -81,8 +81,8 @@ impl Formula for Plain {
     }
 }
 
-/// Criterion: the identity adds no segment, keeps lines lines, and moves nothing. Both the shaper's own (recognised as affine)
-/// and one that goes all the way through the fitter.
+/// The identity adds no segment, keeps lines lines, and moves nothing: both that of the shaper, which is recognised as affine, and one
+/// that passes through the whole fitter.
 #[test]
 fn identity_gives_the_path_back() {
     let d = "M10,10 L40,10 C60,10 70,30 70,50 Q70,80 30,80 L10,60 Z M20,20 L30,20 30,30 Z M80,80 C80,80 90,85 95,95";
@@ -113,7 +113,7 @@ fn identity_gives_the_path_back() {
 }
 
 fn point() -> impl Strategy<Value = Point> {
-    // Now and then degenerate: coincident and collinear points come up on a coarse grid.
+    // On a coarse grid, coincident and collinear points occur now and then.
     prop_oneof![
         3 => (-200.0..300.0f64, -200.0..300.0f64).prop_map(|(x, y)| Point::new(x, y)),
         1 => (0..4i32, 0..4i32).prop_map(|(x, y)| Point::new(f64::from(x) * 30.0, f64::from(y) * 30.0)),
@@ -122,7 +122,7 @@ fn point() -> impl Strategy<Value = Point> {
 
 fn cage() -> impl Strategy<Value = String> {
     prop_oneof![
-        // A bent square, mostly sound.
+        // A bent square, mostly valid.
         3 => prop::collection::vec((-25.0..25.0f64, -25.0..25.0f64), 12).prop_map(|d| {
             let corner = [(0.0, 100.0), (100.0, 100.0), (100.0, 0.0), (0.0, 0.0)];
             let p = |i: usize, k: f64| {
@@ -133,7 +133,7 @@ fn cage() -> impl Strategy<Value = String> {
             let side = |i: usize| format!("C{} {} {}", p(3 * i + 1, 1.0 / 3.0), p(3 * i + 2, 2.0 / 3.0), p((3 * i + 3) % 12, 0.0));
             format!("M{} {} {} {} {} Z", p(0, 0.0), side(0), side(1), side(2), side(3))
         }),
-        // Anything.
+        // Any points.
         1 => prop::collection::vec(point(), 3..14).prop_map(|p| {
             let s: Vec<String> = p.iter().map(|p| format!("{},{}", p.x, p.y)).collect();
             format!("M{} Z", s.join(" L"))
@@ -150,8 +150,7 @@ fn anchors() -> impl Strategy<Value = Option<String>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Criterion: random shapers, bases and targets never panic, loop or give numbers that are not finite; every failure has
-    /// a name.
+    /// Random shapers, bases and targets never panic, loop or give numbers that are not finite; every failure has a name.
     #[test]
     fn random_shapers_warp_or_fail_by_name(cage in cage(), base in anchors(), target in anchors(), drawn in any::<bool>()) {
         let mut pairs = vec![("shaper", cage.as_str())];

@@ -7,7 +7,7 @@ use pathwarp::map::{Crease, Creases, Formula, Jet, Level, Map, Real};
 use pathwarp::refit::{Options, warp_path};
 use std::sync::Arc;
 
-/// The distance between the image and the result.
+/// Returns the distance between the image and the result.
 fn apart(source: &Outline, map: &dyn Map, tolerance: f64, certify: bool) -> f64 {
     let w = warp_path(source, map, &Options::new(tolerance).with_certify(certify)).unwrap();
     pathwarp_oracle::distance(source, map, &w.path, 500, tolerance)
@@ -37,7 +37,7 @@ fn shapes_that_touch_the_ends_of_a_skeleton_follow_it() {
     }
 }
 
-/// Moves everything to the right of a line that it knows, and below one that it does not tell.
+/// Moves everything to the right of a line that it declares, and below a line that it does not declare.
 struct Torn(f64);
 
 impl Torn {
@@ -79,7 +79,7 @@ impl Formula for Branch {
     }
 }
 
-/// A crease that the map does not tell is found where its branch stops to be the map.
+/// A crease that the map does not declare is found where its branch and the map begin to differ.
 #[test]
 fn results_are_judged_against_the_map() {
     let source = Outline::from_svg("M10 20C90 -10 90 90 15 75L80 10A30 30 0 0 1 20 60").unwrap();

@@ -1,7 +1,7 @@
 //! Checks that pictures of every kind are read as other programs read them.
 //!
-//! The files in `pictures/` have 16 × 16 pixels in four tiles. They were written by Pillow 13 (libjpeg-turbo, libwebp, zlib), which also gave
-//! the expected colours.
+//! The files in `pictures/` have 16 × 16 pixels in four tiles. They and the expected colours were written by Pillow 13 (libjpeg-turbo,
+//! libwebp, zlib).
 
 use crate::support::root;
 use flate2::{Compression, Crc, write::ZlibEncoder};
@@ -19,13 +19,13 @@ fn file(name: &str) -> Vec<u8> {
     fs::read(root().join("tests/libraries/raster/pictures").join(name)).unwrap()
 }
 
-/// All pixels, with straight alpha.
+/// Returns all pixels, with straight alpha.
 fn pixels(pixmap: &Pixmap) -> Vec<Rgba> {
     let straight = pixmap.pixels().iter().map(PremultipliedColorU8::demultiply);
     straight.map(|c| [c.red(), c.green(), c.blue(), c.alpha()]).collect()
 }
 
-/// The pixels of a picture of four tiles, given row by row.
+/// Returns the pixels of a picture of four tiles, row by row.
 fn tiled(tiles: &[Rgba; 4]) -> Vec<Rgba> {
     (0..256).map(|i| tiles[i / 128 * 2 + i % 16 / 8]).collect()
 }
@@ -86,7 +86,7 @@ fn riff(out: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) {
     out.extend(content);
 }
 
-/// `lossy-alpha.webp` as the only frame of an animation, with this height. The decoder itself would panic at a wrong one.
+/// Reads `lossy-alpha.webp` as the only frame of an animation, with a wrong height, at which the decoder itself would panic.
 #[test]
 fn frames_of_webps_are_as_large_as_they_say() {
     let still = file("lossy-alpha.webp");
@@ -131,7 +131,7 @@ fn pngs_with_animations_are_their_default_image() {
     check("default-image.png", &TILES, 0);
 }
 
-/// Orientation 6: the first row is the right side, so what is stored on the left is at the top.
+/// Orientation 6: the first row is the right side, so pixels stored on the left are at the top.
 #[test]
 fn orientation_is_found_in_every_format() {
     let [a, b, c, d] = TILES;
@@ -152,7 +152,7 @@ fn chunk(out: &mut Vec<u8>, name: &[u8; 4], content: &[u8]) {
     out.extend([&name[..], content, &crc.sum().to_be_bytes()].concat());
 }
 
-/// A PNG made from its rows, each preceded by the number of its filter.
+/// Encodes a PNG from its rows, each preceded by the number of its filter.
 fn png(
     [width, height]: [u32; 2],
     depth: u8,
@@ -174,7 +174,7 @@ fn png(
     out
 }
 
-/// The pixels of a PNG of one row.
+/// Returns the pixels of a PNG of one row.
 fn row(width: u32, depth: u8, color: u8, extra: &[(&[u8; 4], &[u8])], samples: &[u8]) -> Vec<Rgba> {
     let bytes = png([width, 1], depth, color, false, extra, &[&[0], samples].concat());
     pixels(&Picture::read(&bytes).unwrap().pixmap)
@@ -224,7 +224,7 @@ fn palettes_and_transparent_colours_of_pngs() {
     assert_eq!(row(2, 16, 0, &[(b"tRNS", &[1, 2])], &[1, 2, 1, 3]), [[0; 4], [1, 1, 1, 255]]);
 }
 
-/// The decoder itself would panic.
+/// At such palettes, the decoder itself would panic.
 #[test]
 fn palettes_that_end_within_a_colour_are_errors() {
     for length in [3, 4, 5, 6] {
@@ -244,7 +244,7 @@ fn interlaced_pngs() {
     assert_eq!(pixels(&Picture::read(&bytes).unwrap().pixmap), grey([10, 20, 30, 40]));
 }
 
-/// A GIF with a page of 4 × 3 pixels and a frame that repeats the colours 0, 1, 2, 3, of which 2 is transparent.
+/// Returns a GIF with a page of 4 × 3 pixels and a frame that repeats the colours 0, 1, 2, 3, of which 2 is transparent.
 fn gif(frame: [u16; 4], is_interlaced: bool) -> Vec<u8> {
     let mut out = b"GIF89a\x04\0\x03\0\x81\0\0".to_vec();
     out.extend([255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255]);
@@ -283,7 +283,7 @@ fn frames_of_gifs_have_their_place() {
     assert_eq!(shown([0, 0, 4, 3], false), "rg.w rg.w rg.w");
     assert_eq!(shown([0, 1, 4, 2], false), ".... rg.w rg.w");
     assert_eq!(shown([1, 1, 2, 2], false), ".... .rg. ..w.");
-    // Larger than the page, beyond a corner, outside.
+    // Frames larger than the page, beyond a corner, and outside.
     assert_eq!(shown([0, 0, 5, 4], false), "rg.w g.wr .wrg");
     assert_eq!(shown([2, 2, 4, 3], false), ".... .... ..rg");
     assert_eq!(shown([4, 0, 2, 2], false), ".... .... ....");
@@ -295,7 +295,7 @@ fn frames_of_gifs_have_their_place() {
     }
 }
 
-/// Stripes one pixel wide keep their colours, as colours are not averaged before they are packed.
+/// Stripes one pixel wide keep their colours, since colours are not averaged before they are packed.
 #[test]
 fn jpegs_are_as_fine_in_colour_as_in_brightness() {
     let mut pixmap = Pixmap::new(16, 16).unwrap();

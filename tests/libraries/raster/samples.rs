@@ -1,4 +1,4 @@
-//! Checks that every sample is as the README of the samples says, and visible.
+//! Checks that every sample matches its description in the README of the samples, and is visible.
 
 use pathwarp::kurbo::{BezPath, PathSeg, Shape};
 use pathwarp_oracle::difference;
@@ -10,7 +10,7 @@ fn folder() -> PathBuf {
     crate::support::root().join("samples")
 }
 
-/// Names and contents of all samples.
+/// Returns the names and contents of all samples.
 fn samples() -> Vec<(String, String)> {
     let files = fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
     let drawings = files.filter(|file| file.extension().is_some_and(|ext| ext == "svg"));
@@ -68,7 +68,7 @@ fn the_readme_lists_all() {
     }
 }
 
-/// Adjacent tiles share every edge that is not on the frame, with the same numbers in opposite directions.
+/// Adjacent tiles share every edge that is not on the frame, with equal numbers in opposite directions.
 #[test]
 fn tiles_share_their_edges() {
     let text = fs::read_to_string(folder().join("tiles.svg")).unwrap();

@@ -1,4 +1,4 @@
-//! Surfaces that the boundary of a region crosses: their images are cut along it, and are right on both sides up to the cut.
+//! Surfaces that the boundary of a region crosses: their images are cut along it, and are correct on both sides up to the cut.
 
 use pathwarp::budget::{Budget, Limit, Limits};
 use pathwarp::param::Args;
@@ -15,7 +15,7 @@ const EYE: DVec3 = DVec3::new(32.0, 32.0, 400.0);
 /// The factor by which the fourth corner is pushed away.
 const PUSH: f64 = 1.5;
 
-/// A surface over 8..48 × 6..50 whose x and y are linear in u and v; z(x, y) is its height.
+/// Returns a surface over 8..48 × 6..50 whose x and y are linear in u and v, with the height z(x, y).
 fn hills() -> Surface {
     let points = (0..16).map(|k| {
         let wave = f64::from((k * 29 + 11) % 13);
@@ -31,7 +31,7 @@ fn height(surface: &Surface, x: f64, y: f64) -> f64 {
     (0..16).map(|k| surface.points[k].z * bu[k % 4] * bv[k / 4]).sum()
 }
 
-/// The part of space beyond a plane through `at`, as a large tetrahedron over it: three points of the plane, and one beyond.
+/// Returns the part of space beyond a plane through `at`, as a large tetrahedron: three points of the plane, and one beyond.
 fn beyond(at: DVec3, normal: DVec3) -> [DVec3; 4] {
     let n = normal.normalize();
     let a = n.any_orthonormal_vector();
@@ -40,14 +40,14 @@ fn beyond(at: DVec3, normal: DVec3) -> [DVec3; 4] {
     [rim(0.0), rim(120.0), rim(240.0), at + 300.0 * n]
 }
 
-/// 0 on the plane of the first three corners, and 1 at the fourth.
+/// Returns the linear function that is 0 on the plane of the first three corners and 1 at the fourth.
 fn along(p: DVec3, [a, b, c, d]: [DVec3; 4]) -> f64 {
     let normal = (b - a).cross(c - a);
     normal.dot(p - a) / normal.dot(d - a)
 }
 
-/// The source of an image, from p̂ = O + (p − O)/δ with linear δ: 1 on the plane and 1/1.5 at the fourth corner. Right only for points beyond
-/// the plane.
+/// Returns the source of an image under p̂ = O + (p − O)/δ with linear δ, which is 1 on the plane and 1/1.5 at the fourth corner. Correct
+/// only for points beyond the plane.
 fn source(q: DVec3, corners: [DVec3; 4]) -> DVec3 {
     let along = |p: DVec3| along(p, corners);
     let slope = 1.0 / PUSH - 1.0;
@@ -58,7 +58,7 @@ fn source(q: DVec3, corners: [DVec3; 4]) -> DVec3 {
     if along(p) > 0.0 { p } else { q }
 }
 
-/// The map that pushes the fourth corner away and keeps the face of the other corners in place.
+/// Returns the map that pushes the fourth corner away and keeps the face of the other corners fixed.
 fn local(corners: [DVec3; 4]) -> Chain3 {
     let show = |p: &DVec3| format!("{},{},{}", p.x, p.y, p.z);
     let reference = corners.iter().map(show).collect::<Vec<_>>().join(" ");
@@ -99,7 +99,7 @@ fn images_follow_the_end_of_a_region() {
                     let q = piece.point(u, v);
                     let p = source(q, corners);
                     let off = (p.z - height(&hills, p.x, p.y)).abs();
-                    // The hills are steeper than one in one, and stretched.
+                    // The slope of the hills is above 1, and they are stretched.
                     assert!(off <= 4.0 * tolerance + 1e-9, "{name}: {off} at {q}, from {p}");
                     moved += usize::from(p.distance(q) > 0.01);
                     let cell = [(p.x - 8.0) / 40.0, (p.y - 6.0) / 44.0].map(|t| ((t * 20.0) as usize).min(19));
@@ -116,7 +116,7 @@ fn images_follow_the_end_of_a_region() {
 #[test]
 fn closed_surfaces_give_closed_polygons() {
     let corner = |k: usize| DVec3::new((k & 1) as f64, (k >> 1 & 1) as f64, (k >> 2 & 1) as f64) * 48.0 + 4.0;
-    // Seen from outside, counter-clockwise: u to the second, v to the third.
+    // Counter-clockwise as seen from outside: u runs to the second corner, v to the third.
     let faces = [[0, 2, 1], [4, 5, 6], [0, 1, 4], [2, 6, 3], [0, 4, 2], [1, 3, 5]];
     let surfaces: Vec<Surface> = faces
         .iter()
@@ -140,7 +140,7 @@ fn closed_surfaces_give_closed_polygons() {
     }
 }
 
-/// The boundary of the region lies along the joint of two patches: each side has its own derivatives, and they stay joined.
+/// Where the boundary of the region lies along the joint of two patches, each side has different derivatives, and they stay joined.
 #[test]
 fn a_crease_along_a_joint() {
     let hills = hills();
@@ -177,7 +177,7 @@ fn a_crease_along_a_joint() {
     }
 }
 
-/// Nothing keeps the face of this box in place: the surface is torn there, and a place is reported.
+/// Nothing keeps this face of the box fixed: the surface is torn there, and a point of the tear is reported.
 #[test]
 fn tears_are_found() {
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
@@ -190,7 +190,7 @@ fn tears_are_found() {
     }
 }
 
-/// The map of `ffd` in a frame of 64.
+/// Returns the map of `ffd` in a frame of 64.
 fn lattice(pairs: &[(&str, &str)]) -> Chain3 {
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
     let mut map = Chain3::default();
@@ -198,11 +198,11 @@ fn lattice(pairs: &[(&str, &str)]) -> Chain3 {
     map
 }
 
-/// The map jumps at the plane x = 0, in which patches of the teapot meet, also at the tip of its lid. Each patch follows its own side.
+/// The map jumps at the plane x = 0, in which patches of the teapot meet, even at the tip of its lid. Each patch follows its side.
 #[test]
 fn a_jump_at_joints() {
     let teapot = bpt::read(include_bytes!("../../../samples/solid/newell.bpt")).unwrap();
-    // The corner at 0,5,5 of a box from 0,0,−5 to 5,5,5, and the same with its degrees raised.
+    // The corner at 0,5,5 of a box from 0,0,−5 to 5,5,5, and the same lattice with its degrees raised.
     let raised = "0,2,1:0,0.1333333333333333,0 0,3,1:0,0.2,0 0,2,2:0,0.2666666666666667,0 0,3,2:0,0.4,0 \
                   0,1,1:0,0.0666666666666667,0 0,1,2:0,0.1333333333333333,0 0,1,3:0,0.2,0 0,2,3:0,0.4,0 0,3,3:0,0.6,0";
     for (degree, change) in [("1", "0,1,1:0,0.6,0"), ("1x3x3", raised)] {
@@ -251,7 +251,7 @@ fn a_jump_at_a_joint_of_one_surface() {
     }
 }
 
-/// Circles of four rational quadratics.
+/// Returns a circle of four rational quadratics.
 fn circle(r: f64) -> Vec<TrimCurve> {
     let corners = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)];
     let curve = |c: &[(i32, i32)]| TrimCurve {
@@ -263,7 +263,7 @@ fn circle(r: f64) -> Vec<TrimCurve> {
     [0, 2, 4, 6].map(|k| curve(&corners[k..k + 3])).to_vec()
 }
 
-/// Points of a trimming curve with one span, by its definition.
+/// Returns a point of a trimming curve with one span, by its definition.
 fn on_curve(c: &TrimCurve, t: f64) -> [f64; 2] {
     let n = i32::try_from(c.degree).unwrap();
     let binomial = |i: i32| (0..i).fold(1.0, |b, k| b * f64::from(n - k) / f64::from(k + 1));
@@ -275,7 +275,7 @@ fn on_curve(c: &TrimCurve, t: f64) -> [f64; 2] {
     [sum(&|i| c.points[i][0]) / sum(&|_| 1.0), sum(&|i| c.points[i][1]) / sum(&|_| 1.0)]
 }
 
-/// Whether an odd number of loops surrounds a place.
+/// Returns `true` if an odd number of loops surrounds a point.
 fn surrounded(loops: &[Vec<[f64; 2]>], [u, v]: [f64; 2]) -> bool {
     let crosses =
         |p: &[f64; 2], q: &[f64; 2]| (p[1] > v) != (q[1] > v) && u < p[0] + (v - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
@@ -283,7 +283,7 @@ fn surrounded(loops: &[Vec<[f64; 2]>], [u, v]: [f64; 2]) -> bool {
     loops.iter().map(count).sum::<usize>() % 2 == 1
 }
 
-/// A ring is cut out of the hills. The loops of the parts leave the same ring, whatever the crease does.
+/// A ring is cut out of the hills. The loops of the parts leave the same ring, wherever the crease runs.
 #[test]
 fn trimmed_surfaces_are_cut() {
     let mut ring = hills();
@@ -303,7 +303,7 @@ fn trimmed_surfaces_are_cut() {
             done.cut == 1 && done.distance <= tolerance && parts.iter().all(|s| s.fault().is_none()),
             "{name}: {done:?}"
         );
-        // A tolerance in space, converted to parameters of the source, which is 40 and 44 wide.
+        // The tolerance in space, converted to parameters of the source, which is 40 by 44 units.
         let near = 4.0 * tolerance / 40.0;
         let from_middle = |q: DVec3| {
             let p = source(q, corners);
@@ -358,7 +358,7 @@ fn trimmed_surfaces_are_cut() {
     }
 }
 
-/// A map that counts how often somebody asks on which side of a crease a point is.
+/// A map that counts the queries for the side of a crease on which a point lies.
 struct Asked {
     map: Arc<dyn Map3>,
     times: Arc<AtomicUsize>,
@@ -383,8 +383,8 @@ impl Map3 for Asked {
     }
 }
 
-/// A map that tears the teapot apart at the sides of a box takes endless searches for the places: each costs a unit of work or more,
-/// so that no clock has to end them.
+/// A map that tears the teapot apart at the sides of a box causes endless searches for the points. Each search costs a unit of work or
+/// more, so that the budget ends them, and not a clock.
 #[test]
 fn searches_for_creases_are_counted() {
     let teapot = bpt::read(include_bytes!("../../../samples/solid/newell.bpt")).unwrap();

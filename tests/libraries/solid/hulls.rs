@@ -1,4 +1,4 @@
-//! Pentahedra and lattices of other hulls as tools: J. Hoschek, D. Lasser (1993), S. Coquillart (1990), written again.
+//! Checks pentahedra and lattices of other hulls against independent formulas (J. Hoschek, D. Lasser, 1993; S. Coquillart, 1990).
 
 use pathwarp::Error;
 use pathwarp::param::Args;
@@ -9,7 +9,7 @@ use pathwarp_solid::map::Map3;
 use pathwarp_solid::{Box3, Frame3};
 use std::sync::Arc;
 
-/// A ring around the y-axis, as the program reads it: six points around with the weights of a whole circle as a rational quintic,
+/// A ring around the y-axis, as a file that the program reads: six points around with the weights of a whole circle as a rational quintic,
 /// five from y = −1 to 45, four from radius 6 to 36.
 const RING: &str = include_str!("../../../samples/solid/ring.json");
 
@@ -27,13 +27,13 @@ fn bernstein(n: i32, i: i32, t: f64) -> f64 {
     choose * t.powi(i) * (1.0 - t).powi(n - i)
 }
 
-/// Points in the box between two corners.
+/// Returns points in the box between two corners.
 fn points(from: [f64; 3], to: [f64; 3]) -> Vec<DVec3> {
     let mut random = Random::new(68);
     (0..300).map(|_| DVec3::from_array(std::array::from_fn(|a| random.between(from[a], to[a])))).collect()
 }
 
-/// Compares a map with a formula, and its inverse.
+/// Compares a map and its inverse with a formula.
 fn compare(map: &Arc<dyn Map3>, points: &[DVec3], truth: impl Fn(DVec3) -> DVec3) {
     let back = map.inverse().unwrap();
     let mut moved = 0.0_f64;
@@ -76,7 +76,7 @@ fn pentahedra_are_the_formula() {
         let (u, l) = coordinates(p);
         p + DVec3::Z * (sum(u, l, [-29.0, 21.0]) - 1.0)
     });
-    // What is outside stays, on every side.
+    // Points outside stay, on every side.
     let local = [&near[..], &[("local", "true")]].concat();
     let local = build("anamorph", &local, "").unwrap();
     let beyond = points([-90.0, -60.0, -90.0], [90.0, 90.0, 60.0]);
@@ -98,19 +98,19 @@ fn pentahedra_are_the_formula() {
     }
 }
 
-/// Coordinates of the ring: height and radius from 0 to 1.
+/// Returns coordinates of the ring: height and radius from 0 to 1.
 fn in_ring(p: DVec3) -> Option<[f64; 2]> {
     let at = [(p.y + 1.0) / 46.0, (p.x.hypot(p.z) - 6.0) / 30.0];
     at.iter().all(|t| (0.0..=1.0).contains(t)).then_some(at)
 }
 
-/// The share of the points 2,2 of height and radius, all around.
+/// Returns the share of the points 2,2 of height and radius, all around.
 fn share(p: DVec3) -> f64 {
     in_ring(p).map_or(0.0, |[h, r]| bernstein(4, 2, h) * bernstein(3, 2, r))
 }
 
-/// Six points of a ring move towards the axis by 10.4 of their distance of 26: in coordinates of a cylinder, radii shrink alone. Outside
-/// nothing moves.
+/// Six points of a ring move towards the axis by 10.4, their distance from it being 26: in cylindrical coordinates, only radii shrink.
+/// Nothing moves outside.
 #[test]
 fn a_ring_of_control_points_is_a_cylindrical_lattice() {
     let around = [[0.0, -1.0], [4.0, -1.0], [2.0, 3.0], [-2.0, 3.0], [-4.0, -1.0], [0.0, -1.0]];
@@ -127,7 +127,7 @@ fn a_ring_of_control_points_is_a_cylindrical_lattice() {
         (&[("hull", "r.json"), ("degree", "2")][..], RING, "cannot go with `hull`"),
         (&[("hull", "r.json"), ("move", "6,0,0:1,0,0")], RING, "not a control point"),
         (&[("hull", "r.json")], &RING.replace("\"degree\": [5", "\"degree\": [4"), "layers"),
-        // Heights that fall again.
+        // Heights that decrease again.
         (&[("hull", "r.json")], &RING.replace("33.5", "-33.5"), "folds"),
     ] {
         let said = build("ffd", pairs, file).err().unwrap().to_string();
@@ -135,8 +135,8 @@ fn a_ring_of_control_points_is_a_cylindrical_lattice() {
     }
 }
 
-/// The paper's conclusion: in a lattice of any hull only the last homogeneous coordinate of its points changes, so that
-/// p̂ = O + (p − O)/δ with δ over the ring's own coordinates.
+/// In a lattice of any hull, only the last homogeneous coordinate of its points changes (the paper's conclusion), so that
+/// p̂ = O + (p − O)/δ with δ over the coordinates of the ring.
 #[test]
 fn anamorphoses_over_a_hull_move_along_rays() {
     let all = |value: &str| (0..6).map(|i| format!("{i},2,2:{value}")).collect::<Vec<_>>().join(" ");
@@ -147,7 +147,7 @@ fn anamorphoses_over_a_hull_move_along_rays() {
     compare(&map, &ps, |p| eye + (p - eye) / (1.0 + (1.0 / 1.05 - 1.0) * share(p)));
     let map = build("anamorph", &[("hull", "ring.json"), ("eye", "inf:0,3,4"), ("away", &away)], RING).unwrap();
     compare(&map, &ps, |p| p - DVec3::new(0.0, 0.6, 0.8) * (12.0 * share(p)));
-    // A point of the model takes the control point with most influence along.
+    // A prescribed point of the model moves the control point with most influence.
     let map = build("anamorph", &[("hull", "r.json"), ("eye", "10,30,300"), ("point", "0,22,26:1.01")], RING).unwrap();
     let (p, want) = (DVec3::new(0.0, 22.0, 26.0), eye + (DVec3::new(0.0, 22.0, 26.0) - eye) * 1.01);
     assert!(map.point(p).distance(want) < 1e-9, "{} {want}", map.point(p));

@@ -1,5 +1,5 @@
-//! An independent oracle: formulas written again from their definitions, with plain arrays. Maps must agree with them up to a relative error
-//! of 1e-9, inverses must lead back, and rays and planes must stay such up to 1e-12.
+//! An independent oracle: formulas written from their definitions, with plain arrays. Maps must agree with them up to a relative error of
+//! 1e-9, inverses must lead back, and rays must stay rays and planes planes, up to 1e-12.
 
 use pathwarp::param::Args;
 use pathwarp_solid::deform::Registry3;
@@ -19,7 +19,7 @@ fn build(name: &str, pairs: &[(&str, &str)]) -> Arc<dyn Map3> {
     entry.get(name).unwrap().build_from(&Args::from_pairs(pairs), &frame).unwrap().map
 }
 
-/// Points all over the box.
+/// Returns points all over the box.
 fn points() -> Vec<P> {
     let mut random = pathwarp_oracle::Random::new(12345);
     (0..400).map(|_| std::array::from_fn(|a| random.between(BOX[0][a], BOX[1][a]))).collect()
@@ -40,12 +40,12 @@ fn compare(map: &Arc<dyn Map3>, truth: impl Fn(P) -> P) {
         let size = want.length() + 1.0;
         for got in [*q, map.point(p), map.jet(p).p] {
             assert!(got.distance(want) <= 1e-9 * size, "{p}: {got}, not {want}");
-            // The stated bound is 1e-9; the actual error is only rounding.
+            // The documented bound is 1e-9; the actual error is only rounding.
             assert!(got.distance(want) <= 1e-12 * size, "{p}: off by {:e}", got.distance(want));
         }
         let returned = back.point(want);
         assert!(returned.distance(p) <= 1e-9 * (p.length() + 1.0), "{p} comes back as {returned}");
-        // The Jacobian against difference quotients of the formula.
+        // Compare the Jacobian with difference quotients of the formula.
         const H: f64 = 1e-4;
         for (axis, e) in DVec3::AXES.into_iter().enumerate() {
             let at = |h: f64| DVec3::from_array(truth((p + e * h).to_array()));
@@ -63,7 +63,7 @@ fn bernstein(n: usize, i: usize, t: f64) -> f64 {
     binomial(n, i) * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32)
 }
 
-/// The recursion of Cox and de Boor for uniform clamped knots.
+/// Returns a B-spline on uniform clamped knots, by the recursion of Cox and de Boor.
 fn b_spline(degree: usize, cells: usize, i: usize, x: f64) -> f64 {
     let knot = |k: usize| (k.clamp(degree, degree + cells) - degree) as f64 / cells as f64;
     fn basis(knot: &dyn Fn(usize) -> f64, i: usize, d: usize, x: f64) -> f64 {
@@ -77,7 +77,7 @@ fn b_spline(degree: usize, cells: usize, i: usize, x: f64) -> f64 {
     basis(&knot, i, degree, x)
 }
 
-/// Σ N·w·P / Σ N·w over a lattice in which these points and weights are changed.
+/// Returns Σ N·w·P / Σ N·w over a lattice in which these points and weights are changed.
 fn lattice(
     p: P,
     counts: [usize; 3],
@@ -167,7 +167,7 @@ fn minus(a: P, b: P) -> P {
     std::array::from_fn(|k| a[k] - b[k])
 }
 
-/// Barycentric coordinates as ratios of volumes.
+/// Returns barycentric coordinates as ratios of volumes.
 fn barycentric(p: P, t: [P; 4]) -> [f64; 4] {
     let volume = |t: [P; 4]| det([minus(t[1], t[0]), minus(t[2], t[0]), minus(t[3], t[0])]);
     std::array::from_fn(|i| {
@@ -204,7 +204,7 @@ fn tetrahedra_of_degree_one_and_two() {
         ],
     );
     compare(&map, |p| {
-        // De Casteljau's algorithm: the same affine combination applied twice, to values at the ends and middles of the six edges.
+        // De Casteljau's algorithm: one affine combination, of values at the ends and middles of the six edges, and again of the results.
         let u = barycentric(p, CORNERS);
         let delta = |i: usize, j: usize| match (i.min(j), i.max(j)) {
             (1, 3) => 1.0 / 1.25,
@@ -225,7 +225,7 @@ fn cuboids_and_sheets() {
         let b = |i, j, k| bernstein(3, i, t[0]) * bernstein(1, j, t[1]) * bernstein(2, k, t[2]);
         radial(EYE, p, 1.0 + (1.0 / 1.2 - 1.0) * b(1, 1, 1) + (1.0 / 0.7 - 1.0) * b(3, 0, 2))
     });
-    // A rectangle in the plane z = 10, on which a point's place is found along its ray.
+    // A rectangle in the plane z = 10. Rays carry points to it.
     let map = build(
         "anamorph",
         &[("eye", "20,30,300"), ("reference", "-20,0,10 60,50,10"), ("degree", "2x1x1"), ("push", "1,1,0:1.5")],
@@ -276,7 +276,7 @@ fn rays_and_planes() {
     }
 }
 
-/// The algorithm itself, in which every level is an affine map of space with its handles.
+/// Returns a point by the generalised algorithm of de Casteljau, in which every level is an affine map of space with its handles.
 fn casteljau(points: &[P], handles: impl Fn(usize, usize) -> [P; 2], u: f64, v: f64, w: f64) -> P {
     let mut row = points.to_vec();
     for level in 1..points.len() {
@@ -386,7 +386,7 @@ fn norm(v: P) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// Handles that kink are warned of, and bad ones refused by name.
+/// Warns of handles that make kinks, and refuses bad ones by name.
 #[test]
 fn kinks_are_named_in_space() {
     let [a, b] = BOX.map(DVec3::from_array);
@@ -413,7 +413,7 @@ fn kinks_are_named_in_space() {
     assert!(twice.contains("two equal points, 1 and 2"), "{twice}");
 }
 
-/// A stretch and a swell from their definitions.
+/// Compares a stretch and a swell with their definitions.
 #[test]
 fn stretch_and_swell() {
     compare(&build("bend", &[("preset", "stretch"), ("along", "y"), ("factor", "1.7")]), |p| {
@@ -426,7 +426,7 @@ fn stretch_and_swell() {
     });
 }
 
-/// Barr's closed forms.
+/// Compares Barr's deformations with their closed forms.
 #[test]
 fn barr() {
     let turned = |x: f64, y: f64, a: f64| [x * a.cos() - y * a.sin(), x * a.sin() + y * a.cos()];
@@ -439,7 +439,7 @@ fn barr() {
         [20.0 + r * (p[0] - 20.0), 25.0 + r * (p[1] - 25.0), p[2]]
     });
     compare(&build("bend", &[("preset", "bend"), ("along", "x"), ("angle", "40")]), |p| {
-        // About the centre of curvature, 60/angle above the middle line.
+        // About the centre of curvature, at the distance 60/angle from the middle line.
         let angle = 40f64.to_radians();
         let (radius, theta) = (60.0 / angle, angle * (p[0] + 10.0) / 60.0);
         let r = radius - (p[1] - 25.0);
@@ -447,8 +447,8 @@ fn barr() {
     });
 }
 
-/// For a cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: distance and height of a point on the side, and of a
-/// step away from it.
+/// Checks a cone of radius 90 at the bottom and 110 at the top, whose side is 40 long: the distance and height of a point on the side, and
+/// of a step away from it.
 #[test]
 fn cones_and_cylinders() {
     for (pairs, [bottom, top]) in
@@ -465,7 +465,7 @@ fn cones_and_cylinders() {
     }
 }
 
-/// One pin: the smallest of all changes that satisfy it is d·Bᵢ(p)/ΣBⱼ(p)², and frozen layers take no part.
+/// For one pin, the smallest of all changes that satisfy it is d·Bᵢ(p)/ΣBⱼ(p)²; frozen layers do not change.
 #[test]
 fn pins_are_reached_with_the_smallest_change() {
     let (pin, d) = ([14.0, 29.0, 41.0], [6.0, -5.0, 8.0]);
@@ -491,7 +491,7 @@ fn pins_are_reached_with_the_smallest_change() {
     }
 }
 
-/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its place. The outside of the tetrahedron stays, and so does the held face.
+/// The paper's δ₃ = 1 + (δ − 1)/u₃ takes a point to its image. Outside of the tetrahedron and on the held face nothing moves.
 #[test]
 fn a_prescribed_point_of_a_local_tetrahedron() {
     let at = [22.0, 27.0, 60.0];
@@ -512,7 +512,7 @@ fn a_prescribed_point_of_a_local_tetrahedron() {
         let got = map.point(DVec3::from_array(p));
         assert!(got.distance(DVec3::from_array(want)) <= 1e-9 * (1.0 + got.length()), "{p:?}: {got}, not {want:?}");
         let back = map.inverse().unwrap().point(got);
-        // Images from inside may cover points that stay, so either may be the source.
+        // Images of points inside may cover points that stay, so either may be the source.
         assert!(map.point(back).distance(got) <= 1e-9 * (1.0 + got.length()), "{p:?} comes back as {back}");
     }
     assert!(inside > 20 && outside > 20);
@@ -521,18 +521,18 @@ fn a_prescribed_point_of_a_local_tetrahedron() {
     assert!(map.point(DVec3::from_array(face)).distance(DVec3::from_array(face)) < 1e-12);
 }
 
-/// The direction 0.3, 0.2, 1 of an eye at infinity.
+/// Returns the direction 0.3, 0.2, 1 of an eye at infinity.
 fn towards() -> P {
     let n = (0.09_f64 + 0.04 + 1.0).sqrt();
     [0.3 / n, 0.2 / n, 1.0 / n]
 }
 
-/// A point moved away from the eye at infinity.
+/// Returns a point moved away from the eye at infinity.
 fn shifted(p: P, length: f64) -> P {
     std::array::from_fn(|k| p[k] - towards()[k] * length)
 }
 
-/// The value of far eyes in the limit, by Richardson's extrapolation.
+/// Returns the limit of values for eyes that are further and further away, by Richardson's extrapolation.
 fn limit(of: impl Fn(f64) -> DVec3) -> DVec3 {
     let mut row: Vec<DVec3> = (0..7).map(|k| of(1e3 * f64::from(1 << k))).collect();
     let mut power = 2.0;
@@ -547,7 +547,7 @@ fn limit(of: impl Fn(f64) -> DVec3) -> DVec3 {
 fn an_eye_at_infinity_moves_along_parallel_rays() {
     let eye = ("eye", "inf:0.3,0.2,1");
     let in_box = |p: P| -> P { std::array::from_fn(|a| (p[a] - BOX[0][a]) / (BOX[1][a] - BOX[0][a])) };
-    // Where the ray of a point meets the plane z = 10.
+    // The point at which a ray meets the plane z = 10.
     let on_plane = |p: P| {
         let [x, y, z] = towards();
         [p[0] - x / z * (p[2] - 10.0), p[1] - y / z * (p[2] - 10.0)]
@@ -618,7 +618,7 @@ fn an_eye_at_infinity_moves_along_parallel_rays() {
     assert!(map.point(DVec3::from_array(at)).distance(DVec3::from_array(want)) < 1e-10);
 }
 
-/// B-splines as a tool: δ = Σ δᵢ·Nᵢ.
+/// B-splines as a reference: δ = Σ δᵢ·Nᵢ.
 #[test]
 fn splines_push_along_rays() {
     let map = build(
@@ -648,7 +648,7 @@ fn collineations_by_their_data() {
     compare(&map, |p| radial(EYE, p, 1.0 + (1.0 / 1.25 - 1.0) * off(p) / off([20.0, 20.0, 80.0])));
 }
 
-/// Ten million units away, models and eyes give the same result up to the rounding of coordinates.
+/// Ten million units away, models and eyes give equal results up to the rounding of coordinates.
 #[test]
 fn anamorphoses_are_the_same_far_from_the_origin() {
     let far = DVec3::new(1e7, -1.2e7, 0.8e7);
@@ -671,7 +671,7 @@ fn anamorphoses_are_the_same_far_from_the_origin() {
                 let corners: Vec<String> = corners.split(' ').map(moved).collect();
                 let (corners, place) =
                     (corners.join(" "), if eye.starts_with("inf") { eye.into() } else { moved(eye) });
-                // The pushes as lengths, for either eye.
+                // The pushes are given as lengths, for either eye.
                 let pairs: Vec<(&str, &str)> = pairs
                     .iter()
                     .map(|(name, value)| match (*name, eye.starts_with("inf")) {
@@ -685,7 +685,7 @@ fn anamorphoses_are_the_same_far_from_the_origin() {
             let back = away.inverse();
             for p in points().into_iter().map(|p| DVec3::from_array(p.map(|v| (v * 64.0).round() / 64.0))) {
                 let (want, got) = (near.point(p), away.point(p + far));
-                // A last place of 1.2e7 is 2e-9.
+                // The spacing of numbers at 1.2e7 is 2e-9.
                 assert!((got - far).distance(want) < 2e-8, "{pairs:?} {eye} {p}: {} {want}", got - far);
                 if let Some(back) = &back {
                     assert!(back.point(got).distance(p + far) < 1e-7, "{pairs:?} {eye} {p}");
@@ -695,7 +695,7 @@ fn anamorphoses_are_the_same_far_from_the_origin() {
     }
 }
 
-/// Two tetrahedra on either side of a face, and one that shares an edge: δ is linear in each, and continuous.
+/// Two tetrahedra on either side of a face, and a third that shares an edge: δ is linear in each, and continuous.
 #[test]
 fn tetrahedra_that_share_faces_do_not_tear() {
     let corners: [P; 5] =

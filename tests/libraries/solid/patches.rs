@@ -1,5 +1,5 @@
-//! Checks images of rational surfaces in exact arithmetic. Every floating-point number is a fraction, so the source surface, the formula of
-//! the map (written again here) and the resulting surface are evaluated without rounding.
+//! Checks images of rational surfaces in exact arithmetic. Every floating-point number is a fraction, so the source surface, an independent
+//! formula of the map and the resulting surface are evaluated without rounding.
 
 mod exact;
 
@@ -19,7 +19,7 @@ fn budget() -> Budget {
     Budget::new(Limits::default())
 }
 
-/// A map over the box 0..64 on all axes. Powers of two keep the parameters exact.
+/// Returns a map over the box 0..64 on all axes. Powers of two keep the parameters exact.
 fn chain(name: &str, pairs: &[(&str, &str)]) -> Chain3 {
     let frame = Frame3::new(Box3::new(DVec3::ZERO, DVec3::splat(64.0)));
     let mut chain = Chain3::default();
@@ -27,7 +27,7 @@ fn chain(name: &str, pairs: &[(&str, &str)]) -> Chain3 {
     chain
 }
 
-/// A patch inside the box, with weights if `rational`.
+/// Returns a patch inside the box, with weights if `rational`.
 fn patch(degree: [usize; 2], rational: bool) -> Surface {
     let [m, n] = degree;
     let points = (0..(m + 1) * (n + 1)).map(|k| {
@@ -98,7 +98,7 @@ fn collineations_keep_degree_knots_and_trims() {
     compare(&nurbs, &map, [2, 3], 1e-15, truth);
 }
 
-/// A lattice of degree 1 with weights, some of whose corners move.
+/// Evaluates a lattice of degree 1 with weights, some of whose corners move.
 fn trilinear([x, y, z]: [Q; 3], moved: &[([usize; 3], [f64; 3], f64)]) -> [Q; 3] {
     let t = [x, y, z].map(|v| v / q(64.0));
     let (mut sum, mut weights) = ([Q::ZERO, Q::ZERO, Q::ZERO], Q::ZERO);
@@ -124,7 +124,7 @@ fn lattices_raise_the_degree() {
     let weighted = [moved[0], ([0, 1, 0], [-2.0, 6.0, 1.0], 3.0)];
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16 0,1,0:-2,6,1"), ("weight", "0,1,0:3")]);
     compare(&patch([3, 3], true), &map, [9, 9], 1e-13, |p| trilinear(p, &weighted));
-    // Polynomials stay polynomials.
+    // Polynomial surfaces stay polynomial.
     let mut image = vec![patch([3, 3], false)];
     deform_patches(&mut image, &chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]), 1.0, &budget()).unwrap();
     assert!(image[0].weights.iter().all(|w| *w == 1.0));
@@ -138,7 +138,7 @@ fn radial(p: &[Q; 3], eye: [f64; 3], delta: &Q) -> [Q; 3] {
 fn anamorphoses_over_every_reference() {
     let eye = [16.0, 24.0, 512.0];
     let at = ("eye", "16,24,512");
-    // A tetrahedron on the axes, of degree 2: barycentric coordinates x/128, y/128, z/128 and the rest.
+    // A tetrahedron on the axes, of degree 2: its barycentric coordinates are x/128, y/128, z/128 and the remainder to 1.
     let tetrahedron = ("reference", "0,0,0 128,0,0 0,128,0 0,0,128");
     let map = chain("anamorph", &[at, tetrahedron, ("degree", "2"), ("push", "0,1,0,1:1.6 2,0,0,0:0.8")]);
     compare(&patch([3, 3], true), &map, [6, 6], 1e-13, |p| {
@@ -148,7 +148,7 @@ fn anamorphoses_over_every_reference() {
         let delta = Q::ONE + (Q::ONE / q(1.6) - Q::ONE) * q(2.0) * u * w + (Q::ONE / q(0.8) - Q::ONE) * &rest * &rest;
         radial(&p, eye, &delta)
     });
-    // A pentahedron on the same axes, of degree 1 over x and y and 2 along z: its degree 3 times that of the patch.
+    // A pentahedron on the same axes, of degree 1 over x and y and 2 along z, multiplies a patch's degree by 3.
     let pentahedron = ("reference", "0,0,0 128,0,0 0,128,0 0,0,128 128,0,128 0,128,128");
     let map = chain("anamorph", &[at, pentahedron, ("degree", "1x1x2"), ("push", "0,1,0,1:1.6 1,0,0,2:0.8")]);
     compare(&patch([2, 3], true), &map, [6, 9], 1e-12, |p| {
@@ -226,7 +226,7 @@ fn skeletons_and_tapers() {
     });
 }
 
-/// If a joint of a spline lattice is at a joint of the surface, they are composed piece by piece. A patch outside stays as it is.
+/// Where a joint of a spline lattice is at a joint of the surface, composition is exact piece by piece. A patch outside is unchanged.
 #[test]
 fn pieces_within_cells_are_exact_and_others_are_refitted() {
     let map = chain("ffd", &[("degree", "1"), ("cells", "2x1x1"), ("move", "1,1,1:4,8,0")]);
@@ -235,7 +235,7 @@ fn pieces_within_cells_are_exact_and_others_are_refitted() {
     nurbs.degree = [2, 1];
     nurbs.knots[0] = vec![0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0];
     let tent = |[x, y, z]: [Q; 3]| {
-        // The middle of x is at 32, where both cells meet.
+        // Both cells meet in the middle, at x = 32.
         let s = if x < q(32.0) { &x / q(32.0) } else { q(2.0) - &x / q(32.0) };
         let k = s * &y / q(64.0) * &z / q(64.0);
         [x + q(4.0) * &k, y + q(8.0) * k, z]
@@ -250,7 +250,7 @@ fn pieces_within_cells_are_exact_and_others_are_refitted() {
     assert_eq!(outside[0], patch([3, 3], true));
 }
 
-/// Images under a cubic lattice and a twist are within the tolerance, also on a finer grid than that of the fit, and neighbours stay joined.
+/// Images under a cubic lattice and a twist are within the tolerance on a finer grid than that of the fit, and neighbours stay joined.
 #[test]
 fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
     let turned = |s: &Surface| {
@@ -294,7 +294,7 @@ fn refitted_surfaces_are_within_the_tolerance_and_watertight() {
 
 #[test]
 fn infinity_and_endless_work_are_refused() {
-    // The eye is inside the box, and points behind it have no image.
+    // The eye is inside the box, so points behind it have no image.
     let map = chain("anamorph", &[("eye", "30,30,20"), ("reference", "0,0,0 64,0,0 0,64,0"), ("push", "1,0,0:2")]);
     let e = deform_patches(&mut vec![patch([3, 3], false)], &map, 0.1, &budget()).unwrap_err();
     assert!(matches!(e, PatchError::Undefined { surface: 0, .. }), "{e}");
@@ -322,16 +322,16 @@ fn long_surfaces_take_linear_time() {
     let map = chain("ffd", &[("degree", "1"), ("move", "1,1,1:8,-4,16")]);
     let small = Budget::new(Limits::default().with(Limit::Work, 1e6));
     assert!(deform_patches(&mut vec![long], &map, 0.1, &small).unwrap_err().to_string().contains("`work`"));
-    // The degree is too high for a composition, which must be found before any product is computed.
+    // The degree is too high for a composition; this must be found before any product is computed.
     let high = chain("ffd", &[("degree", "10"), ("move", "5,5,5:4,0,0")]);
     let small = Budget::new(Limits::default().with(Limit::Work, 1e6));
     let done = deform_patches(&mut vec![patch([3, 3], false)], &high, 0.5, &small).unwrap();
-    // Pieces and products are not counted, but all of this takes a tenth of a second.
+    // Pieces and products are not counted; the bound of 20 seconds allows for slow machines.
     assert!(done.refitted == 1 && begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
 }
 
-/// A quarter of a circle of radius 32 about 8,8,20 keeps its degree under a collineation, and has 2·d under a map of degree d; every
-/// point of the image is that of a point of the circle at the same parameter.
+/// A quarter of a circle of radius 32 about 8,8,20 keeps its degree under a collineation, and has degree 2·d under a map of degree d. Every
+/// point of the image is the image of the circle's point at the same parameter.
 #[test]
 fn curves_in_space_keep_their_degree() {
     let arc =
@@ -348,7 +348,7 @@ fn curves_in_space_keep_their_degree() {
         let mut image = source.clone();
         let done = deform_patches(&mut image, &map, 1e-3, &budget()).unwrap();
         assert_eq!((done.exact, image.len(), image[0].degree[0]), (1, 1, degree));
-        // Written and read again, the curve is still one.
+        // It is still a curve after it has been written and read again.
         let written = json::write(&image).unwrap();
         assert!(written.starts_with("{\"curves\":[{"), "{written}");
         let image = json::read(written.as_bytes()).unwrap();
@@ -364,7 +364,7 @@ fn curves_in_space_keep_their_degree() {
     assert!(json::read(faulty.as_bytes()).unwrap_err().to_string().contains("curve 1"));
 }
 
-/// A square with a round hole: in a picture the hole is open, and its area is missing.
+/// In a picture of a square with a round hole, the hole is open and its area is missing.
 #[test]
 fn pictures_leave_out_what_is_trimmed_away() {
     let mut square = Surface::bezier(

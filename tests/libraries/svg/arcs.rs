@@ -16,13 +16,13 @@ const ARCS: [&str; 6] = [
     "<path d='M20 50A30 15 40 1 1 60 60L20 90Z' transform='scale(1 .6)'/>",
 ];
 
-/// Path data of the warped shape.
+/// Returns path data of the warped shape.
 fn data(svg: &str) -> String {
     let d = svg.split(" d=").nth(1).unwrap();
     d[1..].split(&d[..1]).next().unwrap().to_owned()
 }
 
-/// An outline whose open subpaths end with a line to their start, as fills do.
+/// Returns an outline whose open subpaths end with a line to their start, as fills do.
 fn closed(outline: &Outline) -> Outline {
     let mut outline = outline.clone();
     for s in &mut outline.subpaths {
@@ -34,7 +34,7 @@ fn closed(outline: &Outline) -> Outline {
     outline
 }
 
-/// The written path is right within the report, and has as many arcs as expected.
+/// Checks that the written path is as close as reported, and has as many arcs as expected.
 fn check(body: &str, map: &dyn Map, arcs: impl Fn(usize) -> bool) {
     for structure in [Structure::Auto, Structure::Flatten] {
         for decimals in [None, Some(2)] {
@@ -75,7 +75,7 @@ fn moebius_maps_keep_circles() {
     for (body, circles) in ARCS.iter().zip([true, false, true, true, true, false]) {
         check(body, &*map, |n| (n > 0) == circles);
     }
-    // The arcs of a circle lie on one circle again.
+    // The arcs of a circle lie on one circle after the map.
     let w = read(&drawing(ARCS[0])).warp(&*map, &warp_options()).unwrap();
     let image = Outline::from_svg(&data(&w.svg)).unwrap();
     let circles: Vec<_> = image
@@ -105,7 +105,7 @@ fn other_images_become_curves() {
     }
 }
 
-/// A curve that ends where it starts, beside true arcs, and an arc to where the last one ended.
+/// A curve that ends where it starts, beside true arcs, and an arc that ends where the last one ended.
 #[test]
 fn loops_cost_no_arcs_and_no_precision() {
     for d in [

@@ -1,4 +1,4 @@
-//! The line around all that is visible. The truth is the distance from outlines of what is visible, written down by hand.
+//! The line around all that is visible. The truth is the distance from outlines of the visible artwork, written by hand.
 
 use base64::Engine as _;
 use pathwarp::edit::Contour;
@@ -23,7 +23,7 @@ fn around(by: f64) -> Contour {
     Contour { by, holes: false, join: false }
 }
 
-/// The outline of the line in a result.
+/// Returns the outline of the line in a result.
 fn line(svg: &str) -> Outline {
     let read = read(svg);
     let line = read.path("Contour-line").unwrap();
@@ -34,7 +34,7 @@ fn polygon(paths: &[&str]) -> Vec<Polygon> {
     paths.iter().map(|d| flat(&Outline::from_svg(d).unwrap(), 0.01 * TOLERANCE)).collect()
 }
 
-/// Points nearer than the distance lie inside of the line, others do not.
+/// Checks that points nearer than the distance lie inside of the line, and others do not.
 fn check(what: &str, line: &Outline, visible: &[Polygon], (by, tolerance): (f64, f64)) {
     let (line, mut random) = (flat(line, 0.01 * TOLERANCE), Random::new(7));
     for _ in 0..4000 {
@@ -94,7 +94,7 @@ fn the_line_has_its_distance_from_all_that_is_visible() {
     }
 }
 
-/// Below zero, the line is inside: the points further than the distance from everything outside.
+/// With a negative distance, the line is inside: its points are farther than the distance from everything outside.
 #[test]
 fn a_line_may_be_inside() {
     let result = contoured(&drawing("<rect x='20' y='20' width='60' height='40'/>"), around(-5.0), CutLine::default());
@@ -109,7 +109,7 @@ fn a_line_may_be_inside() {
     assert!(error.unwrap_err().to_string().contains("nothing is visible"));
 }
 
-/// Islands nearer than twice the distance share a line; necks join others. Holes are filled, with what lies in them.
+/// Islands nearer than twice the distance share a line; necks join others. Holes are filled, with their contents.
 #[test]
 fn islands_and_holes() {
     let islands = |gap: f64, join: bool| {
@@ -134,7 +134,7 @@ fn islands_and_holes() {
     assert_eq!([of(false), of(true)], [1, 3]);
 }
 
-/// The layer lies above, the page holds it, and everything else stays as it is written.
+/// The layer lies above everything, the page holds it, and the rest of the file is unchanged.
 #[test]
 fn the_line_is_a_layer() {
     let source = drawing("<title>t</title><rect id='r' width='100' height='100'/>");
@@ -152,7 +152,7 @@ fn the_line_is_a_layer() {
     assert!(!only.contains("<rect") && line(&only).subpaths.len() == 1, "{only}");
 }
 
-/// A PNG whose disc is opaque: half a pixel is not known.
+/// A PNG with an opaque disc; half a pixel is uncertain.
 #[test]
 fn pictures_count_by_their_opacity() {
     let mut disc = Pixmap::new(100, 100).unwrap();

@@ -1,4 +1,4 @@
-//! Outlines of strokes cover what the strokes cover, pixel by pixel, as the renderer draws them.
+//! Outlines of strokes cover the strokes' pixels, as the renderer draws them.
 
 use pathwarp::kurbo::Affine;
 use pathwarp::refit;
@@ -29,7 +29,7 @@ const SHAPES: [&str; 24] = [
     "M20 20L80 80L80 20L20 80Z",
     "M20 75C110 0 -10 0 80 75",
     "M30 40C60 90 80 20 55 30S20 60 70 70",
-    // Cusps and nearly so, handles without length, and arcs.
+    // Cusps and near cusps, handles without length, and arcs.
     "M30 30C80 75 20 75 70 30",
     "M30 30C70 80 30 80 70.1 30",
     "M20 30C20 30 60 80 80 30L50 30C40 80 80 60 80 60",
@@ -82,7 +82,7 @@ fn outlines_cover_what_strokes_cover_at_four_thousand_pixels() {
     check(4000, &SHAPES, &STYLES);
 }
 
-/// United outlines cover the same, and wind once around it.
+/// United outlines cover the same pixels, and wind once around them.
 #[test]
 fn united_outlines_cover_the_same_once() {
     let outlines = WarpOptions::new(refit::Options::new(0.02)).with_strokes(Strokes::Outline).with_union(true);
@@ -90,7 +90,7 @@ fn united_outlines_cover_the_same_once() {
         for style in &STYLES[..3] {
             let svg = drawing(&format!("<path d='{d}' fill='none' stroke='#000' stroke-width='5' {style}/>"));
             let warped = read(&svg).warp(&Hidden(Affine::IDENTITY), &outlines).unwrap();
-            // Where nothing is wound around twice, both fill rules paint the same.
+            // Where the winding number is at most 1, both fill rules paint the same.
             let even = warped.svg.replace("<path ", "<path fill-rule='evenodd' ");
             let tree = |svg: &str| parse_tree(svg.as_bytes(), "test.svg", &options()).unwrap();
             let [once, all, stroke] =

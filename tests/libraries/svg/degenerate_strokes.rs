@@ -11,7 +11,7 @@ fn coordinate(r: &mut Random) -> f64 {
     20.0 + r.below(6000) as f64 / 100.0
 }
 
-/// Path data of one to four segments whose control points often coincide, lie on one line, or nearly so.
+/// Returns path data of one to four segments whose control points often coincide, lie on one line, or nearly so.
 fn path(r: &mut Random) -> String {
     let mut at = [coordinate(r), coordinate(r)];
     let mut d = format!("M{} {}", at[0], at[1]);
@@ -39,7 +39,7 @@ fn path(r: &mut Random) -> String {
     if r.below(4) == 0 { d + "Z" } else { d }
 }
 
-/// Largest distance of a point of the outline from the path, and of a point of the path from the area.
+/// Returns the largest distance of a point of the outline from the path, and of a point of the path from the area.
 fn extent(d: &str, area: &Polygon) -> (f64, f64) {
     let line = flat(&Outline::from_svg_lossy(d), 1e-4);
     let out = area.edges.iter().map(|e| line.distance(e[0])).fold(0.0, f64::max);
@@ -73,7 +73,7 @@ fn two_thousand_degenerate_paths_have_outlines() {
         painted += 1;
         let (out, inside) = extent(&d, &area);
         let reach = 0.5 * width * if join == "miter" { 4.0 } else { 2.0_f64.sqrt() };
-        // The picture has single precision.
+        // The renderer works in single precision.
         assert!(out <= reach + TOLERANCE + 1e-3, "{d} {style}: {out} of {reach}");
         // A stroke without dashes covers its centre line, except in turns tighter than half the width, as in the renderer.
         if dashes == "none" && inside > TOLERANCE + 1e-3 {

@@ -1,5 +1,5 @@
-//! One drawing per feature, warped by the identity and by an oblique affine map, both of which are treated as nonlinear: the
-//! result must look like the original, transformed by the renderer.
+//! One drawing per feature, warped by the identity and by an oblique affine map, both of which are treated as nonlinear. The result must
+//! look like the original, transformed by the renderer.
 
 use pathwarp::kurbo::Affine;
 use pathwarp_oracle::drawings::{check, drawing, oblique, warp_options};

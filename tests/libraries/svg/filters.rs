@@ -1,5 +1,5 @@
-//! Filters whose regions are as tight as programs export them. The reference is the same drawing without the filter, which changes nothing
-//! but what its region cuts off.
+//! Filters with regions as tight as programs export them. The reference is the drawing without the filter, which changes nothing except
+//! that its region cuts parts off.
 
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_oracle::drawings::{Bend, drawing, options, read, rendered, warp_options};
@@ -34,7 +34,7 @@ const DRAWINGS: &[(&str, &str)] = &[
 /// Pixels per unit.
 const FINE: f64 = 8.0;
 
-/// The box and the area that a drawing paints, in units.
+/// Returns the box and the area that a drawing paints, in units.
 fn painted(svg: &str) -> (Rect, f64) {
     let (from, side) = (-30.0, 170.0);
     let window = Affine::scale(FINE) * Affine::translate((-from, -from));
@@ -59,7 +59,7 @@ fn regions_cut_nothing_off_that_bends_out_of_them() {
     }
 }
 
-/// The page holds what a region holds after it has grown.
+/// The page holds the contents of a region that has grown.
 #[test]
 fn the_page_grows_with_the_region() {
     let svg = drawing(DRAWINGS[0].1);
@@ -70,7 +70,7 @@ fn the_page_grows_with_the_region() {
     assert!(a.inflate(0.1, 0.1).union(b) == a.inflate(0.1, 0.1), "{a:?} does not hold {b:?}");
 }
 
-/// A region stays as it is written if nothing bends out of it.
+/// A region is left as written if nothing bends out of it.
 #[test]
 fn other_regions_stay() {
     let body = "<path d='M10 45H90V55H10z' filter='url(#f)'/><filter id='f' x='10' y='45' width='80' height='10' \

@@ -1,11 +1,11 @@
-//! Labels in HTML with a text beside them in a `switch`, as draw.io writes them. How they look is compared with a browser in `tests/browser`.
+//! Labels in HTML with a text beside them in a `switch`, as draw.io writes them. A browser shows how they look in `tests/browser`.
 
 use pathwarp::kurbo::Affine;
 use pathwarp_oracle::drawings::{Bend, Hidden, drawing, oblique, read, rendered, warp_options};
 use pathwarp_svg::usvg_tree::tree;
 use pathwarp_svg::{Selection, Structure};
 
-/// A label with this HTML.
+/// Returns a label with this HTML.
 fn label(html: &str) -> String {
     format!(
         "<switch><foreignObject id='h' width='100%' height='100%' style='overflow:visible'><div \
@@ -16,7 +16,7 @@ fn label(html: &str) -> String {
     )
 }
 
-/// The full words, in place of both.
+/// The text holds all words, and replaces both.
 #[test]
 fn bent_labels_are_text() {
     let body = label("Lamp<br/>plugged <b>in</b>?");
@@ -30,7 +30,7 @@ fn bent_labels_are_text() {
     }
     let w = read(&drawing(&body)).warp(&Bend, &warp_options().with_structure(Structure::Keep)).unwrap();
     assert!(w.svg.contains("Lamp plugged in?"), "{}", w.svg);
-    // Two lines of twelve px about the middle of the room: (50, 40).
+    // Two lines of twelve px about the middle of the label, (50, 40).
     let bounds = read(&drawing(&body)).artwork_box(&Selection::default()).unwrap();
     let [center, height] = [bounds.center().distance((50.0, 40.0).into()), bounds.height()];
     assert!(center < 3.0 && (17.0..28.0).contains(&height), "{bounds:?}");
@@ -64,7 +64,7 @@ fn what_html_has_beyond_text_is_named() {
         let w = read(&drawing(&label(html))).warp(&Bend, &warp_options()).unwrap();
         assert!(w.skipped.iter().any(|s| s.id == "t" && s.why.contains(what)), "{html}: {:?}", w.skipped);
     }
-    // Without words, and without a text beside it, HTML stays where it is.
+    // HTML without words, or without a text beside it, is left unchanged.
     let alone = "<path d='M10 10h50v50z'/><foreignObject id='h' width='9' height='9'><p xmlns='http://www.w3.org/1999/xhtml'>a</p>\
                  </foreignObject>";
     let w = read(&drawing(alone)).warp(&Bend, &warp_options()).unwrap();
@@ -79,7 +79,7 @@ fn what_is_not_selected_stays() {
     assert!(w.svg.contains(&label("Lamp<br/>plugged in?")), "{}", w.svg);
 }
 
-/// What is written for HTML is in proportion to it: each element inherits what the others say.
+/// The text written for HTML is in proportion to it, though each element inherits properties of all around it.
 #[test]
 fn labels_do_not_grow_without_end() {
     let wide = format!("font-family:{}", "A".repeat(2000));

@@ -1,5 +1,4 @@
-//! Parts of a file beside geometry: strokes that never scale, animations, links, `switch`, compressed files and embedded
-//! fonts.
+//! Parts of a file other than geometry: strokes that never scale, animations, links, `switch`, compressed files and embedded fonts.
 
 use base64::Engine as _;
 use pathwarp_oracle::drawings::{Bend, drawing, oblique, options, read, warp, warp_options};
@@ -37,7 +36,7 @@ fn strokes_that_do_not_scale() {
             let stays = drawn.contains("stroke-width='3'")
                 || drawn.contains("stroke-width=\"3\"")
                 || drawn.contains("stroke-width:3");
-            // An expanded stroke is a fill, and a scaled one has another width.
+            // An outlined stroke is a fill, and a scaled one has another width.
             let outlined = ["fill=\"#ff0000\"", "fill=\"red\"", "fill:red"].iter().any(|fill| drawn.contains(fill));
             assert_eq!((stays && !outlined, outlined), (fixed, !fixed), "{body}\n{}", w.svg);
             let says = w.svg.contains("non-scaling-stroke");
@@ -154,7 +153,7 @@ fn compressed_files_come_back() {
 
 const FONT: &[u8] = include_bytes!("../../../crates/pathwarp-svg/fonts/NotoSans-Regular.subset.ttf");
 
-/// The bundled font with another number of units per em, for letters of another size.
+/// Returns the bundled font with another number of units per em, for letters of another size.
 fn resized(units: u16) -> Vec<u8> {
     let mut font = FONT.to_vec();
     let count = usize::from(u16::from_be_bytes([font[4], font[5]]));

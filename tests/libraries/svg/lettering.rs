@@ -46,7 +46,7 @@ fn frames_of_text_are_the_fonts_own_figures() {
     assert!((ink.x0 - (10.0 + 0.097 * 40.0)).abs() < 1e-3 && (ink.y0 - (80.0 - 0.714 * 40.0)).abs() < 1e-3, "{ink:?}");
 }
 
-/// The same word as outlines with data attributes, in other units.
+/// A word as outlines with data attributes, in other units, is recognised like text.
 #[test]
 fn outlines_that_tell_of_themselves_are_like_text() {
     let text = read(&drawing(HI));

@@ -1,4 +1,4 @@
-//! Attributes from which Inkscape computes a shape: whatever is warped loses them, everything else keeps them.
+//! Attributes from which Inkscape computes a shape: warped shapes lose them, everything else keeps them.
 
 use pathwarp_oracle::drawings::{Bend, read, warp_options};
 use pathwarp_svg::{Selection, Strokes, Structure, WarpOptions};
@@ -19,7 +19,7 @@ fn only(name: &str) -> WarpOptions {
     warp_options().with_selection(Selection { select: vec![name.into()], ..Selection::default() })
 }
 
-/// Everything live, as on a star that is also a connector with a path effect, and things that look alike but are not.
+/// Every attribute of a live shape, as on a star that is also a connector with a path effect, and attributes that only look alike.
 const LIVE: &str = "old:type='star' old:cx='5' old:sides='5' old:arg1='.5' old:nodetypes='ccc' ink:flatsided='true' \
                     ink:path-effect='#e' ink:original-d='M0 0' ink:connector-type='polyline' \
                     ink:connection-start='#k' ink:transform-center-x='3' ink:tiled-clone-of='#k' ink:box3dsidetype='6'";
@@ -59,7 +59,7 @@ fn a_warped_shape_is_a_plain_path() {
             is_plain(&bent(&body, &options.with_structure(Structure::Flatten)));
         }
     }
-    // In place, even what merely looks alike stays.
+    // In place, even attributes that merely look alike stay.
     let svg = bent(&shape, &warp_options().with_strokes(Strokes::Outline));
     assert!(svg.contains("<g id='a'") && KEPT.iter().all(|k| svg.contains(k)), "{svg}");
 }
@@ -86,10 +86,10 @@ fn groups_around_what_is_warped_are_plain_too() {
         "<g id='g' ink:label='layer' ink:groupmode='layer'>",
         "<g id='b'>",
         "<path id='a' d='M",
-        // Not warped, but nothing without the group.
+        // Not warped, but meaningless without the group.
         "<path id='c' d='M0 0H9V60z'/>",
         "<path id='d' d='M0 0H9V6z'/>",
-        // Not warped, with an effect of its own.
+        // Not warped, with a separate effect.
         "<path id='f' ink:path-effect='#f' ink:original-d='M0 0' d='M0 0H9V6z'/>",
         "<path id='h' old:type='star' d='M0 0H9V6z'/>",
     ] {

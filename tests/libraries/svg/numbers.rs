@@ -1,4 +1,4 @@
-//! Numbers in results have the digits that they need.
+//! Numbers in results have as many digits as they need.
 
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{AffineMap, Map};
@@ -18,7 +18,7 @@ const DRAWING: &str = "<linearGradient id='g' gradientTransform='rotate(90 .5 .5
     iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=='/>\
     <text x='20' y='90' font-size='9'>Ab</text>";
 
-/// The digits of a number from the first that is not zero, and its decimals.
+/// Returns the digits of a number from the first that is not zero, and its decimals.
 fn digits(number: &str) -> (usize, usize) {
     let decimals = number.split_once('.').map_or(0, |n| n.1.len());
     let all: String = number.chars().filter(char::is_ascii_digit).collect();
@@ -35,7 +35,7 @@ fn numbers_have_the_digits_they_need() {
         for structure in [Structure::Keep, Structure::Flatten] {
             let options = warp_options().with_structure(structure).with_page(PageFit::Grow);
             let svg = read(&source).warp(map, &options).unwrap().svg;
-            // Pictures are no numbers.
+            // Embedded pictures contain digits that are no numbers.
             let mut parts = svg.split("base64,");
             let first = parts.next().unwrap_or_default();
             let rest: String = parts.filter_map(|part| Some(part.split_once(['"', '\''])?.1)).collect();

@@ -1,5 +1,5 @@
-//! An open path is filled as if closed by a line (SVG 2, §13.4.1), and a map bends that line like any other. The reference is
-//! the same drawing with the line drawn.
+//! An open path is filled as if closed by a line (SVG 2, §13.4.1), and a map bends that line like any other. The reference is the drawing
+//! with that line.
 
 use pathwarp_oracle::drawings::{Bend, alike, drawing, options, read, warp_options};
 use pathwarp_svg::usvg_tree::parse_tree;
@@ -27,7 +27,7 @@ fn ways() -> Vec<WarpOptions> {
     out
 }
 
-/// Both drawings look the same when bent, and the fill is visible.
+/// Checks that both drawings look alike when bent, and that the fill is visible.
 fn same(open: &str, drawn: &str) {
     same_in(&ways(), open, drawn);
 }
@@ -47,7 +47,7 @@ fn the_line_that_closes_a_fill_bends() {
 
 #[test]
 fn and_is_still_not_stroked() {
-    // Centre lines without a fill are never doubled.
+    // Centre lines without a fill never appear twice.
     let ways: Vec<_> = ways().into_iter().filter(|o| o.strokes != Strokes::Keep).collect();
     same_in(
         &ways,

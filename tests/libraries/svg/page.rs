@@ -13,7 +13,7 @@ fn fitted(svg: &str, map: Affine, page: PageFit) -> Document {
     read(&w.svg)
 }
 
-/// The box of everything a document paints between -60 and 200, in user units, to a pixel.
+/// Returns the box of everything that a document paints between -60 and 200, in user units, to a pixel.
 fn marks(d: &Document) -> Rect {
     let (from, side) = (-60.0, 260.0);
     let window = Affine::scale(FINE) * Affine::translate((-from, -from)) * d.user_to_px().inverse();
@@ -73,7 +73,7 @@ fn it_grows_to_hold_them_and_no_further() {
     }
 }
 
-/// A filter may paint anywhere in its region, of which only the renderer's pixels are known to be needed.
+/// A filter may paint anywhere in its region. Only the renderer's pixels show how much of it is needed.
 #[test]
 fn what_a_filter_paints_is_held() {
     let body = "<filter id='f'><feGaussianBlur stdDeviation='3'/></filter><rect x='30' y='30' width='30' height='30' \
@@ -116,7 +116,7 @@ fn guides_and_what_is_hidden_do_not_count() {
     assert!(w.svg.contains("viewBox=\"25 30 60 40\""), "{}", w.svg);
 }
 
-/// Distances by which pixels extend past the page of 0 to 100: left, top, right, bottom.
+/// Returns the distances by which pixels extend past the page of 0 to 100: left, top, right, bottom.
 fn beyond(marks: Rect) -> [f64; 4] {
     [-marks.x0, -marks.y0, marks.x1 - 100.0, marks.y1 - 100.0]
 }
@@ -154,10 +154,10 @@ fn what_left_the_page_before_is_not_told() {
     assert_eq!(moved(&svg, 5.0, 0.0), None);
     assert_eq!(moved(&svg, 10.0, 3.0), None);
     assert_eq!(moved(&svg, 17.0, 0.0), Some([0.0, 0.0, 7.0, 0.0]));
-    // Only what the page showed counts: 5 of that leave it.
+    // Only artwork that the page showed counts: 5 units of it leave the page.
     assert_eq!(moved(&svg, -5.0, 0.0), Some([5.0, 0.0, 0.0, 0.0]));
     assert_eq!(moved(&svg, 0.0, -50.0), Some([0.0, 12.0, 0.0, 0.0]));
-    // Less than one pixel in a thousand.
+    // Less than a thousandth of the pixels.
     assert_eq!(moved(&svg, 10.05, 0.0), None);
     // A file that does not specify the size of its page has no overhang.
     let endless = format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>");
@@ -175,7 +175,7 @@ fn the_identity_fits_the_page() {
     assert!(w.svg.contains("viewBox=\"20 30 60 40\""), "{}", w.svg);
 }
 
-/// Lengths in percent of the page, given and left out.
+/// Lengths in percent of the page, explicit and by default.
 const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect width='100%' height='50%' fill='green'/></svg>\
     <svg y='60%'><circle cx='50%' cy='15' r='10%' fill='teal'/></svg>\
     <linearGradient id='a' gradientUnits='userSpaceOnUse' x1='10%'><stop stop-color='red'/><stop offset='1'/></linearGradient>\
@@ -192,7 +192,7 @@ const IN_PERCENT: &str = "<svg x='25%' y='10%' width='20%' height='30%'><rect wi
     <text x='5%, 10%' y='40%' font-size='12'>AB</text>\
     <foreignObject width='1' height='1'><p xmlns='http://www.w3.org/1999/xhtml' width='50%'/></foreignObject>";
 
-/// Percentages of the page are as long as they were when the page changes.
+/// Percentages of the page are converted, so that lengths stay when the page changes.
 #[test]
 fn percentages_refer_to_the_page_as_it_was() {
     let svg = pathwarp_oracle::drawings::drawing(&format!(
@@ -211,11 +211,11 @@ fn percentages_refer_to_the_page_as_it_was() {
     let (grown, after, text) = shown(PageFit::Grow);
     assert!(grown.width() > 1.4 * page.width() && grown.height() > 1.3 * page.height(), "{grown:?}");
     pathwarp_oracle::drawings::alike(&text, &before, &after);
-    // HTML has viewports of its own.
+    // HTML has separate viewports.
     assert!(text.contains("width='50%'"), "{text}");
 }
 
-/// A page whose viewBox equals its size up to rounding has no transform, so none may be confused with a group's.
+/// A page whose viewBox equals its size up to rounding has no transform, so no transform of a group may be taken for the page's.
 #[test]
 fn a_page_of_odd_size_is_no_group() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 108.51184 100'><g transform='translate(5) rotate(12)'>\
@@ -227,7 +227,7 @@ fn a_page_of_odd_size_is_no_group() {
     assert!((b.y1 - (70.0 * sin + 50.0 * cos)).abs() < 1e-9, "{b:?}");
 }
 
-/// Names and drawings with filters whose regions are larger than what they paint, or painted in full.
+/// Names and drawings with filters whose regions are larger than their paint, or painted in full.
 const FILTERS: &[(&str, &str)] = &[
     (
         "a shadow in a generous region",
@@ -242,7 +242,7 @@ const FILTERS: &[(&str, &str)] = &[
     ),
 ];
 
-/// The whole region of a filter does not count, only what the filter paints, up to the invisible end of a blur.
+/// The whole region of a filter does not count, only its paint, up to the invisible end of a blur.
 #[test]
 fn the_page_follows_what_filters_paint() {
     for (name, body) in FILTERS {

@@ -1,4 +1,4 @@
-//! Patterns as geometry. The reference is the original's rendering, resampled through the inverse of a curved map.
+//! Patterns as geometry. The reference is the rendering of the original, resampled through the inverse of a curved map.
 
 use pathwarp::kurbo::Affine;
 use pathwarp_oracle::drawings::{Bend, Hidden, curved, drawing, oblique, read, warp_options};
@@ -71,7 +71,7 @@ fn under_a_curved_map_tiles_bend() {
         println!("{name}: {:.2} / 255 bent, {:.2} / 255 fitted", bent.mean, fitted.mean);
         assert!(bent.mean <= 1.0, "{name}: {} of 255", bent.mean);
         assert!(fitted.mean > 10.0 * bent.mean, "{name}: {} and {} of 255", fitted.mean, bent.mean);
-        // A pattern as small as that within the last tile follows the affine fit without a visible error.
+        // A pattern within the last, small tile may follow the affine fit without a visible error.
         assert!(w.warnings.iter().all(|w| w.to_string().ends_with("their tiles are not bent: q")), "{:?}", w.warnings);
         assert!(!w.svg.contains("fill=\"url(#p") && w.svg.contains("-edge"), "{name}: {}", w.svg);
     }
@@ -98,7 +98,7 @@ fn the_file_keeps_its_names() {
     assert_eq!(w.shapes.len(), 1);
 }
 
-/// If the map bends less than is visible, the pattern stays a pattern.
+/// A pattern stays a pattern if the map bends less than is visible.
 #[test]
 fn what_no_one_sees_is_not_done() {
     let body = PATTERNS[0].1;

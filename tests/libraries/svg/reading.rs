@@ -116,7 +116,7 @@ fn files_made_to_hurt_end_in_an_error_or_a_drawing() {
     }
 }
 
-/// Each level shows the next one ten times, in all possible ways. It is refused after little work, while usvg alone would take hours.
+/// Each level shows the next one ten times, in all possible ways. It is refused after little work, where usvg alone would take hours.
 #[test]
 fn what_unfolds_without_end_is_refused_at_once() {
     const LEVELS: usize = 12;

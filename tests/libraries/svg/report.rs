@@ -1,10 +1,10 @@
-//! The report counts what is in the file: every segment of every path that is written.
+//! The report counts the contents of the file: every segment of every path that is written.
 
 use pathwarp::Outline;
 use pathwarp_oracle::drawings::{Bend, drawing, read, warp_options};
 use pathwarp_svg::{Patterns, Strokes, Structure, WarpOptions};
 
-/// Number of segments, closing lines included, in all path data of a file.
+/// Returns the number of segments, closing lines included, in all path data of a file.
 fn segments(svg: &str) -> usize {
     let data = svg.split(" d=").skip(1).map(|d| d[1..].split(&d[..1]).next().unwrap());
     data.map(|d| Outline::from_svg_lossy(d).segs().count()).sum()
@@ -55,7 +55,7 @@ fn reports_count_what_is_written() {
     }
 }
 
-/// The shape, the edges of its tiles' cells, and every tile.
+/// The shape, the edges of its tiles' cells, and every tile count.
 #[test]
 fn tiles_count() {
     let body = "<pattern id='t' width='20' height='20' patternUnits='userSpaceOnUse'><circle cx='10' cy='10' r='7' \
@@ -72,7 +72,7 @@ fn check(name: &str, body: &str, options: &WarpOptions) {
     let w = read(&drawing(body)).warp(&Bend, options).unwrap();
     let counted: usize = w.shapes.iter().map(|s| s.path.segments_out).sum();
     assert_eq!(counted, segments(&w.svg), "{name}: {:?}\n{}", w.shapes, w.svg);
-    // Markers have no element of their own.
+    // Markers have no separate element.
     let ids: Vec<&str> = w.shapes.iter().map(|s| s.id.as_str()).filter(|id| *id != "path").collect();
     assert!(ids.iter().all(|i| ids.iter().filter(|j| i == *j).count() == 1), "{name}: {ids:?}");
 }

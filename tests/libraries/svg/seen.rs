@@ -1,4 +1,4 @@
-//! Only what is seen counts, for the frame and for the page.
+//! Only visible artwork counts, for the frame and for the page.
 
 use pathwarp::kurbo::{Affine, Rect};
 use pathwarp_oracle::drawings::{Hidden, drawing, read, warp_options};
@@ -6,7 +6,7 @@ use pathwarp_svg::{PageFit, Selection};
 
 const BIG: &str = "<rect id='r' x='-200' y='-300' width='900' height='800'";
 
-/// Drawings of the square from 0 to 100, of which the square from 20 to 60 is seen.
+/// Returns drawings of the square from 0 to 100, of which the square from 20 to 60 is visible.
 fn drawings() -> Vec<(&'static str, String)> {
     let clip = "<clipPath id='c'><circle cx='40' cy='40' r='20'/></clipPath>";
     let see = "<rect x='20' y='20' width='40' height='40'/>";
@@ -44,7 +44,7 @@ fn the_frame_is_what_is_seen() {
         let off = [b.x0 - wanted.x0, b.y0 - wanted.y0, b.x1 - wanted.x1, b.y1 - wanted.y1];
         assert!(off.iter().all(|d| d.abs() < 1e-3), "{name}: {b:?}");
     }
-    // Part of it is off the page, and nothing of it is on the page.
+    // Artwork partly off the page, and wholly off it.
     let b = |body: &str| read(&drawing(body)).seen_box(&Selection::default()).unwrap();
     assert_eq!(b(&format!("{BIG}/>")), Rect::new(0.0, 0.0, 100.0, 100.0));
     assert_eq!(b("<rect x='200' y='300' width='50' height='10'/>"), Rect::new(200.0, 300.0, 250.0, 310.0));
@@ -53,7 +53,7 @@ fn the_frame_is_what_is_seen() {
     assert_eq!(read(&all).seen_box(&Selection::default()).unwrap(), Rect::new(-200.0, -300.0, 700.0, 500.0));
 }
 
-/// A picture of 2 × 1 pixels counts where it is drawn: in the middle of its place, as wide as that.
+/// A picture of 2 × 1 pixels counts where it is drawn: in the middle of its box, and as wide as that.
 #[test]
 fn pictures_count() {
     let picture = |attributes: &str| {
@@ -64,7 +64,7 @@ fn pictures_count() {
     assert_eq!(b(&picture("x='20' y='20'")), Rect::new(20.0, 30.0, 60.0, 50.0));
     let caption = "<rect x='30' y='70' width='20' height='5'/>";
     assert_eq!(b(&(picture("x='20' y='20'") + caption)), Rect::new(20.0, 30.0, 60.0, 75.0));
-    // Hidden ones, and those that cannot be read, do not.
+    // Hidden pictures do not count, nor do those that cannot be read.
     assert_eq!(b(&(picture("visibility='hidden'") + caption)), Rect::new(30.0, 70.0, 50.0, 75.0));
     assert_eq!(
         b(&format!("<image width='40' height='40' href='none.png'/>{caption}")),
@@ -81,19 +81,19 @@ fn the_uncut_box_holds_what_the_page_cuts_off() {
     };
     for (name, body) in drawings() {
         assert_eq!(uncut(&body), None, "{name}");
-        // Something at the edge of the page, so that everything is looked at.
+        // A shape at the edge of the page has everything examined.
         let b = uncut(&format!("{body}<path d='M90 50H110V51Z'/>")).unwrap();
         let off = [b.x0 - 20.0, b.y0 - 20.0, b.x1 - 110.0, b.y1 - 60.0];
         assert!(off.iter().all(|d| d.abs() < 1e-3), "{name}: {b:?}");
     }
     assert_eq!(uncut(&format!("{BIG}/>")), Some(Rect::new(-200.0, -300.0, 700.0, 500.0)));
     assert_eq!(uncut("<rect x='0' y='0' width='100' height='100'/>"), None);
-    // What a clip path leaves lies off the page, although the shape does not.
+    // The part that a clip path leaves lies off the page, although the shape does not.
     let off = "<clipPath id='c'><path d='M300 0H400V9H300Z'/></clipPath>";
     assert_eq!(uncut(&format!("<rect width='100' height='50'/>{off}{BIG} clip-path='url(#c)'/>")), None);
 }
 
-/// The page follows what was seen: moved by 70, the square reaches from 90 to 130.
+/// The page follows the artwork that was visible: moved by 70, the square reaches from 90 to 130.
 #[test]
 fn the_page_holds_what_is_seen() {
     let map = Hidden(Affine::translate((70.0, 0.0)));
@@ -122,7 +122,7 @@ fn what_comes_onto_the_page_is_reported() {
     let text =
         "<text id='t' x='20' y='125' font-size='12'>note</text><rect id='far' x='20' y='190' width='9' height='9'/>";
     assert_eq!(came(text), ["1 shape that lay off the page has moved onto it: t"]);
-    // On the page before, still off the page, invisible, or clipped away.
+    // On the page before the warp, still off it, invisible, or clipped away.
     for hidden in [
         "<rect x='20' y='60' width='50' height='60'/>",
         "<rect x='20' y='150' width='50' height='10'/>",

@@ -1,5 +1,5 @@
-//! Strokes that stay strokes, and those that become outlines. The truth is independent of this project: the renderer's own
-//! stroker gives the exact stroke of the source, which the map bends point by point, and the area of the result.
+//! Strokes that stay strokes, and those that become outlines. The truth is independent of this project: the renderer's stroker gives the
+//! exact stroke of the source, whose points the map bends one by one, and the area of the result.
 
 use pathwarp::kurbo::Affine;
 use pathwarp::map::{Formula, Map, Real};
@@ -10,7 +10,7 @@ use pathwarp_oracle::painted;
 use pathwarp_svg::usvg_tree::parse_tree;
 use pathwarp_svg::{ShapeReport, Strokes, Structure, WarpOptions};
 
-/// Much of what a map can do to a stroke: turns, shear, and scales from a half to twice.
+/// A strong map: it turns, shears, and scales by factors from a half to two.
 struct Strong;
 
 impl Formula for Strong {
@@ -19,7 +19,7 @@ impl Formula for Strong {
     }
 }
 
-/// Widths vary by a few thousandths.
+/// A mild map, under which widths vary by a few thousandths.
 struct Mild;
 
 impl Formula for Mild {
@@ -69,7 +69,7 @@ const PATHS: [&str; 9] = [
     "M15 80L50 30L85 80",
     "M15 80L30 20L45 80L50 20",
     "M20 20H80V70H20Z",
-    // In short arcs: usvg draws one of a quarter turn so far from it that the dashes after it are a thirtieth of a unit off.
+    // In short arcs, since usvg draws a quarter turn so coarsely that the dashes after it are off by a thirtieth of a unit.
     "M50 20A30 30 0 0 1 71.2132 28.7868A30 30 0 0 1 80 50A30 30 0 0 1 71.2132 71.2132A30 30 0 0 1 50 80A30 30 0 0 1 28.7868 71.2132A30 30 0 0 1 20 50A30 30 0 0 1 28.7868 28.7868A30 30 0 0 1 49.9 20Z",
     "M20 50A30 12 30 0 1 80 60",
     "M10 50Q50 90 90 50T95 20",
@@ -90,8 +90,8 @@ const STYLES: [&str; 8] = [
 
 const WIDTHS: [f64; 3] = [0.15, 1.0, 6.0];
 
-/// Every stroke that is scaled is as close to the exact one as the report says, and right by the rule: within the tolerance, or
-/// its width within 2 %. The statement is not much larger than the truth. Outlines are within the tolerance.
+/// Every scaled stroke is as close to the exact one as reported, and correct by the rule: within the tolerance, or its width within
+/// 2 %. The reported distance is not much larger than the true one. Outlines are within the tolerance.
 #[track_caller]
 fn check_all(map: &dyn Map, styles: &[&str], least: [usize; 2]) {
     const TOLERANCE: f64 = 0.05;
@@ -134,7 +134,7 @@ fn strokes_are_as_close_as_stated_under_a_strong_map() {
 
 #[test]
 fn strokes_are_as_close_as_stated_under_a_mild_map() {
-    // A dash that ends beside a corner or at the end of a path may add or lose a piece, which the statement does not foresee.
+    // At a corner or at the end of a path, a dash may gain or lose a piece, which the report does not foresee.
     check_all(&Mild, &STYLES[..5], [100, 0]);
 }
 
@@ -143,7 +143,7 @@ fn strokes_are_as_close_as_stated_under_an_affine_map() {
     check_all(&Hidden(Affine::new([0.8, 0.15, -0.22, 0.62, 20.0, 10.0])), &STYLES, [40, 80]);
 }
 
-/// A line thinner than the tolerance, or than a hairline on a page in physical units, is drawn for its centre.
+/// A line thinner than the tolerance, or than a hairline on a page in physical units, keeps its stroke, and its centre is bent.
 #[test]
 fn hairlines_stay_strokes() {
     let zigzag = "M15 80L30 20L45 80L50 20C60 10 80 90 90 50";
@@ -155,7 +155,7 @@ fn hairlines_stay_strokes() {
             let w = read(&page(&body, size)).warp(&Strong, &options).unwrap();
             let one = !w.svg.contains("<g") && w.svg.matches("<path").count() == 1;
             assert_eq!(one && w.shapes[0].outlined_strokes == 0, stays, "{size} {attributes}: {}", w.svg);
-            // A new file has no words of the author's.
+            // A new file does not repeat the author's words.
             let fill = if structure == Structure::Flatten { "fill=\"#ff0000\"" } else { "fill=\"red\"" };
             assert_eq!(w.svg.contains(fill), !stays, "{size} {attributes}: {}", w.svg);
         }
@@ -166,14 +166,14 @@ fn hairlines_stay_strokes() {
             check(mm, &format!("stroke-width='{width}' {style}"), &fine, true);
         }
         check(mm, &format!("stroke-width='0.2' {style}"), &fine, false);
-        // Units of the page in px say nothing about its physical size.
+        // A page in px has no known physical size.
         check("", &format!("stroke-width='0.1' {style}"), &fine, false);
         check("width='100' height='100'", &format!("stroke-width='0.1' {style}"), &fine, false);
         check("", &format!("stroke-width='0.1' {style}"), &tolerance(0.1), true);
         check("", &format!("stroke-width='7' {style}"), &fine, false);
         check("", &format!("stroke-width='7' vector-effect='non-scaling-stroke' {style}"), &fine, true);
     }
-    // Inches: 0.1 mm are 0.0039 units.
+    // The page is in inches: 0.1 mm are 0.0039 units.
     let inches = "width='100in' height='100in'";
     check(inches, "stroke-width='0.003'", &fine, true);
     check(inches, "stroke-width='0.01'", &fine, false);
@@ -206,7 +206,7 @@ fn painted_hairlines_stay_strokes() {
     }
 }
 
-/// Letters with strokes follow the same rule.
+/// Strokes of letters obey the same rule.
 #[test]
 fn letters_have_strokes_too() {
     for (width, stays) in [("0.1", true), ("3", false)] {
@@ -280,7 +280,7 @@ fn closed_strokes_of_few_segments_are_hollow() {
             for width in [0.5, 2.0, 7.0] {
                 let what = format!("<path d='{d}' fill='none' stroke='red' stroke-width='{width}' {style}/>");
                 let b = bent(&page(&what, ""), &Mild, &outlines);
-                // The renderer's miters are as sharp as its tangents are exact.
+                // The renderer's miters are only as sharp as its tangents are exact.
                 assert!(b.apart <= 0.06 + 0.03 * width, "{what}: {} off\n{}", b.apart, b.svg);
             }
         }

@@ -1,5 +1,5 @@
-//! Style that usvg does not read: what stays in the file, and what is reported. How it looks is compared with a browser in
-//! `tests/hosts/styles.rs`.
+//! Style that usvg does not read: some of it stays in the file, and the rest is reported. `tests/hosts/styles.rs` compares its looks with
+//! a browser.
 
 use pathwarp::budget::Limit;
 use pathwarp::kurbo::Affine;
@@ -23,7 +23,7 @@ fn what_is_not_warped_keeps_its_style() {
     let w = read(&svg).warp(&Bend, &warp_options().with_selection(only)).unwrap();
     assert!(w.svg.contains(style) && w.svg.contains(rest), "{}", w.svg);
     assert!(w.svg.contains("<path id='p' style='fill:var(--c)' d='M"), "{}", w.svg);
-    // Nothing moves: nothing changes.
+    // Nothing moves, so nothing changes.
     let w = read(&svg).warp(&AffineMap(Affine::IDENTITY), &warp_options()).unwrap();
     assert_eq!(w.svg, svg);
     let text = drawing(&format!("{style}<text class='a' style='direction:rtl' x='9' y='50'>abc</text>"));
@@ -42,7 +42,7 @@ fn shapes_with_lengths_of_style_sheets_become_paths() {
     assert_eq!(w.shapes.len(), 1);
 }
 
-/// Boxes change, so that a transform about the centre of its shape would move elsewhere.
+/// Boxes change, so a transform about the centre of its shape would have another effect afterwards.
 #[test]
 fn transforms_of_style_sheets_are_frozen() {
     let body = "<style>.a{transform:rotate(90deg);transform-box:fill-box;transform-origin:center}</style>\
@@ -61,7 +61,7 @@ fn transforms_of_style_sheets_are_frozen() {
     );
 }
 
-/// A spinner turns about its centre, also where that has moved.
+/// A spinner turns about its centre, even where that has moved.
 #[test]
 fn origins_of_animations_stay() {
     let css =
@@ -103,12 +103,12 @@ fn what_is_not_supported_is_reported() {
     let w = bent("<style>@import 'x.css'; a:foo(1){fill:red}</style><rect width='9' height='9'/>");
     let said: Vec<String> = w.warnings.iter().map(ToString::to_string).collect();
     assert!(said.iter().any(|s| s.contains("@import") && s.contains("a:foo(1)")), "{said:?}");
-    // Nor are ordinary drawings.
+    // Ordinary drawings are not reported.
     let w = bent("<style>.a{fill:red}</style><rect class='a' style='clip-path:none' width='9' height='9'/>");
     assert!(w.warnings.is_empty() && w.skipped.is_empty(), "{:?}", w.warnings);
 }
 
-/// They are named, and drawn in black all the same.
+/// Colours that are not understood are named, and drawn in black.
 #[test]
 fn colours_that_are_not_understood_are_black() {
     for (content, said) in [
@@ -136,7 +136,7 @@ fn colours_that_are_not_understood_are_black() {
         let blue = u8::from(said.starts_with("another"));
         assert_eq!([seen.red(), seen.green(), seen.blue(), seen.alpha()], [0, 0, blue, 255], "{content}");
     }
-    // What is no colour at all counts for nothing, as in browsers.
+    // A word that is no colour has no effect, as in browsers.
     let w = bent("<path id='s' d='M10 50h50v9z' stroke='nothing' fill='12px'/>");
     assert!(w.skipped.is_empty(), "{:?}", w.skipped);
 }
@@ -178,19 +178,19 @@ fn style_of_text_without_effect_is_reported() {
         let w = small(style);
         assert!(w.skipped.iter().any(|s| s.why.contains(style.split(':').next().unwrap())), "{style}: {:?}", w.skipped);
     }
-    // What Inkscape writes for any text.
+    // Properties that Inkscape writes for any text.
     let w = small(
         "font-variant-ligatures:normal;font-variant-caps:normal;font-variant-numeric:normal;text-decoration-line:none;\
                    font-feature-settings:normal;text-decoration-style:solid;text-orientation:mixed;text-transform:none;\
                    direction:ltr;white-space:normal;text-anchor:start;font-stretch:normal",
     );
     assert!(w.skipped.is_empty(), "{:?}", w.skipped);
-    // Single letters have positions, which marks would move.
+    // Single letters have positions, which combining marks would move.
     let w = bent("<text id='s' x='10 20 30' y='50' direction='rtl'>abc</text>");
     assert!(w.skipped.iter().any(|s| s.why.contains("left to right")), "{:?}", w.skipped);
 }
 
-/// Few bytes can ask for much: selectors that try every way through the tree, variables that multiply, rules that apply to all.
+/// A few bytes can cause much work: selectors that try every way through the tree, variables that multiply, rules that apply to all.
 #[test]
 fn style_ends_by_the_budget() {
     let deep = format!("<style>x {}:not(.a){{fill:red}}</style>", "* ".repeat(20));

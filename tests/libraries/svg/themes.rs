@@ -1,4 +1,4 @@
-//! Drawings whose colours can be changed afterwards stay so: warping and then changing a colour shows the same as changing it and then
+//! Drawings whose colours can be changed afterwards: warping and then changing a colour gives the same picture as changing it and then
 //! warping.
 
 use pathwarp::kurbo::Affine;
@@ -55,7 +55,7 @@ const BODIES: &[&str] = &[
      </pattern></g><path d='M10 10H90V90H10Z' stroke='url(#q) red' stroke-width='4' fill='url(#q)'/>",
 ];
 
-/// The picture of a drawing in which a colour was changed before or after it was warped.
+/// Returns the picture of a drawing in which a colour was changed before or after it was warped.
 fn picture(body: &str, warp: &WarpOptions, [before, after]: [&str; 2]) -> Vec<u8> {
     let warped = read(&drawing(&body.replace("LINE", LINE).replace("THEME", before))).warp(&Bend, warp).unwrap();
     let tree = parse_tree(warped.svg.replace(before, after).as_bytes(), "themed", &options()).unwrap();
@@ -70,14 +70,14 @@ fn changing_a_colour_commutes_with_warping() {
             let wanted = picture(body, &warp, [new, new]);
             assert_ne!(picture(body, &warp, [old, old]), wanted, "{body}");
             let found = picture(body, &warp, [old, new]);
-            // Both have the same outlines, so at most rounding differs.
+            // The outlines are equal, so at most rounding differs.
             let off = found.iter().zip(&wanted).filter(|(a, b)| a.abs_diff(**b) > 2).count();
             assert!(off == 0, "{body}: {off} of {} values differ", wanted.len());
         }
     }
 }
 
-/// What can be changed nowhere else keeps its own words, too.
+/// A colour that can be changed nowhere else keeps its words, too.
 #[test]
 fn a_new_fill_says_what_the_stroke_said() {
     for (said, words) in [

@@ -1,4 +1,4 @@
-//! Shapes that become one. The truth is what each shape covers by itself.
+//! Shapes that are united. The truth is the area that each shape covers by itself.
 
 use pathwarp::Outline;
 use pathwarp::kurbo::{Affine, Point};
@@ -18,7 +18,7 @@ fn united_by(svg: &str, options: &WarpOptions) -> WarpedDocument {
     read(svg).warp(&AffineMap(Affine::IDENTITY), options).unwrap()
 }
 
-/// The outline of each shape that has a fill, with its rule.
+/// Returns the outline of each filled shape, with its fill rule.
 fn areas(svg: &str) -> Vec<(Polygon, bool)> {
     let closed = |o: &Outline| {
         let mut o = o.clone();
@@ -77,7 +77,7 @@ fn one_outline_covers_what_all_shapes_cover() {
     }
 }
 
-/// The paint is that of the uppermost, and each is named. Curves stay what they are.
+/// The united shape has the paint of the uppermost one, and each source is named. Curves keep their kinds.
 #[test]
 fn what_goes_in_is_named() {
     let source = drawing(
@@ -92,10 +92,10 @@ fn what_goes_in_is_named() {
     assert!(warnings.iter().any(|w| w.to_string().ends_with("no area to unite: l")), "{warnings:?}");
     let by_fill = united(&source, true).svg;
     assert!(by_fill.contains("data-united=\"bar d\"") && by_fill.contains("<circle id='c'"), "{by_fill}");
-    // A second time there is nothing to do.
+    // The second time, nothing is left to unite.
     let again = united(&by_fill, true);
     assert!(again.svg == by_fill && again.warnings.iter().any(|w| w.to_string().contains("nothing to unite")));
-    // A clip path keeps what it holds.
+    // A clip path keeps its contents.
     let clipped = drawing(
         "<clipPath id='k'><rect width='50' height='99'/></clipPath><g clip-path='url(#k)'><rect id='p' width='60' height='30'/>\
          <rect id='q' y='20' width='60' height='30'/></g><rect id='r' y='40' width='80' height='20'/>",

@@ -47,13 +47,13 @@ fn what_the_renderer_does_not_know_is_reported() {
         let w = read(&drawing(&body)).warp(&Bend, &warp_options().with_selection(only)).unwrap();
         assert!(w.skipped.is_empty(), "{:?}", w.skipped);
     }
-    // Not shown: private data of an editor, and definitions.
+    // Private data of an editor, and definitions, are not shown.
     let body = "<switch><foreignObject requiredExtensions='urn:x' width='1' height='1'/><path d='M0 0h9v9z'/></switch>";
     let w = bent(&format!("{MESH}<defs><rect fill='url(#h)' width='9' height='9'/></defs>{body}{REST}"));
     assert!(w.skipped.is_empty(), "{:?}", w.skipped);
 }
 
-/// Illustrator would show what it stored beside the artwork.
+/// Illustrator would show the private data that it stored beside the artwork.
 #[test]
 fn private_data_of_illustrator_is_reported() {
     let namespace = "http://ns.adobe.com/AdobeIllustrator/10.0/";
@@ -103,7 +103,7 @@ fn lines_of_a_text_stay_words_apart() {
     }
 }
 
-/// What Chromium shows a little otherwise is said of results, and of drawings that are only drawn or converted.
+/// Differences in Chromium are reported for results, and for drawings that are only drawn or converted.
 #[test]
 fn what_browsers_show_otherwise_is_said() {
     const LINES: &str = "a tspan with y";

@@ -1,5 +1,5 @@
-//! Drawings shown as images, warped as geometry. The reference is the renderer's own transform of the original, or its
-//! rendering bent pixel by pixel.
+//! Drawings shown as images, warped as geometry. The reference is the original, transformed by the renderer itself or bent pixel by
+//! pixel after rendering.
 
 use pathwarp::kurbo::Affine;
 use pathwarp_oracle::drawings::{Bend, check, curved, drawing, oblique, options, read, warp, warp_options};
@@ -20,7 +20,7 @@ fn inner(attributes: &str, body: &str) -> String {
     link(&format!("<svg xmlns='http://www.w3.org/2000/svg' {attributes}>{body}</svg>"))
 }
 
-/// Names and drawings.
+/// Returns names and drawings.
 fn drawings() -> Vec<(&'static str, String)> {
     let plain =
         inner("width='20' height='10'", "<rect width='20' height='10' fill='gold'/><circle cx='10' cy='5' r='4'/>");
@@ -111,7 +111,7 @@ fn what_is_no_plain_file_is_not_read() {
         assert!(w.svg.contains("<image id='i'"), "{link}: {}", w.svg);
         let [left] = &w.skipped[..] else { panic!("{link}: {:?}", w.skipped) };
         assert!(left.id == "i" && left.why.contains(link.trim_end_matches(',')), "{left:?}");
-        // It is not reported if it is not selected, and flattened output omits it.
+        // An image that is not selected is not reported, and flattened output omits it.
         let other = Selection { exclude: vec!["#i".into()], ..Selection::default() };
         let options = warp_options().with_selection(other);
         assert!(
@@ -123,8 +123,8 @@ fn what_is_no_plain_file_is_not_read() {
     }
 }
 
-/// SVG 2, section 12.3: an image is clipped to the edge of its drawing. The renderer does not do that, so the reference is a
-/// group with such a clip path.
+/// SVG 2, section 12.3, clips an image to the edge of its drawing. The renderer does not, so the reference is a group with such a clip
+/// path.
 #[test]
 fn they_are_cut_at_their_edge() {
     let body = "<circle cx='15' cy='15' r='19' fill='teal'/>";
@@ -140,7 +140,7 @@ fn they_are_cut_at_their_edge() {
     assert_eq!(cut, 2, "a shape and its clip path");
 }
 
-/// The comparison can fail: an affine placement alone is far off.
+/// The comparison can fail: an affine placement alone differs a lot.
 #[test]
 fn an_affine_place_would_be_seen() {
     let (_, body) = drawings().swap_remove(0);

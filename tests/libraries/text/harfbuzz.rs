@@ -39,7 +39,7 @@ impl HarfBuzzCase {
         Font::new(bytes, 0).unwrap().with_variations(&places).unwrap()
     }
 
-    /// A style in which a font unit is a user unit.
+    /// Returns a style in which a font unit is a user unit.
     fn style(&self) -> TextStyle {
         TextStyle {
             size: self.upem(),
@@ -50,13 +50,13 @@ impl HarfBuzzCase {
         }
     }
 
-    /// The glyphs of HarfBuzz: number, byte in the text, advance, offsets.
+    /// Returns the glyphs of HarfBuzz: number, byte in the text, advance, offsets.
     fn glyphs(&self) -> Vec<[f64; 5]> {
         let numbers = |g: &Value| -> Vec<f64> { g.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect() };
         self.all["glyphs"].as_array().unwrap().iter().map(|g| numbers(g).try_into().unwrap()).collect()
     }
 
-    /// The outline of a glyph from HarfBuzz, y up, in font units.
+    /// Returns the outline of a glyph from HarfBuzz, y up, in font units.
     fn outline(&self, glyph: u32) -> BezPath {
         let mut path = BezPath::new();
         for op in self.all["outlines"][glyph.to_string()].as_array().unwrap() {
@@ -82,7 +82,7 @@ fn cases() -> Vec<HarfBuzzCase> {
     cases.iter().map(|c| HarfBuzzCase { name: c["name"].as_str().unwrap().to_owned(), all: c.clone() }).collect()
 }
 
-/// Removes a line back to the start, which closing the subpath draws anyway.
+/// Removes a line back to the start, which is drawn anyway when the subpath is closed.
 fn without_closing_lines(path: &BezPath) -> Vec<PathEl> {
     let mut out: Vec<PathEl> = Vec::new();
     let mut start = Point::ZERO;

@@ -1,4 +1,4 @@
-//! Lines, spacing, alignment, fallback fonts and errors. Figures are those of Noto Sans, at 1000 units per em.
+//! Lines, spacing, alignment, fallback fonts and errors. Numbers are measures of Noto Sans, at 1000 units per em.
 
 use super::common::{bundled, file};
 use pathwarp::kurbo::{BezPath, Point, Shape};
@@ -107,7 +107,7 @@ fn lines_are_aligned() {
         for (line, start) in lines.iter().zip(starts) {
             near(line.start.x, start);
             near(line.clusters[0].origin.x, start);
-            // The outlines move with the line; that of a starts 46 units in.
+            // The outlines move with the line; the outline of `a` starts 46 units in.
             near(line.clusters[0].outline.bounding_box().x0, start + 46.0);
         }
     }
@@ -148,7 +148,7 @@ fn missing_characters_come_from_the_next_font() {
         text.lines[0].clusters.iter().map(|c| (c.glyphs[0].font, c.glyphs[0].id == 0)).collect();
     assert_eq!(from, [(1, false), (0, false), (0, true), (1, false)]);
     assert_eq!(text.missing, ['日']);
-    // The heights and the box for what is missing are those of the first font.
+    // The heights and the box for missing characters are those of the first font.
     near(text.metrics.ascent, 1068.0);
 }
 
@@ -202,7 +202,7 @@ fn other_files_are_errors() {
     assert_eq!(Font::new(&bundled(), 2).unwrap_err(), Error::NoSuchFace { index: 2, count: 1 });
 }
 
-/// Fonts that are truncated or altered give an error, or lettering with finite outlines.
+/// Truncated or altered fonts give an error, or lettering with finite outlines.
 #[test]
 fn damaged_fonts_are_harmless() {
     let finite = |path: &BezPath| path.iter().all(|el| el.end_point().is_none_or(Point::is_finite));
@@ -267,7 +267,7 @@ proptest! {
     }
 }
 
-/// The box of a line's ink.
+/// Returns the box of a line's ink.
 fn ink(line: &LetteringLine) -> pathwarp::kurbo::Rect {
     line.clusters
         .iter()
@@ -289,7 +289,7 @@ fn every_line_fills_the_width_of_the_widest() {
         near(after.x1, widest);
         near(line.start.x, 0.0);
         near(line.end.x, widest);
-        // The proportion stays: letters are as much larger as the line is wider.
+        // The proportion stays: letters grow as much as the line widens.
         near(line.scale, widest / before.width());
         near(after.height() / before.height(), line.scale);
         for (a, b) in plain.lines[i].clusters.iter().zip(&line.clusters) {
@@ -298,7 +298,7 @@ fn every_line_fills_the_width_of_the_widest() {
             near(b.origin.y, line.start.y);
         }
     }
-    // Boxes of lines follow one another, each at its own size; the font has no gap between them.
+    // Boxes of lines follow one another, each at its size; the font has no gap between lines.
     let mut top = 0.0;
     for line in &filled.lines {
         near(line.start.y, top + ASCENT * line.scale);
@@ -307,7 +307,7 @@ fn every_line_fills_the_width_of_the_widest() {
     near(filled.page().y1, top);
     let fixed = set("by\nLOVE MUSIC", &TextStyle { line_height: Some(900.0), ..style.clone() });
     near(fixed.lines[1].start.y - fixed.lines[0].start.y, 900.0 * fixed.lines[1].scale);
-    // One word fills its own width.
+    // One word fills its width.
     let one = set("MUSIC", &style);
     near(one.lines[0].scale, 1.0);
     near(ink(&one.lines[0]).x0, 0.0);
@@ -326,7 +326,7 @@ fn gaps_are_from_ink_to_ink() {
                 .for_each(|c| assert!(text.lines.iter().any(|l| l.start.y == c.origin.y)));
         }
     }
-    // A line without ink has no height of its own.
+    // A line without ink has no height.
     let empty = set("A\n\nB", &TextStyle { gap: Some(50.0), ..em() });
     near(ink(&empty.lines[2]).y0 - ink(&empty.lines[0]).y1, 100.0);
     assert!(layout("a", &[Font::new(&bundled(), 0).unwrap()], &TextStyle { gap: Some(f64::NAN), ..em() }).is_err());

@@ -1,8 +1,8 @@
 //! Imports between the files of one crate, read from its source.
 //!
-//! Every path in the code is resolved to the file that *defines* the item, through re-exports and `use` aliases. Modules
-//! compiled only for tests are left out. Re-exports themselves (`pub use`) are no imports: a `mod.rs` may show what its
-//! children define.
+//! Every path in the code is resolved to the file that *defines* the item, through re-exports and `use` aliases. Modules compiled only
+//! for tests are ignored. Re-exports themselves (`pub use`) are not imports: a `mod.rs` may re-export definitions of its
+//! children.
 
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
@@ -96,9 +96,9 @@ impl Crate {
         arrows
     }
 
-    /// The file that defines what `path`, as written in module `at`, ends at; `None` for other crates' items and for modules.
+    /// Returns the file that defines the item of `path`, as written in module `at`; `None` for other crates' items and for modules.
     fn resolve(&self, at: &ModulePath, path: &[String], depth: usize) -> Option<String> {
-        /// Deeper than any honest chain of re-exports.
+        /// Depth beyond any ordinary chain of re-exports.
         const DEEPEST: usize = 32;
         if depth > DEEPEST {
             return None;
@@ -130,7 +130,7 @@ impl Crate {
             }
             if let Some(target) = module.aliases.get(name) {
                 let whole: Vec<String> = target.iter().chain(&rest[1..]).cloned().collect();
-                // `use rayon::…` and the like: the first name is another crate's.
+                // In `use rayon::…` and the like, the first name is another crate's.
                 return if whole == path && here == *at { None } else { self.resolve(&here, &whole, depth + 1) };
             }
             if module.items.contains(name) {
@@ -220,7 +220,7 @@ impl Paths<'_> {
     }
 }
 
-/// Takes a `use` tree apart. What is not re-exported counts as used.
+/// Takes a `use` tree apart. Names that are not re-exported count as used.
 fn flatten(tree: &UseTree, front: &mut ModulePath, module: &mut Module, public: bool) {
     match tree {
         UseTree::Path(p) => {

@@ -10,16 +10,16 @@ use std::fs;
 use std::path::Path;
 use syn::visit::{self, Visit};
 
-/// No source file is longer.
+/// Limit on the lines of a source file.
 const LONGEST_FILE: usize = 900;
-/// No function is longer, unless it is a table.
+/// Limit on the lines of a function, unless it is a table.
 const LONGEST_FUNCTION: usize = 80;
-/// The rooms of pathwarp-svg; each may import from those before it.
+/// The rooms of pathwarp-svg. Each may import from those before it.
 const SVG_ROOMS: [&str; 4] = ["source", "scene", "bend", "write"];
 
 #[test]
 fn dependencies_run_one_way() {
-    // In the order of the manifest, which is that of the alphabet.
+    // In the order of the manifest, which is alphabetical.
     let of = |name: &str| -> Vec<String> {
         let text = fs::read_to_string(root().join("crates").join(name).join("Cargo.toml")).unwrap();
         let manifest: toml::Table = text.parse().unwrap();
@@ -43,7 +43,7 @@ fn dependencies_run_one_way() {
     allowed("pathwarp-plugin", &["pathwarp"]);
     allowed("pathwarp-psd", &[]);
     allowed("pathwarp-dxf", &["pathwarp"]);
-    // The core for its limits: pictures in a PDF are counted.
+    // pathwarp-pdf needs the core for its limits, since pictures in a PDF are counted.
     allowed("pathwarp-pdf", &["pathwarp", "pathwarp-raster"]);
     let below_engine = [
         "pathwarp",
@@ -71,7 +71,7 @@ fn dependencies_run_one_way() {
     }
 }
 
-/// Every crate's `src` folder.
+/// Returns every crate's `src` folder.
 fn crates() -> Vec<(String, BTreeMap<String, String>)> {
     let folder = root().join("crates");
     let mut names: Vec<String> =
@@ -146,7 +146,7 @@ fn against_the_order(arrows: &Arrows) -> Vec<String> {
     out
 }
 
-/// The reader of imports finds what it must, so that the tests above can fail.
+/// The reader of imports finds such circles, so the tests above can fail.
 #[test]
 fn circles_are_found() {
     let read = |files: &[(&str, &str)]| {
@@ -166,7 +166,7 @@ fn circles_are_found() {
         ("d.rs", "use super::a; pub const MOST: usize = a::A::SIZE;"),
     ]);
     assert_eq!(circles(&arrows), [["a.rs", "b/deep.rs", "c.rs", "d.rs"]]);
-    // A parent that only shows what its child defines makes none, nor do tests, nor other crates' names.
+    // No circle: a parent that only re-exports its child's definitions, tests, and names of other crates.
     let arrows = read(&[
         ("lib.rs", "mod a; pub use a::A; mod kurbo_like {}"),
         ("a/mod.rs", "mod b; mod c; pub use b::A;"),
@@ -175,7 +175,7 @@ fn circles_are_found() {
     ]);
     assert!(circles(&arrows).is_empty());
     assert_eq!(arrows["a/b.rs"]["a/c.rs"], "super::c::C");
-    // A parent that works with a folder, which uses what the parent defines. Two files of one folder may know each other.
+    // A circle: a parent works with a folder, which uses the parent's definitions. Two files of one folder may import each other.
     let arrows = read(&[
         ("lib.rs", "mod child; pub struct P; fn f() { child::run() }"),
         ("child/mod.rs", "mod own; use crate::P; pub fn run() { own::g() } pub fn h() {}"),
@@ -198,7 +198,7 @@ fn circles_are_found() {
 
 #[test]
 fn files_and_functions_are_short() {
-    /// Tables of expected values: one entry after the other, with nothing to follow from line to line.
+    /// Tables of expected values: one entry after the other, without connections between lines.
     const TABLES: [&str; 3] =
         ["table", "the_guides_ends_are_the_formulas", "the_two_curve_family_reproduces_its_guides"];
     let mut long = Vec::new();

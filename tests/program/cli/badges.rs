@@ -43,8 +43,8 @@ fn middle(svg: &str) -> f64 {
     0.5 * (lines[0] + lines[1])
 }
 
-/// Space between neighbours is the same all around at half the height of the capitals, above and below, although letters fan out above
-/// and crowd below; and separators are as far from the upper line as from the lower one.
+/// At half the height of the capitals, the space between neighbours is equal all around, above and below, although letters fan out above
+/// and crowd below; and separators are equally far from both lines.
 #[test]
 fn letters_have_equal_distances_above_and_below() {
     for extra in [&["--dots"][..], &["--stars", "--font", "Noto Sans"], &["--dots", "--letter-spacing", "9%"]] {
@@ -60,7 +60,7 @@ fn letters_have_equal_distances_above_and_below() {
             all
         };
         let (upper, lower) = (spans("upper"), spans("lower"));
-        // Between two H there is the same space as between others of them; an I has space of its own.
+        // The space between two H is equal everywhere; an I has other bearings.
         let gaps = |spans: &[[f64; 2]], i: usize| (spans[i + 1][0] - spans[i][1]) * radius;
         let (above, below) = (gaps(&upper, 2), gaps(&lower, 2));
         assert!(above > 1.0 && (above / below - 1.0).abs() < 0.02, "H and H: {above} above, {below} below");
@@ -135,7 +135,7 @@ fn what_does_not_fit_is_told() {
     assert!(group(&svg, "ring").len() == 4 && !svg.contains("id=\"lower\""));
 }
 
-/// The ring that text is on stays, in its place.
+/// The ring on which text stands stays unchanged.
 #[test]
 fn a_path_stays_with_its_text() {
     let dir = tempfile::tempdir().unwrap();

@@ -53,7 +53,7 @@ fn bad_files_do_not_stop_a_batch() {
     }
     assert_eq!([&report["totals"]["inputs"], &report["totals"]["failed"]], [5, 3]);
 
-    // The good files come out as they do alone, on the pages that they have.
+    // The good files give the results that they give alone, on their pages.
     let alone = pathwarp_in(dir.path(), &["warp", "--style", "flag", "--fit", "none", "a.svg"], b"");
     assert_eq!(alone.stdout, fs::read(dir.path().join("out/a.svg")).unwrap());
 }
@@ -67,7 +67,7 @@ fn on_error_stop_writes_nothing() {
     assert!(said.contains("broken.svg") && !said.contains("inputs failed"), "{said}");
     assert_eq!(files_below(dir.path()), ["a.svg", "broken.svg", "flat.svg", "z.svg"]);
     assert!(!dir.path().join("out").exists());
-    // Without a bad file it writes them all.
+    // Without a bad file, all are written.
     let (out, said) = run(dir.path(), &["--on-error", "stop"], &["a.svg", "z.svg"]);
     assert_eq!(out.status.code(), Some(0), "{said}");
     assert_eq!(files_below(&dir.path().join("out")), ["a.svg", "z.svg"]);
@@ -123,7 +123,7 @@ fn page_warnings_of_a_batch_are_one_line() {
     assert!(report["inputs"].as_array().unwrap().iter().all(|i| i["warnings"].as_array().unwrap().len() == 1));
 }
 
-/// A folder with drawings, one of them below, and files that are none.
+/// Makes a folder with drawings, one of them in a folder below, and with other files.
 fn tree(folder: &Path) {
     fs::create_dir_all(folder.join("art/sub/.hidden")).unwrap();
     for file in ["art/b.svg", "art/a.svg", "art/sub/a.svg", "art/sub/.hidden/c.svg", "art/.d.svg"] {
@@ -175,7 +175,7 @@ fn a_dry_run_lists_the_outputs_and_writes_none() {
     assert!(!dir.path().join("out").exists());
 }
 
-/// Ctrl-C and SIGTERM leave finished files, whole, and no temporary ones.
+/// Ctrl-C and SIGTERM leave whole, finished files and no temporary ones.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_batch_leaves_whole_files_only() {

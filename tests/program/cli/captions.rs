@@ -43,7 +43,7 @@ fn captions_stand_where_they_are_put() {
     assert!(shifts.iter().all(|v| near(*v, 0.0)), "{shifts:?}");
 }
 
-/// What the root passes on to its children does not concern the words; names and prefixes of the drawing stay its own.
+/// Properties that the root passes to its children do not affect the words; names and prefixes of the drawing stay.
 #[test]
 fn captions_are_set_on_any_drawing() {
     let words = ["caption", "-", "--words", "It's <&> \"it\"", "--fill", "#c30"];
@@ -76,7 +76,7 @@ fn captions_are_set_on_any_drawing() {
     }
 }
 
-/// A letter is bent alone by its name; the recipe has the words, and gives the same; captions come first wherever they stand.
+/// A letter can be bent alone by its name. The recipe holds the words, and gives the same result. Captions come first in any order.
 #[test]
 fn captions_are_parts_and_words_in_recipes() {
     let dir = tempfile::tempdir().unwrap();

@@ -49,7 +49,7 @@ fn artwork_bends_along_circles_and_arcs() {
     near(&mapped("circle:r=1in,cx=0,cy=0", "50 50"), &[[0.0, -96.0]], "an inch");
 }
 
-/// Millimetres are those of the page, also in an option of another deformation.
+/// Millimetres refer to the page, also in an option of another deformation.
 #[test]
 fn a_circle_in_a_drawing_has_its_size_on_the_page() {
     let dir = tempfile::tempdir().unwrap();
@@ -91,7 +91,7 @@ fn errors_name_the_wrong_value() {
     }
 }
 
-/// The baseline starts at the inner end of r = inner + growth·angle and stays on it, whichever way the ends lie to each other.
+/// The baseline starts at the inner end of r = inner + growth·angle and stays on it, whatever the positions of the ends.
 #[test]
 fn artwork_bends_along_spirals_in_the_direction_they_name() {
     for (turns, from, ccw) in [(2.0, 180.0, false), (0.75, 0.0, false), (1.3, 200.0, true), (0.4, 90.0, false)] {
@@ -119,7 +119,7 @@ fn artwork_bends_along_spirals_in_the_direction_they_name() {
                 assert!(p.distance(Point::new(10.0 * begin.cos(), 10.0 * begin.sin())) < 1e-6, "{along}: {p}");
             }
             last = p;
-            // Beyond its end it would go on straight.
+            // Beyond its end, the skeleton would continue straight.
             if angle > turns * TAU - 4.0 * step / 30.0 {
                 break;
             }
@@ -128,7 +128,7 @@ fn artwork_bends_along_spirals_in_the_direction_they_name() {
     }
 }
 
-/// A closed path in reverse: upright on the lowest point, inside.
+/// A closed path in reverse carries artwork upright on its lowest point, inside.
 #[test]
 fn artwork_stands_upright_in_a_circle_in_reverse() {
     let dir = tempfile::tempdir().unwrap();
@@ -140,7 +140,7 @@ fn artwork_stands_upright_in_a_circle_in_reverse() {
     assert!((points[1][1] - 5.0).abs() < 1e-9 && points[2][0] > 0.9, "{out}");
 }
 
-/// The letters of every group of a drawing, as points on their outlines about 0,0: radius, angle clockwise from the right in degrees.
+/// Returns the letters of every group of a drawing, as points of outlines about 0,0: radius, clockwise angle from the right (degrees).
 fn letters(svg: &str) -> Vec<Vec<Vec<(f64, f64)>>> {
     let letter = |path: &str| {
         let outline = Outline::from_svg(path.split('"').next().unwrap()).unwrap();
@@ -180,7 +180,7 @@ fn two_lines_are_in_one_ring() {
         let middle = |letter: &Vec<(f64, f64)>| letter.iter().map(|p| p.1).sum::<f64>() / letter.len() as f64;
         assert!(middle(&both[0][0]) < middle(&both[0][2]) && middle(&both[1][0]) > middle(&both[1][3]));
     }
-    // The middles turn together, or each to its own place.
+    // The middles turn together, or each to a different angle.
     for (more, middles) in
         [(&["--at", "300"][..], [300.0, 120.0]), (&["--at", "250", "--at", "0.5turn"], [250.0, 180.0])]
     {
@@ -211,7 +211,7 @@ fn text_on_open_paths_takes_the_options_of_bend() {
         let from = range(&on(&[upper, "--align", align])[0], |p| p.1).0;
         assert!(first.contains(&from), "{align}: {from}");
     }
-    // Over the whole arc, without its sidebearings.
+    // Without sidebearings, the text covers the whole arc.
     let (from, to) = range(&on(&[upper, "--stretch", "scale"])[0], |p| p.1);
     assert!((180.0..190.0).contains(&from) && (350.0..360.0).contains(&to), "{from} {to}");
     let both = on(&["circle:r=60mm", "--below", "HH", "--stretch", "fit"]);
@@ -228,7 +228,7 @@ fn text_on_open_paths_takes_the_options_of_bend() {
     assert!((there("10mm") - there("0") - (10.0_f64 / 60.0).to_degrees()).abs() < 0.01);
 }
 
-/// A path of a file has its size on paper, whatever its units: an inch as radius, in px and in units of 0.1 mm.
+/// A path of a file has its size on paper in any units: a radius of an inch, in px and in units of 0.1 mm.
 #[test]
 fn a_path_of_a_file_has_its_size() {
     let dir = tempfile::tempdir().unwrap();
@@ -265,7 +265,7 @@ fn what_does_not_go_on_a_path_says_so() {
     assert!(expect_code(0, &long).1.contains("run into each other"));
 }
 
-/// The map depends on the frame and the options alone: a point has the same image whatever is asked for beside it.
+/// The map depends on the frame and the options alone: the image of a point does not depend on the other points.
 #[test]
 fn a_point_has_the_same_image_whatever_is_asked_for_beside_it() {
     let dir = tempfile::tempdir().unwrap();

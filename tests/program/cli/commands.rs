@@ -1,4 +1,4 @@
-//! Further subcommands, and programs with deformations of their own.
+//! Further subcommands, and programs that add deformations.
 
 use super::common::{SQUARE, text};
 use crate::support::{expect_code, pathwarp_in, sample};
@@ -117,7 +117,7 @@ fn compare_matches_paths_without_id_by_their_order() {
         c["paths"].as_array().unwrap().iter().map(|p| p["distance"].as_f64().unwrap().round()).collect()
     };
     let square = |x: i32| format!("<path d='M{x},0h10v10h-10z'/>");
-    // Everything is on one line, so longer numbers move what follows; and a rectangle may have become a path.
+    // Everything is on one line, so longer numbers shift the text after them; and a rectangle may have become a path.
     let a = format!("{}{}<g id='g'>{}<path id='p' d='M0,50h9'/></g>", square(0), square(20), square(40));
     let b = format!("{}{}<g id='g'>{}<path id='p' d='M0,57h9'/></g>", square(-100), square(23), square(45));
     let c = compare(&a, &b);
@@ -125,7 +125,7 @@ fn compare_matches_paths_without_id_by_their_order() {
     assert!(c["only_in_a"].as_array().unwrap().is_empty() && c["only_in_b"].as_array().unwrap().is_empty(), "{c}");
     let circle = compare("<rect width='10' height='10'/>", "<path d='M0,0h12v10h-12z'/>");
     assert_eq!(distances(&circle), [2.0]);
-    // With one more path in the group the others are still compared, matched by their place in the file.
+    // With one more path in the group the others are still compared, matched by their position in the file.
     let more = format!("{}{}<g id='g'>{}{}</g>", square(0), square(20), square(41), square(70));
     let c = compare(&a, &more);
     assert_eq!(distances(&c), [0.0, 0.0, 1.0]);
@@ -155,7 +155,7 @@ fn render_and_preview_write_pictures() {
     assert!(pathwarp_raster::decode_png(&fs::read(preview).unwrap()).unwrap().width() > 600);
 }
 
-/// A gallery of a curve has nodes and handles over each of its cells, and a preview is large enough to see them.
+/// A gallery of a curve has nodes and handles over each of its cells, and a preview is large enough to show them.
 #[test]
 fn pictures_show_nodes() {
     let dir = tempfile::tempdir().unwrap();
@@ -168,7 +168,7 @@ fn pictures_show_nodes() {
     run(&["warp", "-", "--style", "flag", "-o", "o.svg", "--preview", "p.png", "--show-nodes"]);
     let png = pathwarp_raster::decode_png(&fs::read(dir.path().join("p.png")).unwrap()).unwrap();
     assert!(png.width() > 2800, "{}", png.width());
-    // Lines, knobs and nodes in each of the sixteen cells.
+    // Each of the sixteen cells has lines, knobs and nodes.
     let paths = |sheet: &[u8]| text(sheet).matches("<path").count();
     let [plain, shown] = [&["gallery", "-"][..], &["gallery", "-", "--show-nodes"]].map(|args| paths(&run(args)));
     assert_eq!(shown - plain, 3 * 16);

@@ -1,4 +1,4 @@
-//! Artwork and helpers that several files share.
+//! Artwork and helpers shared by several files.
 
 use std::fs;
 use std::path::Path;

@@ -28,7 +28,7 @@ fn a_note_says_how_many_lines_there_are() {
     assert_eq!(run(&cut, BARS).1, first, "the same twice");
 }
 
-/// Sizes hold to a hundredth of a millimetre: a box of the line in the DXF, in mm, on a layer of its name.
+/// Sizes are correct to a hundredth of a millimetre: the box of the line in the DXF, in mm, on the layer with its name.
 #[test]
 fn the_dxf_has_a_layer_of_the_name() {
     let (_, out, _) = run(
@@ -60,7 +60,7 @@ fn the_dxf_has_a_layer_of_the_name() {
     assert!(dxf.contains("\nart\n"), "named groups stay layers");
 }
 
-/// One ink of the name, printed over what lies below unless it is to knock it out.
+/// The PDF has one ink of the name, which overprints the artwork below unless told to knock it out.
 #[test]
 fn the_pdf_has_an_ink_of_the_name() {
     let pdf = |more: &[&str]| {
@@ -99,7 +99,7 @@ fn what_cannot_be_is_said_in_a_sentence() {
     }
 }
 
-/// The pixels beyond a red bar are red, as far as the bleed goes.
+/// The pixels beyond a red bar are red, as far as the bleed extends.
 #[test]
 fn the_bleed_continues_colours() {
     let args = ["contour", "-", "--by", "1mm", "--bleed", "2mm", "--format", "svg"];

@@ -1,4 +1,4 @@
-//! Every command line in help runs, and help knows every deformation.
+//! Every command line in help runs, and help covers every deformation.
 
 use crate::support::{expect_code, words_into};
 use std::fs;
@@ -18,7 +18,7 @@ fn every_example_in_help_runs() {
 /// Runs a command line of the documentation with its output in `dir`.
 fn run_into(dir: &Path, command: &str) {
     expect_code(0, &words_into(dir, command));
-    // A drawing, or of a photograph a photograph.
+    // The result is a drawing, or a photograph if the source is one.
     let out = dir.join(if command.ends_with(" -o out.jpg") { "out.jpg" } else { "out.svg" });
     let result = fs::read(&out).unwrap();
     let is_drawing = String::from_utf8_lossy(&result).contains("<svg");

@@ -17,7 +17,7 @@ fn sample(name: &str) -> Vec<u8> {
     std::fs::read(root().join("samples").join(name)).unwrap()
 }
 
-/// As by a command for each.
+/// An option gives the result of a separate command for each edit.
 #[test]
 fn edits_come_before_the_bend() {
     for name in ["traced/word.svg", "logo.svg", "lettering-text.svg"] {
@@ -48,7 +48,7 @@ fn the_page_grows_with_the_artwork() {
     assert!(simple.contains("viewBox='0 0 300 100'"), "{simple}");
 }
 
-/// A chain and a recipe say the same as the options and as one command after the other.
+/// A chain and a recipe give the result of the options and of one command after the other.
 #[test]
 fn edits_are_steps() {
     let source = sample("traced/word.svg");
@@ -64,7 +64,7 @@ fn edits_are_steps() {
     let text = std::fs::read_to_string(&recipe).unwrap();
     assert!(text.contains("deformation = \"offset\"") && text.contains("join = \"miter\""), "{text}");
     assert_eq!(run(&["run", &recipe, "-"], &source), expected);
-    // An edit that selects leaves the rest alone, and so it does before others.
+    // An edit with a selection leaves the rest alone, even before other edits.
     let two = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 90 90'><path id='a' d='M9,9H30V30H9Z'/><path id='b' d='M50,50H80V80H50Z'/></svg>";
     let grown = run(&["offset", "-", "--by", "2", "--select", "#a"], two.as_bytes());
     assert!(grown.contains("d='M50,50H80V80H50Z'") && !grown.contains("M9,9"), "{grown}");
@@ -86,7 +86,7 @@ fn text_of(out: &std::process::Output) -> String {
     text(&out.stderr)
 }
 
-/// What no step bends stays; places of elements without ids are those of the source, and no ids appear.
+/// Artwork that no step bends stays. Elements without ids are named by their positions in the source, and no ids are added.
 #[test]
 fn edits_concern_what_is_bent() {
     let svg = |a: &str, b: &str| {
@@ -151,7 +151,7 @@ fn dots_of_large_drawings_grow_evenly() {
     }
 }
 
-/// Open lines stay to the letter beside areas, and move where they are wanted to, or alone. What is filled is an area, closed or not.
+/// Open lines stay unchanged beside areas, and move where they are selected, or alone. Filled shapes are areas, closed or not.
 #[test]
 fn lines_stay_beside_areas() {
     let leaf = "<path id='leaf' fill='#6a4' d='M10,10H90V60H10Z'/>";

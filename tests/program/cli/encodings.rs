@@ -28,7 +28,7 @@ fn encodings_give_the_result_of_utf8() {
             assert!(run(args, &source) == wanted, "{args:?}: {}", text(&source));
         }
     }
-    // The source comes back as it was.
+    // The source comes back unchanged.
     let embedded = run(&["swirl", "--embed-recipe", "-q"], &latin);
     assert!(run(&["unwarp", "-"], &embedded) == latin);
 }

@@ -143,7 +143,7 @@ fn a_shape_beyond_the_horizon_can_be_skipped() {
     assert_eq!(report["inputs"][0]["shapes"][0]["id"], "near");
 }
 
-/// Decimals that cannot keep the tolerance are said, with exit code 1, and following the advice helps.
+/// Too few decimals to keep the tolerance give a warning and exit code 1, and its advice helps.
 #[test]
 fn too_few_decimals_are_1_and_said() {
     let run = |more: &[&str]| {

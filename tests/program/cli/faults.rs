@@ -1,5 +1,5 @@
 //! Faults during a batch: a killed process, a full disk, a read-only folder, inputs that vanish. Every named output is whole or absent,
-//! and the next run removes what is left over.
+//! and the next run removes temporary files.
 //!
 //! `PATHWARP_FAULTS=200 cargo test --test program cli::faults` tries more moments.
 #![cfg(unix)]
@@ -13,7 +13,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Child, Command};
 
-/// Batches that are disturbed, each at its own moment, unless the environment asks for more.
+/// Number of batches that are disturbed, each at a different moment, unless the environment asks for more.
 const MOMENTS: u32 = 12;
 /// Inputs of a batch.
 const FILES: usize = 16;
@@ -21,7 +21,7 @@ const FILES: usize = 16;
 const BATCH: [&str; 9] =
     ["warp", "--style", "flag", "--out-dir", "out", "--preview", "out/{stem}.png", "--report", "out/r.json"];
 
-/// The batch's words: the inputs by name, as a pipe among them is not found in a folder.
+/// Returns the arguments of the batch. The inputs are named, since a pipe among them is not found in a folder.
 fn batch() -> Vec<String> {
     BATCH.iter().map(|w| (*w).to_owned()).chain((0..FILES).map(|i| format!("art/{i:03}.svg"))).collect()
 }
@@ -52,8 +52,8 @@ fn undisturbed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// Starts a batch, and waits until it reads one of its inputs, which is a pipe. The golden ratio spreads these evenly over the others;
-/// it is never the first, which is finished before the others are begun.
+/// Starts a batch, and waits until it reads one of its inputs, which is a pipe. The golden ratio spreads these evenly over the inputs after
+/// the first, which is finished before the others are begun.
 fn start_up_to(moment: u32, folder: &Path) -> (Child, File) {
     let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
     let input = folder.join(format!("art/{:03}.svg", 1 + ((FILES - 1) as f64 * part) as usize));
@@ -64,7 +64,7 @@ fn start_up_to(moment: u32, folder: &Path) -> (Child, File) {
     (child, open)
 }
 
-/// Lets a batch go on that waits for an input.
+/// Lets a batch continue that waits for an input.
 fn go_on(mut pipe: File) {
     // A batch that has ended breaks the pipe.
     let _ = pipe.write_all(&fs::read(sample("logo.svg")).unwrap());
@@ -75,7 +75,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files.into_iter().map(|f| (f.clone(), fs::read(folder.join(f)).unwrap())).collect()
 }
 
-/// Reports tell times and failures, so they need only parse.
+/// Returns `true` if a file is whole. Reports contain times and failures, so they need only parse.
 fn is_whole(name: &str, bytes: &[u8], whole: &BTreeMap<String, Vec<u8>>) -> bool {
     match name {
         "r.json" => serde_json::from_slice::<serde_json::Value>(bytes).is_ok(),
@@ -83,7 +83,7 @@ fn is_whole(name: &str, bytes: &[u8], whole: &BTreeMap<String, Vec<u8>>) -> bool
     }
 }
 
-/// Asserts that every file under its own name is whole. Returns their number, and that of the temporary ones.
+/// Asserts that every file under its final name is whole. Returns the numbers of such files and of temporary ones.
 fn assert_whole(folder: &Path, whole: &BTreeMap<String, Vec<u8>>, when: &str) -> (usize, usize) {
     let (temporary, named): (Vec<_>, Vec<_>) =
         contents(&folder.join("out")).into_iter().partition(|(name, _)| name.starts_with(".pathwarp-"));
@@ -102,7 +102,7 @@ fn killed_batches_leave_whole_files() {
     for moment in 0..moments() {
         let signal = ["KILL", "TERM", "INT"][moment as usize % 3];
         let (mut child, pipe) = start_up_to(moment, dir.path());
-        // Every second batch ends where it waits, the others somewhere behind.
+        // Every second batch is killed where it waits, the others somewhere later.
         let waiting = if moment % 2 == 0 {
             Some(pipe)
         } else {
@@ -118,7 +118,7 @@ fn killed_batches_leave_whole_files() {
         left_over += temporary;
         assert!(signal == "KILL" || temporary == 0, "{signal} leaves temporary files");
         if moment % 4 < 2 {
-            // The next run cleans up and ends as if nothing had happened.
+            // The next run cleans up and succeeds as if nothing had happened.
             let out = run_batch(dir.path());
             assert!(out.status.success(), "{}", text(&out.stderr));
             let after = assert_whole(dir.path(), &whole, &format!("after {signal} at moment {moment}"));
@@ -150,7 +150,7 @@ fn inputs_may_vanish() {
     }
 }
 
-/// A file-size limit fails writes in the middle, as a full disk does.
+/// A file-size limit makes writes fail in the middle, as a full disk does.
 #[test]
 fn a_write_that_fails_leaves_nothing_of_its_file() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What people type in their first hour: each gets an answer that says what to type instead.
+//! Commands that people type in their first hour: each gets an answer that tells them the right one.
 
 use super::common::{SQUARE, text};
 use crate::support::pathwarp_in;
@@ -15,7 +15,7 @@ fn folder() -> tempfile::TempDir {
     dir
 }
 
-/// Each line, split at spaces, fails with this code and says this.
+/// Asserts that each line, split at spaces, fails with this code and this message.
 fn refused(folder: &Path, lines: &[(&str, i32, &str)]) {
     for (line, code, part) in lines {
         let out = pathwarp_in(folder, &line.split(' ').collect::<Vec<_>>(), b"");
@@ -58,7 +58,7 @@ fn words_of_other_programs_name_the_command() {
             ("warp a.svg -style flag", 2, "use --style"),
             ("warp a.svg -bend=40%", 2, "use --bend"),
             ("warp a.svg + affine -rotate 5", 2, "use --rotate"),
-            // Not the letters -r and -o.
+            // Not read as the options -r and -o.
             ("affine a.svg -rotate=5", 2, "use --rotate"),
             ("warp a.svg -b 40%", 2, "--help lists the options"),
             ("bend a.svg --along circle,60mm", 2, "write circle,ratio=1.2 or circle,width=80mm"),
@@ -214,7 +214,7 @@ fn files_that_are_no_drawings_are_named() {
         ("empty.svg", b"".to_vec(), "is empty", "SVG"),
     ];
     for (name, bytes, what, advice) in &kinds {
-        // The content says what it is, whatever the name: as it is, without an extension, and as a drawing.
+        // The content decides, whatever the name: as it is, without an extension, and as a drawing.
         let bare = name.split('.').next().unwrap().to_owned() + "-bare";
         let named_svg = format!("{bare}.svg");
         let by_name =
@@ -277,20 +277,20 @@ fn errors_say_what_is_wrong_and_nothing_else_warns() {
     assert!(said(&["swirl", "--no-system-fonts"], &words).contains("Nowhere"));
     assert!(!said(&["swirl", "--no-system-fonts", "--text", "skip"], &words).contains("Nowhere"));
     assert!(!said(&["swirl", "--no-system-fonts", "--select", "#s"], &words).contains("Nowhere"));
-    // Curves in each other's place.
+    // Curves in the wrong order.
     let upside = ["envelope", "--bottom", "M0,0 H100", "--top", "M0,80 Q50,120 100,80"];
     assert!(said(&upside, SQUARE).contains("the top curve lies below the bottom curve"), "{}", said(&upside, SQUARE));
     let right = ["envelope", "--top", "M0,0 H100", "--bottom", "M0,80 Q50,120 100,80"];
     assert!(!said(&right, SQUARE).contains("lies below"));
-    // The page is empty, not merely passed.
+    // The page is empty, and not only exceeded.
     assert!(said(&["affine", "--move-x", "500"], SQUARE).contains("nothing is left on the page"));
     assert!(said(&["affine", "--move-x", "500", "--fit", "none"], SQUARE).contains("nothing is on the page"));
     assert!(said(&["affine", "--move-x", "50", "--fit", "none"], SQUARE).contains("extends past the page"));
-    // A neighbouring weight is not taken silently.
+    // A neighbouring weight is not used silently.
     let weight = said(&["text", "A", "--weight", "500", "--no-system-fonts"], "");
     assert!(weight.contains("--weight 500: the bundled font has no such weight; 400 is used"), "{weight}");
     assert_eq!(said(&["text", "A", "--weight", "regular", "--no-system-fonts"], ""), "");
-    // Only a number that can be a percentage is taken for one.
+    // Only a number that can be a percentage is read as one.
     assert!(!text(&pathwarp_in(dir.path(), &["warp", "--bend", "1.5"], SQUARE.as_bytes()).stderr).contains("per cent"));
     assert!(text(&pathwarp_in(dir.path(), &["warp", "--bend", "50"], SQUARE.as_bytes()).stderr).contains("write 50%"));
 }
@@ -335,13 +335,13 @@ fn short_help_fits_a_screen() {
         }
         let long = said("--help");
         assert!(long.lines().count() <= 130, "{name}: {} lines\n{long}", long.lines().count());
-        // Commands are whole, to be copied.
+        // Commands are not broken, so that they can be copied.
         let is_wide = |l: &&str| l.chars().count() > 100 && !l.trim_start().starts_with("pathwarp ");
         assert_eq!(long.lines().find(is_wide), None, "{name}");
     }
 }
 
-/// Every common option stands once in `help options`, whole, and the pages of deformations name it.
+/// Every common option appears once, in full, in `help options`, and the pages of deformations name that page.
 #[test]
 fn help_options_has_all_common_options() {
     let said = |words: &[&str]| text(&pathwarp_in(Path::new("."), words, b"").stdout);

@@ -1,4 +1,4 @@
-//! Fonts that the command line gives, and styles that it synthesises.
+//! Fonts given on the command line, and styles synthesised from them.
 
 use super::common::text;
 use crate::support::{pathwarp_in, root};
@@ -70,7 +70,7 @@ fn text_in_drawings_has_the_fonts_given() {
     }
 }
 
-/// Commands that only read drawings take the same options.
+/// Commands that only read drawings have these options, too.
 #[test]
 fn every_command_that_reads_text_takes_fonts() {
     let dir = tempfile::tempdir().unwrap();
@@ -95,7 +95,7 @@ fn every_command_that_reads_text_takes_fonts() {
     for args in [&["convert", "IN"][..], &["paths", "IN"], &["gallery", "IN", "--cell", "60x60"]] {
         both(args, &own);
     }
-    // A recipe keeps the families, and not the files.
+    // A recipe keeps the families, but not the files.
     let (code, _, said) = run(
         dir.path(),
         &[
@@ -115,7 +115,7 @@ fn every_command_that_reads_text_takes_fonts() {
     assert_eq!(code, Some(0), "{said}");
     let recipe = fs::read_to_string(dir.path().join("r.toml")).unwrap();
     assert!(recipe.contains(FAMILY) && !recipe.contains("cff.otf"), "{recipe}");
-    // Words are set in a family of the folder given.
+    // Words are set in a family of the given folder.
     let (code, word, said) = run(dir.path(), &["text", "Halo", "--font", FAMILY, "--fonts-dir", &fonts()], "");
     assert_eq!((code, said.as_str()), (Some(0), ""));
     assert_eq!(word, run(dir.path(), &["text", "Halo", "--font", &file], "").1);
@@ -163,7 +163,7 @@ fn styles_are_synthesised_on_request() {
     let (italic, same) = word(&["--italic", "--synthesize"]);
     near(italic.width() - plain.width(), plain.height() * 14.0_f64.to_radians().tan());
     near(same, advance);
-    // A font that has the style is left alone; a lighter one cannot be made.
+    // A font that has the style is used unchanged; a lighter one cannot be made.
     let variable = fonts() + "/variable.ttf";
     let of = |options: &[&str]| {
         run(dir.path(), &[&["text", "n", "--font", &variable, "--weight", "bold"], options].concat(), "")
@@ -179,7 +179,7 @@ fn styles_are_synthesised_on_request() {
     }
 }
 
-/// What a picture or a PDF lacks is said, once.
+/// Content missing from a picture or a PDF is reported, once.
 #[test]
 fn what_is_not_drawn_is_said() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Sources are not overwritten unasked, two outputs are not one file, and files that belong together appear together.
+//! Sources are not overwritten by accident, two outputs are not one file, and files that belong together appear together.
 
 use super::common::{CAGE, SQUARE, files_below, text};
 use crate::support::pathwarp_in;
@@ -43,7 +43,7 @@ fn an_output_that_is_a_source_is_refused() {
         (&[&swirl[..], &["-o", "o.svg", "--preview", "a.svg"]].concat(), "a.svg"),
         (&[&swirl[..], &["-o", "o.svg", "--write-recipe", "a.svg"]].concat(), "a.svg"),
         (&["shaper", "a.svg", "--shaper", "cage.svg#c", "-o", "cage.svg"], "cage.svg"),
-        // A cage is not what --in-place is about.
+        // --in-place does not cover a cage.
         (&["shaper", "a.svg", "--shaper", "cage.svg#c", "-o", "cage.svg", "--in-place"], "cage.svg"),
         (&["run", "r.toml", "a.svg", "-o", "r.toml"], "r.toml"),
         (&["run", "r.toml", "a.svg", "-o", "o.svg", "--write-recipe", "r.toml"], "r.toml"),
@@ -123,7 +123,7 @@ fn a_minus_is_standard_output_for_reports_previews_and_recipes() {
     }
 }
 
-/// The name of the second file is too long for any file system, which only shows when it is put in place.
+/// The name of the second file is too long for any file system, which only shows when the finished file is renamed.
 #[test]
 fn files_that_belong_together_appear_together() {
     let dir = tempfile::tempdir().unwrap();
@@ -137,7 +137,7 @@ fn files_that_belong_together_appear_together() {
     assert_eq!(out.status.code(), Some(5), "{said}");
     assert!(said.contains("cannot be written"), "{said}");
     assert!(contents(dir.path()) == before, "{:?}", files_below(dir.path()));
-    // The same for a result with its report.
+    // The result appears only with its report.
     let report = format!("{long}.json");
     let out = pathwarp_in(dir.path(), &["swirl", "art.svg", "-o", "out-s.svg", "--report", &report], b"");
     assert_eq!(out.status.code(), Some(5), "{}", text(&out.stderr));

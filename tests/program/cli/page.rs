@@ -1,4 +1,4 @@
-//! The page of the result under `--fit auto`, the default: it grows to hold artwork that leaves it, or stays, and what is said.
+//! The page of the result under `--fit auto`, the default: it grows to hold artwork that leaves it, or stays; and the messages about it.
 
 use super::common::text;
 use crate::support::pathwarp_in;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 const ROOT: &str = "<svg xmlns='http://www.w3.org/2000/svg'";
 
-/// The result of a command that reads a drawing: exit code, file, messages.
+/// Returns the result of a command that reads a drawing: exit code, file, messages.
 #[track_caller]
 fn run(line: &str, svg: &str) -> (Option<i32>, String, String) {
     run_in(tempfile::tempdir().unwrap().path(), line, svg)
@@ -31,7 +31,7 @@ fn root_attr(svg: &str, name: &str) -> Option<String> {
     Some(value[1..].split(quote).next()?.to_owned())
 }
 
-/// The viewBox with width and height of the result of moving a drawing, and the messages.
+/// Returns the viewBox, width and height of the result of moving a drawing, and the messages.
 #[track_caller]
 fn moved(root: &str, body: &str, line: &str) -> (String, String) {
     let (code, svg, said) = run(line, &format!("{ROOT} {root}>{body}</svg>"));
@@ -56,7 +56,7 @@ fn it_grows_outwards_to_whole_units_with_its_margin_at_the_same_scale() {
         ("viewBox='0 0 240 240' width='480'", down, "0 0 240 294|480"),
         ("viewBox='-10.5 -8.25 240.5 240.25'", "affine --move-x -40.2 --move-y -50.1", "-31 -31 261 263"),
         ("viewBox='0 0 240 240' width='480' height='240'", "affine --move-x -160", "-170 0 530 240|530|240"),
-        // As large as before after rounding.
+        // Equal to the old page after rounding.
         ("viewBox='0 0 240 240'", "affine --move-x 20.000000001", "0 0 240 240"),
         ("viewBox='0 0 240 240'", "affine --move-x 34", "0 0 274 240"),
         // A margin alone does not make a page grow.
@@ -86,7 +86,7 @@ fn what_left_its_page_altogether_takes_it_along_with_its_margin() {
         said.contains("nothing is left on the page, 240 × 240 at 0,0") && said.contains("241 × 220 at 300,17"),
         "{said}"
     );
-    // A ring around the page leaves nothing on it either, though its box does.
+    // A ring around the page leaves nothing on it, though its box does.
     let ring = "<path fill-rule='evenodd' d='M20 20H220V220H20ZM30 30H210V210H30Z'/>";
     let (page, said) = moved("viewBox='0 0 240 240'", ring, "affine --scale-x 2 --scale-y 2");
     assert_eq!(page, "-100 -100 440 440", "{said}");
@@ -109,7 +109,7 @@ fn icons_and_paper_keep_their_pages() {
         ("viewBox='0 0 64 64' width='1.5cm' height='1.5cm'", 64.0, 64.0, false),
         ("width='.5in' height='.5in'", 48.0, 48.0, false),
         ("viewBox='0 0 30 30' width='30pt' height='30pt'", 30.0, 30.0, false),
-        // As large as a sheet in px, but not in cm.
+        // The numbers of a sheet of paper, but in px, and another size in cm.
         ("viewBox='0 0 210 297' width='10.5cm' height='20cm'", 210.0, 297.0, false),
         ("viewBox='0 0 210 297' width='210mm' height='297mm'", 210.0, 297.0, true),
         ("viewBox='0 0 1000 707' width='42cm' height='29.7cm'", 1000.0, 707.0, true),
@@ -157,7 +157,7 @@ fn batches_and_steps_that_refer_to_the_page_keep_it() {
         assert_eq!(page(result), if grows { "0 0 240 293" } else { "0 0 240 240" }, "{line}");
         assert_eq!(said.contains("the page grew"), grows, "{line}: {said}");
     }
-    // There and back is the same page.
+    // There and back, the page is unchanged.
     let there = ["projective", "--target", "0%,20% 100%,0% 100%,120% 0%,100%", "--frame", "viewbox"];
     for way in [&["a.svg", "-o", "there.svg"][..], &["--inverse", "there.svg", "-o", "back.svg"]] {
         assert_eq!(pathwarp_in(dir.path(), &[&there[..], way].concat(), b"").status.code(), Some(0));
@@ -169,19 +169,19 @@ fn batches_and_steps_that_refer_to_the_page_keep_it() {
     };
     let (a, b) = (boxed("a.svg"), boxed("back.svg"));
     assert!((a.x0 - b.x0).abs() + (a.y0 - b.y0).abs() + (a.x1 - b.x1).abs() + (a.y1 - b.y1).abs() < 0.05, "{b:?}");
-    // The source is embedded as it was.
+    // The source is embedded unchanged.
     assert_eq!(run_in(dir.path(), "affine --move-y 63 --embed-recipe a.svg -o i.svg", "").0, Some(0));
     assert_eq!(run_in(dir.path(), "unwarp i.svg", "").1, svg);
 }
 
-/// Artwork off the page counts only where it comes onto it.
+/// Artwork off the page counts only where the warp moves it onto the page.
 #[test]
 fn what_was_outside_never_grows_the_page() {
     let off = "<path id='a' d='M260 20h30v30h-30z'/><path id='b' d='M20 300h30v30h-30z'/><image id='c' x='-90' y='20' width='40' height='40' \
                href='data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=='/>";
     let (page, said) = moved("viewBox='0 0 240 240'", &format!("{BOX}{off}"), "affine --move-x 5");
     assert_eq!((page.as_str(), said.as_str()), ("0 0 240 240", ""));
-    // Growing to the right by 30 shows nothing of them. What does not move is shown by growing alone.
+    // Growing to the right by 30 shows none of it. Artwork that does not move is shown by growing alone.
     let (page, said) = moved("viewBox='0 0 240 240'", &format!("{BOX}{off}"), "affine --move-x 30");
     assert_eq!((page.as_str(), said.lines().count()), ("0 0 270 240", 1), "{said}");
     let (page, said) = moved("viewBox='0 0 240 240'", &format!("{BOX}{off}"), "affine --move-x 100");
@@ -199,16 +199,16 @@ fn what_was_outside_never_grows_the_page() {
         moved("viewBox='0 0 240 240'", &format!("<path d='M60 60H100V100Z'/>{onto}"), "affine --move-x -40");
     assert_eq!(page, "0 0 240 240");
     assert!(said.contains("1 shape that lay off the page has moved onto it: a") && said.lines().count() == 1, "{said}");
-    // Half of it was off the page, and leaves it on the other side. What was seen is held.
+    // Half of the shape was off the page, and leaves it on the other side. The part that was visible is held.
     let half = "<path d='M-100 60H100V100H-100Z'/>";
     assert_eq!(moved("viewBox='0 0 240 240'", half, "affine --move-x 30").0, "0 0 240 240");
     assert_eq!(moved("viewBox='0 0 240 240'", half, "affine --move-x 150").0, "0 0 250 240");
-    // The border of a drawing lies half outside of it.
+    // The border of a drawing extends outside by half its width.
     let border =
         "<rect width='240' height='240' fill='none' stroke='red' stroke-width='8'/><path d='M60 60H100V100Z'/>";
     assert_eq!(moved("viewBox='0 0 240 240'", border, "affine --move-x 0.001").0, "0 0 240 240");
     assert_eq!(moved("viewBox='0 0 240 240'", border, "affine --move-x 3").0, "0 0 243 240");
-    // Guides, what is invisible, and what a clip path hides do not count.
+    // Guides, invisible shapes, and shapes hidden by a clip path do not count.
     for hidden in [
         "<path d='M60 60H230V100Z' fill='none'/>",
         "<g opacity='0'><path d='M60 60H230V100Z'/></g>",
@@ -234,10 +234,10 @@ fn a_result_with_nothing_on_its_page_is_exit_1() {
     assert!(code == Some(1) && said.contains("nothing is on the page"), "{code:?} {said}");
     assert_eq!(run(away, &svg).0, Some(0));
     assert_eq!(run(&format!("{away} --fit page"), &svg).0, Some(0));
-    // What is not warped stays on the page.
+    // Artwork that is not warped stays on the page.
     let two = svg.replace("<path", "<path id='x' d='M1 1H9V9Z'/><path id='y'");
     assert_eq!(run(&format!("{away} --fit none --select #y"), &two).0, Some(0));
-    // A batch says so once.
+    // A batch warns once.
     (0..5).for_each(|i| fs::write(dir.path().join(format!("{i}.svg")), &svg).unwrap());
     let (code, _, said) = run_in(dir.path(), "affine --move-x 900 -r . --out-dir out", "");
     assert_eq!((code, said.lines().count()), (Some(1), 2), "{said}");
@@ -308,7 +308,7 @@ fn the_page_holds_random_artwork_and_no_more() {
     assert!(grown > 10, "{grown}");
 }
 
-/// The box of the written path data, which lies on the page with its margin, or else the warning names the way there.
+/// The box of the written path data lies on the page with its margin, or else a warning names the remedy.
 #[test]
 fn results_are_scaled_back_into_their_pages() {
     let boxed = |svg: &str| {
@@ -343,27 +343,27 @@ fn results_are_scaled_back_into_their_pages() {
             let (ink, near) = (boxed(&out), 4e-4 * w.max(h));
             let room = Rect::new(0.0, 0.0, w, h).inflate(near - margin, near - margin);
             assert_eq!(room.union(ink), room, "{page} {line}: {ink}");
-            // All keeps its place in the whole, at one scale.
+            // Everything keeps its position in the whole, at one scale.
             let whole = boxed(&run(&format!("{line} --fit none"), &svg).1);
             let by = ink.width() / whole.width();
             assert!((ink.height() - by * whole.height()).abs() < near && by < 1.0 + near, "{line}: {ink} of {whole}");
             let tight = (ink.width() - room.width()).abs().min((ink.height() - room.height()).abs());
             assert!(by > 1.0 - near || tight < 3.0 * near, "{line}: {ink} in {room}");
         }
-        // What stays on its page stays as it is.
+        // Artwork that stays on its page is unchanged.
         let (_, out, said) = run("affine --move-x 1% --fit shrink", &format!("{ROOT} {page}>{body}</svg>"));
         assert_eq!((said.as_str(), boxed(&out).width() - 0.8 * w < 1e-6), ("", true));
     }
 }
 
-/// A page in per cent of the window, without a viewBox: what lies to the left of it and above is cut.
+/// A page in per cent of the window, without a viewBox, cuts artwork on its left and above.
 #[test]
 fn a_page_of_the_window_grows_at_its_scale() {
     for (root, line, grown) in [
         ("width='100%' height='100%'", "affine --move-x -63.4", "-44 0 264 210|264|210"),
         ("width='100%'", "affine --move-y -63.4", "0 -34 220 244|220"),
         ("width='100%' height='300'", "affine --move-y -63.4", "0 -34 220 334|220|334"),
-        // The window goes on to the right.
+        // The window extends to the right.
         ("width='100%' height='100%'", "affine --move-x 20", "|100%|100%"),
     ] {
         let (page, said) = moved(root, BOX, line);
@@ -393,7 +393,7 @@ fn lines_of_a_preview_are_moved_back_with_the_result() {
     assert!(square.width() > 100.0 && lines.width() > 100.0 && near.union(lines) == near, "{lines} around {square}");
 }
 
-/// A millimetre is a millimetre on a sheet, whatever the units of the drawing, and the artwork lies in its middle.
+/// A sheet keeps millimetres in any units of the drawing, and the artwork lies in its middle.
 #[test]
 fn a_sheet_of_paper_holds_the_artwork_in_its_true_size() {
     // The box is 200 × 180 units around 120, 120; 3.7795… units are a millimetre without other scale.

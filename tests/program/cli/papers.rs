@@ -34,7 +34,7 @@ fn all_preimages_of_the_quadrilateral() {
     let rows = ["birational", "--frame", "0,0,1,1", "--left", "0,0 8,6", "--right", "12,0 12,4"];
     let weights = ["--weight", "0,0:1", "--weight", "1,0:1", "--weight", "1,1:1", "--inverse", "--all"];
     near(&mapped(&[&rows[..], &weights].concat(), "8 4")[0], &[0.4, 2.0 / 3.0]);
-    // Nothing moves outside a region: a point there is its own preimage, beside those inside.
+    // Outside a region nothing moves: a point there is its preimage, beside those inside.
     let moved =
         "ffd --degree 1x1 --region 0,0,1,1 --move 0,0:2,0 --move 1,0:2,0 --move 0,1:2,0 --move 1,1:2,0 --frame 0,0,1,1";
     let moved: Vec<&str> = moved.split(' ').chain(["--inverse", "--all"]).collect();
@@ -68,7 +68,7 @@ fn bezier(points: &[(f64, f64)], t: f64) -> [f64; 2] {
     points.iter().enumerate().fold([0.0; 2], |[x, y], (i, p)| [x + b(i) * p.0, y + b(i) * p.1])
 }
 
-/// Section 14.0.1: the line s = .6 goes to the curve through H₀(.6), H₁(.6), H₂(.6), the line t = .3 to that of V₀(.3) … V₃(.3).
+/// Section 14.0.1: the line s = .6 becomes the curve through H₀(.6), H₁(.6), H₂(.6), the line t = .3 the curve through V₀(.3) … V₃(.3).
 #[test]
 fn control_points_of_deformed_lines() {
     let lattice = lattice();
@@ -88,14 +88,14 @@ fn control_points_of_deformed_lines() {
         let [x, y] = bezier(&NET.map(|row| row[i]), 0.3);
         near(found, &[x, y, 1.0]);
     }
-    // A projective map gives a line its weights: a line across stays one of degree 1.
+    // A projective map gives a line weights; across them, a line keeps degree 1.
     let line = mapped(&["bilinear", "--frame", "0,0,1,1", "--target", "8,6 12,4 12,0 0,0", "--exact", "M0,0 V1"], "");
     assert_eq!(line.len(), 3);
     let (_, e) = expect_code(2, &["map", "swirl", "--frame", "0,0,1,1", "--exact", "M0,0 V1"]);
     assert!(e.contains("no exact image"), "{e}");
 }
 
-/// Figures 14.7 and 14.9: the polygon is drawn over the picture of the result, and nowhere without the option.
+/// Figures 14.7 and 14.9: the polygon is drawn over the picture of the result, and only with the option.
 #[test]
 fn polygons_are_shown_in_previews() {
     let dir = tempfile::tempdir().unwrap();

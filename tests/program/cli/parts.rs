@@ -1,4 +1,4 @@
-//! `--select` in several parts of a chain: each holds for its own step.
+//! `--select` in several parts of a chain: each selection applies to its step.
 
 use super::common::text;
 use crate::support::pathwarp_in;
@@ -40,7 +40,7 @@ fn each_shape_goes_through_the_steps_that_selected_it() {
     assert_eq!(bounds(&svg, "b"), [40.0, 27.0, 20.0, 10.0]);
     assert_eq!(bounds(&svg, "ab"), [25.0, 67.0, 10.0, 20.0]);
     assert_eq!(data(&svg, "none"), data(DRAWING, "none"));
-    // One selection holds for the whole chain, in whatever part it is.
+    // A single selection applies to the whole chain, from any part.
     for whole in [
         ["affine", "--move-x", "5", "--select", ".one", "+", "affine", "--move-y", "7"],
         ["affine", "--move-x", "5", "+", "affine", "--move-y", "7", "--select", ".one"],
@@ -49,7 +49,7 @@ fn each_shape_goes_through_the_steps_that_selected_it() {
         assert_eq!((bounds(&svg, "a"), bounds(&svg, "ab")), ([5.0, 7.0, 10.0, 10.0], [25.0, 67.0, 10.0, 20.0]));
         assert_eq!(data(&svg, "b"), data(DRAWING, "b"));
     }
-    // A part without a selection holds for everything; --exclude in several parts is as theirs alone.
+    // A part without a selection applies to everything; each `--exclude` applies only to its part.
     let three = [
         "affine", "--move-x", "5", "--select", "#a", "+", "affine", "--move-x", "1", "+", "affine", "--move-y", "7",
         "--select", "#b",
@@ -64,7 +64,7 @@ fn each_shape_goes_through_the_steps_that_selected_it() {
     assert_eq!(bounds(&svg, "none"), [85.0, 87.0, 10.0, 10.0]);
 }
 
-/// The curves are those of the same steps on the shape alone: composed, and fitted once.
+/// The curves equal those of these steps on the shape alone: composed, and fitted once.
 #[test]
 fn the_steps_of_a_shape_are_fitted_once() {
     let fine = ["--tolerance", "0.01", "--precision", "6"];
@@ -78,7 +78,7 @@ fn the_steps_of_a_shape_are_fitted_once() {
     assert_eq!(data(&svg, "b"), alone("#b", &[&second]));
     assert_eq!(data(&svg, "ab"), alone("#ab", &[&first, &["+"], &second]));
     assert_ne!(data(&svg, "ab"), alone("#ab", &[&second, &["+"], &first]));
-    // Some place of the exact image, by the formula.
+    // A point of the exact image, by the formula.
     let exact = (20.0_f64 + 4.0 * (60.0_f64 / 16.0).sin(), 60.0_f64);
     let exact = (exact.0, exact.1 + 3.0 * (exact.0 / 9.0).sin());
     let start: Vec<f64> =
@@ -105,7 +105,7 @@ fn percentages_refer_to_what_a_step_holds_for() {
         ]),
         [70.0, 60.0, 20.0]
     );
-    // A frame that is given holds for every step that comes first for its part.
+    // A given frame applies to every step that comes first for its part.
     assert_eq!(
         moved(&[
             "affine", "--move-x", "10%", "--select", "#a", "--frame", "viewbox", "+", "affine", "--move-x", "10%",
@@ -151,7 +151,7 @@ fn recipes_reports_and_lists_say_it_alike() {
     );
     ok(&["run", "r.toml", "in.svg", "-o", "again.svg"]);
     assert_eq!(read("again.svg"), read("out.svg"));
-    // What is selected for the run restricts every step.
+    // A selection for the run restricts every step.
     ok(&["run", "r.toml", "in.svg", "--select", "#a", "-o", "part.svg"]);
     assert_ne!(data(&read("part.svg"), "a"), data(DRAWING, "a"));
     assert_eq!(data(&read("part.svg"), "b"), data(DRAWING, "b"));
@@ -180,7 +180,7 @@ fn recipes_reports_and_lists_say_it_alike() {
     assert_eq!(ok(&["unwarp", "out.svg"]), DRAWING);
     assert!(ok(&["unwarp", "--recipe", "out.svg"]).contains("select = [\".two\"]"));
 
-    // Steps with frames of their own are undone if the frame is given.
+    // Steps with different frames can be undone if the frame is given.
     let frame = ["--frame", "0,0,100,100"];
     ok(&[&line[..8], &["-o", "bent.svg", "--tolerance", "1e-5", "--write-recipe", "f.toml"], &frame, &line[10..]]
         .concat());
@@ -204,7 +204,7 @@ fn what_shapes_share_follows_each_of_them() {
     let (first, second) =
         (["affine", "in.svg", "--move-x", "30", "--select", "#a"], ["affine", "--move-y", "40", "--select", "#b"]);
     ok(&[&first[..], &["-o", "parts.svg", "+"], &second].concat());
-    // The truth: the picture with the moved clips, by transforms.
+    // The truth is the picture with the moved clips, by transforms.
     let moved = drawing
         .replace("id='a' ", "id='a' transform='translate(30 0)' ")
         .replace("id='b' ", "id='b' transform='translate(0 40)' ");
@@ -218,7 +218,7 @@ fn what_shapes_share_follows_each_of_them() {
         "{}",
         fs::read_to_string(dir.path().join("parts.svg")).unwrap()
     );
-    // One selection, too, leaves the clip path of the others where it is.
+    // A single selection, too, leaves the clip path of the others unmoved.
     ok(&[&first[..], &["-o", "one.svg"]].concat());
     fs::write(dir.path().join("moved.svg"), moved.replace(" transform='translate(0 40)'", "")).unwrap();
     for (file, name) in [("one.svg", "a.png"), ("moved.svg", "b.png")] {

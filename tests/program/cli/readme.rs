@@ -1,5 +1,5 @@
-//! Every block of commands on samples in the README, the pages of docs/ and the table of other programs' words runs word for word in a
-//! shell, in a folder that has what a copy of the repository has.
+//! Every block of commands on samples in the README, in the pages of docs/ and in the table of other programs' words runs word for word in
+//! a shell, in a folder with the contents of a copy of the repository.
 #![cfg(unix)]
 
 use crate::support::{expect_code, pathwarp_program, root};
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a block as pasted, and returns what it says.
+/// Runs a block as pasted, and returns its messages.
 fn paste(folder: &Path, block: &str) -> String {
     for name in ["samples", "crates"] {
         let link = folder.join(name);
@@ -23,13 +23,13 @@ fn paste(folder: &Path, block: &str) -> String {
     said
 }
 
-/// Returns `true` if there are no warnings; notes, such as of a page that grew, are welcome.
+/// Returns `true` if there are no warnings; notes, for instance of a page that grew, are allowed.
 fn is_quiet(said: &str) -> bool {
-    // Gradients that become pictures are said, which is no fault of the command.
+    // Messages about gradients that become pictures are no fault of the command.
     said.lines().all(|l| l.starts_with("note: ") || l.contains("became a picture") || l.contains("became pictures"))
 }
 
-/// The blocks of commands of a page that need no files but samples. The editor waits for its reader.
+/// Returns the blocks of commands of a page that need no files except samples. The editor would wait for its reader.
 fn blocks(page: &str) -> impl Iterator<Item = &str> {
     let blocks = page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("sh\n"));
     blocks.filter(|b| {
@@ -46,7 +46,7 @@ fn every_block_of_commands_runs() {
     let mut run = 0;
     for page in pages {
         let dir = tempfile::tempdir().unwrap();
-        // What the front page and the cookbook show gives no warnings.
+        // Commands on the front page and in the cookbook give no warnings.
         let quiet = page.ends_with("README.md") || page.ends_with("docs/cookbook.md");
         for block in blocks(&fs::read_to_string(&page).unwrap()) {
             let said = paste(dir.path(), block);
@@ -57,7 +57,7 @@ fn every_block_of_commands_runs() {
     assert!(run >= 50, "{run} blocks");
 }
 
-/// The pages of what does nearly the same, and of the papers' figures, have their commands in tables.
+/// The pages that compare similar deformations, and that of the papers' figures, have their commands in tables.
 #[test]
 fn every_command_in_a_table_runs() {
     let dir = tempfile::tempdir().unwrap();
@@ -72,7 +72,7 @@ fn every_command_in_a_table_runs() {
     }
 }
 
-/// Words of the papers, and those that only the help of a deformation has.
+/// Help finds words of the papers, and words that only the help of a deformation has.
 #[test]
 fn help_knows_words_of_the_papers() {
     let words = "base|target|anchor|16 points|inner points|completion|infinity|Koppinen|FFD|Bernstein|freeze|continuity|weight|EFFD|\
@@ -126,7 +126,7 @@ fn help_knows_words_of_the_trade() {
 fn every_command_for_a_word_of_another_program_runs() {
     let dir = tempfile::tempdir().unwrap();
     for word in pathwarp_engine::coming_from::all() {
-        // The editor waits for its reader, and nothing is installed here.
+        // The editor would wait for its reader, and nothing is installed here.
         let runs = |c: &&str| !c.starts_with("edit ") && !c.starts_with("install ") && !c.contains("IN.svg");
         if let Some(command) = word.command.filter(runs) {
             let said = paste(dir.path(), &format!("pathwarp {command}"));

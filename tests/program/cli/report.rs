@@ -34,7 +34,7 @@ fn artwork_that_extends_past_the_page_causes_one_warning() {
 #[test]
 fn what_the_page_cuts_off_and_the_map_stretches_causes_a_warning_with_a_frame_that_helps() {
     let dir = tempfile::tempdir().unwrap();
-    // Half of the shape is on the page.
+    // The page shows half of the shape.
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d='M60 40C80 30 120 30 140 40V60H60Z'/></svg>";
     let run = |args: &[&str]| {
         let out = pathwarp_in(dir.path(), &[args, &["-o", "o.svg"]].concat(), svg.as_bytes());
@@ -145,7 +145,7 @@ fn explain_prints_the_corners() {
     }
 }
 
-/// A map that folds gives two points of the source one image, and undoing it cannot bring both back.
+/// A map that folds gives two points of the source one image; undoing it cannot recover both.
 #[test]
 fn undoing_a_fold_is_warned_of_with_the_place() {
     let dir = tempfile::tempdir().unwrap();
@@ -156,7 +156,7 @@ fn undoing_a_fold_is_warned_of_with_the_place() {
         let out = pathwarp_in(dir.path(), &undo, &forth.stdout);
         (out.status.code(), text(&out.stderr))
     };
-    // A hairpin, narrower than the artwork is high. Both points of the message have the image that it says.
+    // A hairpin, narrower than the artwork is high. Both points of the message have the image that it names.
     let hairpin = ["bend", "--along", "M0,0 C60,-100 40,-100 100,0"];
     let (_, said) = back(&hairpin);
     assert!(said.contains("undoing it is ambiguous") && said.contains("have the same image"), "{said}");
@@ -176,12 +176,12 @@ fn undoing_a_fold_is_warned_of_with_the_place() {
         let (code, said) = back(map);
         assert!(code == Some(0) && !said.contains("ambiguous"), "{map:?}: {said}");
     }
-    // This one cannot be undone on all of the square: an error or a warning, never silence.
+    // This map cannot be undone on all of the square: an error or a warning is due.
     let (code, said) = back(&["wordart", "--preset", "button", "--box", "artwork"]);
     assert!(code == Some(4) || said.contains("ambiguous"), "{code:?}: {said}");
 }
 
-/// Strokes that stay strokes say how close they are; those that become outlines are counted.
+/// The report of strokes that stay strokes has their error; those that become outlines are counted.
 #[test]
 fn strokes_are_reported_and_explained() {
     let dir = tempfile::tempdir().unwrap();

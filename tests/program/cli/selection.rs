@@ -1,4 +1,4 @@
-//! `--select` and `--exclude` without a match, and drawings with nothing to warp, are not silent.
+//! `--select` and `--exclude` without a match, and drawings with nothing to warp, are reported.
 
 use super::common::{SQUARE, text};
 use crate::support::{pathwarp_in, sample};
@@ -54,7 +54,7 @@ fn a_drawing_with_nothing_to_warp_is_1() {
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
     assert!(text(&out.stderr).contains("nothing to warp"), "{}", text(&out.stderr));
     assert_eq!(text(&out.stdout), empty);
-    // An image is something.
+    // An image is artwork, too.
     let pixel = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==";
     let image = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><image id='i' width='9' height='9' href='{pixel}'/></svg>"

@@ -23,7 +23,7 @@ fn drawn(svg: &[u8]) -> Outline {
     Outline { subpaths: subpaths.collect() }
 }
 
-/// The box of the block put into a shape, with the messages.
+/// Returns the box of the block put into a shape, with the messages.
 #[track_caller]
 fn put(folder: &Path, shape: &str, artwork: &str) -> (Rect, String) {
     let out = pathwarp_in(folder, &["envelope", "-", "--envelope", shape], artwork.as_bytes());
@@ -36,7 +36,7 @@ fn is_near(a: Rect, b: Rect) -> bool {
     [a.x0 - b.x0, a.y0 - b.y0, a.x1 - b.x1, a.y1 - b.y1].iter().all(|d| d.abs() < 0.1)
 }
 
-/// A block fills its shape, whose box is known: as wide as the block, about its middle, and by the ratio as high.
+/// A block fills its shape, whose box is known: as wide as the block, about its middle, and as high as the ratio requires.
 #[test]
 fn a_shape_is_as_wide_as_the_artwork_and_has_its_ratio() {
     let dir = tempfile::tempdir().unwrap();
@@ -51,7 +51,7 @@ fn a_shape_is_as_wide_as_the_artwork_and_has_its_ratio() {
     }
 }
 
-/// Who has a file or a path of that name means it.
+/// A file or a path of that name takes precedence.
 #[test]
 fn files_and_ids_win_over_names() {
     let dir = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn files_and_ids_win_over_names() {
     assert!(is_near(is, Rect::new(20.0, 30.0, 80.0, 90.0)), "{is}");
 }
 
-/// A recipe keeps the name, whatever the folder.
+/// A recipe keeps the name, in any folder.
 #[test]
 fn recipes_hold_the_name_of_a_shape() {
     let dir = tempfile::tempdir().unwrap();
@@ -79,7 +79,7 @@ fn recipes_hold_the_name_of_a_shape() {
     assert_eq!(text(&first.stdout), text(&second.stdout));
 }
 
-/// The names are found where one looks for them, and slips are set right.
+/// Lists and messages give the names, and misspelt ones are corrected.
 #[test]
 fn names_are_told() {
     let (help, _) = expect_code(0, &["help", "heart"]);

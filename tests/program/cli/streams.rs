@@ -26,7 +26,7 @@ fn a_drawing_is_not_written_under_a_pictures_name() {
     assert!(!dir.path().join("out.png").exists());
 }
 
-/// The extension says the format; one that cannot be written is an error.
+/// The extension selects the format; one that cannot be written is an error.
 #[test]
 fn unknown_extensions_are_errors() {
     let dir = tempfile::tempdir().unwrap();

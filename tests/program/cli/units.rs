@@ -1,4 +1,4 @@
-//! Lengths with units mean the same in px, mm and inch drawings, whatever their `viewBox` says.
+//! Lengths with units are equal in px, mm and inch drawings, whatever their `viewBox`.
 
 use super::common::text;
 use crate::support::pathwarp_in;
@@ -55,7 +55,7 @@ fn results_have_the_same_size_in_mm() {
     near(&waves, [20.0, 6.0, 30.0, 38.0]);
     // The top of a four-sided cage in mm.
     near(&mm(&["projective", "--target", "0mm,50mm 80mm,50mm 80mm,0mm 0mm,0mm", "-q"]), [0.0, 0.0, 80.0, 50.0]);
-    // A label on a mug: the same in all, and wider than it looks.
+    // A label on a mug is equal in all of them, and wider than it looks.
     let label =
         mm(&["anamorph", "--distance", "50cm", "--onto", "cylinder:radius=42mm", "-q", "--tolerance", "0.001mm"]);
     near(&label, label[1]);
@@ -63,7 +63,7 @@ fn results_have_the_same_size_in_mm() {
     assert!((label[1][2] - 2.0 * half).abs() < 0.01, "{label:?} {half}");
 }
 
-/// Arc length on a cylinder of radius `r` that touches the drawing's plane, seen from `distance` at `x` beside the axis of view.
+/// Returns arc length on a cylinder of radius `r` that touches the drawing's plane, seen from `distance` at `x` beside the axis of view.
 fn half_width_on_a_mug(x: f64, distance: f64, r: f64) -> f64 {
     // The ray from (0, d) through (x, 0) meets the circle about (0, -r): p = (t x, d − t d).
     let (a, b, c) = (x * x + distance * distance, -2.0 * distance * (distance + r), (distance + r).powi(2) - r * r);

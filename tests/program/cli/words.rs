@@ -51,7 +51,7 @@ fn a_fold_of_lettering_names_the_letter() {
     assert!(said.contains("“Q”") && said.contains("folds over"), "{said}");
 }
 
-/// A map that turns most of a word over, and not its corners.
+/// A map may turn most of a word over, except its corners.
 #[test]
 fn all_letters_that_fold_are_named() {
     let dir = tempfile::tempdir().unwrap();
@@ -80,13 +80,13 @@ fn a_page_fitted_to_the_artwork_keeps_its_margin() {
     let [x, y, w, h] = [0, 1, 2, 3].map(|i| list["paths"][0]["bounds"][i].as_f64().unwrap());
     let view = format!("viewBox='{} {} {} {}'", x - 5.0, y - 5.0, w + 10.0, h + 10.0);
     assert!(svg.contains(&view) && (w, h) == (120.0, 80.0), "{view} {svg}");
-    // Artwork that bleeds off its page has none, and what the page cut off stays off.
+    // Artwork that bleeds off its page has no margin, and parts that the page cut off stay off.
     let bleeding = drawing.replace("M5,20", "M-5,20").replace("H5Z", "H-5Z");
     let out = pathwarp_in(dir.path(), &["affine", "--fit", "page", "--move-x", "1"], bleeding.as_bytes());
     assert!(text(&out.stdout).contains("viewBox='1 20 65 40'"), "{}", text(&out.stdout));
 }
 
-/// Letters of text elements are named as those of outlined words are.
+/// Letters of text elements are named like those of outlined words.
 #[test]
 fn a_fold_of_text_names_the_letters() {
     let dir = tempfile::tempdir().unwrap();
@@ -98,7 +98,7 @@ fn a_fold_of_text_names_the_letters() {
         let said = text(&out.stderr);
         assert!(said.contains(letters), "{said}");
     }
-    // Both are upside down: neither folds against the other. One in the middle does.
+    // Both letters are upside down, so neither folds against the other. One in the middle does.
     let out = pathwarp_in(dir.path(), &["expr", "--x", "-x", "--no-system-fonts"], drawing.as_bytes());
     assert!(!text(&out.stderr).contains("folds"), "{}", text(&out.stderr));
 }

@@ -38,7 +38,7 @@ fn every_command_that_draws_writes_every_format() {
         &["affine", &xcf, "--rotate", "9"],
         &["affine", "a.svg", "--rotate", "9", "+", "wave", "--height", "5", "--length", "30"],
         &["run", "r.toml", "a.svg"],
-        // A file to look at has a margin by default, what goes on to another command has none.
+        // A file for viewing has a margin by default, input for another command has none.
         &["text", "Word", "--margin", "0"],
         &["convert", "a.svg"],
     ];
@@ -48,13 +48,13 @@ fn every_command_that_draws_writes_every_format() {
             run(&[command, &["-o", &name]].concat());
             let file = fs::read(folder.join(&name)).unwrap();
             assert_eq!(kind(&file), format, "{command:?}");
-            // Standard output gets the same.
+            // Standard output gets the same bytes.
             assert_eq!(run(&[command, &["--format", format]].concat()), file, "{command:?} {format}");
         }
     }
     run(&["gallery", "a.svg", "-o", "sheet.pdf"]);
     assert_eq!(kind(&fs::read(folder.join("sheet.pdf")).unwrap()), "pdf");
-    // Single paths, too.
+    // A single path can be exported, too.
     run(&["convert", &xcf, "--split", "-o", "paths.dxf"]);
     let split = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
     assert!(split.filter(|n| n.starts_with("paths-") && n.ends_with(".dxf")).count() > 1);
@@ -115,13 +115,13 @@ fn batches_have_formats() {
         assert_eq!(kind(&fs::read(folder.join(name)).unwrap()), format, "{name}");
     }
     assert!(!folder.join("out/bad.pdf").exists());
-    // The results of a run are not its inputs: two inputs of one name would be one file.
+    // The results of a run are not its inputs; two inputs of one name would give one file.
     fs::write(folder.join("in/a.svgz"), SQUARE).unwrap();
     let out = pathwarp_in(folder, &["affine", "in/a.svg", "in/a.svgz", "--out-dir", "out", "--format", "pdf"], b"");
     assert_eq!(out.status.code(), Some(2));
 }
 
-/// `-` is standard output for everything that a command writes.
+/// `-` means standard output for every kind of output.
 #[test]
 fn a_dash_is_standard_output() {
     let dir = tempfile::tempdir().unwrap();

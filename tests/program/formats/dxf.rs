@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::Path;
 
-/// The distance of samples from the curve they are on.
+/// The distance of samples from their curve.
 const SAMPLING: f64 = 2e-4;
 
 fn run(folder: &Path, args: &[&str], stdin: &[u8]) -> (Vec<u8>, String) {
@@ -28,8 +28,8 @@ fn kinds(file: &Dxf) -> BTreeMap<&str, usize> {
     out
 }
 
-/// Two bars that cross are cut twice where they overlap, unless they are united: twelve edges then, with a total length that is that of the
-/// cross alone. Other paths, strokes and what is simple already stay apart and as they are.
+/// Two bars that cross are cut twice where they overlap, unless they are united: then there are twelve edges, with the total length of the
+/// cross alone. Other paths and strokes stay apart, and simple shapes unchanged.
 #[test]
 fn filled_shapes_are_united_within_a_path() {
     let dir = tempfile::tempdir().unwrap();
@@ -48,7 +48,7 @@ fn filled_shapes_are_united_within_a_path() {
     assert!((united - (320.0 + 60.0 + strokes)).abs() < 0.1, "{united}");
 }
 
-/// The same drawing in px, mm, inch and points gives the same file: exact, in mm, y up.
+/// One drawing in px, mm, inches and points always gives the same file: exact, in mm, y up.
 #[test]
 fn sizes_are_true_and_curves_exact() {
     let dir = tempfile::tempdir().unwrap();
@@ -61,7 +61,7 @@ fn sizes_are_true_and_curves_exact() {
         let (there, back) = (gap(&got, &wanted), gap(&wanted, &got));
         println!("{name}: {there:.6} mm there, {back:.6} mm back, {:?}", kinds(&file));
         assert!(there.max(back) < SAMPLING, "{name}: {there} {back}");
-        // Every contour is one: the rounded rectangle has its arcs as bulges, those of curves and of an ellipse's arc with lines are splines.
+        // Every contour is one entity: arcs of the rounded rectangle are bulges, curves and an ellipse's arc with lines are splines.
         let expected = [("ARC", 1), ("CIRCLE", 1), ("ELLIPSE", 1), ("LINE", 2), ("LWPOLYLINE", 1), ("SPLINE", 2)];
         let found = kinds(&file);
         for (kind, n) in expected {
@@ -93,7 +93,7 @@ fn polylines_keep_the_tolerance_and_contours_whole() {
     }
 }
 
-/// Every sample, warped: the DXF shows what the SVG of the same command draws, with the middle lines of strokes.
+/// The DXF of every warped sample shows the drawing in the SVG of the same command, with the middle lines of strokes.
 #[test]
 fn warped_drawings_agree_with_their_svg() {
     let dir = tempfile::tempdir().unwrap();
@@ -129,11 +129,11 @@ fn groups_are_layers_and_colours_the_strokes() {
     let (cut, engrave) = (of("cut"), of("engrave"));
     assert_eq!(cut.len() + engrave.len(), file.entities.len());
     assert!(cut.iter().all(|e| e.text(62) == Some("1") && e.text(420).is_none()));
-    // No pure colour: the true one is there, too.
+    // The colour is not in the index, so the true one is written, too.
     let true_color = 0x24_b3a8.to_string();
     assert!(engrave.iter().all(|e| e.text(420) == Some(&true_color)));
 
-    // Inkscape's layers count, wherever they are, by their labels.
+    // Inkscape's layers count at any depth, by their labels.
     let inkscape = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' \
         width='90' height='90'><g id='all'><g id='l1' inkscape:groupmode='layer' inkscape:label='Müller: cut'>\
         <g id='inner'><path d='M0,0H9V9Z'/></g></g><path d='M0,0H9V9'/></g></svg>";
@@ -150,7 +150,7 @@ fn handles_are_unique_and_references_resolve() {
     let mut handles = HashSet::new();
     let records: Vec<_> = file.pairs.split(|p| p.0 == 0).collect();
     for r in &records {
-        // A dimension style has its handle under 105, as 5 is one of its settings.
+        // A dimension style has its handle under 105, since 5 is one of its settings.
         let is_header = r.contains(&(2, "HEADER".to_owned()));
         if let Some((_, handle)) = r.iter().find(|p| p.0 == 5 || p.0 == 105).filter(|_| !is_header) {
             assert!(handles.insert(u64::from_str_radix(handle, 16).unwrap()), "{handle} twice");
@@ -166,7 +166,7 @@ fn handles_are_unique_and_references_resolve() {
     assert!(file.entities.iter().all(|e| layers.contains(e.text(8).unwrap())));
 }
 
-/// Messages name and count the content that outlines cannot show. A clip path that cuts nothing is not among it.
+/// Messages name and count the content that outlines cannot show. A clip path that cuts nothing is not reported.
 #[test]
 fn losses_are_reported() {
     let dir = tempfile::tempdir().unwrap();
@@ -196,7 +196,7 @@ fn losses_are_reported() {
         assert_eq!(file.entities.len(), 1, "{body}");
         assert!(if part.is_empty() { said.is_empty() } else { said.contains(part) }, "{body}: {said}");
     }
-    // Shapes that a clip path hides entirely are left out.
+    // Shapes that a clip path hides entirely are omitted.
     fs::write(dir.path().join("in.svg"), page("<g clip-path='url(#half)'><path d='M50,50H60V60Z'/></g>")).unwrap();
     let (file, said) = dxf(dir.path(), &["convert", "in.svg"], b"");
     assert!(file.entities.is_empty() && said.is_empty(), "{said}");

@@ -1,4 +1,4 @@
-//! A reader of DXF of its own, after Autodesk's reference: group codes, entities, and points on them.
+//! An independent reader of DXF, after Autodesk's reference: group codes, entities, and points on them.
 
 use pathwarp::kurbo::Point;
 use std::f64::consts::TAU;
@@ -43,7 +43,7 @@ impl Dxf {
         Self { pairs, entities }
     }
 
-    /// The value behind a variable of the header.
+    /// Returns the value of a variable of the header.
     pub fn variable(&self, name: &str) -> &str {
         let at = self.pairs.iter().position(|p| *p == (9, name.to_owned())).unwrap();
         &self.pairs[at + 1].1
@@ -133,7 +133,7 @@ impl Entity {
                 out.push(q);
                 continue;
             }
-            // The bulge is the sagitta over half the chord; it bends to the right of the way if positive.
+            // The bulge is the sagitta over half the chord; positive arcs bend to the right of their direction.
             let angle = 4.0 * bulge.atan();
             let chord = q - p;
             let radius = chord.hypot() / (2.0 * (angle / 2.0).sin());
@@ -165,7 +165,7 @@ impl Entity {
         out
     }
 
-    /// A point of a spline in the span behind knot `k`, by de Boor's algorithm on homogeneous coordinates.
+    /// Returns a point of a spline in the span after knot `k`, by de Boor's algorithm on homogeneous coordinates.
     pub fn in_span(&self, k: usize, t: f64) -> [f64; 3] {
         let (degree, knots, weights) = (self.number(71) as usize, self.all(40), self.all(41));
         let axes = [10, 20, 30].map(|code| self.all(code));

@@ -1,5 +1,5 @@
-//! The extension says the format: PDF, DXF, JPEG and WebP beside SVG and PNG, read back by programs and parsers that know nothing
-//! of pathwarp.
+//! The extension selects the format: PDF, DXF, JPEG and WebP beside SVG and PNG, read back by programs and parsers that are independent of
+//! pathwarp.
 
 mod choice;
 mod dxf;

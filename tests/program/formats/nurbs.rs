@@ -1,4 +1,4 @@
-//! Exact images of curves as splines with weights: equations (3), (5) and (9) of Sánchez-Reyes and Chacón, written again.
+//! Exact images of curves as splines with weights, against equations (3), (5) and (9) of Sánchez-Reyes and Chacón.
 
 use super::dxf_reader::{Dxf, Entity};
 use crate::support::{expect_code, pathwarp_in};
@@ -71,7 +71,7 @@ fn a_nurbs_curve_keeps_its_knots_under_a_projective_map() {
         near(found, projected(x, y));
         assert!((out["weights"][i].as_f64().unwrap() - scale * w * delta(y)).abs() < 1e-12);
     }
-    // The same as a spline of a DXF, on a layer of its name: two spans, as many points.
+    // As a spline of a DXF, on a layer of its name, it has two spans and as many points.
     run(dir.path(), &[&TRIANGLE[..], &["--exact", "in.json", "-o", "out.dxf"]].concat());
     let e = &splines(dir.path(), "out.dxf")[0];
     assert_eq!((e.text(8), e.number(71), e.number(73), e.all(40)), (Some("c"), 3.0, 5.0, knots.to_vec()));

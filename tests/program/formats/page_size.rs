@@ -1,4 +1,4 @@
-//! `--page-width` and `--page-height`: the size of the result, and lengths that are its own.
+//! `--page-width` and `--page-height`: the size of the result, and lengths that refer to the result.
 
 use super::dxf_reader::Dxf;
 use crate::support::geometry::{drawing, gap, outlines};
@@ -22,7 +22,7 @@ fn scaled(lines: &[Vec<Point>], k: f64) -> Vec<Vec<Point>> {
     lines.iter().map(|l| l.iter().map(|p| Point::new(k * p.x, k * p.y)).collect()).collect()
 }
 
-/// The sides of a result's page, as its root says.
+/// Returns the sides of a result's page, as given by its root.
 fn sides(svg: &[u8]) -> [String; 2] {
     let text = std::str::from_utf8(svg).unwrap();
     let value = |name: &str| text.split(&format!(" {name}=")).nth(1).unwrap()[1..].split(['\'', '"']).next().unwrap();
@@ -66,7 +66,7 @@ fn the_page_has_the_size_asked_for_and_the_other_side_in_proportion() {
     }
 }
 
-/// In a browser, a style overrides the attributes, so it says the new size too.
+/// In a browser, a style overrides the attributes, so the style also gets the new size.
 #[test]
 fn a_size_in_a_style_gives_way() {
     let drawing = |root: &str, sheet: &str| {
@@ -98,7 +98,7 @@ fn a_size_in_a_style_gives_way() {
     }
 }
 
-/// Parameters are lengths of the source; the page that counts is that of the result, after `--fit`.
+/// Parameters are lengths of the source; the page size is that of the result, after `--fit`.
 #[test]
 fn parameters_are_lengths_of_the_source() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='80mm' height='60mm' viewBox='0 0 80 60'>\
@@ -113,7 +113,7 @@ fn parameters_are_lengths_of_the_source() {
     near(circle(&["--page-width", "160mm", "--kerf", "0.2mm"]), [80.0, 80.0, 20.1]);
 }
 
-/// A tolerance with a unit holds in the result: the coarser, the fewer nodes, whatever the page.
+/// A tolerance with a unit holds in the result: a coarser one gives fewer nodes, on any page.
 #[test]
 fn the_tolerance_is_that_of_the_result() {
     let svg = drawing("80mm", "60mm", 1.0);
@@ -132,7 +132,7 @@ fn the_tolerance_is_that_of_the_result() {
     assert!(nodes(&coarse) < nodes(&fine), "{} {}", nodes(&coarse), nodes(&fine));
 }
 
-/// Lettering and conversions have it, too.
+/// Lettering and conversions have these options, too.
 #[test]
 fn every_command_that_writes_drawings_has_it() {
     let text = run(&["text", "Label", "--page-width", "80mm"], "");
@@ -179,7 +179,7 @@ fn sheets_and_paths_of_gimp_have_it() {
     assert_eq!(bytes[14..18], 300u32.to_be_bytes());
 }
 
-/// The report has the tolerance that the curves were held to: in units of the source, a tenth of it on a page ten times as large.
+/// The report has the tolerance of the curves in units of the source: a tenth of it on a page ten times as large.
 #[test]
 fn the_report_has_the_tolerance_of_the_result() {
     let svg = drawing("80mm", "60mm", 1.0);

@@ -16,7 +16,7 @@ fn drawings_are_rendered_in_every_format() {
     }
     let read = |name: &str| Picture::read(&fs::read(at(name)).unwrap()).unwrap().pixmap;
     let png = decode_png(&fs::read(at("a.png")).unwrap()).unwrap();
-    // WebP loses nothing but the colour of nearly transparent pixels.
+    // WebP loses nothing except the colour of nearly transparent pixels.
     assert!(difference(&png, &read("a.webp")).most() <= 1);
     let jpeg = read("a.jpg");
     let corner = jpeg.pixel(0, 0).unwrap();
@@ -24,7 +24,7 @@ fn drawings_are_rendered_in_every_format() {
     let size = |name: &str| fs::metadata(at(name)).unwrap().len();
     assert!(size("small.jpeg") < size("a.jpg"));
 
-    // Any colour may lie behind; a JPEG must have one.
+    // A picture can have any background; a JPEG must have one.
     expect_code(0, &["render", &logo, "-o", &at("b.jpg"), "--background", "#ff8000", "--quality", "100"]);
     let b = read("b.jpg").pixel(1, 1).unwrap();
     assert!(b.red() > 250 && b.green().abs_diff(128) < 4 && b.blue() < 5, "{b:?}");

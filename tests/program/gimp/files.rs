@@ -47,7 +47,7 @@ fn listed_svg(name: &str) -> Vec<Named> {
     strokes(&listed(&sample(name)))
 }
 
-/// The example of the paper gives the same curves from the XCF as from the drawing.
+/// The example of the paper gives equal curves from the XCF and from the drawing.
 #[test]
 fn the_example_of_the_paper_is_the_same_from_an_xcf() {
     let guides = ["--base", "#Base", "--target", "#Target", "--shaper", "#Shaper", "--tolerance", "0.001", "-q"];
@@ -58,7 +58,7 @@ fn the_example_of_the_paper_is_the_same_from_an_xcf() {
         expect_code(0, &words);
     };
     let (from_svg, from_xcf, list) = (to("a.svg"), to("b.svg"), to("c.json"));
-    // Keep strokes as lines, like GIMP paths.
+    // Keep strokes as lines, since GIMP's paths are lines.
     let keep = ["shaper", "samples/paper-two-anchors.svg", "--strokes", "keep", "-o", &from_svg];
     expect_code(0, &keep.into_iter().chain(guides).collect::<Vec<_>>());
     run("samples/paper.xcf", &from_xcf);
@@ -102,14 +102,14 @@ fn paths_go_back_into_a_copy() {
     let single = |s: &Stroke| stroke(s.closed, &s.points);
     assert_eq!(after[1].strokes, exact[0].strokes.iter().map(single).collect::<Vec<_>>());
     assert_ne!(after[1].strokes, paths()[1].strokes);
-    // The same by a recipe.
+    // A recipe gives the same result.
     let recipe = dir.path().join("r.toml").display().to_string();
     let again = dir.path().join("again.xcf").display().to_string();
     expect_code(0, &["wave", &format!("{name}#leaf & <hill>"), "--into", &again, "-q", "--write-recipe", &recipe]);
     let by_recipe = dir.path().join("by-recipe.xcf").display().to_string();
     expect_code(0, &["run", &recipe, &format!("{name}#leaf & <hill>"), "--into", &by_recipe, "-q"]);
     assert_eq!(fs::read(again).unwrap(), fs::read(by_recipe).unwrap());
-    // The input itself and files other than an XCF are refused, and nothing is left behind.
+    // The input itself and files other than an XCF are refused, and no file is left behind.
     let (_, e) = expect_code(2, &["wave", &name, "--into", &name]);
     assert!(e.contains("would be overwritten"), "{e}");
     let none = dir.path().join("none.xcf").display().to_string();
@@ -125,7 +125,7 @@ fn paths_go_back_into_a_copy() {
     assert_eq!(fs::read(&file).unwrap(), bytes);
 }
 
-/// Paths are edited before they are bent, as drawings are: one command gives what two do.
+/// Paths are edited before they are bent, like drawings: one command gives the result of two.
 #[test]
 fn paths_are_edited_before_bending() {
     let dir = tempfile::tempdir().unwrap();
@@ -178,7 +178,7 @@ fn conversion_keeps_names_and_numbers() {
             assert_eq!(stroke(s.closed, &s.points), stroke(t.closed, &t.points));
         }
     }
-    // Any reader of SVG finds the same names.
+    // Any reader of SVG finds these names.
     let doc = pathwarp_svg::Document::read(&fs::read(to("art.svg")).unwrap(), "art.svg", &Default::default()).unwrap();
     assert_eq!(doc.path("leaf & <hill>").unwrap().outline.subpaths.len(), 2);
     expect_code(0, &["convert", &to("art.xcf"), "-o", &to("part.svg"), "--split"]);
@@ -203,7 +203,7 @@ fn hostile_files_cost_nothing() {
     assert!(out.status.code() == Some(3) && e.contains("268435456 paths"), "{e}");
 }
 
-/// Paths keep GIMP's visibility switch on their way through SVG, warped or not; GIMP's own exports do not tell, and are visible.
+/// Paths keep GIMP's visibility switch in SVG, warped or not. GIMP's exports do not contain it, so their paths are visible.
 #[test]
 fn visibility_survives_svg() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The default command holds small contours to less than the drawing, and shared edges to the least.
+//! The default command gives small contours a smaller tolerance than the drawing, and shared edges the smallest.
 
 use super::REGISTRY;
 use pathwarp::kurbo::{Point, Rect};
@@ -17,7 +17,7 @@ fn diagonal(r: Rect) -> f64 {
     r.width().hypot(r.height())
 }
 
-/// The tolerance of every subpath, as docs/refitting.md says, in a drawing that is held to `tolerance`.
+/// Returns the tolerance of every subpath, by docs/refitting.md, in a drawing with the tolerance `tolerance`.
 pub fn tolerances(subpaths: &[Vec<Curve>], tolerance: f64) -> Vec<f64> {
     let of_drawing = 1e4 * tolerance;
     let own = |s: &Vec<Curve>| (2e-3 * diagonal(bounds(s))).min(1e-4 * of_drawing).max(1e-7 * of_drawing);
@@ -39,7 +39,7 @@ pub fn bent(svg: &str, deformation: &str, values: &[(&str, &str)]) -> (String, f
     (svg, tolerance, Box::new(move |points, out| map.points(points, out)))
 }
 
-/// An A0 poster in millimetres: dots of 1.2 mm and letters of 3 mm, also within one path.
+/// Returns an A0 poster in millimetres: dots of 1.2 mm and letters of 3 mm, also within one path.
 fn poster() -> String {
     let mut d = String::from("M0 0H841V1189H0Z");
     let mut dots = String::new();
@@ -84,7 +84,7 @@ fn dots_and_letters_of_a_poster_stay_round() {
 /// A map of countries of very different sizes, which share curved borders.
 fn countries(r: &mut Random) -> String {
     const N: usize = 9;
-    // Lines that are close together at one end.
+    // Lines that crowd at one end.
     let at = |i: usize| 1000.0 * (i as f64 / (N - 1) as f64).powi(5);
     let mut nodes = vec![];
     let mut handles = vec![];
@@ -104,7 +104,7 @@ fn countries(r: &mut Random) -> String {
             let mut d = format!("M{} {}", node(i, j).x, node(i, j).y);
             for k in 0..4 {
                 let (from, to) = (round[k], round[(k + 1) % 4]);
-                // The same border in either direction.
+                // One border in either direction.
                 let (a, b) = if from < to { (from, to) } else { (to, from) };
                 let (p, q) = (node(a.0, a.1), node(b.0, b.1));
                 let side = (q - p).turn_90();
@@ -156,7 +156,7 @@ fn borders_of_large_and_small_countries_stay_one_curve() {
         assert_eq!((borders, coast), (112, 32));
         let (out, ..) = bent(&svg, name, values);
         let (shared, alone) = count(&out);
-        // Only the coast, of 32 segments, is alone.
+        // Only the coast, of 32 segments, is not shared.
         assert!(shared >= borders && alone <= 4 * coast, "{name}: {shared} shared, {alone} alone");
     }
 }

@@ -1,4 +1,4 @@
-//! The promise of `simplify` and `outline`: few nodes within the distance, measured between the source text and what is written.
+//! The promise of `simplify` and `outline`: few nodes within the distance, measured between the text of the source and of the result.
 
 use super::paths::drawn;
 use crate::support::pathwarp_in;
@@ -8,7 +8,7 @@ use pathwarp_oracle::{Random, Run, Sampled, far};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-/// Runs a command over a drawing and returns what it writes, with what it says.
+/// Runs a command over a drawing and returns its result and its messages.
 fn run(args: &[&str], svg: &str) -> (String, String) {
     let out = pathwarp_in(std::env::temp_dir().as_path(), args, svg.as_bytes());
     assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));

@@ -1,7 +1,7 @@
-//! The promise, measured from outside: the distance between the exact image of the source text and the output of the program as people
-//! run it, for many pairs of a path and a map; every fifth path is one of a drawing.
-//! `PATHWARP_PAIRS=100000 cargo test --test program guarantee -- --nocapture` measures as many as it says, with paths of the drawings
-//! in the folder `PATHWARP_DRAWINGS`, and prints the table of docs/benchmarks.md. `PATHWARP_STROKES` does the same for strokes.
+//! The promise, measured from outside: the distance between the exact image of the source text and the output of the program as users run
+//! it, for many pairs of a path and a map. Every fifth path comes from a drawing.
+//! `PATHWARP_PAIRS=100000 cargo test --test program guarantee -- --nocapture` measures as many pairs, with paths of the drawings in the
+//! folder `PATHWARP_DRAWINGS`, and prints the table of docs/benchmarks.md. `PATHWARP_STROKES` sets the number of strokes.
 
 mod contours;
 mod edits;
@@ -32,7 +32,7 @@ struct Maps {
     warper: Warper,
 }
 
-/// Deformations that need no more than a drawing, with parameters that put creases on symmetrical artwork.
+/// Deformations that need only a drawing, with parameters that put creases on symmetrical artwork.
 const MORE: [(&str, &[(&str, &str)]); 24] = [
     ("bend", &[("along", "M20,170C180,60 356,60 516,170"), ("stretch", "fit")]),
     ("bend", &[("along", "M60,190A400,400 0 0 1 604,190"), ("stretch", "scale")]),
@@ -60,7 +60,7 @@ const MORE: [(&str, &[(&str, &str)]); 24] = [
     ("anamorph", &[("eye", "inf:0.2,-0.3,1"), ("onto", "cylinder:radius=90%")]),
 ];
 
-/// All deformations with the parameters that show them, those above, chains of two, and inverses.
+/// Returns all deformations with the parameters of their demos, those of [`MORE`], chains of two, and inverses.
 fn maps() -> Vec<Maps> {
     let one = |name: &str, values: &[(&str, &str)]| {
         let warper = Warper::new(&REGISTRY, name, values).ok()?;
@@ -83,13 +83,13 @@ fn maps() -> Vec<Maps> {
     all
 }
 
-/// `simplify` in place of a map.
+/// Returns `simplify`, in the form of a map.
 fn simplified() -> Maps {
     let warper = Warper::edit(&REGISTRY, "simplify", &[] as &[(&str, &str)]).unwrap();
     Maps { name: "simplify".to_owned(), warper }
 }
 
-/// What a pair gives: the largest distance in tolerances, the sharpest false turn in degrees.
+/// The result for a pair: the largest distance in tolerances, and the sharpest false turn in degrees.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     ratio: f64,
@@ -97,14 +97,14 @@ struct Found {
     near: Point,
 }
 
-/// What the program makes of a drawing, with the tolerance and the map.
+/// The program's result for a drawing, with the tolerance and the map.
 struct Done {
     svg: String,
     tolerance: f64,
     map: PointMap,
 }
 
-/// Warps a drawing of the path `d`. `None`: the program refuses it, or says that it misses the tolerance.
+/// Warps a drawing of the path `d`. `None` if the program refuses it, or reports that it misses the tolerance.
 fn done(warper: &Warper, svg: &str, d: &str) -> Option<Done> {
     let done = warper.warp_drawing(svg.as_bytes(), None).ok()?;
     let report: Value = serde_json::from_str(&done.report).unwrap();
@@ -120,17 +120,17 @@ fn done(warper: &Warper, svg: &str, d: &str) -> Option<Done> {
     Some(Done { svg: String::from_utf8(done.bytes).unwrap(), tolerance: report["tolerance"].as_f64()?, map })
 }
 
-/// Measures a pair. `None`: the program refuses it, or says that it misses the tolerance.
+/// Measures a pair. `None` if the program refuses it, or reports that it misses the tolerance.
 fn measured(d: &str, maps: &Maps) -> Option<Found> {
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{d}\"/></svg>");
     let mut warper = maps.warper.clone();
     if maps.name.starts_with("inverse of") {
-        // The box of the artwork stands for that of the source, which is not known.
+        // The box of the artwork stands for the box of the source, which is unknown.
         let b = Outline::from_svg(d).ok()?.bounding_box()?;
         warper.set_option("frame", &format!("{},{},{},{}", b.x0, b.y0, b.width(), b.height())).ok()?;
     }
     let done = done(&warper, &text, d)?;
-    // Areas: an open subpath is closed by a straight line in the source.
+    // For areas, an open subpath is closed by a straight line in the source.
     let image = |ps: &[Point], out: &mut [Point]| done.map.points(ps, out);
     let source = without_slits(curves::closed(curves::read(d)), &image);
     let written = curves::closed(contours::paths(&done.svg));
@@ -141,7 +141,7 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     for ((s, w), held) in source.iter().zip(&written).zip(contours::tolerances(&source, done.tolerance)) {
         let (exact, ours) = (Run::image(s, &image), Run::of(w));
         for (n, last) in [(32, false), (320, true)] {
-            // A crease close to an end of a curve may hide beside a turn the other way.
+            // A crease close to an end of a curve may hide beside a turn in the other direction.
             let height = if last { 0.125 * held } else { held };
             let (exact, ours) = (exact.sampled(n, height), ours.sampled(n, height));
             if !exact.points.iter().all(|p| p.is_finite()) {
@@ -166,8 +166,8 @@ fn measured(d: &str, maps: &Maps) -> Option<Found> {
     Some(found)
 }
 
-/// Contours without the curves that enclose nothing: those whose image is a point, and pairs with one image, there and back, as the sides of
-/// a band that becomes a ring.
+/// Returns contours without the curves that enclose nothing: those whose image is a point, and pairs with one image, there and back, like
+/// the sides of a band that becomes a ring.
 fn without_slits(contours: Vec<Vec<Curve>>, image: &dyn Fn(&[Point], &mut [Point])) -> Vec<Vec<Curve>> {
     const AT: [f64; 5] = [0.0, 0.23, 0.5, 0.77, 1.0];
     let images = |c: &Curve| {
@@ -178,7 +178,7 @@ fn without_slits(contours: Vec<Vec<Curve>>, image: &dyn Fn(&[Point], &mut [Point
     let same = |a: &Point, b: &Point| a.distance(*b) <= 1e-9 * (1.0 + a.to_vec2().hypot());
     let kept = |contour: Vec<Curve>| {
         let all: Vec<_> = contour.iter().map(&images).collect();
-        // What is drawn there and back in the source stays.
+        // Curves that are drawn there and back in the source stay.
         let is_drawn = |a: usize, b: usize| contour[a].at(0.5) == contour[b].at(0.5);
         let is_back = |a: usize, b: usize| {
             a != b && !is_drawn(a, b) && all[a].iter().zip(all[b].iter().rev()).all(|(p, q)| same(p, q))
@@ -190,13 +190,13 @@ fn without_slits(contours: Vec<Vec<Curve>>, image: &dyn Fn(&[Point], &mut [Point
     contours.into_iter().map(kept).filter(|c| !c.is_empty()).collect()
 }
 
-/// Most of a tolerance that counts as kept: sampling exactly to the last digit is not possible.
+/// Multiple of a tolerance that counts as kept, since sampling cannot be exact to the last digit.
 const KEPT: f64 = 1.005;
 
 /// The largest turn at a joint that is smooth in the exact image, in degrees.
 const SMOOTH: f64 = 0.5;
 
-/// A pair that takes more processor time is printed.
+/// Processor time beyond which a pair is printed.
 const SLOW: Duration = Duration::from_secs(20);
 
 #[derive(Default)]
@@ -261,16 +261,16 @@ fn the_distance_is_kept_for_many_pairs() {
     let refused: usize = counted.values().map(|t| t.refused).sum();
     let turned: usize = counted.values().map(|t| t.turned).sum();
     assert!(2 * refused < pairs, "{refused} of {pairs} are refused");
-    // Curves that turn within a few tolerances, as near a cusp, may still have a corner there (docs/benchmarks.md): one in 500.
+    // Curves that turn within a few tolerances, as near a cusp, may keep a corner there (docs/benchmarks.md): one in 500.
     assert!(turned <= pairs.div_ceil(500), "smooth joints turn in {turned} of {pairs}");
     let mut failures = failures.into_inner().unwrap();
     failures.sort();
     assert!(failures.is_empty(), "{} pairs:\n{}", failures.len(), failures.join("\n"));
 }
 
-/// Pairs that were beyond the tolerance once: a map's name, and a path.
+/// Pairs that were once beyond the tolerance: a map's name, and a path.
 const ONCE_BEYOND: [(&str, &str); 6] = [
-    // Across the place where the ends of a closed path meet: from one side's limit to the other's.
+    // Across the joint of a closed path's ends: from one side's limit to the other's.
     (
         "inverse of bend --along 'M0,50A50,50 0 0 1 100,50A50,50 0 0 1 0,50Z' --stretch 'fit'",
         "M50 34.54869906240633A50 53.142293601265735 0 0 1 50 140.83328626493778A50 53.142293601265735 0 0 1 50 34.54869906240633Z",
@@ -289,12 +289,12 @@ const ONCE_BEYOND: [(&str, &str); 6] = [
         "inverse of anamorph --distance '300' --onto 'cylinder:radius=80'",
         "M50 20.7C 66.4 12.5 41.34246394653793 29.8 49.53061648763892 100C 12.5 62.5 99.40257882898074 75 37.5 9.9C 42.69958654594603 36.6 12.5 62.5 16.32238966301749 87.5C 22.5 97.92380402796041 15.2 67.91066206399634 12.5 25C 6 37.5 16.7 75.03724134471845 2.514535052878486 52.2A38.02815589221087 35.41616741598826 138 1 0 62.5 12.1C 91.2 12.5 22.1 62.5 29.094527646579493 76.9911882679228",
     ),
-    // The box of a round shape hung on the last digit of the frame.
+    // The box of a round shape depended on the last digit of the frame.
     (
         "wordart --preset 'arch-down-pour'",
         "M93.3 20.9C 25 82.9 70.37070229122264 50 54.198212858075934 15.113058236941512C 87.5 24.7 19 53.4 87.5 75.6C 61.819276076011676 97.02717516650523 87.5 94.3 18.1 12.5C 38.3 0 75.7 41.12526773881733 37.5 37.5",
     ),
-    // A small contour between arcs that stay arcs was held to the tolerance of the drawing.
+    // A small contour between arcs that stay arcs was given the tolerance of the drawing.
     (
         "simplify",
         "M0 0H24V24H0zM5.476 9.02c-.588 0-1.105.368-1.287.915-.23.694.159 1.442.869 1.668.136.043.277.065.419.065.588 0 1.105-.368 1.287-.915a1.29 1.29 0 00-.081-1.01 1.338 1.338 0 00-.788-.658 1.377 1.377 0 00-.42-.065z",

@@ -1,11 +1,11 @@
-//! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves, those of drawings; far from the origin or not.
+//! Paths for the measurement: symmetrical shapes, nodes on creases, loops, random curves and paths of drawings, near the origin and far.
 
 use pathwarp_oracle::Random;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// Often a multiple of an eighth of the page.
+/// Returns a coordinate, often a multiple of an eighth of the page.
 fn coordinate(r: &mut Random) -> f64 {
     match r.below(3) {
         0 => r.below(9) as f64 * 12.5,
@@ -14,7 +14,7 @@ fn coordinate(r: &mut Random) -> f64 {
     }
 }
 
-/// A path that is symmetrical about a vertical through `x` and reaches from `x − w` to `x + w`.
+/// Returns a path that is symmetrical about a vertical through `x` and reaches from `x − w` to `x + w`.
 fn symmetrical(r: &mut Random) -> String {
     let (x, y, w) = (50.0, coordinate(r), [50.0, 25.0, 12.5, 16.65, 33.3][r.below(5)]);
     let h = r.between(0.2, 1.5) * w;
@@ -61,7 +61,7 @@ fn symmetrical(r: &mut Random) -> String {
     }
 }
 
-/// Curves through nodes that often lie on creases, with smooth joints among them.
+/// Returns curves through nodes that often lie on creases, with some smooth joints.
 fn random(r: &mut Random) -> String {
     let mut d = format!("M{} {}", coordinate(r), coordinate(r));
     for _ in 0..1 + r.below(6) {
@@ -90,7 +90,7 @@ fn random(r: &mut Random) -> String {
     if r.below(2) == 0 { d + "Z" } else { d }
 }
 
-/// Loops: petals, whole turns, curves that end where they start.
+/// Returns loops: petals, whole turns, curves that end where they start.
 fn loops(r: &mut Random) -> String {
     let (x, y) = (coordinate(r), coordinate(r));
     let mut d = format!("M0 0H100V100H0ZM{x} {y}");
@@ -101,7 +101,7 @@ fn loops(r: &mut Random) -> String {
     d + "Z"
 }
 
-/// The same path elsewhere: relative commands after a first point far away.
+/// Returns a path moved elsewhere: relative commands after a first point far away.
 pub fn shifted(d: &str, by: [f64; 2]) -> String {
     use svgtypes::PathSegment as S;
     let mut out = String::new();
@@ -109,7 +109,7 @@ pub fn shifted(d: &str, by: [f64; 2]) -> String {
         let p = |abs: bool, x: f64, y: f64| if abs { (x + by[0], y + by[1]) } else { (x, y) };
         let name = |abs: bool, c: char| if abs { c } else { c.to_ascii_lowercase() };
         let _ = match s {
-            // The first point is absolute however it is written.
+            // The first point is absolute in either notation.
             S::MoveTo { x, y, .. } if out.is_empty() => write!(out, "M{:?}", p(true, x, y)),
             S::MoveTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'M'), p(abs, x, y)),
             S::LineTo { abs, x, y } => write!(out, "{}{:?}", name(abs, 'L'), p(abs, x, y)),
@@ -135,10 +135,10 @@ pub fn shifted(d: &str, by: [f64; 2]) -> String {
     out.replace(['(', ')'], " ").replace(", ", " ")
 }
 
-/// Commands of a path of a drawing that is measured.
+/// Limit on the commands of a path of a drawing that is measured.
 const MAX_COMMANDS: usize = 200;
 
-/// The path data of drawings: of the folder that `PATHWARP_DRAWINGS` names, or else of the samples.
+/// Path data of the drawings in the folder that `PATHWARP_DRAWINGS` names, or else in the samples.
 static DRAWN: LazyLock<Vec<String>> = LazyLock::new(|| {
     let folder =
         std::env::var_os("PATHWARP_DRAWINGS").map_or_else(|| crate::support::root().join("samples"), Into::into);
@@ -170,7 +170,7 @@ fn gather(folder: &Path, out: &mut Vec<String>) {
     }
 }
 
-/// Whether every subpath is closed in the text: a filled open line encloses nothing, which the program leaves open.
+/// Returns `true` if every subpath is closed in the text. The program leaves filled open lines open, since they enclose nothing.
 fn closed(d: &&str) -> bool {
     use svgtypes::PathSegment as S;
     let mut open = false;
@@ -184,7 +184,7 @@ fn closed(d: &&str) -> bool {
     }) && !open
 }
 
-/// A path, with the name of its kind.
+/// Returns a path, with the name of its kind.
 pub fn path(r: &mut Random) -> (&'static str, String) {
     let made = match r.below(4) {
         0 | 1 => ("symmetrical", symmetrical(r)),
@@ -194,13 +194,13 @@ pub fn path(r: &mut Random) -> (&'static str, String) {
     somewhere(r, made)
 }
 
-/// A path of a drawing.
+/// Returns a path of a drawing.
 pub fn drawn(r: &mut Random) -> (&'static str, String) {
     let made = ("of drawings", DRAWN[r.below(DRAWN.len())].clone());
     somewhere(r, made)
 }
 
-/// One in four is moved far from the origin.
+/// Moves one path in four far from the origin.
 fn somewhere(r: &mut Random, (kind, d): (&'static str, String)) -> (&'static str, String) {
     match r.below(8) {
         0 => ("at 1e5", shifted(&d, [1e5, 3e5])),

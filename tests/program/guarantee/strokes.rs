@@ -1,4 +1,4 @@
-//! Strokes under maps: what is written covers the image of every point inside of the stroke, and of none outside, up to the tolerance.
+//! Strokes under maps: the result covers the image of every point inside of the stroke, and of none outside, up to the tolerance.
 
 use super::paths::{drawn, path};
 use super::{Maps, maps};
@@ -8,15 +8,15 @@ use pathwarp_oracle::{Polygon, Random, Run};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Points that are tried on either side of each stroke.
+/// Number of points probed on either side of each stroke.
 const PROBES: usize = 200;
 
-/// Subpaths as chords that are within a tenth of `height` of them.
+/// Returns subpaths as chords that are within a tenth of `height` of them.
 fn chords(subpaths: &[Vec<Curve>], height: f64) -> Polygon {
     Polygon::new(subpaths.iter().flat_map(|run| Run::of(run).sampled(64, height).chords.edges).collect())
 }
 
-/// Points on the edges of a stroke, on either side, as far as other parts of it do not cover them.
+/// Returns points on the edges of a stroke, on either side, where other parts of it do not cover them.
 fn edges(r: &mut Random, source: &[Vec<Curve>], width: f64) -> Vec<Point> {
     let mut out = Vec::new();
     for _ in 0..PROBES {
@@ -31,20 +31,20 @@ fn edges(r: &mut Random, source: &[Vec<Curve>], width: f64) -> Vec<Point> {
     out
 }
 
-/// The smaller singular value of a Jacobian.
+/// Returns the smaller singular value of a Jacobian.
 fn least_stretch([dx, dy]: &[Vec2; 2]) -> f64 {
     let (sum, det) = (dx.hypot2() + dy.hypot2(), dx.cross(*dy));
     (0.5 * (sum - (sum * sum - 4.0 * det * det).max(0.0).sqrt())).sqrt()
 }
 
-/// How many probes were decided, and where one is on the wrong side.
+/// The number of probes that were decided, and those on the wrong side.
 struct Probed {
     decided: usize,
     wrong: Vec<(Point, bool)>,
 }
 
-/// Strokes `d` round about `width` wide and looks on which side of the written outline points beside the edge come to lie. `None`: the
-/// program refuses the pair, or says that it misses the tolerance.
+/// Strokes `d` about `width` wide, and finds the side of the written outline on which points beside the edge lie. `None` if the program
+/// refuses the pair, or reports that it misses the tolerance.
 fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     let text = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'><path d=\"{d}\" fill='none' stroke='#000' \
@@ -56,7 +56,7 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     let (tolerance, points) = (done.tolerance, &done.map);
     let (written, style) = done.svg.split_once("<path d=\"")?.1.split_once('>')?.0.split_once('"')?;
     if style.contains("stroke=\"#000") || style.contains("stroke='#000") {
-        // An affine map takes the stroke along as it is.
+        // An affine map transforms the stroke as a whole.
         return None;
     }
     let written = chords(&curves::closed(curves::read(written)), 0.2 * tolerance);
@@ -69,7 +69,7 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
     let mut jacobians = vec![[Vec2::ZERO; 2]; edges.len()];
     points.jacobians(&edges, &mut jacobians);
     let mut all = Probed { decided: 0, wrong: Vec::new() };
-    // Where the map turns areas over, windings of the image say nothing.
+    // Where the map turns areas over, winding numbers of the image are meaningless.
     let turns: Vec<f64> = jacobians.iter().map(|[dx, dy]| dx.cross(*dy)).collect();
     if turns.iter().any(|t| *t < 0.0) && turns.iter().any(|t| *t > 0.0) {
         return Some(all);
@@ -93,7 +93,7 @@ fn probed(r: &mut Random, d: &str, width: f64, map: &Maps) -> Option<Probed> {
             let (mut image, mut jacobian) = ([Point::ORIGIN], [[Vec2::ZERO; 2]]);
             points.points(&[q], &mut image);
             points.jacobians(&[q], &mut jacobian);
-            // Where the map changes fast, the stretch at the edge says little about the disc.
+            // Where the map changes fast, the stretch at the edge is no bound for the disc.
             let changes = !(0.7..1.4).contains(&(least_stretch(&jacobian[0]) * room / (1.5 * tolerance)));
             if changes || !image[0].is_finite() {
                 continue;
@@ -112,7 +112,7 @@ fn strokes_cover_what_they_covered() {
     let wanted: usize = std::env::var("PATHWARP_STROKES").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
     let first: usize = std::env::var("PATHWARP_FIRST").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
     let mut maps = maps();
-    // Inverses need the frame of what they undo.
+    // Inverses need the frame of the map that they undo.
     maps.retain(|m| !m.name.starts_with("inverse"));
     let (next, decided, refused) = (AtomicUsize::new(first), AtomicUsize::new(0), AtomicUsize::new(0));
     let failures: Mutex<Vec<String>> = Mutex::default();

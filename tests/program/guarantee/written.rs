@@ -1,4 +1,4 @@
-//! Rounding: smooth joints stay smooth, flat arcs stay in place, and what is far away has the shape it has near the origin.
+//! Rounding: smooth joints stay smooth, flat arcs keep their positions, and artwork far away has the shape that it has near the origin.
 
 use super::contours::{bent, paths};
 use super::paths::path;
@@ -7,7 +7,7 @@ use pathwarp_oracle::curves::{self, Curve};
 use pathwarp_oracle::{Random, Run, apart, far};
 use std::fmt::Write as _;
 
-/// A chain of cubics that is smooth at every node, with handles of any length.
+/// Returns a chain of cubics that is smooth at every node, with handles of any length.
 fn chain(r: &mut Random) -> String {
     let mut at = Point::new(r.between(0.0, 100.0), r.between(0.0, 100.0));
     let turn = |r: &mut Random| Vec2::from_angle(r.between(0.0, std::f64::consts::TAU));
@@ -74,7 +74,7 @@ fn flat_arcs_stay_in_place() {
     }
 }
 
-/// The cage maps relative to the frame, so that the same artwork elsewhere has the same image there.
+/// The cage maps relative to the frame, so that artwork has the same image when it is moved.
 #[test]
 fn a_cage_far_away_bends_as_it_does_near() {
     let cage = |x: f64, y: f64| {
@@ -94,7 +94,7 @@ fn a_cage_far_away_bends_as_it_does_near() {
     for far_away in [1e6, 3.67e7] {
         for _ in 0..60 {
             let d = path(&mut r).1;
-            // The centre of half a turn is known to no more than the root of the last digit, and paths that are far by themselves are not near.
+            // The centre of half a turn is known only to the root of the last digit, and some paths are far from the origin by themselves.
             if d.contains(['A', 'a']) || d.contains("00000") {
                 continue;
             }

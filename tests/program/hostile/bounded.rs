@@ -13,14 +13,14 @@ use wait4::Wait4 as _;
 /// The promise: seconds of processor time on the machine for which the limits on work were chosen, and bytes of memory in use.
 const SECONDS: f64 = 5.0;
 const MEMORY: u64 = 500_000_000;
-/// Runs get a part of the work allowed, and must have refused after the same part of the time.
+/// Fraction of the work allowed that runs get; they must have refused after this fraction of the time.
 const PART: f64 = 0.03;
-/// Seconds for reading an input up to where its work is counted.
+/// Seconds for reading an input up to the point where its work is counted.
 const READING: f64 = 1.0;
-/// Processor time depends on the machine and on what else it runs, work does not. A run gets this many times the time promised, so that
-/// only work that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on a quiet machine.
+/// Multiple of the promised time that a run gets. Processor time depends on the machine and on its other load, work does not, so only work
+/// that nobody counts takes too long. `PATHWARP_PROMISE=1` asks for the promise itself, on a quiet machine.
 const MARGIN: f64 = 10.0;
-/// Address space may be reserved without being used, for the stacks of threads.
+/// Limit on the address space, which the stacks of threads reserve without using it.
 const ADDRESSES: u64 = 2 * MEMORY;
 
 fn margin() -> f64 {
@@ -31,7 +31,7 @@ fn margin() -> f64 {
 /// A folder with files.
 pub struct Folder {
     dir: TempDir,
-    /// The part of the limits that runs get; all of them if there is none.
+    /// The fraction of the limits that runs get; `None` for the whole limits.
     part: Option<f64>,
 }
 
@@ -46,12 +46,12 @@ impl Folder {
         Self { dir, part: Some(PART) }
     }
 
-    /// With the default limits.
+    /// Gives runs the default limits.
     pub fn whole(self) -> Self {
         Self { part: None, ..self }
     }
 
-    /// With ten times the part that other runs get: for what needs it to be done.
+    /// Gives runs ten times the fraction that others get, for tests that need their work done.
     pub fn ample(self) -> Self {
         Self { part: Some(10.0 * PART), ..self }
     }
@@ -85,7 +85,7 @@ impl Folder {
         assert!(memory < MEMORY, "{args:?} took {memory} bytes: {said}");
         assert!([0, 1, 2, 3, 4, 5].contains(&code), "{args:?} ended with {code}: {said}");
         assert!(!said.contains("panicked"), "{args:?}: {said}");
-        // Known work is counted before it is done; time and memory are for what nobody has thought of.
+        // Known work is counted before it is done; limits on time and memory are for unknown work.
         assert!(!said.contains("the run takes"), "{args:?}: {said}");
         (code, said)
     }
@@ -105,8 +105,7 @@ impl Folder {
         commands.into_iter().map(|c| self.run(c)).collect()
     }
 
-    /// Asserts that warping, rendering and listing `file` are all refused with the limit named: it cannot be read, which the other
-    /// commands do in the same way.
+    /// Asserts that warping, rendering and listing `file` are all refused with the limit named: no command can read the file.
     #[track_caller]
     pub fn is_not_read(&self, file: &str, limit: &str) {
         for args in [&["swirl", file, "-o", "out.svg"][..], &["render", file, "-o", "out.png"], &["paths", file]] {
@@ -115,7 +114,7 @@ impl Folder {
         }
     }
 
-    /// Asserts that warping and rendering `file` end with these codes and the words, after all commands kept the promise.
+    /// Asserts that warping and rendering `file` end with these codes and words, after all commands kept the promise.
     #[track_caller]
     pub fn expect(&self, file: &str, [warp, render]: [i32; 2], words: &str) {
         let all = self.run_all(file);

@@ -1,4 +1,4 @@
-//! Very many small things at one place: edges on a scan line, caps and dashes, cusps, letters, faces at an edge.
+//! Very many small things at one point: edges on a scan line, caps and dashes, cusps, letters, faces at an edge.
 
 use super::bounded::{Folder, svg};
 
@@ -13,7 +13,7 @@ fn refused(folder: &Folder, args: &[&str], limits: &[&str]) {
 
 #[test]
 fn crossing_edges_are_counted_before_they_are_drawn() {
-    // Back and forth across the page, to places without order.
+    // Back and forth across the page, to points without order.
     let lines: String = (0..100_000_u64).map(|i| format!("L{} {}", i * i % 97, i * 61 % 101)).collect();
     for paint in ["", "fill='none' stroke='red' stroke-width='3' stroke-linejoin='round'"] {
         let folder = Folder::with(&[("a.svg", &svg(&format!("<path {paint} d='M0 0{lines}'/>")))]);
@@ -53,7 +53,7 @@ fn outlines_of_strokes_are_counted() {
 fn letters_are_counted() {
     let dashed = "<text y='50' font-size='50' stroke='red' stroke-width='3' stroke-dasharray='.1'>";
     let folder = Folder::with(&[("a.svg", &svg(&format!("{dashed}{}</text>", "aé&amp;@".repeat(2500))))]).whole();
-    // Which of the two comes first depends on the outlines of the font.
+    // Which of the two limits comes first depends on the outlines of the font.
     refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["work"]);
     refused(&folder, &FLAT, &["work"]);
     let many: String = (0..14_000).map(|i| format!("<text y='{i}'>ab</text>")).collect();

@@ -42,7 +42,7 @@ fn filters_become_pictures_within_bounds() {
         let compared = folder.run(&["compare", "a.svg", "a.svg"]);
         assert!([0, 3].contains(&compared.0), "{name}: {compared:?}");
     }
-    // One that fits is drawn at the wanted resolution, without a word about it.
+    // A small filter is drawn at the wanted resolution, without a message.
     let small = Folder::with(&[(
         "a.svg",
         &svg(&format!("<filter id='f'><feOffset dx='3'/></filter><g filter='url(#f)'>{RECT}</g>")),

@@ -1,5 +1,5 @@
-//! Fonts whose glyphs have no end: parts of parts, subroutines of subroutines, layers over layers, drawings packed in them; and
-//! collections of fonts that are one.
+//! Fonts whose glyphs have no end: parts of parts, subroutines of subroutines, layers over layers, drawings packed in them; and collections
+//! that repeat one font.
 
 use super::bounded::{Folder, svg};
 use base64::Engine as _;
@@ -43,7 +43,7 @@ fn tables(glyphs: u16, names: u16) -> Tables {
     hhea[4..6].copy_from_slice(&800_u16.to_be_bytes());
     hhea[35] = 1;
     let cmap = [short(&[0, 1, 3, 10]), long(&[12]), short(&[12, 0]), long(&[28, 0, 1, 97, 122, 1])].concat();
-    // The last is the PostScript name.
+    // The last name is the PostScript name.
     let name = (1..=names).flat_map(|i| short(&[3, 1, 0x409, if i < names { 1 } else { 6 }, 2, 0])).collect::<Vec<_>>();
     vec![
         ("cmap", cmap),
@@ -103,7 +103,7 @@ fn of_subroutines() -> Vec<u8> {
     const RETURN: u8 = 11;
     const END: u8 = 14;
     const CALL_GLOBAL: u8 = 29;
-    // Of subroutine k as a number: 107 is its bias, 139 that of numbers.
+    // A call of subroutine k, as a number: 107 is the bias of subroutines, 139 that of numbers.
     let number = |k: u8| k + 139 - 107;
     let mut subroutines = vec![vec![RETURN]];
     for k in 0..8 {
@@ -123,7 +123,7 @@ fn of_subroutines() -> Vec<u8> {
     sfnt(&all, 0)
 }
 
-/// Layers of which each is composed of the next one twice (OpenType 1.9.1, COLR, format 32).
+/// Layers that are each composed of the next one twice (OpenType 1.9.1, COLR, format 32).
 fn doubled(levels: usize) -> Vec<u8> {
     let head = [short(&[1, 0]), long(&[0, 0]), short(&[0]), long(&[34, 0, 0, 0, 0])].concat();
     let list = [long(&[1]), short(&[1]), long(&[10])].concat();
@@ -156,11 +156,11 @@ fn glyphs_without_an_end_are_refused() {
             assert_eq!((code, said.contains("takes 200000")), (3, true), "{said}");
         }
     }
-    // Set as text, only what is used counts.
+    // In a set text, only the glyphs in use count.
     let folder = lettered(&of_subroutines(), "a");
     let (code, said) = folder.run(&["text", "a", "--font", "a.ttf", "-o", "o.svg"]);
     assert_eq!((code, said.contains("with all of its subroutines")), (3, true), "{said}");
-    // The same fonts with few levels.
+    // Such fonts with few levels are accepted.
     let few = of_glyphs(&[triangle(), parts(2, 9), triangle()], vec![("COLR", doubled(3))]);
     lettered(&few, "a").expect("a.svg", [0, 0], "");
 }

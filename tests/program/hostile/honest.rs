@@ -1,4 +1,4 @@
-//! Honest heavy files are taken, and what a message advises helps.
+//! Honest heavy files are accepted, and the advice of a message helps.
 
 use super::bounded::{Folder, svg};
 use super::pictures::{chunk, png};
@@ -24,7 +24,7 @@ fn taken(folder: &Folder, args: &[&str]) {
     assert_eq!(done.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&done.stderr));
 }
 
-/// Its file has a tenth of a megabyte. The result is small, since warping all of it takes a development build half a minute.
+/// The photograph's file has a tenth of a megabyte. The result is small, since warping all of it takes a development build half a minute.
 #[test]
 fn a_photograph_of_a_hundred_megapixels() {
     const SIDE: usize = 10_000;
@@ -36,7 +36,7 @@ fn a_photograph_of_a_hundred_megapixels() {
     taken(&folder, &["swirl", "p.png", "-o", "o.jpg", "--size", "1000"]);
 }
 
-/// A fifth of a plot with a hundred thousand words, in a fifth of the bytes: letters were limited to half as many for each megabyte.
+/// A fifth of a plot with a hundred thousand words, in a fifth of the bytes: letters were once limited to half as many for each megabyte.
 #[test]
 fn a_plot_of_very_many_words() {
     let word = |i: usize| format!("<text x='{}' y='{}' font-size='.2'>word{}</text>", i % 97, i % 89, 10 + i % 89);

@@ -1,4 +1,4 @@
-//! Inverses that search in vain: a few control points far out, and most places have no source.
+//! Inverses that search in vain: a few control points lie far out, and most points have no source.
 
 use super::bounded::{Folder, svg};
 use crate::support::pathwarp_program;
@@ -7,7 +7,7 @@ use std::process::Command;
 /// Five segments in a page of 100 units.
 const PATH: &str = "<path d='M10 10C40 0 60 30 90 10V60C70 90 40 30 10 60Z'/>";
 
-/// A quilt of `n` by `n` patches, the identity but for the control point in row and column `at`.
+/// A quilt of `n` by `n` patches, the identity except for the control point in row and column `at`.
 fn quilt(n: usize, at: usize, to: [f64; 2]) -> String {
     let spacing = 100.0 / (3 * n) as f64;
     let point = |i: usize, j: usize| if (i, j) == (at, at) { to } else { [i as f64 * spacing, j as f64 * spacing] };
@@ -22,7 +22,7 @@ fn ends_by_count(folder: &Folder, args: &[&str]) {
     assert!(code == 4 && said.contains("--limit work"), "{args:?}: {code} {said}");
 }
 
-/// Found by fuzzing: it took 20 seconds and ended by them.
+/// Found by fuzzing: this took 20 seconds, until the limit on time ended it.
 #[test]
 fn undoing_a_quilt_with_a_point_far_out_is_counted() {
     let folder = Folder::with(&[
@@ -41,7 +41,7 @@ fn undoing_a_quilt_with_a_point_far_out_is_counted() {
     ends_by_count(&folder, &skipping);
 }
 
-/// The message names no amount beyond the limit, which would depend on threads.
+/// The message names no amount beyond the limit, since that would depend on threads.
 #[test]
 fn the_message_is_the_same_on_any_number_of_threads() {
     let paths: String = (0..40).map(|i| PATH.replace("M10", &format!("M{i}"))).collect();
@@ -111,7 +111,7 @@ fn undoing_points_is_counted() {
     assert!(done.status.code() == Some(4) && said.contains("--limit work"), "{said}");
 }
 
-/// A B-spline box of control points with their places mixed up, and 10,000 triangles in it.
+/// A B-spline box of control points in mixed-up positions, and 10,000 triangles in it.
 #[test]
 fn undoing_a_box_in_space_is_counted() {
     const CELLS: usize = 8;

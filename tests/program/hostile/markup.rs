@@ -31,7 +31,7 @@ fn entities_are_counted_before_they_expand() {
     with_doctype(&elements, &"&e;".repeat(9000)).expect("a.svg", [3, 3], "elements");
     let names: String = (0..20_000).map(|i| format!("<!ENTITY e{i} 'a'>")).collect();
     with_doctype(&names, &format!("<text>{}</text>", "&e19999;".repeat(30_000))).expect("a.svg", [3, 3], "work");
-    // The same in what may be an export from GIMP.
+    // Likewise in a file that may be an export from GIMP.
     let gimp = "<!DOCTYPE svg PUBLIC '-//W3C//DTD SVG 20010904//EN' 'd.dtd' [";
     let text = format!(
         "{gimp}{quadratic}]><svg xmlns='http://www.w3.org/2000/svg'><text>{}</text></svg>",
@@ -69,7 +69,7 @@ fn what_references_show_is_counted() {
     let marked = format!("<path marker-mid='url(#m)' d='M0 0{}'/>", "l1 1".repeat(20_000));
     expect(&format!("<marker id='m'><circle r='3'/>{RECT}</marker>{marked}"), [3, 3], "elements");
     expect(&"<x/>".repeat(200_000), [3, 3], "elements");
-    // The limit can be raised, and what is below it is drawn.
+    // The limit can be raised, and content below it is drawn.
     let folder = Folder::with(&[("a.svg", &svg(&format!("<g id='g'>{}</g><use href='#g'/>", RECT.repeat(100))))]);
     assert_eq!(folder.run(&["swirl", "a.svg", "-o", "o.svg", "--limit", "elements=100"]).0, 3);
     assert_eq!(folder.run(&["swirl", "a.svg", "-o", "o.svg", "--limit", "elements=1e3"]).0, 0);
@@ -79,7 +79,7 @@ fn what_references_show_is_counted() {
 
 #[test]
 fn style_sheets_are_matched_within_bounds() {
-    // Each part takes the nearest ancestor, and none is left for the first: other ways to choose them are not tried.
+    // Each part takes the nearest ancestor, so none is left for the first; other choices of ancestors are not tried.
     let deep = format!("x {}{{fill:red}}", "* ".repeat(500));
     let groups = ("<g>".repeat(60), "</g>".repeat(60));
     expect(&format!("<style>{deep}</style>{}{RECT}{}", groups.0, groups.1), [0, 0], "");
@@ -123,7 +123,7 @@ fn text_that_is_named_again_shows_nothing() {
     expect(&format!("{}<g id='u'>{}</g>{used}", text(300), again(1)), [0, 0], "");
 }
 
-/// Fonts are asked for each of the letters, and none has them.
+/// Fonts are searched once for each of the letters, and none has them.
 #[test]
 fn letters_that_no_font_has_are_looked_up_once() {
     let letters = ('\u{a000}'..'\u{a400}').cycle().take(9000);

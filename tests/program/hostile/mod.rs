@@ -1,5 +1,5 @@
-//! Hostile files: every command ends with a documented exit code, within the promised time and memory, and reads and writes
-//! nothing that was not named.
+//! Hostile files: every command ends with a documented exit code, within the promised time and memory, and reads and writes only files
+//! that were named.
 
 mod bounded;
 mod crowded;

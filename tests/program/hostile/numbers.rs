@@ -1,4 +1,4 @@
-//! Numbers beyond what programs compute with.
+//! Numbers beyond the range in which programs compute.
 
 use super::bounded::{Folder, RECT, expect, svg};
 
@@ -29,7 +29,7 @@ fn shapes_out_of_range_stay_and_are_reported() {
     }
 }
 
-/// Below the bound, the renderer stands every size.
+/// Below the bound, the renderer accepts every size.
 #[test]
 fn the_renderer_stands_what_it_is_given() {
     for size in ["1e4", "1e5", "1e6", "1e7", "4e7"] {
@@ -56,7 +56,7 @@ fn the_renderer_stands_what_it_is_given() {
     expect("<path d='M0 0L1e8 9L5 5Z'/><path d='M0 0L9e8 9L5 5Z'/>", [0, 3], "");
 }
 
-/// Longer than any width in a format string.
+/// These numbers are longer than any width in a format string.
 #[test]
 fn numbers_may_have_any_number_of_digits() {
     let digits = "1".repeat(70_000);

@@ -1,4 +1,4 @@
-//! Outputs: what stands under their names, and what may be written at all.
+//! Outputs: the files under their names, and the files that may be written at all.
 #![cfg(unix)]
 
 use super::bounded::{Folder, RECT, svg};
@@ -61,7 +61,7 @@ fn links_are_kept_where_they_lead_to_nothing_yet() {
     assert!(["link.svg", "far.svg"].iter().all(|l| folder.path().join(l).is_symlink()));
 }
 
-/// Of a folder only files in it are read and written.
+/// Of a folder only the files in it are read and written.
 #[test]
 fn links_out_of_a_folder_are_not_followed() {
     let folder = Folder::with(&[("f/a.svg", &svg(RECT)), ("f/b.svg", &svg(RECT)), ("secret.svg", &svg(RECT))]);

@@ -64,7 +64,7 @@ fn packed_files_are_unpacked_up_to_the_limit() {
     assert_eq!(large.run(&["paths", "a.xcf", "--limit", "bytes=3e8"]).0, 0);
 }
 
-/// Thousands of layers that start in one long list of properties, at different places.
+/// Thousands of layers start inside one long list of properties, at different offsets.
 #[test]
 fn overlapping_layers_are_damage() {
     const LAYERS: u32 = 50_000;
@@ -83,7 +83,7 @@ fn overlapping_layers_are_damage() {
     assert!(!folder.path().join("o.xcf").exists());
 }
 
-/// A name that turns the terminal red and sets its title, and one as long as the file.
+/// One name turns the terminal red and sets its title; another is as long as the file.
 #[test]
 fn names_are_fit_for_a_terminal() {
     let file = |name: &str| xcf("v003", &[path_named(name), words(&[0; 8])].concat());

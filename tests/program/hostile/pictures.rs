@@ -30,7 +30,7 @@ fn announcing(width: u32, height: u32) -> Vec<u8> {
     png(width, height, &[chunk(b"IDAT", &[120, 156, 3, 0])])
 }
 
-/// A PNG of one pixel with a colour profile of so many zeros.
+/// A PNG of one pixel with a colour profile of this many zeros.
 fn with_profile(zeros: usize) -> Vec<u8> {
     let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
     (0..zeros >> 20).for_each(|_| zlib.write_all(&[0; 1 << 20]).unwrap());
@@ -135,7 +135,7 @@ fn packed_profiles_are_counted() {
     Folder::with(&[("p.png", &with_profile(1 << 20)), ("a.svg", &svg(IMAGE))]).expect("a.svg", [0, 0], "");
 }
 
-/// A WebP of one pixel whose profile, at the end of the file, is said to have two gigabytes.
+/// A WebP of one pixel whose profile, at the end of the file, has an announced size of two gigabytes.
 #[test]
 fn profiles_longer_than_the_file_are_not_held() {
     let picture = Picture::from(resvg::tiny_skia::Pixmap::new(1, 1).unwrap());
@@ -164,7 +164,7 @@ fn pictures_are_counted_before_each_is_decoded() {
     let all = folder.run_all("a.svg");
     assert!(all[0].0 == 3 && all[0].1.contains("--limit pixels="), "{}", all[0].1);
     folder.run(&["swirl", "a.svg", "-o", "o.pdf"]);
-    // A strip, most of whose pixels have no place in the source.
+    // A strip, most of whose pixels have no point in the source.
     let strip = resvg::tiny_skia::Pixmap::new(1, 65_535).unwrap().encode_png().unwrap();
     let folder = Folder::with(&[("p.png", &strip), ("a.svg", &svg(IMAGE))]);
     folder.run(&["warp", "p.png", "--style", "flag", "-o", "o.jpg"]);

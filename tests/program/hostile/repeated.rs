@@ -1,4 +1,4 @@
-//! Small work that a file asks for thousands of times: gradients, pictures, texts on paths, wide strokes, dashes, pieces of a skeleton,
+//! Small work that a file requests thousands of times: gradients, pictures, texts on paths, wide strokes, dashes, pieces of a skeleton,
 //! edges of a mesh.
 
 use super::bounded::{Folder, RECT, expect, svg};
@@ -70,7 +70,7 @@ fn dashes_are_counted_before_they_are_made() {
     let (code, said) = folder.run(&["wave", "a.svg", "-o", "o.svg", "--strokes", "outline"]);
     assert!([3, 4].contains(&code) && said.contains("--limit work="), "{code}: {said}");
     folder.run_all("a.svg");
-    // More dashes than are drawn, of a path whose subpaths have fewer each.
+    // More dashes than are drawn, on a path whose subpaths each have fewer.
     let lines: String = (0..70).map(|y| format!("M0 {y}H900")).collect();
     let body = format!("<path d='{lines}' fill='none' stroke='red' stroke-dasharray='.1'/>");
     let folder = Folder::with(&[("a.svg", &svg(&body))]).ample();
@@ -140,7 +140,7 @@ fn faces_that_cover_each_other_are_counted_before_they_are_drawn() {
     assert_eq!(bend("one.obj").0, 0);
 }
 
-/// All cells of a sheet together are one drawing.
+/// All cells of a sheet together count as one drawing.
 #[test]
 fn cells_of_a_sheet_are_counted_together() {
     let marker = "<marker id='m' viewBox='0 0 1 1' markerWidth='1' markerHeight='1'><circle r='1'/></marker>";

@@ -7,7 +7,7 @@ use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
-/// Runs until the other side closes, and returns what it said.
+/// Runs until the other side closes, and returns its messages.
 fn rest(mut stream: TcpStream) -> String {
     let mut said = Vec::new();
     let _ = stream.read_to_end(&mut said);
@@ -19,7 +19,7 @@ fn slow_and_wrong_requests_leave_the_editor_alive() {
     let folder = Folder::with(&[("a.svg", &svg(RECT))]);
     let editor = Editor::open(folder.path(), "a.svg");
     let mut page = editor.socket();
-    // A request in drops, which never ends: the server has to break it off.
+    // A request in drops never ends, so the server has to break it off.
     let mut drops = editor.connect();
     awaited("the end of a request in drops", move || {
         while drops.write_all(b"x").is_ok() {

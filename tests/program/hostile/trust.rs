@@ -1,4 +1,4 @@
-//! Nothing is read or written that was not named.
+//! Only named files are read and written.
 
 use super::bounded::{Folder, RECT, svg};
 use base64::Engine as _;
@@ -107,7 +107,7 @@ fn split_files_stay_in_their_folder() {
     };
     let ids = ["../../../var/EVIL", "/var/EVIL", "..\\..\\x", "q"];
     assert_eq!(split(&ids).1, ids.len());
-    // A name that no file can have: nothing is left of the others.
+    // No file can have this name, so no other file is left either.
     let long = "n".repeat(300);
     let (code, left, said) = split(&[ids[0], ids[1], &long, ids[2]]);
     assert_eq!((code, left), (5, 0), "{said}");
@@ -124,7 +124,7 @@ fn an_embedded_source_larger_than_the_limit_is_refused_whole() {
     assert!(!folder.path().join("cut.svg").exists());
 }
 
-/// Elements, paths and texts of other files are not read, and filters show no pictures from elsewhere. All of that is reported.
+/// Elements, paths and texts of other files are not read, and filters show no pictures from elsewhere. Each of these is reported.
 #[test]
 fn parts_of_other_files_are_reported() {
     let outside = Folder::with(&[("b.svg", &svg("<path id='p' d='M0 0H9'/>")), ("p.png", &pixel())]);
@@ -150,7 +150,7 @@ fn parts_of_other_files_are_reported() {
     }
 }
 
-/// Whether a file behind a symbolic link exists makes no difference.
+/// Results do not depend on the existence of a file behind a symbolic link.
 #[cfg(unix)]
 #[test]
 fn links_do_not_tell_what_is_elsewhere() {

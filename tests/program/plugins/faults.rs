@@ -1,10 +1,10 @@
-//! Plug-ins that fail: each is ended within its limits and named, nothing is written, and no process is left.
+//! Plug-ins that fail: each is ended within its limits and named, no file is written, and no process is left.
 
 use crate::support::plugins::{Scratch, entry, script};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 
-/// The seconds of a program that is silent, and what is said of it. A shell starts in a thousandth of that.
+/// The seconds that a silent program gets, and the words of its fault. A shell starts in a thousandth of that.
 const SILENT: (&str, &str) = ("10", "within 10 seconds");
 
 /// Runs the plug-in `bad` and asserts that the error names it and says `words`.
@@ -16,7 +16,7 @@ fn fails(kind: &str, scratch: &Scratch, words: &[&str]) {
     assert!(!scratch.file("out.svg").exists(), "{kind}");
 }
 
-/// What is said of a program that closes its input. It may do so after a request was written; then it is waited for as if it were silent.
+/// Words of the fault of a program that closes its input. It may do so after a request was written; then it counts as silent at first.
 const DEAF: &str = "closed its standard input";
 
 /// A folder for a fault.
@@ -28,19 +28,19 @@ fn scratch(words: &[&str]) -> Scratch {
     scratch
 }
 
-/// A fault of the script `text` while it is in use.
+/// Asserts a fault of the script `text` while it is in use.
 fn fails_in_use(kind: &str, text: &str, words: &[&str]) {
     let scratch = scratch(words);
     scratch.install("pathwarp-bad", &scratch.holding(text));
     let processes = scratch.listen();
     fails(kind, &scratch, words);
-    // The entry is in order, so that it is listed.
+    // The entry is correct, so it is listed.
     let (list, _) = scratch.expect(0, &["list"]);
     assert!(list.contains("bad  ") && !list.contains("Broken"), "{kind}: {list}");
     processes.end(&format!("{kind}: no process is left"));
 }
 
-/// A fault of the script `text` before there is an entry: it is listed as broken.
+/// Asserts a fault of the script `text` before there is an entry: it is listed as broken.
 fn fails_at_start(kind: &str, text: &str, mode: u32, words: &[&str]) {
     let scratch = scratch(words);
     let file = scratch.install("pathwarp-bad", &scratch.holding(text));
@@ -61,7 +61,7 @@ fn fails_at_start(kind: &str, text: &str, mode: u32, words: &[&str]) {
     processes.end(&format!("{kind}: no process is left"));
 }
 
-/// A script that shows its entry and then does this.
+/// Returns a script that prints its entry and then runs `commands`.
 fn then(commands: &str) -> String {
     format!("#!/bin/sh\necho '{}'\n{commands}\n", entry("bad"))
 }
@@ -83,7 +83,7 @@ fn hangs() {
     let at_build = then("exec sh -c 'read x; sleep 9999'");
     let at_points = script("bad", "sh -c 'sleep 9999'");
     let before_its_entry = "#!/bin/sh\nsh -c 'sleep 9999'\n";
-    // Signals that can be caught do not matter.
+    // Signals that can be caught make no difference.
     let stubborn = then("trap '' TERM INT HUP; sh -c 'sleep 9999'");
     // All of them wait, so they wait together.
     std::thread::scope(|s| {
@@ -143,7 +143,7 @@ fn wrong_entries() {
     scratch.install("pathwarp-wave", &script("wave", "echo $line"));
     let (list, _) = scratch.expect(0, &["list"]);
     assert!(list.contains("has the name of a command, wave"), "{list}");
-    // The built-in one is the one that runs.
+    // The built-in deformation takes precedence.
     scratch.expect(0, &["wave", "in.svg", "-o", "out.svg", "--height", "3"]);
 }
 
@@ -186,7 +186,7 @@ fn nothing_is_skipped_for_a_plug_in_that_fails() {
     scratch.install("pathwarp-bad", &script("bad", "echo nan nan"));
     let (_, stderr) = scratch.expect(3, &["bad", "in.svg", "-o", "out.svg", "--on-error", "skip"]);
     assert!(stderr.contains("NaN") && !scratch.file("out.svg").exists(), "{stderr}");
-    // With a domain of its own it may say so.
+    // A plug-in that declares a partial domain may answer NaN.
     let partial = script("bad", "echo nan nan").replace("\"title\"", "\"domain\": \"partial\", \"title\"");
     scratch.install("pathwarp-bad", &partial);
     let (_, stderr) = scratch.expect(1, &["bad", "in.svg", "-o", "out.svg", "--on-error", "skip"]);

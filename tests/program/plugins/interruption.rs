@@ -5,7 +5,7 @@ use crate::support::plugins::{Scratch, entry, text};
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::Stdio;
 
-/// Installs a plug-in that never answers, with a child of its own. It writes a line to the pipe that both hold.
+/// Installs a plug-in that never answers, with a child process. It writes a line to the pipe that both hold.
 fn install_hanging(scratch: &Scratch) {
     let script =
         format!("#!/bin/sh\necho '{}'\necho begun >&9\nsh -c 'sleep 9999' &\nexec sh -c 'sleep 9999'\n", entry("slow"));

@@ -1,4 +1,4 @@
-//! Plug-ins that are programs: what they can do, and everything that one can do wrong.
+//! Plug-ins that are programs: their abilities, and everything that they can do wrong.
 
 mod faults;
 mod interruption;

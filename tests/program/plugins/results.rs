@@ -1,4 +1,4 @@
-//! Plug-ins that work: each is a deformation wherever one can be named.
+//! Plug-ins that work: each is a deformation wherever deformations can be named.
 
 use crate::support::plugins::{Scratch, entry, script, text};
 use pathwarp::Outline;
@@ -83,7 +83,7 @@ fn a_plug_in_is_a_deformation_everywhere() {
     let (_, stderr) = scratch.expect(2, &["shift", "in.svg", "--x", "a mile"]);
     assert!(stderr.contains("--x"), "{stderr}");
 
-    // Units are resolved; a chain, an inverse, and a recipe by its name.
+    // Units are resolved; a chain, an inverse, and a recipe name the plug-in.
     let x = |file: &str| paths(&fs::read_to_string(scratch.file(file)).unwrap())[0].bounding_box().unwrap().x0;
     scratch.expect(0, &["shift", "in.svg", "-o", "out.svg", "--x", "10mm", "--write-recipe", "r.toml", "-q"]);
     assert!((x("out.svg") - (10.0 + 96.0 / 2.54)).abs() < 0.02, "{}", x("out.svg"));

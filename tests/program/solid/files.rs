@@ -11,7 +11,7 @@ fn args<'a>(first: &[&'a str], last: &[&'a str]) -> Vec<&'a str> {
     [first, &PUSH, last].concat()
 }
 
-/// The same model through every format of meshes: the same surface up to the precision of the format.
+/// Every format of meshes gives an equal surface of a model, up to the precision of the format.
 #[test]
 fn formats_agree() {
     let dir = tempfile::tempdir().unwrap();
@@ -19,7 +19,7 @@ fn formats_agree() {
     let straight = report(dir.path(), &args(&["ffd", "in.obj"], &["-o", "out.obj"]));
     for format in ["ply", "glb", "gltf"] {
         let copy = format!("copy.{format}");
-        // Nothing moves: a conversion. PLY has no names, which is said.
+        // Nothing moves, so this is a conversion. PLY has no names, of which pathwarp warns.
         let out = pathwarp_in(dir.path(), &["solid", "ffd", "in.obj", "-o", &copy], b"");
         assert_eq!(out.status.code(), Some(0), "{format}: {}", text(&out.stderr));
         assert_eq!(text(&out.stderr).contains("no room for names"), format == "ply", "{format}: {}", text(&out.stderr));
@@ -66,7 +66,7 @@ fn curved_surfaces() {
     let twist = ["bend", "in.bpt", "--preset", "twist", "--along", "y", "--angle", "90", "--refine", "0.001"];
     let twisted = report(dir.path(), &[&twist[..], &["-o", "t.json"]].concat());
     assert!(twisted["refitted"] == 32 && twisted["distance"].as_f64().unwrap() <= 0.001, "{twisted}");
-    // As polygons, and back and forth: the surface of a JSON file is the same.
+    // As polygons, and there and back, the surface of a JSON file does not change.
     for (from, to) in [("t.json", "t.obj"), ("in.bpt", "plain.obj")] {
         ok(dir.path(), &["ffd", from, "-o", to], "");
     }
@@ -144,7 +144,7 @@ fn damage_and_endless_work() {
     refused_by(4, "in.bpt", &["--refine", "1e-13", "--limit", "work=100000"], "the limit `work`");
 }
 
-/// An inverted map that folds has several sources for a place.
+/// Warns of an inverted map that folds, under which a point has several sources.
 #[test]
 fn folds_of_an_inverse_are_said() {
     let dir = tempfile::tempdir().unwrap();

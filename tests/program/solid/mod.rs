@@ -62,7 +62,7 @@ fn points_chains_inverses_and_jacobians() {
     let ffd = ["ffd", "--move", "1,1,1:8,-16,24"];
     let got = ok(dir.path(), &[&["map"], &ffd[..], &frame[..]].concat(), "# middle\n50 50 50\n");
     assert_eq!(numbers(&got), [51.0, 48.0, 53.0]);
-    // A chain, and the same backwards.
+    // A chain, and its inverse.
     let twist = ["bend", "--preset", "twist", "--along", "z"];
     let there = ok(
         dir.path(),
@@ -106,7 +106,7 @@ fn a_model_keeps_everything_but_its_coordinates() {
         assert!(out.lines().any(|l| l == line), "{line} not in\n{out}");
     }
     let model = Model::read(&out);
-    // The plane z = x/2 through the front half of the box.
+    // The front half of the box is cut by the plane z = x/2.
     assert_eq!(model.vertices[1], [10.0, 0.0, 5.0]);
     let n = out.lines().filter(|l| l.starts_with("vn ")).count();
     assert_eq!(n, 4);
@@ -115,7 +115,7 @@ fn a_model_keeps_everything_but_its_coordinates() {
     assert!((normal[0] * 10.0 + normal[2] * 5.0).abs() < 1e-6 && normal[2] > 0.0, "{normal:?}");
 }
 
-/// From the eye, the pictures before and after are the same; from the side they are not.
+/// The pictures before and after are equal as seen from the eye, and differ from the side.
 #[test]
 fn the_picture_from_the_eye_is_unchanged() {
     let dir = tempfile::tempdir().unwrap();
@@ -197,10 +197,10 @@ fn reports_recipes_explanations_and_saved_lattices() {
     assert_eq!(first, read("again.obj"));
     ok(dir.path(), &["ffd", "in.obj", "--lattice", "l.json", "--extend", "-o", "saved.obj"], "");
     assert_eq!(first, read("saved.obj"));
-    // The number of threads does not matter.
+    // The result does not depend on the number of threads.
     ok(dir.path(), &["run", "r.toml", "in.obj", "--jobs", "1", "-o", "again.obj"], "");
     assert_eq!(first, read("again.obj"));
-    // There and back, with the box of the source.
+    // The box of the source comes back.
     let b = &report["before"]["bounds"];
     let n = |i: usize, k: usize| b[i][k].as_f64().unwrap();
     let size: Vec<String> =
@@ -209,7 +209,7 @@ fn reports_recipes_explanations_and_saved_lattices() {
     let (back, source) = (Model::read(&read("back.obj")), Model::read(&read("in.obj")));
     let off = back.vertices.iter().zip(&source.vertices).flat_map(|(a, b)| (0..3).map(move |k| (a[k] - b[k]).abs()));
     assert!(off.fold(0.0, f64::max) < 1e-6);
-    // The same with a second step, whose box is that of the model by then.
+    // With a second step, whose box is by then that of the deformed model.
     let twist = ["+", "bend", "--preset", "twist", "--along", "y", "--angle", "60", "--through", "40%,0,30%"];
     ok(
         dir.path(),
@@ -228,7 +228,7 @@ fn reports_recipes_explanations_and_saved_lattices() {
     assert!(text(&out.stderr).contains("3 by 3 by 3 control points"), "{}", text(&out.stderr));
 }
 
-/// What is not as expected is said: folds, tears, things left out.
+/// Warns of folds, tears, and omitted content.
 #[test]
 fn warnings_and_exit_codes() {
     let dir = tempfile::tempdir().unwrap();
@@ -293,7 +293,7 @@ fn report(folder: &Path, args: &[&str]) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.join("r.json")).unwrap()).unwrap()
 }
 
-/// Lengths in millimetres, closed, one handle, and the volume of the plate: wrapped it grows as the radius does.
+/// Checks lengths in millimetres, closedness, the single handle, and the volume of the plate, which grows with the radius when wrapped.
 #[test]
 fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     let dir = tempfile::tempdir().unwrap();
@@ -316,7 +316,7 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     close(&after["bounds"][1][0], 30.0 + half, 1e-4);
     close(&after["bounds"][0][1], 5.0, 1e-4);
     close(&after["bounds"][1][2], 3.0, 0.011);
-    // An STL is a model like any other; unwrapped it is the plate again.
+    // An STL is a model like any other; unwrapped, it becomes the plate again.
     let back = report(
         dir.path(),
         &[
@@ -342,7 +342,7 @@ fn a_drawing_is_extruded_and_wrapped_true_to_size() {
     assert!(fails(dir.path(), &["ffd", "cut.stl", "-o", "x.stl"], "", 3).contains("wrong length"));
 }
 
-/// A ring that is drawn by a stroke, a filled square with one, and dashes: every fill and every stroke is a closed solid.
+/// A ring drawn by a stroke, a filled square with a stroke, and dashes: every fill and every stroke is a closed solid.
 #[test]
 fn strokes_are_solids() {
     let dir = tempfile::tempdir().unwrap();
@@ -369,7 +369,7 @@ fn strokes_are_solids() {
         .map(str::to_owned)
         .collect();
     assert_eq!(names, ["o r", "o r stroke"]);
-    // A stroke whose width and dashes are in px whatever the scale: nine dashes of 8 px and the start of a tenth.
+    // A stroke whose width and dashes are in px at any scale: nine dashes of 8 px and the start of a tenth.
     let dashes = write(
         "<g transform='scale(2)'><path d='M0,20 H39' stroke='red' stroke-width='2' stroke-dasharray='8' \
          vector-effect='non-scaling-stroke'/></g>",
@@ -380,7 +380,7 @@ fn strokes_are_solids() {
     assert!((dashes["volume"].as_f64().unwrap() / (5.0 * ink * px * 2.0 * px) - 1.0).abs() < 1e-4, "{dashes}");
 }
 
-/// Logos with strokes, shapes that touch, and outlines that touch themselves: closed solids, also as read back in single precision.
+/// Logos with strokes, shapes that touch, and outlines that touch themselves become closed solids, even after reading in single precision.
 #[test]
 fn logos_for_a_printer() {
     let dir = tempfile::tempdir().unwrap();
@@ -413,7 +413,7 @@ fn a_preview_shows_both_sides_of_both() {
     ok(dir.path(), &["bend", "in.obj", "--preset", "twist", "--along", "y", "--preview", "p.png", "-o", "o.obj"], "");
     let picture = pathwarp_raster::decode_png(&fs::read(dir.path().join("p.png")).unwrap()).unwrap();
     assert_eq!((picture.width(), picture.height()), (968, 968));
-    // Every panel has something in its middle, and white corners.
+    // Every panel has a model in its middle, and white corners.
     for (x, y) in [(240, 240), (728, 240), (240, 728), (728, 728)] {
         assert!(picture.pixel(x, y).unwrap().red() < 250, "{x} {y}");
     }

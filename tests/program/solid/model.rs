@@ -1,4 +1,4 @@
-//! A reader of OBJ files for tests, apart from the program's.
+//! A reader of OBJ files for tests, independent of the program's.
 
 /// Vertices and faces.
 pub struct Model {

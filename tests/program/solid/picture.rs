@@ -1,4 +1,4 @@
-//! Pictures of models for tests: which face is seen in each pixel.
+//! Pictures of models for tests: the face that is visible in each pixel.
 
 use super::model::Model;
 
@@ -30,14 +30,14 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 }
 
 impl Camera {
-    /// The pixels that show a face, and of them those that show another one (or none) in the other picture.
+    /// Returns the number of pixels that show a face, and of those that show another face, or none, in the other picture.
     pub fn differing(&self, a: &Model, b: &Model) -> (usize, usize) {
         let (a, b) = (self.faces(a), self.faces(b));
         let shown = a.iter().zip(&b).filter(|(a, b)| a.is_some() || b.is_some()).count();
         (a.iter().zip(&b).filter(|(a, b)| a != b).count(), shown)
     }
 
-    /// The face in each pixel.
+    /// Returns the face in each pixel.
     fn faces(&self, model: &Model) -> Vec<Option<usize>> {
         let forward = unit(minus(self.at, self.eye));
         let right = unit(cross(forward, [0.0, 1.0, 0.0]));

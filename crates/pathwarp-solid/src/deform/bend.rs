@@ -153,7 +153,7 @@ impl Bend3 {
         Ok(built)
     }
 
-    /// Returns the pieces, and their ends as shares of the model's length.
+    /// Returns the pieces and their ends, which are given as fractions of the model's length.
     fn pieces(&self, through: DVec3) -> Result<(Vec<Strip>, Vec<f64>), Error> {
         let mut from = through;
         from[self.axis] = self.bounds.min[self.axis];
@@ -217,8 +217,8 @@ impl Bend3 {
         Ok((pieces, knots))
     }
 
-    /// Makes the pieces of a cubic spline through points. Between them, S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, where the
-    /// sides of a tube change so; T is alike.
+    /// Makes the pieces of a cubic spline through points. Between them, S is the C¹ cubic whose derivative at the points is
+    /// S' = −(S·C″)/|C'|²·C', which keeps S perpendicular to C without turning it about C; T is alike.
     fn interpolated(&self, points: &[DVec3]) -> Result<(Vec<Strip>, Vec<f64>), Error> {
         directions(points)?;
         let distances: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
@@ -246,7 +246,7 @@ impl Bend3 {
         Ok((pieces.into_iter().enumerate().map(ribbon).collect(), knots))
     }
 
-    /// Returns the handles at the points of a spline: those that are set, or else their own.
+    /// Returns the handles at the points of a spline: `own`, replaced by the handles that are set.
     fn at_points(&self, mut own: Vec<[DVec3; 2]>) -> Result<Vec<[DVec3; 2]>, Error> {
         let last = own.len() - 1;
         for h in &self.handles {
@@ -260,7 +260,7 @@ impl Bend3 {
         Ok(own)
     }
 
-    /// Makes Bézier pieces: with handles on their legs if any are set or there is one piece, or else at their points.
+    /// Makes Bézier pieces, with handles on their legs if any are set or there is one piece, and else at their points.
     fn ribbons(&self, points: &[DVec3], degree: usize) -> Result<Vec<Strip>, Error> {
         let wrong = |problem: String| Error::usage("skeleton", "", problem);
         if points.len() < 2 || !(1..=MAX_DEGREE).contains(&degree) || !(points.len() - 1).is_multiple_of(degree) {
@@ -284,7 +284,7 @@ impl Bend3 {
             }
             let mut all = mitres(&legs);
             for i in (0..pieces).map(|i| i * degree).filter(|_| degree > 1) {
-                // At both ends of a piece, sides change along the skeleton alone.
+                // At both ends of a piece, sides must change along the skeleton alone.
                 for (end, inner, leg) in [(i, i + 1, i), (i + degree, i + degree - 1, i + degree - 1)] {
                     let d = legs[leg].0;
                     all[inner] = std::array::from_fn(|k| all[end][k] + d * d.dot(all[inner][k] - all[end][k]));
@@ -307,7 +307,7 @@ impl Bend3 {
             *pair = [h.side.or(pair[0]), h.up.or(pair[1])];
             deepest = deepest.max(h.level);
         }
-        // Both legs at a joint have one handle there.
+        // Both legs at a joint share one handle there.
         let mitres = mitres(&legs);
         for joint in (1..pieces).map(|i| i * degree) {
             for k in 0..2 {
@@ -336,7 +336,7 @@ impl Bend3 {
         Ok(out)
     }
 
-    /// Makes handles perpendicular to directions, which turn as little as possible from one to the next.
+    /// Returns for each direction two handles perpendicular to it, which turn as little as possible from one direction to the next.
     fn turning_least(&self, directions: &[DVec3]) -> Vec<(DVec3, [DVec3; 2])> {
         let mut previous = DVec3::AXES[self.axis];
         let mut side = DVec3::AXES[(self.axis + 1) % 3];
@@ -361,8 +361,8 @@ fn directions(points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
     points.windows(2).enumerate().map(leg).collect()
 }
 
-/// Returns the handles at the points of a polygon whose legs have these: mitres, between which lines along the legs stay parallel to them;
-/// where it turns by more than a right angle they grow no longer.
+/// Returns the handles at the points of a polygon from the directions and handles of its legs. They are mitres, between which lines
+/// along the legs stay parallel to them. Where the polygon turns by more than a right angle, they grow no longer.
 fn mitres(legs: &[(DVec3, [DVec3; 2])]) -> Vec<[DVec3; 2]> {
     let inner = legs.windows(2).map(|l| {
         let ((d, a), (e, b)) = (l[0], l[1]);
@@ -388,8 +388,8 @@ fn param_of(h: &Handle3) -> &'static str {
     }
 }
 
-/// The map: pieces one after another along an axis of the model. `knots` are their ends as shares of `length`, from `start` on; v and w are
-/// measured from `through` along the two axes that follow `axis` in cyclic order.
+/// The map: pieces one after another along an axis of the model. `knots` are their ends as fractions of `length`, from `start` on; v and
+/// w are measured from `through` along the two axes that follow `axis` in cyclic order.
 #[derive(Debug, Clone, PartialEq)]
 struct BendMap3 {
     pieces: Arc<[Strip]>,
@@ -401,17 +401,17 @@ struct BendMap3 {
 }
 
 impl BendMap3 {
-    /// The other two axes.
+    /// Returns the other two axes.
     fn sides(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
 
-    /// The piece at a share of the length. The first and the last extend outside.
+    /// Returns the index of the piece at a fraction of the length. The first and the last piece extend outside.
     fn piece(&self, s: f64) -> usize {
         self.knots[1..self.pieces.len()].partition_point(|k| *k <= s)
     }
 
-    /// The piece that applies to a whole box, if there is just one.
+    /// Returns the index of the piece that applies to a whole box, if there is just one.
     fn piece_on(&self, on: &Box3) -> Option<usize> {
         let place = |at: f64| (at - self.start) / self.length;
         let [from, to] = [on.min, on.max].map(|p| place(p[self.axis]));
@@ -422,7 +422,7 @@ impl BendMap3 {
         (from >= to).then_some(from)
     }
 
-    /// The curves at a point, v, w, and the number of pieces per unit along the axis.
+    /// Returns the curves at a point, v, w, and the number of pieces per unit along the axis.
     fn stand(&self, p: DVec3) -> (Stand, f64, f64, f64) {
         let s = (p[self.axis] - self.start) / self.length;
         let i = self.piece(s);
@@ -498,7 +498,7 @@ enum Strip {
     Ribbon {
         /// Control points.
         points: Vec<DVec3>,
-        /// Pairs s, t of handles: those of the first level, one on each leg, or of all points.
+        /// Pairs s, t of handles: on each leg of the polygon, or at each control point.
         first: Vec<[DVec3; 2]>,
         /// C, S and T, in x = 2u − 1.
         curves: Tensor<9>,
@@ -519,15 +519,15 @@ struct Stand {
 }
 
 impl Stand {
-    /// ∂F/∂u.
+    /// Returns ∂F/∂u.
     fn along(&self, v: f64, w: f64) -> DVec3 {
         self.slope[0] + self.slope[1] * v + self.slope[2] * w
     }
 }
 
 impl Strip {
-    /// Creates a piece with pairs of handles by level: n on the first, n − 1 on the second, and so on; the last levels may be omitted. Or with
-    /// one level, a pair at every point.
+    /// Makes a piece with pairs of handles by level: n on the first, n − 1 on the second, and so on; the last levels may be omitted. A
+    /// single level may instead have a pair at every control point.
     fn ribbon(points: Vec<DVec3>, levels: Vec<Vec<[DVec3; 2]>>) -> Self {
         let flat = |v: [DVec3; 3]| std::array::from_fn(|k| v[k / 3][k % 3]);
         let n = points.len();
@@ -541,8 +541,8 @@ impl Strip {
         Self::Ribbon { points, first: levels.into_iter().next().unwrap_or_default(), curves }
     }
 
-    /// Polylines of the first level of the algorithm, which takes the model's box to every leg as in the paper's figure 1c; `corners` are those
-    /// of the box across the skeleton.
+    /// Returns polylines of the first level of the algorithm, which takes the model's box to every leg as in the paper's figure 1c.
+    /// `corners` are the corners of the box across the skeleton.
     fn first_level(&self, corners: [(f64, f64); 4]) -> Vec<Vec<DVec3>> {
         let Self::Ribbon { points, first, .. } = self else { return Vec::new() };
         let at_points = usize::from(first.len() == points.len());
@@ -558,7 +558,7 @@ impl Strip {
         out
     }
 
-    /// The curves at `u`.
+    /// Returns the curves at `u`.
     fn stand(&self, u: f64) -> Stand {
         match self {
             Self::Ribbon { curves, .. } => {
@@ -595,7 +595,7 @@ fn elevated(mut curve: Vec<[f64; 9]>, n: usize) -> Vec<[f64; 9]> {
     curve
 }
 
-/// The presets: Barr's deformations, and two of the same kind.
+/// The presets: Barr's deformations, and two of the same form.
 const PRESETS: &[&str] = &["stretch", "swell", "taper", "twist", "bend"];
 
 static ABOUT: About3 = About3 {
@@ -662,7 +662,7 @@ taper 50 %.")
         Law3::KeepsLinesAlong(&[("preset", "twist"), ("angle", "200")], [0.0, 1.0, 0.7]),
         Law3::KeepsLinesAlong(&[("preset", "taper"), ("factor", "2")], [1.0, 0.0, 0.0]),
         Law3::KeepsLinesAlong(&[("skeleton", "0,50,50 40,50,50 80,60,40 100,110,30")], [0.0, 1.0, 0.3]),
-        // A straight skeleton of any degree with handles of one size is the same.
+        // A straight skeleton of any degree with handles of one size gives the map of a single leg.
         Law3::Same(
             &[("skeleton", "0,50,50 100,50,50"), ("side", "0:0,2,0")],
             &[("skeleton", "0,50,50 50,50,50 100,50,50"), ("side", "0:0,2,0 1:0,2,0")],
@@ -793,8 +793,8 @@ mod tests {
     use super::*;
     use pathwarp::check::{Counted, operations};
 
-    /// The 9, 27 and 54 products and sums of the paper's table 1, with the legs q − p given as the paper takes them, and those of the
-    /// three curves of one degree that batches evaluate.
+    /// Counts the operations of a skeleton: the 9, 27 and 54 products and sums of the paper's table 1, which takes the legs q − p as given,
+    /// and the operations for the three curves of one degree that batches evaluate.
     #[test]
     fn operations_of_a_skeleton() {
         for (n, published) in [(1usize, 9), (2, 27), (3, 54)] {

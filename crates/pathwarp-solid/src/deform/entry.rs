@@ -23,7 +23,7 @@ pub trait Deformation3: Send + Sync {
     /// Checks `args` against the parameter table and builds the map.
     ///
     /// # Errors
-    /// As [`Settings3::new`] and [`Deformation3::build`].
+    /// [`Error::Usage`] or [`Error::Missing`] for arguments that do not fit the table, and the errors of [`Deformation3::build`].
     fn build_from(&self, args: &Args, frame: &Frame3) -> Result<Built3, Error> {
         let front = frame.front();
         self.build(&Settings3::new(self.about().info.params, args, frame, &front)?)
@@ -99,7 +99,7 @@ pub struct Built3 {
     pub warnings: Vec<String>,
     /// Polylines for a preview: control nets, skeletons, rays.
     pub guides: Vec<Vec<DVec3>>,
-    /// The place from which a model looks unchanged, if there is one.
+    /// The point from which a model looks unchanged, if there is one.
     pub eye: Option<DVec3>,
     /// Files requested by parameters of kind [`Save`](pathwarp::param::Kind::Save).
     pub saves: Vec<SavedFile>,

@@ -1,6 +1,6 @@
 //! Free-form deformation of space by a box of control points.
 //!
-//! See [`Lattice3`] for the formula. Pins are solved as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form
+//! [`Lattice3`] has the formula. Pins are solved as in W. M. Hsu, J. F. Hughes, H. Kaufman, *Direct manipulation of free-form
 //! deformations*, SIGGRAPH 1992.
 
 use super::entry::{About3, Built3, Case3, Entry, Law3};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 const MAX_DEGREE: usize = 10;
 /// Limit on the number of Bézier pieces along an axis.
 const MAX_CELLS: usize = 16;
-/// Limit on the number of pins, with whose cube the work grows.
+/// Limit on the number of pins. The work grows with its cube.
 const MAX_PINS: usize = 256;
 
 /// Faces of a box in the order of [`Ffd3::freeze`]: along x, y and z, with the lower one first.
@@ -109,7 +109,7 @@ impl Ffd3 {
     /// Builds the map, and returns it with the changed lattice.
     ///
     /// # Errors
-    /// As [`Ffd3::build`].
+    /// [`Error::Usage`] in the cases of [`Ffd3::build`].
     pub fn build_with_lattice(&self) -> Result<(Built3, Lattice3), Error> {
         let mut lattice = self.lattice.clone();
         let region = lattice.region();
@@ -148,7 +148,7 @@ impl Ffd3 {
         Ok((built, lattice))
     }
 
-    /// Whether a control point is frozen.
+    /// Returns `true` if a control point is frozen.
     fn holds(&self, node: [usize; 3]) -> bool {
         let size = self.lattice.size();
         (0..3).any(|a| node[a] < self.frozen[2 * a] || node[a] + self.frozen[2 * a + 1] >= size[a])
@@ -215,7 +215,7 @@ impl Ffd3 {
 }
 
 fn names(nodes: &[[usize; 3]]) -> String {
-    /// Nobody would read a longer list.
+    /// Limit on the control points listed in a message.
     const MAX_NAMES: usize = 8;
     let mut out = nodes.iter().take(MAX_NAMES).map(|[i, j, k]| format!("{i},{j},{k}")).collect::<Vec<_>>().join(" ");
     if nodes.len() > MAX_NAMES {
@@ -224,7 +224,7 @@ fn names(nodes: &[[usize; 3]]) -> String {
     out
 }
 
-/// Draws the lines of control points along all three axes as polylines.
+/// Returns the lines of control points along all three axes as polylines.
 fn net(lattice: &Lattice3) -> Vec<Vec<DVec3>> {
     let size = lattice.size();
     let mut out = Vec::new();
@@ -441,7 +441,7 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     }
     let (mut built, lattice) = ffd.build_with_lattice()?;
     if let Some(hull) = hull {
-        // Those of a curved hull are far from what they show.
+        // The control net of a curved hull is far from the hull itself.
         built.guides.clear();
         built.map = Arc::new(HullMap::new(&hull, &lattice)?);
     }
@@ -451,14 +451,14 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     Ok(built)
 });
 
-/// Reads the lattice of `hull`, with which other parameters make no sense.
+/// Reads the lattice of `hull`, beside which the parameters `others` make no sense.
 pub(super) fn hull(s: &Settings3<'_>, others: &[&str]) -> Result<Option<Lattice3>, Error> {
     let Some(named) = s.file_if("hull")? else { return Ok(None) };
     alone(s, "hull", others)?;
     Ok(Some(read(&named.name, &named.text, s.bounds())?.0))
 }
 
-/// Refuses parameters beside a file with a whole lattice.
+/// Refuses the parameters `others` beside a file with a whole lattice.
 fn alone(s: &Settings3<'_>, file: &str, others: &[&str]) -> Result<(), Error> {
     let Some(name) = others.iter().find(|n| s.flat().given(n)) else { return Ok(()) };
     let problem = format!("cannot go with `{file}`, which is a whole box of points");

@@ -1,7 +1,7 @@
 //! Deformations of space, and the registry that builds them from text.
 //!
-//! Each is a type with a constructor, chainable setters and `build`, such as [`Ffd3`]. [`Registry3`] holds the same deformations as
-//! entries that read their parameters from text, for the command line and recipes.
+//! Each deformation is a type with a constructor, chainable setters and `build`, such as [`Ffd3`]. [`Registry3`] holds the same
+//! deformations as entries that read their parameters from text, for the command line and recipes.
 
 mod anamorph;
 mod bend;

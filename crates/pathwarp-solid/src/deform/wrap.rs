@@ -107,7 +107,7 @@ impl Wrap3 {
     }
 }
 
-/// Turns an axis of the model to the slope of a cone's side, about the line through the middle of that axis at the back.
+/// Returns the matrix that turns an axis of the model to the slope of a cone's side, about the line through the axis's middle at the back.
 fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
     let cosine = (1.0 - sine * sine).sqrt();
     let (side, depth) = (DVec3::AXES[axis], DVec3::Z);
@@ -130,7 +130,7 @@ struct Cylinder {
 }
 
 impl Cylinder {
-    /// Distance from the axis.
+    /// Returns the distance from the axis.
     fn rho(&self, p: DVec3) -> f64 {
         self.radius + p.z - self.surface
     }
@@ -160,7 +160,7 @@ impl Map3 for Cylinder {
     }
 }
 
-/// The inverse, for angles up to half a turn to either side.
+/// The inverse of [`Cylinder`], for angles up to half a turn to either side.
 #[derive(Debug, Clone, Copy)]
 struct Unwrapped(Cylinder);
 
@@ -179,7 +179,7 @@ impl Map3 for Unwrapped {
     }
 }
 
-/// A radius, given as such or as a diameter.
+/// Reads a radius, given directly or as a diameter.
 fn radius(s: &Settings3<'_>, [radius, diameter]: [&str; 2]) -> Result<Option<f64>, Error> {
     match (s.last(radius), s.last(diameter)) {
         (Some(_), Some(text)) => Err(Error::usage(diameter, text, format!("and `{radius}` say the same; give one"))),
@@ -189,7 +189,7 @@ fn radius(s: &Settings3<'_>, [radius, diameter]: [&str; 2]) -> Result<Option<f64
     }
 }
 
-/// A length in a message, in millimetres without the error of its unit's conversion.
+/// Formats a length for messages, in millimetres without the error of its unit's conversion.
 fn show(length: f64) -> String {
     format!("{} mm", trimmed(length, 6))
 }

@@ -44,7 +44,7 @@ impl Map3 for Collineation {
         if !back.is_finite() {
             return None;
         }
-        // In the image of the domain, forms f(p) become f(M⁻¹·q), and the last coordinate of M⁻¹·q is 1/W.
+        // A form f(p) becomes f(M⁻¹·q) at the image q, where the last coordinate of M⁻¹·q is 1/W.
         let forms = self.positive.iter().map(|f| back.transpose() * *f);
         let last = back.row(3);
         let affine = last == DVec4::new(0.0, 0.0, 0.0, 1.0);
@@ -83,7 +83,7 @@ mod tests {
             let j = both.jet(p);
             assert!((j.d - a.jet(p).then(&b.jet(a.point(p))).d).to_cols_array().iter().all(|v| v.abs() < 1e-14));
         }
-        // Both denominators are negative here, so that their product is not.
+        // Both denominators are negative at this point, so their product is positive although neither map is defined.
         let beyond = DVec3::new(-11.0, -1e3, 0.0);
         assert!(a.matrix.row(3).dot(beyond.extend(1.0)) < 0.0 && !creases.defined_at(beyond));
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Coordinates −1 to 1 across a box: t = (p − middle)·scale.
+/// Coordinates from −1 to 1 across a box: t = (p − middle)·scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Local {
     pub(crate) middle: DVec3,

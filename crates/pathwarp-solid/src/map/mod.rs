@@ -1,6 +1,6 @@
 //! Maps of space: the result of a deformation once its parameters are known.
 //!
-//! A [`Map3`] takes every point of a model to a new place, with a Jacobian. Only [`Map3::jet`] is required; the other methods add
+//! A [`Map3`] takes every point of a model to its image, with a Jacobian. Only [`Map3::jet`] is required; the other methods add
 //! speed and knowledge: batches, creases, the inverse, and whether planes stay planes. [`Chain3`] composes maps, and
 //! [`NewtonInverse3`] inverts any smooth map over a box.
 
@@ -31,10 +31,10 @@ pub(crate) use tensor::{Displaced, Quotient, Radial, Swept, Tensor, for_all};
 /// Only [`Map3::jet`] is required. [`point`](Map3::point), [`points`](Map3::points) and [`jets`](Map3::jets) compute the same values
 /// faster.
 pub trait Map3: Send + Sync {
-    /// The value and the Jacobian at `p`. On a crease, they are those of either side; outside the domain, they are not finite.
+    /// Returns the image and the Jacobian at `p`. On a crease they are those of either side; outside the domain they are not finite.
     fn jet(&self, p: DVec3) -> Jet3;
 
-    /// The value alone.
+    /// Returns the image alone.
     fn point(&self, p: DVec3) -> DVec3 {
         self.jet(p).p
     }
@@ -53,19 +53,19 @@ pub trait Map3: Send + Sync {
         }
     }
 
-    /// The map as a collineation, which keeps planes plane, if it is one. A [`Chain3`] folds adjacent collineations into one.
+    /// Returns the map as a collineation, which keeps planes plane, if it is one. A [`Chain3`] folds adjacent collineations into one.
     fn collineation(&self) -> Option<&Collineation> {
         None
     }
 
-    /// The map on a box as a quotient of polynomials of at most degree `max`, if it is one there. The images of rational surfaces are
-    /// then exact.
+    /// Returns the map on a box as a quotient of polynomials of at most degree `max`, if it is one there. The images of rational
+    /// surfaces are then exact.
     fn fraction(&self, _on: &Box3, _max: usize) -> Option<Fraction3> {
         None
     }
 
-    /// The smooth map that agrees with this one on a box and continues beyond it, if there is one. If a crease touches the box, the
-    /// result is that of the box's side even on the crease, where the map itself may have the values of the other side.
+    /// Returns the smooth map that agrees with this one on a box and continues beyond it, if there is one. If a crease touches the box,
+    /// the box's side of it counts, even on the crease itself, where this map may have the values of the other side.
     fn branch(&self, _on: &Box3) -> Option<Arc<dyn Map3>> {
         None
     }
@@ -73,17 +73,17 @@ pub trait Map3: Send + Sync {
     /// Adds the surfaces on which the map is not smooth, and the boundary of its domain.
     fn creases(&self, _out: &mut Creases3) {}
 
-    /// The inverse map, if there is a better one than [`NewtonInverse3`].
+    /// Returns the inverse map, if there is a better one than [`NewtonInverse3`].
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
         None
     }
 
-    /// The cost of one evaluation for the [budget](pathwarp::budget), relative to that of a bend. At least 1.
+    /// Returns the cost of one evaluation for the [budget](pathwarp::budget), relative to that of a bend. At least 1.
     fn work(&self) -> f64 {
         1.0
     }
 
-    /// The same map, with searches that charge a budget for anything beyond [`work`](Map3::work), and find nothing once it is used up.
+    /// Returns the map with searches that charge a budget for anything beyond [`work`](Map3::work), and find nothing once it is used up.
     /// `None` if the map does not search.
     #[doc(hidden)]
     fn within(&self, _budget: &Arc<Budget>) -> Option<Arc<dyn Map3>> {
@@ -141,25 +141,25 @@ impl Jet3 {
     /// The jet of a map outside its domain.
     pub const UNDEFINED: Self = Self { p: DVec3::NAN, d: DMat3::NAN };
 
-    /// The jet of the map that moves nothing.
+    /// Returns the jet of the identity at `p`.
     #[must_use]
     pub fn identity(p: DVec3) -> Self {
         Self { p, d: DMat3::IDENTITY }
     }
 
-    /// The determinant of the Jacobian: the local scale of volumes, negative where the map mirrors.
+    /// Returns the determinant of the Jacobian: the local scale of volumes, negative where the map mirrors.
     #[must_use]
     pub fn det(&self) -> f64 {
         self.d.determinant()
     }
 
-    /// The jet of `outer ∘ self`, where `outer` is the jet of the outer map at `self.p`.
+    /// Returns the jet of `outer ∘ self`, where `outer` is the jet of the outer map at `self.p`.
     #[must_use]
     pub fn then(&self, outer: &Self) -> Self {
         Self { p: outer.p, d: outer.d * self.d }
     }
 
-    /// The direction of the image of a surface's normal `n`: the cofactors of the Jacobian, det J · J⁻ᵀ, times `n`. Unlike the
+    /// Returns the direction of the image of a surface's normal `n`: the cofactors of the Jacobian, det J · J⁻ᵀ, times `n`. Unlike the
     /// inverse transpose it exists for a singular Jacobian too, and its sign follows the orientation of transformed triangles.
     #[must_use]
     pub fn normal(&self, n: DVec3) -> DVec3 {
@@ -167,7 +167,7 @@ impl Jet3 {
         b.cross(c) * n.x + c.cross(a) * n.y + a.cross(b) * n.z
     }
 
-    /// Whether all twelve numbers are finite.
+    /// Returns `true` if all twelve numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.p.is_finite() && self.d.is_finite()
@@ -215,19 +215,19 @@ impl Creases3 {
         self.items.push(crease);
     }
 
-    /// The creases, in the order they were added.
+    /// Returns the creases, in the order they were added.
     #[must_use]
     pub fn items(&self) -> &[Crease3] {
         &self.items
     }
 
-    /// Whether the map is defined at `p`.
+    /// Returns `true` if the map is defined at `p`.
     #[must_use]
     pub fn defined_at(&self, p: DVec3) -> bool {
         self.items.iter().all(|c| c.kind != CreaseKind::Edge || (c.level)(p) > 0.0)
     }
 
-    /// Whether a crease separates `p` and `q`, or passes through one of them.
+    /// Returns `true` if a crease separates `p` and `q`, or passes through one of them.
     #[must_use]
     pub fn separate(&self, p: DVec3, q: DVec3) -> bool {
         self.items.iter().any(|c| (c.level)(p) * (c.level)(q) <= 0.0)
@@ -262,7 +262,7 @@ impl Chain3 {
         }
     }
 
-    /// The maps that are left after folding.
+    /// Returns the maps that are left after folding.
     #[must_use]
     pub fn steps(&self) -> &[Arc<dyn Map3>] {
         &self.steps

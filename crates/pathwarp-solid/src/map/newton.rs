@@ -29,7 +29,7 @@ const MAX_STEPS: usize = 40;
 const MIN_DAMPING: f64 = 1e-4;
 /// Limit on starting points tried for one point.
 const MAX_TRIES: usize = 12;
-/// Work of inverting a point that has a preimage, as a multiple of the map's. Searches charge for more themselves.
+/// Work of inverting a point that has a preimage, as a multiple of the map's. Searches charge for more as they run.
 const INVERSE_WORK: f64 = 5.0;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
@@ -69,7 +69,7 @@ impl NewtonInverse3 {
         Self::with_core(map, domain, domain, reach, pieces)
     }
 
-    /// As [`NewtonInverse3::new`], with a core smaller than the box.
+    /// Makes the inverse over a box whose core (see the module) is smaller than the box.
     pub(crate) fn with_core(map: Arc<dyn Map3>, core: Box3, domain: Box3, reach: f64, pieces: [usize; 3]) -> Self {
         let n = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
         let cell = domain.size() / DVec3::from_array(n.map(|n| n as f64));
@@ -131,7 +131,7 @@ impl NewtonInverse3 {
         out
     }
 
-    /// The same inverse, with searches that charge a budget.
+    /// Returns the inverse with searches that charge a budget.
     pub(crate) fn spending(&self, budget: &Arc<Budget>) -> Self {
         // The map may itself be an inverse that searches.
         let map = self.map.within(budget).unwrap_or_else(|| Arc::clone(&self.map));
@@ -144,7 +144,7 @@ impl NewtonInverse3 {
         t.to_array().map(|v| (v as usize).min(self.side - 1))
     }
 
-    /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no certified preimage in the box.
+    /// Returns the preimage of `q` and the derivatives of the inverse there, or `None` if there is no certified preimage in the box.
     #[must_use]
     pub fn solve(&self, q: DVec3) -> Option<Jet3> {
         let mut search = Search::default();
@@ -154,7 +154,7 @@ impl NewtonInverse3 {
     }
 
     fn search(&self, q: DVec3, search: &mut Search) -> Option<Jet3> {
-        /// Number of times that selecting the nearest starting points examines each one.
+        /// Work of selecting the nearest starting points, in examinations of each one.
         const SELECTING: usize = 30;
         if !q.is_finite() || is_over(self.budget.as_ref()) {
             return None;
@@ -191,7 +191,7 @@ impl NewtonInverse3 {
         best.map(|b| b.1)
     }
 
-    /// The largest distance from the core along an axis; 0 inside.
+    /// Returns the largest distance from the core along an axis; 0 inside.
     fn distance_from_core(&self, p: DVec3) -> f64 {
         (self.core.min - p).max(p - self.core.max).max_element().max(0.0)
     }
@@ -233,7 +233,7 @@ impl NewtonInverse3 {
         None
     }
 
-    /// Checks the three conditions for an answer (see the module).
+    /// Returns the jet of the inverse if an answer meets the three conditions in the module's text.
     fn accepted(&self, x: DVec3, jet: &Jet3, residual: DVec3) -> Option<Jet3> {
         let back = jet.d.inverse();
         let eta = (back * residual).length();

@@ -1,4 +1,4 @@
-//! Polynomials in three variables as lists of terms, by which maps describe themselves as polynomial or rational.
+//! Polynomials in three variables as lists of terms, and quotients of them, as which maps describe themselves.
 
 use super::local::Local;
 use crate::settings::Box3;
@@ -27,22 +27,22 @@ impl Poly3 {
         self.0.iter().map(|(powers, c)| (powers, *c))
     }
 
-    /// The largest sum of powers.
+    /// Returns the largest sum of powers.
     pub(crate) fn degree(&self) -> usize {
         self.0.keys().map(|p| p.iter().sum()).max().unwrap_or(0)
     }
 
-    /// Whether the polynomial is 1 everywhere.
+    /// Returns `true` if the polynomial is 1 everywhere.
     pub(crate) fn is_one(&self) -> bool {
         self.0.len() == 1 && self.0.get(&[0; 3]) == Some(&1.0)
     }
 
-    /// Adds `k` times another.
+    /// Adds `k` times another polynomial.
     pub(crate) fn add(&mut self, k: f64, other: &Self) {
         other.terms().for_each(|(powers, c)| self.add_term(*powers, k * c));
     }
 
-    /// The sum of this and `k` times another.
+    /// Returns the sum of this and `k` times another polynomial.
     #[must_use]
     pub(crate) fn plus(&self, k: f64, other: &Self) -> Self {
         let mut out = self.clone();
@@ -61,7 +61,7 @@ impl Poly3 {
         out
     }
 
-    /// The powers 0 to `n`.
+    /// Returns the powers from 0 to `n`.
     pub(crate) fn powers(&self, n: usize) -> Vec<Self> {
         let mut out = vec![Self::constant(1.0)];
         for k in 0..n {
@@ -79,7 +79,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// The coordinates of a box.
+    /// Makes the coordinates of a box.
     #[must_use]
     pub fn on(b: &Box3) -> Self {
         // Any scale will do along an axis on which the box is flat.
@@ -88,22 +88,22 @@ impl Chart {
         Self { middle: b.center(), half: size.max(DVec3::splat(min)) }
     }
 
-    /// The middle of the box.
+    /// Returns the middle of the box.
     pub(crate) fn middle(&self) -> DVec3 {
         self.middle
     }
 
-    /// Half the size of the box.
+    /// Returns half the size of the box.
     pub(crate) fn half(&self) -> DVec3 {
         self.half
     }
 
-    /// The chart of the same box relative to a point.
+    /// Returns the chart of the same box in coordinates relative to a point.
     pub(crate) fn relative_to(self, base: DVec3) -> Self {
         Self { middle: self.middle - base, ..self }
     }
 
-    /// A linear form in (x, y, z, 1) as a polynomial in the coordinates.
+    /// Returns a linear form in (x, y, z, 1) as a polynomial in the coordinates.
     pub(crate) fn linear(&self, form: DVec4) -> Poly3 {
         let mut out = Poly3::constant(form.dot(self.middle.extend(1.0)));
         for (a, v) in (form.truncate() * self.half).to_array().into_iter().enumerate() {
@@ -114,12 +114,12 @@ impl Chart {
         out
     }
 
-    /// x, y and z as polynomials in the coordinates.
+    /// Returns x, y and z as polynomials in the coordinates.
     pub(crate) fn place(&self) -> [Poly3; 3] {
         [0, 1, 2].map(|a| self.linear(DVec3::AXES[a].extend(0.0)))
     }
 
-    /// The coordinates of another box as polynomials in these.
+    /// Returns the coordinates of another box as polynomials in the coordinates of this one.
     pub(crate) fn local(&self, other: &Local) -> [Poly3; 3] {
         [0, 1, 2].map(|a| {
             let scale = other.scale[a];
@@ -137,21 +137,21 @@ pub struct Fraction3 {
 }
 
 impl Fraction3 {
-    /// The map that moves nothing.
+    /// Makes the identity.
     #[must_use]
     pub fn identity(chart: Chart) -> Self {
         let [x, y, z] = chart.place();
         Self { chart, parts: [x, y, z, Poly3::constant(1.0)] }
     }
 
-    /// The map O + (p − O)·`common`/`divisor`.
+    /// Makes the map O + (p − O)·`common`/`divisor`, with the point O = `eye`.
     pub(crate) fn radial(chart: Chart, eye: DVec3, divisor: Poly3, common: &Poly3) -> Self {
         let [x, y, z] = chart.place();
         let part = |p: Poly3, o: f64| p.plus(-o, &Poly3::constant(1.0)).times(common).plus(o, &divisor);
         Self { chart, parts: [part(x, eye.x), part(y, eye.y), part(z, eye.z), divisor] }
     }
 
-    /// The map p + `along`·(`divisor`/`common` − 1).
+    /// Makes the map p + `along`·(`divisor`/`common` − 1).
     pub(crate) fn shifted(chart: Chart, along: DVec3, divisor: &Poly3, common: Poly3) -> Self {
         let by = divisor.plus(-1.0, &common);
         let [x, y, z] = chart.place();
@@ -159,13 +159,13 @@ impl Fraction3 {
         Self { chart, parts: [part(x, along.x), part(y, along.y), part(z, along.z), common] }
     }
 
-    /// Whether nothing moves.
+    /// Returns `true` if nothing moves.
     #[must_use]
     pub fn is_identity(&self) -> bool {
         *self == Self::identity(self.chart)
     }
 
-    /// The largest sum of powers.
+    /// Returns the largest sum of powers.
     #[must_use]
     pub fn degree(&self) -> usize {
         self.parts.iter().map(Poly3::degree).max().unwrap_or(0)

@@ -1,7 +1,7 @@
 //! Polynomials in three variables as tensor products, in powers of coordinates that run from −1 to 1.
 //!
-//! Centred powers keep the conversion from Bernstein form accurate. At degree 10, the largest coefficient of a basis function is below
-//! 3, whereas with coordinates from 0 to 1 it would reach 10⁴.
+//! Powers of centred coordinates keep the conversion from Bernstein form accurate. At degree 10, the largest coefficient of a basis
+//! function is below 3; with coordinates from 0 to 1 it would reach 10⁴.
 
 use super::local::{Lane, Local, WIDTH};
 use super::poly::Poly3;
@@ -36,7 +36,7 @@ impl<const C: usize> Tensor<C> {
         Self { size, c }
     }
 
-    /// Drops powers of x above `degree`, which are rounding, from the polynomials from number `from` on.
+    /// Drops powers of x above `degree`, whose coefficients are rounding errors, from all polynomials after the first `from`.
     pub(crate) fn without(mut self, degree: usize, from: usize) -> Self {
         let n = self.size[0];
         let over = self.c.iter_mut().enumerate().filter(|(i, _)| i % n > degree);
@@ -50,12 +50,12 @@ impl<const C: usize> Tensor<C> {
         self.c.iter().enumerate().map(move |(n, c)| ([n % nx, n / nx % ny, n / (nx * ny)], c))
     }
 
-    /// Degrees along x, y and z.
+    /// Returns the degrees along x, y and z.
     pub(crate) fn degrees(&self) -> [usize; 3] {
         self.size.map(|n| n - 1)
     }
 
-    /// The largest sum of powers whose coefficient is not 0.
+    /// Returns the largest sum of powers whose coefficient is not 0.
     pub(crate) fn total_degree(&self) -> usize {
         let used = self.terms().filter(|(_, c)| c.iter().any(|v| *v != 0.0));
         used.map(|(powers, _)| powers.iter().sum()).max().unwrap_or(0)
@@ -74,12 +74,12 @@ impl<const C: usize> Tensor<C> {
         out
     }
 
-    /// The values.
+    /// Returns the values of the polynomials.
     pub(crate) fn at(&self, t: DVec3) -> [f64; C] {
         self.value(t.to_array())
     }
 
-    /// The values, for any kind of number.
+    /// Returns the values for any kind of number.
     pub(crate) fn value<S: Real>(&self, t: [S; 3]) -> [S; C] {
         let [nx, ny, _] = self.size;
         let plus = |a: Option<[S; C]>, t: S, b: [S; C]| match a {
@@ -101,7 +101,7 @@ impl<const C: usize> Tensor<C> {
         z.unwrap_or([S::from(0.0); C])
     }
 
-    /// The values and their partial derivatives, as (value, ∂/∂x, ∂/∂y, ∂/∂z) of each polynomial.
+    /// Returns the values and their partial derivatives, as (value, ∂/∂x, ∂/∂y, ∂/∂z) of each polynomial.
     pub(crate) fn jet(&self, t: DVec3) -> [[f64; 4]; C] {
         let [nx, ny, _] = self.size;
         let mut z = [[0.0; 4]; C];
@@ -124,7 +124,7 @@ impl<const C: usize> Tensor<C> {
         z
     }
 
-    /// The values at a batch of points. Common sizes are compiled separately, with all loops unrolled.
+    /// Returns the values at a batch of points. Common sizes are compiled separately, with all loops unrolled.
     #[inline(always)]
     pub(crate) fn lanes(&self, t: &[Lane; 3]) -> [Lane; C] {
         match self.size {
@@ -170,7 +170,7 @@ fn times_plus(a: &mut Lane, t: &Lane, b: &Lane) {
     }
 }
 
-/// The matrix from Bernstein coefficients over [−1, 1] to powers: row p holds the coefficients of tᵖ in
+/// Returns the matrix from Bernstein coefficients over [−1, 1] to powers: row p holds the coefficients of tᵖ in
 /// C(n,i)·(1+t)ⁱ(1−t)ⁿ⁻ⁱ/2ⁿ.
 fn powers(n: usize) -> Vec<Vec<f64>> {
     let mut out = vec![vec![0.0; n + 1]; n + 1];
@@ -195,9 +195,9 @@ fn powers(n: usize) -> Vec<Vec<f64>> {
 }
 
 /// A computation on points for the processor's vector units, which are chosen at run time. Products and sums are never fused, so that
-/// results are the same on all of them, to the last bit.
+/// results are equal on all of them, to the last bit.
 pub(crate) trait Kernel {
-    /// Replaces a batch of coordinates by those of the images.
+    /// Replaces a batch of points by their images.
     fn lanes(&self, p: &mut [Lane; 3]);
 }
 
@@ -346,15 +346,15 @@ mod tests {
     use super::*;
     use pathwarp::check::{Counted, operations};
 
-    /// Steps (1 − t)·p + t·q of points in space.
+    /// Returns `rest`·p + t·q, where `rest` is 1 − t, and counts the operations.
     fn step(p: [Counted; 3], q: [Counted; 3], t: Counted, rest: Counted) -> [Counted; 3] {
         std::array::from_fn(|k| p[k] * rest + q[k] * t)
     }
 
-    /// The lattice in table 1 of the skeleton paper: of degree n along the curve and 1 across, as the skeleton is with its two handles.
-    /// A trilinear step in each of its n cells (seven steps of a product with 1 − t and one with t), then de Casteljau's algorithm on
-    /// their n points: 6·(7n + n(n − 1)/2) products and half as many sums, the table's 42, 90 and 144. The paper does not say how it
-    /// counts. Ours takes a product and a sum for each coefficient but one.
+    /// Counts the operations of the lattice in table 1 of the skeleton paper, which has degree n along the curve and 1 across, as the
+    /// skeleton with its two handles has. A trilinear point in each of its n cells takes seven linear steps, of six products each. De
+    /// Casteljau's algorithm on the n points takes n(n − 1)/2 more. That is 6·(7n + n(n − 1)/2) products and half as many sums: the table's
+    /// 42, 90 and 144. Our form takes a product and a sum for each coefficient but one. The paper does not state how it counts.
     #[test]
     fn operations_of_the_lattice_beside_a_skeleton() {
         for (n, published) in [(1, 42), (2, 90), (3, 144)] {
@@ -385,7 +385,7 @@ mod tests {
         }
     }
 
-    /// A lattice of degree n along all three axes, by de Casteljau's algorithm along each axis in turn.
+    /// Counts the operations of a lattice of degree n along all three axes, by de Casteljau's algorithm along each axis in turn.
     #[test]
     fn operations_of_a_full_lattice() {
         for (n, algorithm) in [(1, 42), (2, 234), (3, 756)] {
@@ -413,7 +413,7 @@ mod tests {
         }
     }
 
-    /// Against the definition: Σ Bᵢ(s)Bⱼ(t)Bₖ(u), by de Casteljau's algorithm.
+    /// Compares with the definition Σ Bᵢ(s)Bⱼ(t)Bₖ(u), by de Casteljau's algorithm.
     #[test]
     fn values_and_derivatives_are_those_of_the_bernstein_form() {
         for size in [[2, 2, 2], [3, 3, 3], [4, 4, 4], [1, 4, 2], [11, 2, 5]] {

@@ -43,7 +43,7 @@ pub struct Undefined3 {
 /// A normal that several vertices share becomes a separate one for each, since the map turns it differently at each.
 ///
 /// # Errors
-/// Returns the first vertex at which the map is not defined. The content of the mesh is then unspecified.
+/// [`Undefined3`] for the first vertex at which the map is not defined. The content of the mesh is then unspecified.
 pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -85,7 +85,7 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     Ok(out)
 }
 
-/// Finds the largest distance between the middle of an edge and its image, among edges sampled from the whole mesh.
+/// Returns the largest distance between the middle of an edge and its exact image, among edges sampled from the whole mesh.
 fn bulge(mesh: &Mesh, before: &[DVec3], map: &dyn Map3) -> f64 {
     /// Limit on the polygons to examine.
     const MAX_POLYGONS: usize = 10_000;
@@ -169,16 +169,16 @@ fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
 /// Limit on rounds of halving, which divide an edge into at most 2¹⁶ parts.
 const MAX_ROUNDS: usize = 16;
 
-/// Subdivides a mesh so that its image under `map` is within `tolerance` of the exact image of its surface, judging by the quarters and
-/// middles of edges and the middles of faces.
+/// Subdivides a mesh so that its image under `map` is within `tolerance` of the exact image of its surface, as measured at the quarters
+/// and middles of edges and the middles of faces.
 ///
 /// An edge is halved while the map bends it away from its chord by more than the tolerance; a face whose middle bulges gets all its
-/// edges halved. The decision depends only on the positions of an edge's ends, so that faces that share them are split alike and the
+/// edges halved. The decision depends only on the positions of an edge's ends. Faces that share them are therefore split alike and the
 /// mesh has no cracks, even where a file repeats vertices along a seam. Faces without a split edge stay as they are; others become
 /// triangles.
 ///
 /// # Errors
-/// The evaluations of the map or the number of edges exceed the limits.
+/// [`MeshFault::Limit`](super::MeshFault::Limit) when the evaluations of the map or the number of edges exceed the budget.
 pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
     let mut work = Refining { images: mesh.positions.clone(), map, tolerance, budget, close: HashSet::new() };
     work.map.points(&mut work.images);
@@ -193,10 +193,10 @@ pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) 
     Ok(())
 }
 
-/// Segments added when a side of a polygon is halved: half of it, and one across the face. The next round examines both.
+/// Segments added when a side of a polygon is halved: one of its halves, and one across the face. The next round examines both.
 const PER_SPLIT: u64 = 2;
 
-/// The number of sides of polygons to halve, since an edge may belong to any number of polygons. A face that is cut becomes triangles,
+/// Returns the number of polygon sides to halve; an edge may belong to any number of polygons. A face that is cut becomes triangles,
 /// whose sides count as well.
 fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
     let of = |corners: &[Corner]| {
@@ -207,7 +207,7 @@ fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
     mesh.polygons().map(|(_, corners)| of(corners) as u64).sum()
 }
 
-/// An edge in either direction: the smaller index first.
+/// An edge, whatever its direction: the smaller index first.
 pub(crate) type Edge = (u32, u32);
 
 pub(crate) fn edge(a: u32, b: u32) -> Edge {
@@ -220,12 +220,12 @@ struct Refining<'a> {
     map: &'a dyn Map3,
     tolerance: f64,
     budget: &'a Budget,
-    /// Edges known to be close enough.
+    /// Edges whose images are within the tolerance.
     close: HashSet<Edge>,
 }
 
 impl Refining<'_> {
-    /// The edges that are too far from their images.
+    /// Returns the edges that are too far from their images.
     fn edges_to_split(&mut self, mesh: &Mesh) -> Result<HashSet<Edge>, MeshError> {
         let mut split = HashSet::new();
         for (kind, corners) in mesh.polygons() {
@@ -246,7 +246,7 @@ impl Refining<'_> {
                 }
             }
         }
-        // A bulge only matters if no edge of the face is split anyway.
+        // A bulge only matters if no edge of the face is split.
         let mut bulging = Vec::new();
         for corners in mesh.faces() {
             let edges = || (0..corners.len()).map(|i| edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
@@ -260,7 +260,7 @@ impl Refining<'_> {
 
     fn bends(&self, mesh: &Mesh, (i, j): Edge) -> Result<bool, MeshError> {
         let ends = [mesh.positions[i as usize], mesh.positions[j as usize]];
-        // Use the same order for every copy of the edge.
+        // Evaluate every copy of an edge in the same order.
         let swap = ends[0].to_array().partial_cmp(&ends[1].to_array()) == Some(std::cmp::Ordering::Greater);
         let [a, b] = if swap { [ends[1], ends[0]] } else { ends };
         let [p, q] = (if swap { [j, i] } else { [i, j] }).map(|v| self.images[v as usize]);
@@ -349,7 +349,7 @@ struct Halves {
 }
 
 impl Halves {
-    /// The corner in the middle between two.
+    /// Returns the corner in the middle between two.
     fn middle(&mut self, mesh: &mut Mesh, a: Corner, b: Corner) -> Corner {
         let colored = mesh.colors.len() == mesh.positions.len();
         let vertex = *self.vertices.entry(edge(a.vertex, b.vertex)).or_insert_with(|| {
@@ -388,7 +388,7 @@ fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
     u32::try_from(list.len() - 1).unwrap_or(NONE)
 }
 
-/// Appends a triangle with its marked edges, each from a corner to the next, halved.
+/// Appends a triangle, of which the marked edges, each from a corner to the next, are halved.
 fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool; 3]) {
     // Rotate the corners so that a lone marked edge is the first, and a lone unmarked one the last.
     let count = marked.iter().filter(|m| **m).count();
@@ -422,7 +422,7 @@ fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool;
     }
 }
 
-/// Distance of `q` from the segment between two points.
+/// Returns the distance of `q` from the segment between two points.
 pub(crate) fn from_chord(a: DVec3, b: DVec3, q: DVec3) -> f64 {
     let chord = b - a;
     let n = chord.length_squared();

@@ -1,7 +1,7 @@
 //! Shapes in the plane as triangles, and their extrusion into solids.
 //!
-//! Before it is extruded, a shape is changed so that no two vertices coincide and the outline touches itself nowhere: walls of the solid
-//! would share an edge there.
+//! Before extrusion, a shape is changed so that no two vertices coincide and the outline does not touch itself. Walls of the solid would
+//! otherwise share an edge there.
 
 use super::{Corner, Mark, Mesh, NONE, PolygonKind};
 use glam::DVec3;
@@ -14,17 +14,17 @@ pub struct FlatShape {
     pub name: String,
     /// Vertices, y up.
     pub points: Vec<[f64; 2]>,
-    /// Triangles of places in `points`, all counter-clockwise or all clockwise.
+    /// Triangles as indices into `points`, all counter-clockwise or all clockwise.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Vertices closer than this fraction of the largest coordinate would coincide in a single-precision file.
+/// Distance between vertices, as a fraction of the largest coordinate, below which they would coincide in a single-precision file.
 const SAME: f64 = 1e-6;
-/// The fraction of the largest coordinate by which they are moved apart.
+/// Distance by which such vertices are moved apart, as a fraction of the largest coordinate.
 const APART: f64 = 1e-5;
 
 impl FlatShape {
-    /// Twice the area, negative if the triangles are clockwise.
+    /// Returns twice the area, negative if the triangles are clockwise.
     fn area(&self) -> f64 {
         let twice = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| self.at(i));
@@ -37,7 +37,7 @@ impl FlatShape {
         self.points[i as usize]
     }
 
-    /// The largest coordinate.
+    /// Returns the largest absolute coordinate.
     fn reach(&self) -> f64 {
         self.points.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()))
     }
@@ -49,8 +49,8 @@ impl FlatShape {
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| first + i)));
     }
 
-    /// The same shape, counter-clockwise, without triangles that repeat a vertex. Triangles without area stay: they hold the shape
-    /// together.
+    /// Returns the shape with counter-clockwise triangles, without triangles that repeat a vertex. Triangles without area stay: they hold
+    /// the shape together.
     fn turned(&self) -> Self {
         let turned = self.area() < 0.0;
         let own = |[a, b, c]: [u32; 3]| if turned { [a, c, b] } else { [a, b, c] };
@@ -59,12 +59,12 @@ impl FlatShape {
         Self { triangles, ..self.clone() }
     }
 
-    /// The same shape with coinciding vertices moved apart, each towards the middle of its own triangles.
+    /// Returns the shape with coinciding vertices moved apart, each towards the middle of the triangles around it.
     fn separated(mut self) -> Self {
         let step = SAME * self.reach();
         let cell = |p: &[f64; 2]| p.map(|v| (v / step).floor() as i64);
         let mut first: HashMap<[i64; 2], u32> = HashMap::new();
-        // Each coinciding vertex, with its number at that place and its triangles.
+        // Each coinciding vertex, with its number among those at its position, and its triangles.
         let mut crowded: BTreeMap<u32, (u32, Vec<usize>)> = BTreeMap::new();
         let mut counts: HashMap<u32, u32> = HashMap::new();
         for (i, p) in (0u32..).zip(&self.points) {
@@ -89,14 +89,14 @@ impl FlatShape {
         }
         let (old, by) = (self.clone(), APART * self.reach());
         for (vertex, (number, fan)) in crowded {
-            // By different lengths, as their triangles may lie on one side.
+            // Move by different lengths, since the triangles of two vertices may lie on one side.
             let by = by * (1.0 + 0.5 * f64::from(number % 32));
             self.points[vertex as usize] = drawn_back(&old, vertex, &fan, by);
         }
         self
     }
 
-    /// The same shape, in which parts that meet at a single vertex each get a vertex of their own, moved apart.
+    /// Returns the shape in which parts that meet at a single vertex have a vertex each, moved apart.
     fn unpinched(mut self) -> Self {
         let all: HashSet<(u32, u32)> = sides(&self.triangles).collect();
         let mut starts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -104,7 +104,7 @@ impl FlatShape {
             starts.entry(a).or_default().push(b);
         }
         starts.retain(|_, next| next.len() > 1);
-        // The triangles at each such vertex, by the corner that follows it.
+        // The triangle at each such vertex, by the corner that follows the vertex.
         let mut after: HashMap<(u32, u32), usize> = HashMap::new();
         for (n, t) in self.triangles.iter().enumerate() {
             let corners = (0..3).map(|k| (t[k], t[(k + 1) % 3])).filter(|(a, _)| starts.contains_key(a));
@@ -132,16 +132,16 @@ impl FlatShape {
     }
 }
 
-/// The sides of triangles.
+/// Iterates over the sides of triangles.
 pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
 
-/// The triangles round a vertex, from the side to `first` as far as the next side of the outline.
+/// Returns the triangles round a vertex, from the side to `first` as far as the next side of the outline.
 fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first: u32) -> Vec<usize> {
     let mut out: Vec<usize> = Vec::new();
     let mut next = first;
-    // Where several triangles claim a side, this could go in circles.
+    // Where several triangles claim a side, this could go round for ever.
     while let Some(n) = after.get(&(vertex, next)).filter(|_| out.len() < shape.triangles.len()) {
         let t = shape.triangles[*n];
         let corner = t.iter().position(|i| *i == vertex).unwrap_or_default();
@@ -154,7 +154,7 @@ fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first
     out
 }
 
-/// A vertex, moved by `by` towards the middle of its triangles.
+/// Returns the position of a vertex after a move by `by` towards the middle of its triangles.
 fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2] {
     let at = shape.at(vertex);
     let others = fan.iter().flat_map(|n| shape.triangles[*n]).filter(|i| *i != vertex);
@@ -200,7 +200,7 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
             mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
         }
         let own: HashSet<(u32, u32)> = sides(triangles).collect();
-        // An edge that is not run along in reverse belongs to the outline, with the shape to its left.
+        // A side that no triangle passes in reverse belongs to the outline, with the shape to its left.
         for (a, b) in sides(triangles).filter(|(a, b)| !own.contains(&(*b, *a))) {
             mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
         }

@@ -56,7 +56,7 @@ pub struct Polygon {
     pub kind: PolygonKind,
 }
 
-/// Something that holds from one polygon onwards.
+/// A change of state that holds from one polygon onwards.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Mark {
     /// An object begins.
@@ -90,24 +90,24 @@ pub struct Mesh {
     pub marks: Vec<(u32, Mark)>,
     /// Materials of a glTF file, to which the marks refer by name.
     pub assets: Option<Arc<Assets>>,
-    /// What the file has and the mesh does not, each as a phrase for a warning.
+    /// Contents of the file that the mesh lacks, each as a phrase for a warning.
     pub left_out: Vec<String>,
 }
 
 impl Mesh {
-    /// Whether any vertex is translucent.
+    /// Returns `true` if any vertex is translucent.
     #[must_use]
     pub fn is_translucent(&self) -> bool {
         self.colors.iter().any(|c| c[3] != 1.0)
     }
 
-    /// The bounding box of the vertices; `None` if there are none.
+    /// Returns the bounding box of the vertices, or `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.positions.iter().copied())
     }
 
-    /// The corners of each polygon with its kind.
+    /// Iterates over the corners of each polygon, with its kind.
     pub fn polygons(&self) -> impl Iterator<Item = (PolygonKind, &[Corner])> {
         let mut start = 0;
         self.polygons.iter().map(move |p| {
@@ -117,7 +117,7 @@ impl Mesh {
         })
     }
 
-    /// The corners of each face.
+    /// Iterates over the corners of each face.
     pub fn faces(&self) -> impl Iterator<Item = &[Corner]> {
         self.polygons().filter(|(kind, _)| *kind == PolygonKind::Face).map(|(_, corners)| corners)
     }
@@ -128,12 +128,12 @@ impl Mesh {
         self.polygons.push(Polygon { end: u32::try_from(self.corners.len()).unwrap_or(NONE), kind });
     }
 
-    /// The faces as triangles: fans from the first corner.
+    /// Iterates over the faces as triangles, in fans from their first corners.
     pub fn triangles(&self) -> impl Iterator<Item = [Corner; 3]> {
         self.faces().flat_map(|f| f.windows(2).skip(1).map(|w| [f[0], w[0], w[1]]))
     }
 
-    /// The name of the object or group that a polygon belongs to; empty if there is none.
+    /// Returns the name of the object or group that a polygon belongs to; empty if there is none.
     #[must_use]
     pub fn name_of(&self, polygon: usize) -> &str {
         let before = self.marks.iter().take_while(|(first, _)| *first as usize <= polygon);
@@ -148,7 +148,7 @@ impl Mesh {
 /// The topology of a mesh's faces, with their volume and area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Topology {
-    /// Vertices that belong to a face. Vertices at the same place count as one.
+    /// Vertices that belong to a face. Vertices at one position count as one.
     pub vertices: usize,
     /// Edges.
     pub edges: usize,
@@ -165,20 +165,20 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Whether the surface has no boundary and every edge joins two faces of the same orientation.
+    /// Returns `true` if the surface has no boundary and every edge joins two faces of equal orientation.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.faces > 0 && self.open_edges == 0 && self.bad_edges == 0
     }
 
-    /// The Euler number V − E + F: 2 for a ball, 0 for a ring.
+    /// Returns the Euler number V − E + F: 2 for a ball, 0 for a ring.
     #[must_use]
     pub fn euler(&self) -> i64 {
         self.vertices as i64 - self.edges as i64 + self.faces as i64
     }
 }
 
-/// Examines the faces of a mesh. Vertices at the same place count as one, as many files repeat vertices along seams.
+/// Examines the faces of a mesh. Vertices at one position count as one, since many files repeat vertices along seams.
 #[must_use]
 pub fn topology(mesh: &Mesh) -> Topology {
     // Adding 0 turns −0 into 0.
@@ -193,7 +193,7 @@ pub fn topology(mesh: &Mesh) -> Topology {
         })
         .collect();
     let mut used = vec![false; places.len()];
-    // How often faces run along each edge forwards and backwards.
+    // Numbers of faces that run along each edge forwards and backwards.
     let mut edges: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
     let (mut faces, mut volume, mut area) = (0, 0.0, 0.0);
     let origin = mesh.bounds().map_or(DVec3::ZERO, |b| b.center());
@@ -228,11 +228,11 @@ pub fn topology(mesh: &Mesh) -> Topology {
 struct Unified {
     /// The distinct corners.
     corners: Vec<Corner>,
-    /// For each corner of the mesh, its index among them.
+    /// For each corner of the mesh, the index of an equal one in `corners`.
     index: Vec<u32>,
 }
 
-/// Numbers the distinct corners. The first one of every vertex gets the number of the vertex; vertices without a polygon keep theirs too.
+/// Numbers the distinct corners. The first corner of a vertex gets the number of the vertex; vertices without a polygon keep theirs.
 fn unify(mesh: &Mesh) -> Unified {
     let bare = |v: usize| Corner { vertex: u32::try_from(v).unwrap_or(NONE), uv: NONE, normal: NONE };
     let mut corners: Vec<Corner> = (0..mesh.positions.len()).map(bare).collect();
@@ -258,14 +258,14 @@ fn unify(mesh: &Mesh) -> Unified {
     Unified { corners, index }
 }
 
-/// The parts of a glTF file that a map leaves alone: materials, and all they refer to.
+/// The parts of a glTF file that a map leaves unchanged: materials, and all they refer to.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Assets {
-    /// The arrays named in [`KEPT`], as they were.
+    /// The arrays named in [`KEPT`], unchanged.
     json: Map<String, Value>,
     /// The names of the materials, made unique.
     materials: Vec<String>,
-    /// The bytes of pictures that were in a buffer, by the index of the picture.
+    /// The bytes of pictures that a buffer holds, by the index of the picture.
     pictures: Vec<(usize, Vec<u8>)>,
 }
 
@@ -273,7 +273,7 @@ pub struct Assets {
 const KEPT: [&str; 5] = ["materials", "textures", "samplers", "images", "extensionsUsed"];
 
 impl Assets {
-    /// Whether there are no materials.
+    /// Returns `true` if there are no materials.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.materials.is_empty()
@@ -298,7 +298,7 @@ impl Assets {
     }
 }
 
-/// Why a file could not be read or written as a mesh, and where.
+/// An error that prevents reading a file as a mesh or writing it, and its position in the file.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}{problem}", self.place())]
 pub struct MeshError {
@@ -312,7 +312,7 @@ pub struct MeshError {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFault {
-    /// What is wrong.
+    /// Description of the fault.
     Text(String),
     /// Reading takes more work than a limit allows.
     Limit(Exceeded),
@@ -328,12 +328,12 @@ impl fmt::Display for MeshFault {
 }
 
 impl MeshError {
-    /// An error at a line.
+    /// Makes an error at a line.
     pub(crate) fn at(line: usize, problem: impl Into<String>) -> Self {
         Self { line: Some(line), problem: MeshFault::Text(problem.into()) }
     }
 
-    /// An error about the whole file.
+    /// Makes an error about the whole file.
     pub(crate) fn whole(problem: impl Into<String>) -> Self {
         Self { line: None, problem: MeshFault::Text(problem.into()) }
     }

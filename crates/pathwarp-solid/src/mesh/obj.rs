@@ -1,8 +1,8 @@
 //! Wavefront OBJ: polygons with groups, materials, texture coordinates and normals.
 //!
-//! A deformed file should differ from its source in coordinates only. Crates that read OBJ return triangles by material, without groups,
-//! polylines or the order of objects, so none is used here. Long files are read and written on all threads; the result does not depend on
-//! their number.
+//! A deformed file differs from its source in coordinates only. Crates that read OBJ return triangles by material, without groups,
+//! polylines or the order of objects, so none is used here. Long files are read and written on all threads; the result does not depend
+//! on their number.
 
 use super::{Corner, Mark, Mesh, MeshError, NONE, Polygon, PolygonKind};
 use glam::DVec3;
@@ -16,7 +16,7 @@ const PART: usize = 1 << 20;
 /// [`Mesh::left_out`].
 ///
 /// # Errors
-/// A line is damaged, or an index is out of range.
+/// [`MeshFault::Text`](super::MeshFault::Text) with the line that is damaged or has an index out of range.
 pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     let joined;
     let text = if has_continuation(text) {
@@ -46,7 +46,7 @@ pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Whether any line ends with a backslash.
+/// Returns `true` if any line ends with a backslash.
 fn has_continuation(text: &[u8]) -> bool {
     // Few files contain a backslash at all, and searching for a single byte is fast.
     text.contains(&b'\\') && text.split(|b| *b == b'\n').any(|line| line.trim_ascii_end().ends_with(b"\\"))
@@ -140,7 +140,7 @@ fn text_after(line: &[u8], keyword: &[u8]) -> String {
     String::from_utf8_lossy(&line.trim_ascii()[keyword.len()..]).trim().to_owned()
 }
 
-/// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error says what the line should be.
+/// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error describes a correct line.
 fn polygon<'a>(
     kind: PolygonKind,
     min: usize,
@@ -183,7 +183,7 @@ fn join(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
         let c = &mut own.corners[corner];
         let slot = [&mut c.vertex, &mut c.uv, &mut c.normal];
         if let Some(slot) = slot.into_iter().nth(field) {
-            // Out of range, but not the value for a missing index.
+            // Out of range, but not the index that stands for a missing one.
             *slot = u32::try_from(i).unwrap_or(NONE - 1);
         }
     }
@@ -224,32 +224,32 @@ fn check(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
     })
 }
 
-/// The line of a polygon, counted from 1.
+/// Returns the line of a polygon, counted from 1.
 fn line_of(text: &[u8], polygon: usize) -> Option<usize> {
     let is_polygon = |line: &[u8]| matches!(words(line).next(), Some(b"f" | b"l" | b"p"));
     let mut lines = text.split(|b| *b == b'\n').enumerate().filter(|(_, line)| is_polygon(line));
     lines.nth(polygon).map(|(n, _)| n + 1)
 }
 
-/// The words of a line, without its comment.
+/// Iterates over the words of a line, without its comment.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     let end = line.iter().position(|b| *b == b'#').unwrap_or(line.len());
     line[..end].split(u8::is_ascii_whitespace).filter(|w| !w.is_empty())
 }
 
-/// A finite number that is not so large that its square overflows.
+/// Reads a finite number that is not so large that its square overflows.
 fn number(word: &[u8]) -> Option<f64> {
     let v: f64 = std::str::from_utf8(word).ok()?.parse().ok()?;
     (v.abs() < 1e100).then_some(v)
 }
 
-/// A vector from the next three words.
+/// Reads a vector from the next three words.
 fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<DVec3> {
     let mut next = || number(words.next()?);
     Some(DVec3::new(next()?, next()?, next()?))
 }
 
-/// An index: counted from 1, or from the end if negative.
+/// Reads an index, which counts from 1, or from the end if negative.
 fn index(word: &[u8]) -> Option<i64> {
     let (sign, digits) = match word.strip_prefix(b"-") {
         Some(rest) => (-1, rest),
@@ -268,15 +268,15 @@ fn index(word: &[u8]) -> Option<i64> {
     (n != 0).then_some(sign * n)
 }
 
-/// The beginning of a text, for messages.
+/// Returns the beginning of a text, for messages.
 fn shown(text: &[u8]) -> String {
     const MAX_CHARS: usize = 40;
     String::from_utf8_lossy(text).trim().chars().take(MAX_CHARS).collect()
 }
 
-/// Text is written in parallel, in parts of this many lines.
+/// Lines in each of the parts in which text is written in parallel.
 const LINES: usize = 1 << 14;
-/// Up to here (2⁵³), every integer is a floating-point number.
+/// The number 2⁵³, up to which every integer is a floating-point number.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Writes a mesh; coordinates get `decimals` decimals.
@@ -314,7 +314,7 @@ pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
     out
 }
 
-/// Eight decimals for colours, nine for texture coordinates and normals: single precision has seven significant digits.
+/// Scale of colours, with eight decimals; texture coordinates and normals have nine, since single precision has seven significant digits.
 const COLORS: f64 = 1e8;
 const DIRECTIONS: f64 = 1e9;
 

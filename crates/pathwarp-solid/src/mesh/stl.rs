@@ -1,6 +1,6 @@
 //! STL, binary and text, by means of the crate stl_io.
 //!
-//! STL has triangles without shared vertices, in single precision; corners at the same place become one vertex. The number of triangles
+//! STL has triangles without shared vertices, in single precision; corners at one position become one vertex. The number of triangles
 //! is checked against the length of the file before it is read.
 
 use super::{Corner, Mesh, MeshError, NONE, PolygonKind};
@@ -13,13 +13,13 @@ const HEAD: usize = 84;
 /// Bytes of a triangle in a binary file.
 const TRIANGLE: usize = 50;
 
-/// Whether this is an STL file: a binary one of the right length, or text that starts like one.
+/// Returns `true` for an STL file: a binary one of the right length, or text that starts like one.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE) || is_text(bytes)
 }
 
-/// The number of triangles that a binary file announces.
+/// Returns the number of triangles that a binary file announces.
 fn announced(bytes: &[u8]) -> Option<usize> {
     let number: [u8; 4] = bytes.get(HEAD - 4..HEAD)?.try_into().ok()?;
     usize::try_from(u32::from_le_bytes(number)).ok()
@@ -34,7 +34,7 @@ fn is_text(bytes: &[u8]) -> bool {
 /// Reads a mesh.
 ///
 /// # Errors
-/// The file is damaged: its length does not fit the number of triangles, or a number is not finite.
+/// [`MeshFault::Text`](super::MeshFault::Text) when the length does not fit the number of triangles, or a number is not finite.
 pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let binary = announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE);
     let mut own;
@@ -80,7 +80,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
 /// Writes the faces as triangles, in binary.
 ///
 /// # Errors
-/// There are more triangles than the format can count.
+/// [`MeshFault::Text`](super::MeshFault::Text) when there are more triangles than the format can count.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let single = |p: DVec3| [p.x as f32, p.y as f32, p.z as f32];
     let triangle = |t: [Corner; 3]| {

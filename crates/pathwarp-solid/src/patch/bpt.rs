@@ -1,5 +1,5 @@
-//! Bézier patches as text (`.bpt`), the form in which Newell's teapot is commonly stored: the number of patches, then for each patch its
-//! two degrees m and n and its (m + 1)·(n + 1) control points `x y z`, one per line, the second index fastest.
+//! Bézier patches as text (`.bpt`), the usual form of Newell's teapot: the number of patches, then for each patch its two degrees m and n
+//! and its (m + 1)·(n + 1) control points `x y z`, one per line, the second index fastest.
 
 use super::surface::{MAX_DEGREE, Surface};
 use crate::mesh::MeshError;
@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 /// Reads patches. A `#` starts a comment.
 ///
 /// # Errors
-/// A line is damaged, or there are fewer or more patches than announced.
+/// [`MeshFault::Text`](crate::mesh::MeshFault::Text) when a line is damaged, or there are fewer or more patches than announced.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let text = std::str::from_utf8(text).map_err(|_| MeshError::whole("is not a patch file: it is not text"))?;
     let lines = text.lines().enumerate().map(|(n, l)| (n + 1, l.split('#').next().unwrap_or("")));
@@ -60,10 +60,10 @@ fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> 
     }
 }
 
-/// Writes surfaces; NURBS as their Bézier patches.
+/// Writes surfaces, NURBS as their Bézier patches.
 ///
 /// # Errors
-/// A surface has weights or trimming curves, which the format cannot express.
+/// A message when a surface has weights or trimming curves, which the format cannot express.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let bad = |what: &str, s: &Surface| {
         let name = if s.name.is_empty() { String::new() } else { format!(" `{}`", s.name) };

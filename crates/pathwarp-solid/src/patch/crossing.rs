@@ -7,20 +7,20 @@ use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::map::CreaseKind;
 use std::cell::Cell;
 
-/// Places along u and along v at which the side of a crease is determined.
+/// Samples along u and along v at which the side of a crease is determined.
 const PLACES: usize = 24;
-/// Half the distance, in the parameters, between two places on either side of a crease.
+/// Half the distance, in the parameters, between two samples on either side of a crease.
 const BESIDE: f64 = 1e-6;
-/// A derivative that jumps by a smaller fraction of its size makes no visible crease.
+/// Jump of a derivative, as a fraction of its size, below which a crease is not visible.
 const JUMP: f64 = 1e-4;
 /// The largest slope of a curve that counts as a graph.
 const MAX_SLOPE: f64 = 6.0;
-/// The distance from a side, in the parameters, beyond which rounding does not decide which side of a crease a place is on.
+/// Distance from a side of the patch, in the parameters, at which rounding no longer decides the side of a crease.
 const SIDE: f64 = 1e-9;
-/// A patch is not cut this close to its sides.
+/// Distance from the sides of a patch within which it is not cut.
 const RIM: f64 = 0.02;
 
-/// A patch that counts the points that searches ask for: how many they take is known only afterwards.
+/// A patch that counts the points for which searches ask. Their number is known only afterwards.
 pub(super) struct Searched<'a> {
     patch: &'a BezierPatch,
     points: Cell<usize>,
@@ -36,23 +36,23 @@ impl<'a> Searched<'a> {
         self.patch.point(u, v)
     }
 
-    /// Counts the work since the last call.
+    /// Charges the budget for the points since the last call.
     pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
         budget.spend(self.points.take() as f64 * self.patch.work_of_points())
     }
 }
 
-/// The i-th place. All are inside the patch, as curves may end on its sides without crossing it.
+/// Returns the parameter of the i-th sample. All are inside the patch, since curves may end on its sides without crossing it.
 fn place(i: usize) -> f64 {
     (i as f64 + 0.5) / PLACES as f64
 }
 
-/// The level sets on which the derivative of a map jumps.
+/// Returns the level sets on which the derivative of a map jumps.
 pub(super) fn levels(creases: &Creases3) -> Vec<Level3> {
     creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
 }
 
-/// The level sets across which the derivative really jumps somewhere on the patch.
+/// Returns those level sets across which the derivative does jump somewhere on the patch.
 pub(super) fn crossing(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) -> Vec<Level3> {
     let grid: Vec<_> = (0..PLACES * PLACES).map(|k| patch.point(place(k % PLACES), place(k / PLACES))).collect();
     let mut out = Vec::new();
@@ -69,7 +69,7 @@ pub(super) fn crossing(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) 
     out
 }
 
-/// A place at which the map itself jumps across a level set, searched for along the edges of a coarse grid.
+/// Returns a point at which the map itself jumps across a level set, found along the edges of a coarse grid.
 pub(super) fn tear(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) -> Option<DVec3> {
     /// Lines of the grid, including the sides.
     const LINES: usize = 8;
@@ -88,7 +88,7 @@ pub(super) fn tear(patch: &Searched<'_>, map: &dyn Map3, levels: &[Level3]) -> O
     })
 }
 
-/// Two places close to a level set, one on either side, on the line between two places that it separates.
+/// Returns two points close to a level set, one on either side, on the line between two samples that it separates.
 fn beside(patch: &Searched<'_>, level: &Level3, a: [f64; 2], b: [f64; 2]) -> [DVec3; 2] {
     let between = |t: f64| patch.point(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
     let t = bisected(|t| level(between(t)), 0.0, 1.0);
@@ -100,19 +100,19 @@ fn size(d: DMat3) -> f64 {
     d.to_cols_array().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// Whether the images of two places, themselves `apart`, are much farther apart than the derivatives explain.
+/// Returns `true` if the images of two points at distance `apart` are much farther apart than the derivatives explain.
 fn moved_apart(p: &Jet3, q: &Jet3, apart: f64) -> bool {
     p.p.distance(q.p) > 10.0 * size(p.d).max(size(q.d)) * apart
 }
 
-/// Whether the value or the derivative jumps at the level set between two places.
+/// Returns `true` if the value or the derivative jumps at the level set between two samples.
 fn jumps(patch: &Searched<'_>, map: &dyn Map3, level: &Level3, a: [f64; 2], b: [f64; 2]) -> bool {
     let [from, to] = beside(patch, level, a, b);
     let (p, q) = (map.jet(from), map.jet(to));
     size(p.d - q.d) > JUMP * size(p.d).max(size(q.d)) || moved_apart(&p, &q, from.distance(to))
 }
 
-/// A zero of a function with different signs at `a` and `b`, to the last bits.
+/// Returns a zero of a function with different signs at `a` and `b`, to the last bits.
 fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     let rises = f(b) > 0.0;
     for _ in 0..60 {
@@ -125,12 +125,12 @@ fn bisected(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
 /// Curves v = g(u) across a whole patch, one above the other.
 pub(super) struct Graphs<'a> {
     patch: &'a Searched<'a>,
-    /// For each curve its level set, and its height at every [`place`].
+    /// Each curve's level set, and its height at every sample of u (see [`place`]).
     curves: Vec<(Level3, Vec<f64>)>,
 }
 
 impl<'a> Graphs<'a> {
-    /// The curves, if every line u = const meets the same ones in the same order, and none is too steep.
+    /// Finds the curves, if every line u = const meets the same ones in the same order, and none is too steep.
     pub(super) fn new(patch: &'a Searched<'a>, levels: &[Level3]) -> Option<Self> {
         let mut curves: Vec<(usize, Vec<f64>)> = Vec::new();
         for i in 0..PLACES {
@@ -151,22 +151,22 @@ impl<'a> Graphs<'a> {
         Some(Self { patch, curves: curves.into_iter().map(|(n, heights)| (levels[n].clone(), heights)).collect() })
     }
 
-    /// No curves.
+    /// Makes an empty list of curves.
     pub(super) fn none(patch: &'a Searched<'a>) -> Self {
         Self { patch, curves: Vec::new() }
     }
 
-    /// The number of curves.
+    /// Returns the number of curves.
     pub(super) fn count(&self) -> usize {
         self.curves.len()
     }
 
-    /// Counts the searches since the last call.
+    /// Charges the budget for the searches since the last call.
     pub(super) fn spend(&self, budget: &Budget) -> Result<(), Exceeded> {
         self.patch.spend(budget)
     }
 
-    /// Height and slope of the lower and of the upper side of a layer, at `u`.
+    /// Returns height and slope of the lower and of the upper side of a layer, at `u`.
     pub(super) fn sides(&self, layer: usize, u: f64) -> [[f64; 2]; 2] {
         let low = if layer == 0 { [0.0, 0.0] } else { self.at(layer - 1, u) };
         if layer == self.count() {
@@ -176,14 +176,14 @@ impl<'a> Graphs<'a> {
         [low, [high[0].max(low[0]), high[1]]]
     }
 
-    /// Height and slope of a curve at `u`.
+    /// Returns height and slope of a curve at `u`.
     fn at(&self, curve: usize, u: f64) -> [f64; 2] {
         /// Step of difference quotients, in the parameters.
         const H: f64 = 1e-6;
         let Some((level, heights)) = self.curves.get(curve) else { return [f64::from(curve > 0), 0.0] };
         let f = |u: f64, v: f64| level(self.patch.point(u, v));
         let by_v = |v: f64| (f(u, v + H) - f(u, v - H)) / (2.0 * H);
-        // Newton's method, starting on the line through the neighbouring places. No curve is steep, so the derivative is not small.
+        // Newton's method, starting on the line through the neighbouring samples. No curve is steep, so the derivative is not small.
         let x = u * PLACES as f64 - 0.5;
         let i = (x.floor().max(0.0) as usize).min(PLACES - 2);
         let mut v = heights[i] + (x - i as f64) * (heights[i + 1] - heights[i]);
@@ -198,13 +198,13 @@ impl<'a> Graphs<'a> {
     }
 }
 
-/// The indices of the level sets that the line u = const meets, with the values of v there, in order.
+/// Returns the indices of the level sets that the line u = const meets, with the values of v there, in order.
 fn met(patch: &Searched<'_>, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (n, level) in levels.iter().enumerate() {
         let f = |v: f64| level(patch.point(u, v));
         let values: Vec<bool> = (0..PLACES).map(|j| f(place(j)) > 0.0).collect();
-        // Before the first place, and below after the last one. A level set along the side itself is not met.
+        // Search below the first sample and, further down, above the last one. A level set along the side itself is not met.
         if (f(SIDE) > 0.0) != values[0] {
             out.push((n, bisected(f, SIDE, place(0))));
         }
@@ -221,8 +221,8 @@ fn met(patch: &Searched<'_>, levels: &[Level3], u: f64) -> Vec<(usize, f64)> {
     out
 }
 
-/// A value of u, not too close to 0 or 1, at which a level set meets the side v = 0 or v = 1. To the left and right of it, curves are more
-/// likely to be graphs.
+/// Returns a value of u, not too close to 0 or 1, at which a level set meets the side v = 0 or v = 1. To its left and right, curves are
+/// more likely to be graphs.
 pub(super) fn cut(patch: &Searched<'_>, levels: &[Level3]) -> Option<f64> {
     let inside = RIM..=1.0 - RIM;
     for v in [0.0, 1.0] {

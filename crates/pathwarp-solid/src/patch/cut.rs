@@ -1,8 +1,8 @@
 //! Images of surfaces that creases cross: they are cut into parts, each with a smooth image.
 //!
-//! If the crease is a graph over u or v, a part is fitted by layers that follow the crease. Otherwise the part is cut at a place where the
-//! crease meets its sides, or else in the middle, and the new parts are treated the same way. A part without a crease keeps its exact image
-//! if it has one. Trimming loops are cut along with the parts, and parts outside them are left out.
+//! If the crease is a graph over u or v, a part is fitted by layers that follow the crease. Otherwise the part is cut at a parameter where
+//! the crease meets its sides, or else in the middle, and the new parts are treated alike. A part without a crease keeps its exact image
+//! if it has one. Trimming loops are cut along with the parts, and parts outside them are omitted.
 
 use super::crossing::{Graphs, Searched};
 use super::part::Sided;
@@ -14,11 +14,11 @@ use crate::map::{Chain3, Level3, Map3};
 use glam::{DVec3, Vec4Swizzles as _};
 use pathwarp::budget::{Budget, Exceeded};
 
-/// After this many successive cuts in the middle, a part is fitted as it is.
+/// Number of successive cuts in the middle after which a part is fitted as it is.
 const MAX_HALVINGS: usize = 6;
-/// After this many successive cuts of any kind, a part is fitted as it is.
+/// Number of successive cuts of any kind after which a part is fitted as it is.
 const MAX_CUTS: usize = 24;
-/// A part that may still be cut is cut rather than fitted with more cells along it than this.
+/// Cells along a part that may still be cut; if it needs more, it is cut.
 const ENOUGH: usize = 16;
 
 /// The parts of a surface's image.
@@ -38,11 +38,11 @@ pub(super) struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The image of a surface in parts, if a crease crosses it or the map tears it apart between two patches; otherwise `None`. `pieces` are
-    /// its patches, and `breaks` the parameters between them.
+    /// Returns the image of a surface in parts, if a crease crosses it or the map tears it apart between two patches, else `None`. `pieces`
+    /// are its patches, and `breaks` the parameters between them.
     ///
     /// # Errors
-    /// It would take more evaluations than the limit allows.
+    /// [`Exceeded`] when it takes more evaluations than the budget allows.
     pub(super) fn image(
         &self,
         surface: &Surface,
@@ -75,7 +75,7 @@ impl Cutter<'_> {
         Ok(Some(out))
     }
 
-    /// Whether the images of any two neighbouring patches do not join.
+    /// Returns `true` if the images of any two neighbouring patches do not join.
     fn is_torn(&self, pieces: &[BezierPatch], across: usize) -> Result<bool, Exceeded> {
         const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
         if pieces.len() == 1 {
@@ -94,16 +94,16 @@ impl Cutter<'_> {
         }))
     }
 
-    /// The trimming loops of a part.
+    /// Returns the trimming loops of a part.
     fn trims_of(&self, trims: Option<&Trims>, from: [f64; 2], to: [f64; 2]) -> Result<Option<Trims>, Exceeded> {
-        /// Clipping a curve takes about as long as this many evaluations of a map.
+        /// Work of clipping a curve, in evaluations of a map.
         const WORK: usize = 16;
         let Some(trims) = trims else { return Ok(None) };
         self.budget.spend((WORK * trims.count()) as f64)?;
         Ok(trims.part(from, to))
     }
 
-    /// Adds the image of a part that these creases may cross. `cuts` counts the cuts in the middle, and all cuts, that led to it.
+    /// Adds the image of a part that the creases `levels` may cross. `cuts` counts the cuts in the middle, and all cuts, that led to it.
     fn part(&self, part: &Part, levels: &[Level3], cuts: [usize; 2], out: &mut Parts) -> Result<(), Exceeded> {
         if part.trims.as_ref().is_some_and(Trims::is_empty) {
             return Ok(());
@@ -139,8 +139,8 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// The image of a part without further cuts, with up to `max_cells` cells along a layer, and its distance from the exact image. `None` if
-    /// a crease crosses it that is not a graph, unless the part must not be cut further. The part is also given turned.
+    /// Returns the image of a part without further cuts, with up to `max_cells` cells along a layer, and its distance from the exact image.
+    /// `None` if the part must be cut because a crease crosses it that is not a graph. `turned` is the part with u and v exchanged.
     fn whole(
         &self,
         [part, turned]: [&Part; 2],
@@ -176,11 +176,11 @@ impl Cutter<'_> {
         }
     }
 
-    /// Layers as surfaces with their trimming loops. Each layer has loops of its own, so they cannot be stacked.
+    /// Returns layers as surfaces with their trimming loops. Each layer has different loops, so the layers cannot be stacked.
     fn trimmed(&self, fits: &[Cells], n: usize, trims: &Trims, graphs: &Graphs<'_>) -> Result<Vec<Surface>, Exceeded> {
-        /// The fraction of the tolerance left for the loops, which must be fitted too where the sides of a layer are curved.
+        /// Fraction of the tolerance left for the loops, which are fitted too where the sides of a layer are curved.
         const FRACTION: f64 = 0.1;
-        /// Fitting a curve takes about as long as this many evaluations of a map.
+        /// Work of fitting a curve, in evaluations of a map.
         const WORK: usize = 4096;
         let mut out = Vec::with_capacity(fits.len());
         for (k, cells) in fits.iter().enumerate() {
@@ -202,7 +202,7 @@ impl Cutter<'_> {
         Ok(out)
     }
 
-    /// The images of the layers of a part, and their distance from the exact ones: within the tolerance if `max_cells` suffice.
+    /// Returns the images of the layers of a part, and their distance from the exact ones: within the tolerance if `max_cells` suffice.
     fn layers(
         &self,
         part: &Part,
@@ -229,7 +229,7 @@ impl Cutter<'_> {
     }
 }
 
-/// A part of a surface with parameters 0..1 × 0..1, and with its loops if it is trimmed.
+/// A part of a surface with parameters 0..1 × 0..1, and its loops if it is trimmed.
 struct Part {
     patch: BezierPatch,
     trims: Option<Trims>,
@@ -274,7 +274,7 @@ fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     stacks.into_iter().map(surface).collect()
 }
 
-/// An upper bound for the derivatives of a bicubic surface of n × n cells.
+/// Returns an upper bound for the derivatives of a bicubic surface of n × n cells.
 fn max_derivative(surface: &Surface, n: usize) -> f64 {
     let width = 3 * n + 1;
     let across = surface.points.chunks(width).flat_map(|row| row.windows(2).map(|w| w[0].distance(w[1])));
@@ -294,8 +294,8 @@ fn transposed(mut surface: Surface) -> Surface {
 /// The parts of a patch between crease curves, from v = 0 upwards.
 ///
 /// Between two curves v = g(u) and v = h(u) the patch is P(s, g(s) + t·(h(s) − g(s))), which no crease crosses. It is fitted by bicubic
-/// cells, which have the position, tangents and twist of the image at their corners, as in `refit`; derivatives at a curve are taken on the
-/// layer's own side of it.
+/// cells, which have the position, tangents and twist of the image at their corners, as in the module `refit`. Derivatives at a curve are
+/// taken on the layer's side of it.
 struct Layers<'a> {
     patch: &'a BezierPatch,
     graphs: &'a Graphs<'a>,
@@ -335,7 +335,7 @@ impl Layers<'_> {
         self.patch.point(rung.s, rung.low[0] + t * (rung.high[0] - rung.low[0]))
     }
 
-    /// The image of a place, and its derivatives by s and t.
+    /// Returns the image of a point of a layer, and its derivatives by s and t.
     fn tangents(&self, rung: &Rung, t: f64) -> [DVec3; 3] {
         let v = rung.low[0] + t * (rung.high[0] - rung.low[0]);
         let [p, du, dv] = self.patch.jet(rung.s, v);

@@ -1,6 +1,6 @@
 //! Rational patches and NURBS surfaces as JSON, with trimming curves, and NURBS curves in space. `docs/solid.md` describes the format.
 //!
-//! A curve is a surface of degree p × 1 whose two rows of control points are the same: so is its image, whose rows are written once.
+//! A curve is a surface of degree p × 1 whose two rows of control points are equal. So is its image, whose rows are written once.
 
 use super::surface::{self, Surface, TrimCurve};
 use crate::mesh::MeshError;
@@ -35,11 +35,11 @@ struct Entry {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     name: String,
     degree: [usize; 2],
-    /// By default those of a Bézier patch over 0..1.
+    /// By default the knots of a Bézier patch over 0..1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     knots: Option<[Vec<f64>; 2]>,
     points: Vec<[f64; 3]>,
-    /// By default 1.
+    /// By default all weights are 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -60,7 +60,7 @@ struct Curve {
 /// Reads surfaces.
 ///
 /// # Errors
-/// The text is damaged. The error says where in the text, or in which surface.
+/// [`MeshFault::Text`](crate::mesh::MeshFault::Text), with the position in the text or the surface, when the text is damaged.
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let file: File =
         serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
@@ -114,7 +114,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
 /// Writes surfaces. Every number is exact.
 ///
 /// # Errors
-/// A number cannot be written as JSON.
+/// A message when a number cannot be written as JSON.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let weights = |w: &[f64]| w.iter().any(|w| *w != 1.0).then(|| w.to_vec());
     let curve = |c: &TrimCurve| Curve {

@@ -1,5 +1,5 @@
-//! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves. Files, exact images, and approximate ones where the
-//! degree of an exact image would be too high.
+//! Curved surfaces: Bézier patches and NURBS, rational or not, with trimming curves; their files, their exact images, and approximate
+//! images where the degree of an exact one would be too high.
 
 pub mod bpt;
 mod crossing;
@@ -23,26 +23,26 @@ use thiserror::Error;
 pub use surface::{BezierPatch, MAX_DEGREE, Surface, TrimCurve};
 pub use tessellate::{tessellate, tessellate_image};
 
-/// What [`deform_patches`] did, with the largest error.
+/// The outcome of [`deform_patches`], with the largest error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeformedPatches {
     /// Surfaces whose image is exact.
     pub exact: usize,
     /// Surfaces that were refitted with bicubic patches.
     pub refitted: usize,
-    /// How many of the refitted ones were cut into parts because a crease crosses them; some of the parts may be exact.
+    /// Number of the refitted surfaces that were cut into parts because a crease crosses them; some of the parts may be exact.
     pub cut: usize,
     /// The largest distance measured between refitted surfaces and their exact images.
     pub distance: f64,
-    /// Places of a grid on the surfaces at which the map turns space inside out.
+    /// Number of points of a grid on the surfaces at which the map turns space inside out.
     pub folded: usize,
-    /// The first of those places, in the source.
+    /// The first of those points, in the source.
     pub folded_at: Option<DVec3>,
-    /// A place on a surface at which the map jumps, in the source.
+    /// A point of a surface at which the map jumps, in the source.
     pub torn_at: Option<DVec3>,
 }
 
-/// Why surfaces have no image.
+/// The reason why surfaces have no image.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PatchError {
     /// The map is not defined at a point of a surface.
@@ -58,12 +58,12 @@ pub enum PatchError {
     Limit(#[from] Exceeded),
 }
 
-/// Replaces surfaces by their images. An image that is not exact is within `tolerance` of the exact one at equal parameters, unless that
-/// takes more than 64 cells along a patch; [`DeformedPatches::distance`] tells. A surface that a crease crosses is cut along it and replaced
-/// by its parts.
+/// Replaces surfaces by their images. An image that is not exact is within `tolerance` of the exact one at equal parameters, unless
+/// that takes more than 64 cells along a patch: see [`DeformedPatches::distance`]. A surface that a crease crosses is cut along it and
+/// replaced by its parts.
 ///
 /// # Errors
-/// A point on a grid of 8 × 8 points of a patch has no image, or more evaluations would be needed than the limit allows.
+/// [`PatchError::Undefined`] when one of 8 × 8 points of a patch has no image, [`PatchError::Limit`] when the budget does not suffice.
 pub fn deform_patches(
     surfaces: &mut Vec<Surface>,
     map: &Chain3,
@@ -116,10 +116,10 @@ pub fn deform_patches(
     Ok(out)
 }
 
-/// A surface left to refit: its index, its pieces with the map on each, and the parameters between them.
+/// A surface to refit: its index, its pieces with the map on each, and the parameters between them.
 type Left = (usize, Vec<(Sided, BezierPatch)>, [Vec<f64>; 2]);
 
-/// Fits all surfaces with the same number of cells, as many as the worst of them needs to get within the tolerance. Returns the largest
+/// Fits all surfaces with one number of cells, as many as the worst of them needs to get within the tolerance. Returns the largest
 /// distance.
 fn refitted(
     surfaces: &[Surface],
@@ -128,7 +128,7 @@ fn refitted(
     images: &mut [Vec<Surface>],
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
-    // A crease may lie along sides. All surfaces take derivatives equally far inside, so that neighbours take them at the same places.
+    // A crease may lie along sides. All surfaces take derivatives equally far inside, so that neighbours take them at the same points.
     let smooth = left.iter().flat_map(|(_, pieces, _)| pieces).all(|(side, _)| side.smooth);
     let inside = if smooth { 0.0 } else { INSIDE };
     let mut n = 1;
@@ -155,7 +155,7 @@ fn refitted(
     }
 }
 
-/// Looks for places without an image, and for folds, on a grid.
+/// Looks for points of a grid without an image, and for folds.
 fn examine(
     surface: usize,
     pieces: &[BezierPatch],

@@ -8,7 +8,7 @@ use pathwarp::map::CreaseKind;
 use std::sync::Arc;
 
 impl BezierPatch {
-    /// The part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, with parameters 0..1 × 0..1.
+    /// Returns the part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, with parameters 0..1 × 0..1.
     #[must_use]
     pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Self {
         let rows = self.points.chunks(self.degree[0] + 1);
@@ -19,7 +19,7 @@ impl BezierPatch {
         Self { degree: turned.degree, points }.transposed()
     }
 
-    /// The same patch with u and v exchanged.
+    /// Returns the patch with u and v exchanged.
     #[must_use]
     pub(super) fn transposed(&self) -> Self {
         let width = self.degree[0] + 1;
@@ -28,7 +28,7 @@ impl BezierPatch {
     }
 }
 
-/// The control points of a Bézier curve between two parameters. The k-th is the polar form at `from`, n − k times, and `to`, k times.
+/// Returns the control points of a Bézier curve between two parameters. The k-th is the polar form at n − k times `from` and k times `to`.
 pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
     let n = points.len().saturating_sub(1);
     let polar = |k: usize| {
@@ -47,7 +47,7 @@ pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
 /// A map as it acts on one patch: where a side of the patch lies in a crease, the branch on the patch's side applies.
 pub(super) struct Sided {
     pub(super) map: Chain3,
-    /// Whether no crease crosses or touches the patch, as far as its bounding box tells.
+    /// `true` if no crease crosses or touches the patch, as far as its bounding box shows.
     pub(super) smooth: bool,
 }
 
@@ -59,7 +59,7 @@ impl Sided {
             let own = on.and_then(|on| step.branch(&on));
             out.smooth &= own.is_some() || !has_kinks(&**step);
             let own = own.unwrap_or_else(|| Arc::clone(step));
-            // The box of the image is only computed for collineations.
+            // The box of the image is only known for collineations.
             on = on.zip(own.collineation()).and_then(|(on, c)| image(&on, c));
             out.map.push(own);
         }
@@ -73,7 +73,7 @@ fn has_kinks(map: &dyn Map3) -> bool {
     creases.items().iter().any(|c| c.kind == CreaseKind::Kink)
 }
 
-/// The bounding box of a box's image, if the box is all in front of the vanishing plane.
+/// Returns the bounding box of a box's image, if the box is all in front of the vanishing plane.
 fn image(on: &Box3, map: &Collineation) -> Option<Box3> {
     let ahead = on.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
     if ahead { Box3::around(on.corners().map(|p| map.point(p))) } else { None }

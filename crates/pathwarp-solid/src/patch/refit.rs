@@ -1,8 +1,8 @@
 //! Images of surfaces: exact ones where the map is rational and the degree allows it, otherwise bicubic patches within a tolerance.
 //!
-//! For the latter, every Bézier patch is cut into n × n cells, with the same n for all patches of a model, so that patches that share an
-//! edge still do. A cell has the position, both tangents and the twist of the exact image at its corners; so neighbours join smoothly, and
-//! the error falls with n⁴. The distance is measured at equal parameters, on a grid within each cell.
+//! For an approximate image, every Bézier patch is cut into n × n cells, with one n for all patches of a model, so that patches that share
+//! an edge still do. A cell has the position, both tangents and the twist of the exact image at its corners; so neighbours join smoothly,
+//! and the error falls with n⁴. The distance is measured at equal parameters, on a grid within each cell.
 //!
 //! The exact image of a rational patch under a rational map is a rational patch. Under a collineation (degree 1), p̂ = p/δ and ŵ = w·δ for
 //! control points and weights, whatever the knots. Under a map of degree d, a patch of degree m × n becomes one of degree dm × dn, by
@@ -14,11 +14,11 @@ use glam::{DVec3, DVec4, Vec4Swizzles as _};
 use pathwarp::budget::{Budget, Exceeded};
 use std::collections::BTreeMap;
 
-/// The most cells along a side of a patch. Only at a crease, where cells converge slowly, would more be needed.
+/// Limit on cells along a side of a patch. Only at a crease, where cells converge slowly, would more be needed.
 pub(super) const MAX_CELLS: usize = 64;
-/// Derivatives at a crease are taken this far from it, in the parameters. A power of two, so that neighbours take them at the same place.
+/// Distance from a crease at which derivatives are taken, in the parameters. A power of two, so that neighbours use the same points.
 pub(super) const INSIDE: f64 = 1.0 / 1_048_576.0;
-/// Places along each side of a cell at which the distance is measured.
+/// Samples along each side of a cell at which the distance is measured.
 pub(super) const PLACES: usize = 4;
 
 /// The image of a patch as n × n bicubic cells.
@@ -41,7 +41,7 @@ fn tangents(patch: &BezierPatch, map: &dyn Map3, u: f64, v: f64) -> [DVec3; 3] {
 
 fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, inside: f64) -> Corner {
     let within = |t: f64| t.clamp(inside, 1.0 - inside);
-    // The twist is a difference quotient of tangents, with about this relative error. It moves only one control point of a cell, by a ninth.
+    // The twist is a difference quotient of tangents, with about this relative error. It moves one control point of a cell, by a ninth.
     let h = 1e-4 / n as f64;
     let (before, after) = ((v - h).max(inside), (v + h).min(1.0 - inside));
     let [p, du, dv] = tangents(patch, map, u, v);
@@ -54,18 +54,18 @@ fn corner(patch: &BezierPatch, map: &dyn Map3, [u, v]: [f64; 2], n: usize, insid
     if is_torn(p, &own, inside) {
         return [own[0], own[1], own[2], twist];
     }
-    // Neighbours agree on the derivative along a shared side, and each has its own across it.
+    // Neighbours agree on the derivative along a shared side; across it, each has the derivative on its side.
     [p, across(v), tangents(patch, map, u, within(v))[2], twist]
 }
 
-/// Whether the image of a place is much farther from the image `beside` it, `inside` away in the parameters, than the derivatives there
-/// explain.
+/// Returns `true` if the image at a point is much farther from the image `beside` it, `inside` away in the parameters, than the
+/// derivatives there explain.
 pub(super) fn is_torn(at: DVec3, [beside, ds, dt]: &[DVec3; 3], inside: f64) -> bool {
     const FAR: f64 = 100.0;
     at.distance(*beside) > FAR * inside * (ds.length() + dt.length())
 }
 
-/// The evaluations that n × n cells take.
+/// Returns the number of evaluations that n × n cells take.
 pub(super) fn work(patch: &BezierPatch, n: usize) -> f64 {
     let samples = (n * PLACES + 1) * (n * PLACES + 1);
     (patch.work() * (3 * (n + 1) * (n + 1) + samples)) as f64
@@ -83,7 +83,7 @@ pub(super) fn fit(patch: &BezierPatch, map: &dyn Map3, n: usize, inside: f64) ->
 }
 
 impl Cells {
-    /// The cells with these corners, u fastest.
+    /// Makes the cells with these corners, u fastest.
     pub(super) fn new(n: usize, corners: Vec<Corner>) -> Self {
         let width = 3 * n + 1;
         let mut points = vec![DVec3::ZERO; width * width];
@@ -92,7 +92,7 @@ impl Cells {
             let (i, j) = (3 * (k % (n + 1)), 3 * (k / (n + 1)));
             for a in 0..3usize {
                 for b in 0..3usize {
-                    // From one before to one after the corner, along u and v.
+                    // The control points from one before to one after the corner, along u and v.
                     let (x, y) = ((i + a).wrapping_sub(1), (j + b).wrapping_sub(1));
                     if x < width && y < width {
                         let (s, t) = ((a as f64 - 1.0) * step, (b as f64 - 1.0) * step);
@@ -120,7 +120,7 @@ impl Cells {
         }
     }
 
-    /// Rows of control points, u fastest.
+    /// Iterates over rows of control points, u fastest.
     pub(super) fn rows(&self) -> impl DoubleEndedIterator<Item = &[DVec3]> {
         self.points.chunks(3 * self.n + 1)
     }
@@ -132,7 +132,7 @@ impl Cells {
     }
 }
 
-/// Joins the images of a surface's patches, u fastest, all with the same number of cells.
+/// Joins the images of a surface's patches, u fastest, all with one number of cells.
 pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]) -> Surface {
     let n = pieces.first().map_or(1, |c| c.n);
     let spans = breaks.each_ref().map(|b| b.len() - 1);
@@ -158,10 +158,10 @@ pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]
     }
 }
 
-/// The exact image under a map, if it is a surface of allowed degree with positive weights.
+/// Returns the exact image under a map, if it is a surface of allowed degree with positive weights.
 ///
 /// # Errors
-/// It would take more work than the limit allows.
+/// [`Exceeded`] when it takes more work than the budget allows.
 pub(super) fn image(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
     let out = match map.collineation() {
         Some(c) => Some(projected(surface, c)),
@@ -180,7 +180,7 @@ fn projected(surface: &Surface, map: &Collineation) -> Surface {
     out
 }
 
-/// The map on each piece as a fraction of polynomials of degree `max` or less.
+/// Returns the map on each piece as a fraction of polynomials of degree `max` or less.
 fn fractions(
     pieces: &[BezierPatch],
     map: &dyn Map3,
@@ -189,7 +189,7 @@ fn fractions(
 ) -> Result<Option<Vec<Fraction3>>, Exceeded> {
     let mut out: Vec<Fraction3> = Vec::with_capacity(pieces.len());
     for piece in pieces {
-        // It takes about as much work as this many evaluations of the map. Pieces are assumed to have the degree of the one before.
+        // Finding a fraction takes about as much work as this many evaluations. A piece is assumed to have the degree of the one before.
         let d = out.last().map_or(max, Fraction3::degree) + 1;
         budget.spend(d.pow(4) as f64)?;
         match piece.bounds().and_then(|b| map.fraction(&b, max)) {
@@ -213,7 +213,7 @@ fn joined_exactly(
     breaks: &[Vec<f64>; 2],
     fractions: &[Fraction3],
 ) -> Option<Surface> {
-    /// Control points shared by two pieces agree within this fraction of the surface's size, unless the map tears them apart.
+    /// Distance within which control points shared by two pieces agree if the map tears nothing, as a fraction of the surface's size.
     const SAME: f64 = 1e-9;
     if fractions.iter().all(Fraction3::is_identity) {
         return Some(surface.clone());
@@ -247,13 +247,13 @@ fn joined_exactly(
         degree,
         knots: [0, 1].map(|a| surface::joined(degree[a], &breaks[a])),
         points: all.iter().map(|p| p.xyz() / p.w).collect(),
-        // The weights of a polynomial surface are known, and would be rounded in products.
+        // The weights of a polynomial surface are known to be 1; products would round them.
         weights: all.iter().map(|p| if polynomial { 1.0 } else { p.w }).collect(),
         trims: surface.trims.clone(),
     })
 }
 
-/// The homogeneous control points of a patch's image under a map, raised to degree `d`.
+/// Returns the homogeneous control points of a patch's image under a map, raised to degree `d`.
 fn substituted(piece: &BezierPatch, fraction: &Fraction3, d: usize) -> Vec<DVec4> {
     let (middle, half) = (fraction.chart.middle(), fraction.chart.half());
     let scaled = |f: &dyn Fn(&DVec4) -> f64| Scaled::new(piece.degree, piece.points.iter().map(f)).powers(d);

@@ -35,7 +35,7 @@ pub struct TrimCurve {
 }
 
 impl Surface {
-    /// A Bézier patch over 0..1 × 0..1 with weights 1. There must be (`degree[0]` + 1)·(`degree[1]` + 1) points.
+    /// Makes a Bézier patch over 0..1 × 0..1 with weights 1. There must be (`degree[0]` + 1)·(`degree[1]` + 1) points.
     #[must_use]
     pub fn bezier(name: &str, degree: [usize; 2], points: Vec<DVec3>) -> Self {
         let weights = vec![1.0; points.len()];
@@ -43,25 +43,25 @@ impl Surface {
         Self { name: name.to_owned(), degree, knots, points, weights, trims: Vec::new() }
     }
 
-    /// The numbers of control points in u and v.
+    /// Returns the numbers of control points in u and v.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         [0, 1].map(|a| self.knots[a].len().saturating_sub(self.degree[a] + 1))
     }
 
-    /// Whether weights differ.
+    /// Returns `true` if weights differ.
     #[must_use]
     pub fn is_rational(&self) -> bool {
         self.weights.windows(2).any(|w| w[0] != w[1])
     }
 
-    /// Whether the surface is a single Bézier patch.
+    /// Returns `true` if the surface is a single Bézier patch.
     #[must_use]
     pub fn is_bezier(&self) -> bool {
         self.size() == self.degree.map(|d| d + 1)
     }
 
-    /// Returns `true` if all rows of control points are the same up to rounding, so that the surface is a curve.
+    /// Returns `true` if all rows of control points are equal up to rounding, so that the surface is a curve.
     #[must_use]
     pub fn is_curve(&self) -> bool {
         const SAME: f64 = 1e-12;
@@ -71,13 +71,13 @@ impl Surface {
             && self.weights.chunks(n).all(|row| row.iter().zip(&self.weights).all(|(v, w)| (v - w).abs() <= SAME * w))
     }
 
-    /// The bounding box of the control points, which contains the surface.
+    /// Returns the bounding box of the control points, which contains the surface.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.points.iter().copied())
     }
 
-    /// What is wrong with the numbers, if anything.
+    /// Returns a description of the first fault in the numbers, if there is one.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         let names = ["u", "v"];
@@ -93,7 +93,7 @@ impl Surface {
         if Some(self.points.len()) != nu.checked_mul(nv) {
             return Some(format!("has {} control points; its degrees and knots take {nu} × {nv}", self.points.len()));
         }
-        // The square of a larger number overflows.
+        // The square of a larger number would overflow.
         if let Some(i) =
             self.points.iter().position(|p| p.abs().max_element().is_nan() || p.abs().max_element() > 1e100)
         {
@@ -103,7 +103,7 @@ impl Surface {
             .or_else(|| self.trims.iter().flatten().find_map(|t| t.fault().map(|f| format!("a trimming curve {f}"))))
     }
 
-    /// The Bézier patches, u fastest, and the values of u and v between them.
+    /// Returns the Bézier patches, u fastest, and the values of u and v between them.
     #[must_use]
     pub fn pieces(&self) -> (Vec<BezierPatch>, [Vec<f64>; 2]) {
         let homogeneous: Vec<_> = self.points.iter().zip(&self.weights).map(|(p, w)| (*p * *w).extend(*w)).collect();
@@ -147,18 +147,18 @@ pub struct BezierPatch {
 }
 
 impl BezierPatch {
-    /// The work of computing a point and its image, in evaluations of a map.
+    /// Returns the work of computing a point and its image, in evaluations of a map.
     pub(super) fn work(&self) -> usize {
         2 + (self.degree[0] + 1) * (self.degree[1] + 1) / 2
     }
 
-    /// The work of computing a point alone.
+    /// Returns the work of computing a point alone.
     pub(super) fn work_of_points(&self) -> f64 {
         let [m, n] = self.degree.map(|d| d as f64 + 1.0);
         1.0 + 0.025 * n * m * m
     }
 
-    /// The value in homogeneous coordinates, and its derivatives by u and v.
+    /// Returns the value in homogeneous coordinates, and its derivatives by u and v.
     #[must_use]
     pub fn homogeneous(&self, u: f64, v: f64) -> [DVec4; 3] {
         let rows = self.points.chunks(self.degree[0] + 1).map(|row| curve(row.iter().copied(), u));
@@ -171,7 +171,7 @@ impl BezierPatch {
         [value, curve(slope[..n].iter().copied(), v).0, dv]
     }
 
-    /// The point at u and v.
+    /// Returns the point at u and v.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         let mut row = [DVec4::ZERO; MAX_DEGREE + 1];
@@ -182,7 +182,7 @@ impl BezierPatch {
         p.xyz() / p.w
     }
 
-    /// The point at u and v, and its derivatives by u and v.
+    /// Returns the point at u and v, and its derivatives by u and v.
     #[must_use]
     pub fn jet(&self, u: f64, v: f64) -> [DVec3; 3] {
         let [p, du, dv] = self.homogeneous(u, v);
@@ -190,14 +190,14 @@ impl BezierPatch {
         [at, (du.xyz() - at * du.w) / p.w, (dv.xyz() - at * dv.w) / p.w]
     }
 
-    /// The bounding box of the control points.
+    /// Returns the bounding box of the control points.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         Box3::around(self.points.iter().map(|p| p.xyz() / p.w))
     }
 }
 
-/// A point of a Bézier curve, by the arithmetic of [`curve`].
+/// Returns a point of a Bézier curve, by the arithmetic of [`curve`].
 fn value(points: &[DVec4], t: f64) -> DVec4 {
     let between = |a: DVec4, b: DVec4| a * (1.0 - t) + b * t;
     if let [a, b, c, d] = *points {
@@ -207,7 +207,7 @@ fn value(points: &[DVec4], t: f64) -> DVec4 {
     curve(points.iter().copied(), t).0
 }
 
-/// A point of a Bézier curve, and the derivative. The arithmetic is the same from both ends, so patches with a common edge agree on it to the
+/// Returns a point of a Bézier curve, and the derivative. The arithmetic is symmetric, so patches with a common edge agree on it to the
 /// last bit at parameters t and 1 − t.
 pub(super) fn curve(points: impl Iterator<Item = DVec4>, t: f64) -> (DVec4, DVec4) {
     let mut row = [DVec4::ZERO; MAX_DEGREE + 1];
@@ -234,7 +234,7 @@ pub(super) struct Scaled {
     c: Vec<f64>,
 }
 
-/// C(n, 0) to C(n, n).
+/// Returns C(n, 0) to C(n, n).
 fn binomials(n: usize) -> Vec<f64> {
     let mut out = vec![1.0; n + 1];
     for k in 1..=n {
@@ -248,19 +248,19 @@ impl Scaled {
         Self { degree: [0, 0], c: vec![v] }
     }
 
-    /// Zero, as a polynomial of some degree.
+    /// Makes the zero polynomial, with this degree.
     pub(super) fn zero(degree: [usize; 2]) -> Self {
         Self { degree, c: vec![0.0; (degree[0] + 1) * (degree[1] + 1)] }
     }
 
-    /// The polynomial with these Bernstein coefficients.
+    /// Makes the polynomial with these Bernstein coefficients.
     pub(super) fn new(degree: [usize; 2], c: impl Iterator<Item = f64>) -> Self {
         let [a, b] = degree.map(binomials);
         let factor = b.iter().flat_map(|b| a.iter().map(move |a| a * b));
         Self { degree, c: c.zip(factor).map(|(c, f)| c * f).collect() }
     }
 
-    /// The Bernstein coefficients.
+    /// Returns the Bernstein coefficients.
     pub(super) fn bernstein(&self) -> Vec<f64> {
         let [a, b] = self.degree.map(binomials);
         let factor = b.iter().flat_map(|b| a.iter().map(move |a| a * b));
@@ -280,12 +280,12 @@ impl Scaled {
         out
     }
 
-    /// Adds `k` times a polynomial of the same degree.
+    /// Adds `k` times a polynomial of equal degree.
     pub(super) fn add(&mut self, k: f64, other: &Self) {
         self.c.iter_mut().zip(&other.c).for_each(|(a, b)| *a += k * b);
     }
 
-    /// The powers from 0 to `n`.
+    /// Returns the powers from 0 to `n`.
     pub(super) fn powers(&self, n: usize) -> Vec<Self> {
         let mut out = vec![Self::constant(1.0)];
         for k in 0..n {
@@ -295,19 +295,19 @@ impl Scaled {
     }
 }
 
-/// The knots of a single Bézier span.
+/// Returns the knots of a single Bézier span.
 pub(super) fn single(degree: usize, [from, to]: [f64; 2]) -> Vec<f64> {
     joined(degree, &[from, to])
 }
 
-/// The knots of Bézier spans joined at these parameters.
+/// Returns the knots of Bézier spans joined at these parameters.
 pub(super) fn joined(degree: usize, breaks: &[f64]) -> Vec<f64> {
     let last = breaks.len().saturating_sub(1);
     let times = |i: usize| if i == 0 || i == last { degree + 1 } else { degree };
     breaks.iter().enumerate().flat_map(|(i, b)| std::iter::repeat_n(*b, times(i))).collect()
 }
 
-/// What is wrong with knots, if anything.
+/// Returns a description of the first fault in the knots, if there is one.
 fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     let n = knots.len();
     if n < 2 * (degree + 1) {
@@ -329,14 +329,14 @@ fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     })
 }
 
-/// The distinct knots.
+/// Returns the distinct knots.
 fn breaks(knots: &[f64]) -> Vec<f64> {
     let mut out = knots.to_vec();
     out.dedup();
     out
 }
 
-/// The control points of the Bézier spans of a curve; neighbouring spans share an end point.
+/// Returns the control points of the Bézier spans of a curve; neighbouring spans share an end point.
 pub(super) fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<DVec4> {
     let mut out = points[..1].to_vec();
     for span in degree..points.len() {
@@ -352,7 +352,7 @@ pub(super) fn bezier_row(degree: usize, knots: &[f64], points: &[DVec4]) -> Vec<
     out
 }
 
-/// The polar form of a span, by de Boor's algorithm with a different argument in each step.
+/// Returns the polar form of a span, by de Boor's algorithm with a different argument in each step.
 fn polar(degree: usize, knots: &[f64], points: &[DVec4], span: usize, arguments: impl Iterator<Item = f64>) -> DVec4 {
     let mut row = points[span - degree..=span].to_vec();
     for (r, t) in arguments.enumerate() {
@@ -365,7 +365,7 @@ fn polar(degree: usize, knots: &[f64], points: &[DVec4], span: usize, arguments:
     row[0]
 }
 
-/// The Bézier patches of a surface, u fastest, and the values of u and v between them.
+/// Returns the Bézier patches of a surface, u fastest, and the values of u and v between them.
 fn pieces(
     degree: [usize; 2],
     knots: &[Vec<f64>; 2],
@@ -431,7 +431,7 @@ mod tests {
         assert_eq!(Scaled::new([2, 1], b.into_iter()), p);
     }
 
-    /// The recursion of Cox and de Boor.
+    /// Returns a B-spline's value, by the recursion of Cox and de Boor.
     fn basis(knots: &[f64], i: usize, d: usize, x: f64) -> f64 {
         if d == 0 {
             return f64::from(u8::from(knots[i] <= x && x < knots[i + 1]));

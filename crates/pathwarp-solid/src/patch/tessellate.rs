@@ -10,28 +10,28 @@ use std::collections::HashMap;
 
 /// Quads along a side of a patch if no distance is given.
 const DEFAULT_SIDE: usize = 8;
-/// Quads along a side of a patch if any is trimmed, of few patches and of many.
+/// Quads along a side of a patch if any patch is trimmed, for few patches and for many.
 const TRIMMED_SIDES: [usize; 2] = [256, 64];
-/// The most patches that are few.
+/// Number of patches up to which they are few.
 const FEW: usize = 8;
-/// The most quads along a side of a patch.
+/// Limit on quads along a side of a patch.
 const MAX_SIDE: usize = 256;
 
-/// Turns surfaces into a mesh of quads no farther than `within` from them, as measured at the middles of edges and quads; without `within`,
-/// into 8 × 8 quads per patch. Patches that share an edge share its vertices. Of a trimmed surface, those quads are left out whose middles
-/// are trimmed away, at a patch cut 64 × 64 or finer: enough for a picture. Curves become lines.
+/// Turns surfaces into a mesh of quads no farther than `within` from them, as measured at the middles of edges and quads; without
+/// `within`, into 8 × 8 quads per patch. Patches that share an edge share its vertices. Of a trimmed surface, the quads whose middles are
+/// trimmed away are omitted, at a patch cut 64 × 64 or finer: enough for a picture. Curves become lines.
 ///
 /// # Errors
-/// It would take more evaluations than the limit allows.
+/// [`Exceeded`] when it takes more evaluations than the budget allows.
 pub fn tessellate(surfaces: &[Surface], within: Option<f64>, budget: &Budget) -> Result<Mesh, Exceeded> {
     tessellate_image(surfaces, &Chain3::default(), within, budget)
 }
 
-/// Turns the images of surfaces under a map into a mesh of quads, as [`tessellate`] does. Every vertex is an exact image, and surfaces that
-/// share an edge still do; refitted surfaces only share it within the tolerance.
+/// Turns the images of surfaces under a map into a mesh of quads, as [`tessellate`] does. Every vertex is an exact image, and surfaces
+/// that share an edge still do; refitted surfaces share it only within the tolerance.
 ///
 /// # Errors
-/// As for [`tessellate`].
+/// [`Exceeded`] when it takes more evaluations than the budget allows.
 pub fn tessellate_image(
     surfaces: &[Surface],
     map: &dyn Map3,
@@ -50,7 +50,7 @@ pub fn tessellate_image(
     };
     budget.spend((corners * side * side) as f64 * 0.1)?;
     if let Some(within) = within {
-        // Powers of two, so that parameters counted from either end of an edge are the same numbers.
+        // Powers of two, so that parameters counted from either end of an edge are equal numbers.
         while side < MAX_SIDE {
             budget.spend((work * 4 * side * side) as f64)?;
             if patches.iter().all(|(_, p)| is_close(p, map, side, within)) {
@@ -74,10 +74,10 @@ pub fn tessellate_image(
     Ok(mesh)
 }
 
-/// Polygons of which an odd number surrounds what belongs to a patch, in its parameters from 0 to 1.
+/// Polygons in a patch's parameters from 0 to 1. Points that an odd number of them surrounds belong to the surface.
 type Polygons = Vec<Vec<[f64; 2]>>;
 
-/// The trimming loops of a surface's patches, u fastest; `None` for a whole patch.
+/// Returns the trimming loops of a surface's patches, u fastest; `None` for a whole patch.
 fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
     let (pieces, [us, vs]) = surface.pieces();
     let Some(trims) = Trims::of(surface) else { return vec![None; pieces.len()] };
@@ -85,7 +85,7 @@ fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
     let (us, vs) = (spans(&us), spans(&vs));
     let part = |(u, v): ((f64, f64), (f64, f64))| trims.part([u.0, v.0], [u.1, v.1]).map(|t| t.polygons());
     let parts: Vec<_> = vs.iter().flat_map(|v| us.iter().map(move |u| (*u, *v))).map(part).collect();
-    // Loops around nothing would leave nothing to see.
+    // Ignore loops around nothing, which would leave nothing to see.
     if parts.iter().all(|p| p.as_ref().is_some_and(Vec::is_empty)) { vec![None; pieces.len()] } else { parts }
 }
 
@@ -141,7 +141,7 @@ fn quads(
     }
 }
 
-/// Whether the middles of all edges and quads are close to the surface.
+/// Returns `true` if the middles of all edges and quads are close to the surface.
 fn is_close(patch: &BezierPatch, map: &dyn Map3, side: usize, within: f64) -> bool {
     let at = |i: usize, j: usize| map.point(patch.point(i as f64 / (2 * side) as f64, j as f64 / (2 * side) as f64));
     let mean = |p: DVec3, q: DVec3| 0.5 * (p + q);

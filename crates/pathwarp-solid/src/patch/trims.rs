@@ -1,8 +1,8 @@
 //! Trimming loops of the parts of a surface: clipped at the part's sides, in the coordinates of the part.
 //!
-//! A loop is clipped like a polygon (I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, CACM 17, 1974): what lies beyond a side
-//! is left out, and the ends are joined along the side. Clipped loops may run along a side to and fro; that does not change which points an
-//! odd number of loops surrounds.
+//! A loop is clipped like a polygon (I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, CACM 17, 1974): parts beyond a side
+//! are omitted, and the ends are joined along the side. Clipped loops may run along a side to and fro; that does not change which points
+//! an odd number of loops surrounds.
 
 use super::crossing::Graphs;
 use super::part::section;
@@ -12,11 +12,11 @@ use glam::DVec4;
 /// A Bézier curve in homogeneous coordinates (u·w, v·w, 0, w).
 type Curve = Vec<DVec4>;
 
-/// Parameters this close to a side are on it, and loops with no more area than this are left out.
+/// Distance from a side within which parameters count as on it, and area up to which loops are omitted.
 const ROUNDING: f64 = 1e-12;
-/// The parts of a curve between which crossings of a layer's sides are searched for.
+/// Parts of a curve between which crossings of a layer's sides are searched for.
 const STEPS: usize = 48;
-/// A curve is halved at most this often to fit it.
+/// Limit on halvings of a curve to fit it.
 const MAX_HALVINGS: usize = 8;
 
 /// The loops of a part over 0..1 × 0..1. A point belongs to the surface if an odd number of loops surrounds it.
@@ -24,7 +24,7 @@ const MAX_HALVINGS: usize = 8;
 pub(super) struct Trims(Vec<Vec<Curve>>);
 
 impl Trims {
-    /// The loops of a surface in its own parameters; `None` if it is not trimmed.
+    /// Returns the loops of a surface in its parameters, or `None` if it is not trimmed.
     pub(super) fn of(surface: &Surface) -> Option<Self> {
         let curves = |t: &TrimCurve| {
             let points = t.points.iter().zip(&t.weights).map(|([u, v], w)| DVec4::new(u * w, v * w, 0.0, *w));
@@ -35,22 +35,22 @@ impl Trims {
         (!loops.is_empty()).then_some(Self(loops))
     }
 
-    /// Polygons through many points of the loops.
+    /// Returns polygons through many points of the loops.
     pub(super) fn polygons(&self) -> Vec<Vec<[f64; 2]>> {
         self.0.iter().map(|l| polygon(l)).collect()
     }
 
-    /// Whether no point of the part belongs to the surface.
+    /// Returns `true` if no point of the part belongs to the surface.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The number of curves.
+    /// Returns the number of curves.
     pub(super) fn count(&self) -> usize {
         self.0.iter().map(Vec::len).sum()
     }
 
-    /// The loops of the part over `from[0]`..`to[0]` × `from[1]`..`to[1]`; `None` if all of it belongs to the surface.
+    /// Returns the loops of the part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, or `None` if all of it belongs to the surface.
     pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Option<Self> {
         let moved = |p: &DVec4| {
             let at = |a: usize| (p[a] - from[a] * p.w) / (to[a] - from[a]);
@@ -64,18 +64,18 @@ impl Trims {
         Self(self.0.iter().map(own).collect()).reduced()
     }
 
-    /// The same loops with u and v exchanged.
+    /// Returns the loops with u and v exchanged.
     pub(super) fn transposed(&self) -> Self {
         let turn = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
         Self(self.0.iter().map(|l| l.iter().map(turn).collect()).collect())
     }
 
-    /// The loops of a layer between two graphs, as cubics within `off` of the exact ones; `None` if all of the layer belongs to the surface. In
-    /// the coordinates of the layer, the graphs are t = 0 and t = 1.
+    /// Returns the loops of a layer between two graphs, as cubics within `off` of the exact ones, or `None` if all of the layer belongs to
+    /// the surface. In the coordinates of the layer, the graphs are t = 0 and t = 1.
     pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, off: f64) -> Option<Self> {
         let place = |p: [f64; 2]| {
             let [low, high] = graphs.sides(layer, p[0]).map(|side| side[0]);
-            // Where the sides meet, a place is below both or above both.
+            // Where the sides meet, a point is below both or above both.
             [p[0], (p[1] - low) / (high - low).max(ROUNDING)]
         };
         let own = |curves: &Vec<Curve>| {
@@ -90,7 +90,7 @@ impl Trims {
         Self(self.0.iter().map(own).collect()).reduced()
     }
 
-    /// The loops as trimming curves of a surface.
+    /// Returns the loops as trimming curves of a surface.
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
@@ -101,10 +101,10 @@ impl Trims {
         self.0.iter().map(|l| l.iter().map(curve).collect()).collect()
     }
 
-    /// The same part without loops around nothing, and without pairs of loops around the whole part. `None` if a single loop around the whole
-    /// part is left.
+    /// Returns the part without loops around nothing and without pairs of loops around the whole part, or `None` if a single loop around
+    /// the whole part is left.
     fn reduced(self) -> Option<Self> {
-        /// A loop around this fraction of the part surrounds all of it.
+        /// Fraction of the part that a loop must surround to count as a loop around all of it.
         const ALL: f64 = 1.0 - 1e-9;
         let with_area = self.0.into_iter().map(|l| (area(&l), l)).filter(|(a, _)| *a > ROUNDING);
         let (mut whole, some): (Vec<_>, Vec<_>) = with_area.partition(|(a, _)| *a >= ALL);
@@ -116,10 +116,10 @@ impl Trims {
     }
 }
 
-/// Parameters of a fitted loop this close to a side are on it.
+/// Distance from a side within which parameters of a fitted loop count as on it.
 const SAME: f64 = 1e-9;
 
-/// The side beyond which a place is, `true` for t = 1; `None` inside the layer.
+/// Returns the side beyond which a height is, `true` for t = 1; `None` inside the layer.
 fn side_of(t: f64) -> Option<bool> {
     if (-SAME..=1.0 + SAME).contains(&t) { None } else { Some(t > 0.5) }
 }
@@ -147,21 +147,21 @@ fn line([a, b]: [[f64; 2]; 2]) -> Curve {
     [a, b].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec()
 }
 
-/// The polygon with many corners on each curve of a loop.
+/// Returns the polygon with many corners on each curve of a loop.
 fn polygon(curves: &[Curve]) -> Vec<[f64; 2]> {
     const CORNERS: usize = 16;
     let on = |c: &Curve| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64)).collect::<Vec<_>>();
     curves.iter().flat_map(on).collect()
 }
 
-/// The area inside a loop, approximately: that of its polygon. Exact if all curves are straight.
+/// Returns the area inside a loop, approximated by the area of its polygon. Exact if all curves are straight.
 fn area(curves: &[Curve]) -> f64 {
     let corners = polygon(curves);
     let next = corners.iter().cycle().skip(1);
     0.5 * corners.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>().abs()
 }
 
-/// The curves of a loop that are kept, joined by straight lines where others are left out.
+/// The curves of a loop that are kept, joined by straight lines where others are omitted.
 #[derive(Default)]
 struct Kept {
     curves: Vec<Curve>,
@@ -200,14 +200,14 @@ impl Kept {
 
 /// Follows a loop through a layer.
 ///
-/// Where the sides of the layer meet, all heights t are one place, and the loop may pass all of them at once. In the coordinates of the layer,
-/// it then runs along a line across the layer.
+/// Where the sides of the layer meet, all heights t are one point, and the loop may pass all of them at once. In the coordinates of the
+/// layer, it then runs along a line across the layer.
 #[derive(Default)]
 struct InLayer {
     kept: Kept,
-    /// The side beyond which the loop is, as from [`side_of`].
+    /// The side beyond which the loop is, as returned by [`side_of`].
     beyond: Option<bool>,
-    /// Where the loop is.
+    /// The point that the loop has reached.
     last: [f64; 2],
     off: f64,
 }
@@ -239,7 +239,7 @@ impl InLayer {
     }
 }
 
-/// Clips a loop: leaves out the parts where a linear form in (u, v, 0, 1) is negative.
+/// Clips a loop: omits the parts where a linear form in (u, v, 0, 1) is negative.
 fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
     let mut kept = Kept::default();
     for curve in curves {
@@ -259,15 +259,15 @@ fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
     kept.closed()
 }
 
-/// The value of a linear form at a point; 0 if the point is on the side.
+/// Returns the value of a linear form at a point; 0 if the point is on the side.
 fn above(side: DVec4, p: DVec4) -> f64 {
     let v = side.dot(p);
     if v.abs() <= ROUNDING * p.w { 0.0 } else { v }
 }
 
-/// Appends the places inside an interval where the polynomial with these Bernstein coefficients changes its sign, in order.
+/// Appends the parameters inside an interval where the polynomial with these Bernstein coefficients changes its sign, in order.
 fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
-    /// An interval of this length is a single place.
+    /// Length of an interval that counts as a single parameter.
     const NARROW: f64 = 1e-15;
     let mut signs = c.iter().filter(|v| **v != 0.0).map(|v| *v > 0.0);
     let first = signs.next();
@@ -291,7 +291,7 @@ fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
     roots(&right, middle, to, out);
 }
 
-/// The parts of 0..1 between the places where the second coordinate passes 0 or 1.
+/// Returns the parts of 0..1 between the parameters where the second coordinate passes 0 or 1.
 fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     let place = |i: usize| i as f64 / STEPS as f64;
     let values: Vec<f64> = (0..=STEPS).map(|i| at(place(i))[1]).collect();
@@ -310,7 +310,7 @@ fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
             if (values[i] > level) != (values[i + 1] > level) {
                 pass(place(i), place(i + 1));
             } else if i > 0 && (values[i - 1] > level) == (values[i] > level) {
-                // Near its extremum, it may pass the level twice.
+                // Near its extremum, the coordinate may pass the level twice.
                 let off = |k: usize| (values[k] - level).abs();
                 if off(i) <= off(i - 1).min(off(i + 1)) {
                     let sign = if values[i] > level { 1.0 } else { -1.0 };
@@ -327,7 +327,7 @@ fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     cuts.windows(2).filter(|w| w[1] - w[0] > ROUNDING).map(|w| [w[0], w[1]]).collect()
 }
 
-/// Where in an interval a function with a single minimum has it, by ternary search.
+/// Returns the minimizer in an interval of a function with a single minimum, by ternary search.
 fn minimum(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     for _ in 0..40 {
         let third = (b - a) / 3.0;
@@ -336,7 +336,7 @@ fn minimum(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// Cubics through four points of a curve each, and within `off` of it at three others.
+/// Returns cubics, each through four points of a curve and within `off` of it at three others.
 fn fitted(at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], off: f64, depth: usize) -> Vec<Curve> {
     let place = |t: f64| at(from + t * (to - from));
     let [a, p, q, d] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(place);
@@ -358,7 +358,7 @@ fn fitted(at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], off: f64, depth: u
 mod tests {
     use super::*;
 
-    /// A circle of four rational quadratics.
+    /// Returns a circle of four rational quadratics.
     fn circle(u: f64, v: f64, r: f64) -> Vec<TrimCurve> {
         let corner = |k: usize| {
             [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0], [0.0, -1.0], [1.0, -1.0]]
@@ -382,7 +382,7 @@ mod tests {
     fn parts_of_a_disc() {
         let disc = trimmed(vec![circle(0.5, 0.5, 0.4)]);
         let quarter = disc.part([0.5, 0.5], [1.0, 1.0]).unwrap();
-        // π·0.4²/4 of a quarter of the square, by polygons with 16 corners on a quarter of the circle.
+        // The quarter disc's area π·0.4²/4, as a fraction of a quarter of the square. `area` takes a polygon with 16 corners on the arc.
         let truth = std::f64::consts::PI * 0.16;
         assert_eq!(quarter.0.len(), 1);
         assert!((area(&quarter.0[0]) / truth - 1.0).abs() < 2e-3, "{}", area(&quarter.0[0]));
@@ -392,7 +392,7 @@ mod tests {
                 assert!(on_circle || p[0].abs() < 1e-12 || p[1].abs() < 1e-12, "{p:?}");
             }
         }
-        // Inside, outside, and a hole as large as the loop around it.
+        // Parts inside the disc, outside it, and inside the hole of a ring.
         assert_eq!(disc.part([0.4, 0.4], [0.6, 0.6]), None);
         assert!(disc.part([0.0, 0.0], [0.1, 0.1]).unwrap().is_empty());
         let ring = trimmed(vec![circle(0.5, 0.5, 0.4), circle(0.5, 0.5, 0.2)]);

@@ -10,7 +10,7 @@ fn cubic(ends: [(f64, f64); 4]) -> Seg {
     Seg::Cubic(CubicBez::new(p0, p1, p2, p3))
 }
 
-/// The image stops at a cusp. A cubic that runs past it and turns back matches every sample, but not the last stretch.
+/// The image stops at a cusp. A cubic that runs past it and turns back is close at every sample, but not in the last stretch.
 pub(crate) fn hook_at_a_cusp() -> (Bicubic, Seg) {
     (
         Bicubic {
@@ -31,8 +31,8 @@ pub(crate) fn hook_at_a_cusp() -> (Bicubic, Seg) {
     )
 }
 
-/// A cubic that nearly stops, so that the distance has a corner, and residuals that oscillate over six samples (under two random
-/// maps, and of an arc of nearly a full turn).
+/// A cubic that nearly stops, so that the distance has a corner, and residuals that oscillate over six samples, under two random maps
+/// and of an arc of nearly a full turn.
 pub(crate) fn risen_between_samples() -> [(Bicubic, Seg); 3] {
     [
         (

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::TAU;
 
-/// The same `cases` at every run; others, and their number, by `PROPTEST_CASES`. A case in tens of thousands exceeds its tolerance
-/// (`docs/benchmarks.md`), which says nothing about a change under test.
+/// Returns a configuration with equal cases at every run; `PROPTEST_CASES` asks for others, and for their number. A case in tens of
+/// thousands exceeds its tolerance (`docs/benchmarks.md`), independently of a change under test.
 pub(crate) fn cases(cases: u32) -> ProptestConfig {
     const SEED: u64 = 20;
     let default = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
@@ -17,13 +17,13 @@ pub(crate) fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Control nets from the identity to folded over.
+/// Returns control nets from the identity to folded ones.
 pub(crate) fn map() -> impl Strategy<Value = Bicubic> {
     (prop::array::uniform32(-1.0..1.0f64), prop_oneof![Just(0.0), Just(30.0), Just(150.0), Just(500.0)])
         .prop_map(|(d, size)| Bicubic::moved(|i, j| (size * d[2 * (4 * i + j)], size * d[2 * (4 * i + j) + 1])))
 }
 
-/// Waves in both directions: a map that declares nothing about itself.
+/// Waves in both directions: a map without any declaration.
 #[derive(Debug, Clone)]
 pub(crate) struct Waves {
     pub(crate) length: [f64; 2],

@@ -1,4 +1,4 @@
-//! Surfaces in exact arithmetic, by their definition.
+//! Surfaces in exact arithmetic, evaluated by their definition.
 
 use dashu_ratio::RBig;
 use pathwarp_solid::patch::Surface;
@@ -6,7 +6,7 @@ use pathwarp_solid::patch::Surface;
 /// A fraction of big integers.
 pub(crate) type Q = RBig;
 
-/// The exact value of a floating-point number.
+/// Returns the exact value of a floating-point number.
 pub(crate) fn q(v: f64) -> Q {
     Q::try_from(v).unwrap()
 }
@@ -15,7 +15,7 @@ pub(crate) fn float(v: &Q) -> f64 {
     v.to_f64().value()
 }
 
-/// The length of a vector.
+/// Returns the length of a vector.
 pub(crate) fn size_of(v: &[Q; 3]) -> f64 {
     float(&v.iter().fold(Q::ZERO, |sum, c| sum + c * c)).sqrt()
 }
@@ -26,7 +26,7 @@ pub(crate) fn bernstein(n: usize, i: usize, t: &Q) -> Q {
     binomial * power(t, i) * power(&(Q::ONE - t), n - i)
 }
 
-/// The recursion of Cox and de Boor; the last span includes its end.
+/// Returns a B-spline by the recursion of Cox and de Boor; the last span includes its end.
 fn b_spline(knots: &[f64], i: usize, d: usize, x: &Q) -> Q {
     if *x < q(knots[i]) || *x > q(knots[i + d + 1]) {
         return Q::ZERO;
@@ -41,7 +41,7 @@ fn b_spline(knots: &[f64], i: usize, d: usize, x: &Q) -> Q {
         + part(q(knots[i + d + 1]) - x, knots[i + d + 1] - knots[i + 1], b_spline(knots, i + 1, d - 1, x))
 }
 
-/// A point of a surface: Σ N·w·P / Σ N·w.
+/// Returns a point of a surface: Σ N·w·P / Σ N·w.
 pub(crate) fn rational_point(s: &Surface, u: &Q, v: &Q) -> [Q; 3] {
     let size = s.size();
     let along =

@@ -1,4 +1,4 @@
-//! Computes δ, the factor by which a point comes closer to the eye, a polynomial over a reference.
+//! The dilation δ, the factor by which a point comes closer to the eye: a polynomial over a reference.
 //!
 //! Over a tetrahedron δ(u) = Σ δᵢ·n!/(i!j!k!l!)·u₀ⁱu₁ʲu₂ᵏu₃ˡ in barycentric coordinates, over a box the tensor product of
 //! Bernstein polynomials. A *sheet*, a triangle or a rectangle, gives every point the δ of its ray: the barycentric coordinates of
@@ -12,25 +12,25 @@ use crate::map::{Chart, Local, Poly3, Tensor};
 use glam::{DMat4, DVec3, DVec4};
 use std::sync::Arc;
 
-/// Highest degree.
+/// Highest degree of a reference.
 pub(super) const MAX_DEGREE: usize = 10;
 
 /// δ as a function on space.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Dilation3 {
-    /// Over a tetrahedron: the barycentric coordinates as linear forms in (x, y, z, 1); over a pentahedron those in its triangle, and the
-    /// fourth along its edges.
+    /// Over a tetrahedron: the barycentric coordinates as linear forms in (x, y, z, 1). Over a pentahedron: the barycentric coordinates in
+    /// its triangle and, as the fourth form, the coordinate along its edges.
     Tetrahedron { forms: [DVec4; 4], terms: Simplex },
     /// Over a box.
     Cuboid { local: Local, tensor: Tensor<1> },
     /// Over a triangle or rectangle seen from the eye: its coordinates are quotients of linear forms that vanish at the eye, with
     /// the fourth as denominator.
     Sheet { forms: [DVec4; 4], net: Net },
-    /// Over tetrahedra that share faces: the barycentric coordinates of each, and δ; elsewhere 1.
+    /// Over tetrahedra that share faces: for each, its barycentric coordinates, and δ as a linear form; elsewhere δ is 1.
     Tetrahedra(Arc<[([DVec4; 4], DVec4)]>),
 }
 
-/// δ over a sheet.
+/// δ over a sheet, in the sheet's coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Net {
     Triangle(Simplex),
@@ -38,7 +38,7 @@ pub(super) enum Net {
 }
 
 impl Net {
-    /// The value and its three partial derivatives.
+    /// Returns the value and its three partial derivatives.
     fn jet(&self, at: [f64; 3]) -> (f64, [f64; 3]) {
         match self {
             Self::Triangle(terms) => {
@@ -57,7 +57,7 @@ impl Net {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Simplex {
     degree: usize,
-    /// Exponents, and δ times the multinomial coefficient.
+    /// Exponents and coefficients, which are δ times the multinomial coefficient.
     terms: Vec<([usize; 4], f64)>,
 }
 
@@ -68,8 +68,8 @@ impl Simplex {
         Self { degree, terms: values.map(|(node, delta)| (node, delta * coefficient(&node))).collect() }
     }
 
-    /// The tensor product of Bernstein polynomials over a triangle of degree `n` and over 0..1 of degree `m`, whose variable is the
-    /// fourth: (1 − w)^(m−l)·w^l is expanded in powers of w.
+    /// Makes the tensor product of Bernstein polynomials of degree `n` over a triangle and of degree `m` over 0..1, whose variable w is
+    /// the fourth: (1 − w)^(m−l)·w^l is expanded in powers of w.
     fn prism([n, m]: [usize; 2], values: impl Iterator<Item = ([usize; 4], f64)>) -> Self {
         let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
         let mut out = Self { degree: n + m, terms: Vec::new() };
@@ -93,7 +93,7 @@ impl Simplex {
         out
     }
 
-    /// The value and its four partial derivatives.
+    /// Returns the value and its four partial derivatives.
     fn jet(&self, u: [f64; 4]) -> (f64, [f64; 4]) {
         let mut powers = [[1.0; MAX_DEGREE + 1]; 4];
         for (row, u) in powers.iter_mut().zip(u) {
@@ -114,7 +114,7 @@ impl Simplex {
     }
 }
 
-/// The barycentric coordinates of a tetrahedron as forms. Its last corner may be at infinity.
+/// Returns the barycentric coordinates of a tetrahedron as linear forms. Its last corner may be at infinity.
 fn barycentric(corners: [DVec4; 4]) -> [DVec4; 4] {
     let [a, b, c, d] = corners;
     let inverse = DMat4::from_cols(a, b, c, d).inverse();
@@ -141,7 +141,7 @@ impl Dilation3 {
                 let [f, g, h, _] = barycentric([a.extend(1.0), b.extend(1.0), c.extend(1.0), eye.homogeneous()]);
                 Self::Sheet { forms: [f, g, h, f + g + h], net: Net::Triangle(simplex(*n)) }
             }
-            // The map of B-splines and of a hull is that of a rational lattice; here only their box counts.
+            // B-splines and a hull are mapped by a rational lattice; only their box counts here.
             Reference3::Cuboid(..) | Reference3::Spline(..) | Reference3::Hull(_) => {
                 let b = reference.bounds();
                 let local = Local { middle: b.center(), scale: 2.0 / b.size() };
@@ -152,7 +152,7 @@ impl Dilation3 {
                 Self::Cuboid { local, tensor }
             }
             Reference3::Rectangle(b, axis, degree) => {
-                // From −1 to 1 along both sides.
+                // Coordinates from −1 to 1 along both sides.
                 let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
                 let corner = |k: usize| (b.min + DVec3::AXES[k] * b.size()[k]).extend(1.0);
                 let [f, g, h, _] = barycentric([b.min.extend(1.0), corner(x), corner(y), eye.homogeneous()]);
@@ -170,7 +170,7 @@ impl Dilation3 {
         }
     }
 
-    /// δ and its gradient at `p`; not finite where the ray of a point does not meet the plane of a sheet.
+    /// Returns δ and its gradient at `p`. They are not finite where the ray of a point does not meet the plane of a sheet.
     pub(super) fn jet(&self, p: DVec3) -> (f64, DVec3) {
         match self {
             Self::Tetrahedron { forms, terms } => {
@@ -199,7 +199,7 @@ impl Dilation3 {
         }
     }
 
-    /// The degree of δ over the reference.
+    /// Returns the degree of δ over the reference.
     pub(super) fn degree(&self) -> usize {
         match self {
             Self::Tetrahedron { terms, .. } | Self::Sheet { net: Net::Triangle(terms), .. } => terms.degree,
@@ -210,7 +210,7 @@ impl Dilation3 {
         }
     }
 
-    /// δ as a quotient of two polynomials.
+    /// Returns δ as a quotient of two polynomials.
     pub(super) fn fraction(&self, chart: &Chart) -> (Poly3, Poly3) {
         match self {
             Self::Tetrahedron { forms, terms } => {
@@ -238,12 +238,12 @@ impl Dilation3 {
                 let [delta] = tensor.in_terms_of(&chart.local(local));
                 (delta, Poly3::constant(1.0))
             }
-            // Only for parts that lie in one of them, which have a form of their own.
+            // Not used: the map takes the linear form of the tetrahedron that contains a part.
             Self::Tetrahedra(_) => (Poly3::constant(1.0), Poly3::constant(1.0)),
         }
     }
 
-    /// δ alone.
+    /// Returns δ at `p`.
     pub(super) fn at(&self, p: DVec3) -> f64 {
         match self {
             Self::Cuboid { local, tensor } => tensor.at((p - local.middle) * local.scale)[0],
@@ -251,7 +251,7 @@ impl Dilation3 {
         }
     }
 
-    /// Linear forms in (x, y, z, 1) that are nonnegative inside the reference, or inside the pyramid of a sheet's rays.
+    /// Returns linear forms in (x, y, z, 1) that are nonnegative inside the reference, or inside the pyramid of a sheet's rays.
     pub(super) fn sides(&self, reference: &Reference3) -> Vec<DVec4> {
         match self {
             Self::Tetrahedron { forms, .. } if matches!(reference, Reference3::Prism(..)) => {
@@ -269,7 +269,7 @@ impl Dilation3 {
         }
     }
 
-    /// δ of tetrahedra on a box in one of them, or in none; `None` if a face may cross it, or for another δ.
+    /// Returns δ of the tetrahedron that contains a box, or 1 if none touches it. `None` if a face may cross it, or for another kind of δ.
     pub(super) fn around(&self, corners: &[DVec3; 8]) -> Option<DVec4> {
         let Self::Tetrahedra(all) = self else { return None };
         let inside = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) >= 0.0);
@@ -280,7 +280,7 @@ impl Dilation3 {
         }
     }
 
-    /// δ as a linear form in (x, y, z, 1), if its degree makes it one.
+    /// Returns δ as a linear form in (x, y, z, 1), if its degree makes it one.
     pub(super) fn linear(&self) -> Option<DVec4> {
         match self {
             Self::Tetrahedron { forms, terms } if terms.degree == 1 => {
@@ -293,7 +293,7 @@ impl Dilation3 {
         }
     }
 
-    /// Whether δ is constant along rays.
+    /// Returns `true` if δ is constant along rays.
     pub(super) fn is_sheet(&self) -> bool {
         matches!(self, Self::Sheet { .. })
     }

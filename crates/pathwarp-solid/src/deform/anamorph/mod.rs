@@ -1,8 +1,8 @@
-//! Anamorphosis in space: deforms models so that they look unchanged from one place.
+//! Anamorphosis in space: deforms models so that they look unchanged from one point.
 //!
 //! Every point moves along its ray through the eye O: p̂ = O + (p − O)/δ(p). Control points bᵢ of a reference are moved along their
 //! rays to O + (bᵢ − O)/δᵢ, and δ interpolates ([`dilation`]). Over a tetrahedron of degree 1 the map is a perspective collineation
-//! with centre O, in coordinates about O the matrix [I 0; d d₀] with δ(p) = d·p + d₀; its axis, the plane δ = 1, stays in place.
+//! with centre O, in coordinates about O the matrix [I 0; d d₀] with δ(p) = d·p + d₀. Its axis, the plane δ = 1, keeps its points.
 //!
 //! To prescribe δ at a point p, one control point is set to δᵢ + (δ − δ(p))/Bᵢ(p), which from rest is the paper's
 //! δ₃ = 1 + (δ − 1)/u₃.
@@ -113,9 +113,9 @@ impl Anamorph3 {
             .about(base)
     }
 
-    /// Returns a point about which the map is computed: the origin, or if that is far away the middle of the reference.
+    /// Returns the point relative to which the map is computed: the origin or, if that is far away, the middle of the reference.
     fn base(&self) -> DVec3 {
-        /// Distance of the origin in sizes of the reference.
+        /// Distance of the origin that counts as far, in sizes of the reference.
         const FAR: f64 = 16.0;
         let b = self.reference.bounds();
         if b.center().length() > FAR * b.diagonal() { b.center() } else { DVec3::ZERO }
@@ -193,7 +193,7 @@ impl Anamorph3 {
         }
     }
 
-    /// Returns the influence of every control point at `p`: δ with 1 at it and 0 elsewhere.
+    /// Returns the influence of every control point at `p`: the value there of the δ that is 1 at this control point and 0 at all others.
     fn influence(&self, p: DVec3, nodes: &[[usize; 4]]) -> Vec<f64> {
         let mut out = vec![0.0; nodes.len()];
         if let Reference3::Spline(..) | Reference3::Hull(_) = self.reference {
@@ -271,7 +271,7 @@ impl Anamorph3 {
     }
 }
 
-/// The matrix of p ↦ O + (p − O)/δ for a linear form δ in (x, y, z, 1): (p + O·(δ − 1), 1 + w·(δ − 1)) for the eye (O, w).
+/// Returns the matrix of p ↦ O + (p − O)/δ for a linear form δ in (x, y, z, 1). For the eye (O, w) it is (p + O·(δ − 1), 1 + w·(δ − 1)).
 fn perspective(eye: Eye3, delta: DVec4) -> DMat4 {
     let (d, eye) = (delta.truncate(), eye.homogeneous());
     let columns = [eye * d.x, eye * d.y, eye * d.z, eye * (delta.w - 1.0)];
@@ -280,20 +280,20 @@ fn perspective(eye: Eye3, delta: DVec4) -> DMat4 {
 
 // The map p̂ = O + (p − O)/δ(p), and its inverse along each ray.
 
-/// Points this close to a side of the moved region, relative to the coordinates, count as on it.
+/// Distance from a side of the moved region, relative to the coordinates, within which points count as on it.
 const ROUNDING: f64 = 1e-12;
 
-/// Evaluates a form in (x, y, z, 1) that is 0 on a side of the moved region.
+/// Returns the value of a form in (x, y, z, 1) that is 0 on a side of the moved region.
 fn beyond(form: &DVec4, p: DVec3) -> f64 {
     let q = p.extend(1.0);
     let v = form.dot(q);
     if v.abs() <= ROUNDING * form.abs().dot(q.abs()) { 0.0 } else { v }
 }
 
-/// Every point moves along its ray through the eye.
+/// The map that moves every point along its ray through the eye.
 #[derive(Debug, Clone)]
 struct RadialMap {
-    /// The eye, relative to `base` as all that follows.
+    /// The eye, relative to `base`, as are `dilation` and `within`.
     eye: Eye3,
     base: DVec3,
     dilation: Dilation3,
@@ -304,17 +304,17 @@ struct RadialMap {
 }
 
 impl RadialMap {
-    /// Whether a point may move.
+    /// Returns `true` if a point may move.
     fn moves(&self, p: DVec3) -> bool {
         self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p - self.base) >= 0.0))
     }
 
-    /// δ of the tetrahedron around a box, or 1; `None` if a face may cross it.
+    /// Returns δ of the tetrahedron around a box, or 1 outside all of them; `None` if a face may cross the box.
     fn tetrahedron(&self, on: &Box3) -> Option<DVec4> {
         self.dilation.around(&on.corners().map(|p| p - self.base))
     }
 
-    /// The map by δ = `divisor`/`common`.
+    /// Returns the map with δ = `divisor`/`common`.
     fn along_rays(&self, chart: Chart, divisor: Poly3, common: Poly3) -> Fraction3 {
         match self.eye {
             Eye3::At(eye) => Fraction3::radial(chart, eye + self.base, divisor, &common),
@@ -322,7 +322,7 @@ impl RadialMap {
         }
     }
 
-    /// Whether a box may move. `None` if a side of the moved region may cross it.
+    /// Returns `true` if a whole box moves, `false` if none of it does, or `None` if a side of the moved region may cross it.
     fn moves_on(&self, on: &Box3) -> Option<bool> {
         let corners = on.corners();
         // The moved region is convex, so a box is inside if its corners are, and outside if they are all behind one side.
@@ -445,13 +445,13 @@ impl RadialInverse {
         }
     }
 
-    /// δ − s at the place s of a line, and its slope.
+    /// Returns δ − s at the parameter s of a line, and its derivative.
     fn off(&self, r: &Line, s: f64) -> (f64, f64) {
         let (delta, slope) = self.0.dilation.jet(r.from + r.along * s);
         (delta - s, slope.dot(r.along) - 1.0)
     }
 
-    /// Finds the root near `s`. The slope must be negative, which means that the map keeps the order of points along the ray.
+    /// Finds the root near `s` by Newton's method. The slope must be negative: then the map keeps the order of points along the ray.
     fn newton(&self, r: &Line, mut s: f64) -> Option<f64> {
         let ahead = |s: f64| s.is_finite() && (s > 0.0 || matches!(self.0.eye, Eye3::Infinite(_)));
         for _ in 0..MAX_STEPS {
@@ -509,7 +509,7 @@ impl RadialInverse {
         let line = self.line(q);
         let place = |s: f64| line.from + line.along * s + self.0.base;
         let source = self.factor(q).map(place).filter(|p| self.0.moves(*p));
-        // Outside points stay where they are, unless inside points have moved there.
+        // Points outside the moved region stay, unless points from inside have moved there.
         source.or_else(|| (!self.0.moves(q)).then_some(q))
     }
 }
@@ -528,10 +528,10 @@ impl Map3 for RadialInverse {
     }
 }
 
-/// A pentahedron in the frame of laws and cases, as deep as that.
+/// A pentahedron as deep as the frame of laws and cases.
 const PRISM: &str = "0,0,0 100,0,0 0,100,0 0,0,100 100,0,100 0,100,100";
 
-/// A tetrahedron in the frame of laws and cases, with its eye.
+/// A tetrahedron in the frame of laws and cases.
 const TETRAHEDRON: &str = "0,0,0 100,0,0 0,100,0 0,0,100";
 
 static ABOUT: About3 = About3 {
@@ -608,13 +608,13 @@ printed result, as a negative volume of the slicer, it leaves a hole through whi
         Law3::KeepsRays(&[("eye", "50,60,300"), ("degree", "3x2x1"), ("push", "1,1,1:1.3 2,0,0:0.7")], [50.0, 60.0, 300.0]),
         Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", "0,0,0 100,0,0 0,100,0"), ("degree", "2"), ("push", "1,1,0:1.3")], [50.0, 60.0, 300.0]),
         Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", "0,0,0 100,100,0"), ("degree", "2"), ("push", "1,1,0:1.3")], [50.0, 60.0, 300.0]),
-        // The same tetrahedron with its degree raised: δ of the middles of edges are means.
+        // Raising the degree of the tetrahedron changes nothing: δ of the middles of edges are means.
         Law3::Same(
             &[("eye", "50,60,300"), ("reference", TETRAHEDRON), ("push", "0,0,0,1:0.5")],
             &[("eye", "50,60,300"), ("reference", TETRAHEDRON), ("degree", "2"),
               ("push", "0,0,0,2:0.5 1,0,0,1:66.66666666666667% 0,1,0,1:66.66666666666667% 0,0,1,1:66.66666666666667%")],
         ),
-        // A multiple of the distance, or the distance itself: control point 1,1,1 is 50, 40 and 200 away from the eye.
+        // Control point 1,1,1 is √(50² + 40² + 200²) = 210 away from the eye, so that doubling its distance adds 210.
         Law3::Same(
             &[("eye", "50,60,300"), ("push", "1,1,1:2")],
             &[("eye", "50,60,300"), ("away", "1,1,1:210.0")],
@@ -624,7 +624,7 @@ printed result, as a negative volume of the slicer, it leaves a hole through whi
         Law3::Identity(&[("eye", "50,50,300"), ("collineation", "0,0,0,1")]),
         Law3::KeepsRays(&[("eye", "50,60,300"), ("degree", "2"), ("cells", "3x2x2"), ("push", "1,2,1:1.3 3,0,0:0.7")], [50.0, 60.0, 300.0]),
         Law3::KeepsPlanes(&[("eye", "inf:0.2,0.3,1"), ("reference", TETRAHEDRON), ("away", "0,0,0,1:40 1,0,0,0:-20")]),
-        // The box as one cell of B-splines.
+        // With one cell, B-splines are Bernstein polynomials.
         Law3::Same(
             &[("eye", "50,60,300"), ("degree", "3x2x1"), ("push", "1,1,1:1.3 2,0,0:0.7")],
             &[("eye", "50,60,300"), ("degree", "3x2x1"), ("cells", "1"), ("push", "1,1,1:1.3 2,0,0:0.7")],
@@ -645,7 +645,7 @@ printed result, as a negative volume of the slicer, it leaves a hole through whi
         Law3::Identity(&[("eye", "50,50,300"), ("reference", PRISM), ("degree", "3x3x2"), ("push", "1,1,1,1:1")]),
         Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", PRISM), ("degree", "2x2x3"), ("push", "1,1,0,2:1.3 0,0,2,0:0.8")], [50.0, 60.0, 300.0]),
         Law3::KeepsRays(&[("eye", "50,60,300"), ("reference", PRISM), ("push", "1,0,0,1:1.4"), ("local", "true")], [50.0, 60.0, 300.0]),
-        // Along its edges alone a pentahedron is a box: δ depends on z.
+        // A pentahedron that changes along its edges alone acts as a box: δ depends on z.
         Law3::Same(
             &[("eye", "50,60,300"), ("reference", PRISM), ("degree", "1x1x2"), ("push", "1,0,0,1:1.25 0,1,0,1:1.25 0,0,1,1:1.25")],
             &[("eye", "50,60,300"), ("degree", "1x1x2"), ("push", "0,0,1:1.25 1,0,1:1.25 0,1,1:1.25 1,1,1:1.25")],
@@ -782,7 +782,7 @@ fn typed(eye: Eye3, form: DVec4) -> Built3 {
     built
 }
 
-/// Reads tetrahedra by the numbers of their corners among the points of the reference.
+/// Reads tetrahedra, each by the numbers of its corners among the points of the reference.
 fn tetrahedra(s: &Settings3<'_>, points: Vec<DVec3>) -> Result<Reference3, Error> {
     let read = |word: &str| {
         let numbers: Vec<usize> = word.split(',').filter_map(|t| t.trim().parse().ok()).collect();

@@ -1,4 +1,4 @@
-//! The reference of an anamorphosis.
+//! The reference of an anamorphosis, its control points before any is moved, and the eye from which models look unchanged.
 
 use super::dilation::Dilation3;
 use crate::lattice::Lattice3;
@@ -32,7 +32,7 @@ impl Eye3 {
         }
     }
 
-    /// Returns a point from which `p` looks the same: the eye, or far away.
+    /// Returns a point from which `p` looks unchanged: the eye, or a point far away.
     pub(super) fn before(self, p: DVec3, far: f64) -> DVec3 {
         match self {
             Self::At(eye) => eye,
@@ -47,7 +47,7 @@ impl Eye3 {
         }
     }
 
-    /// Returns the place of a point after it has moved along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
+    /// Returns the image of a point that moves along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
     pub(super) fn moved(self, p: DVec3, delta: f64) -> DVec3 {
         match self {
             Self::At(_) if delta == 1.0 => p,
@@ -62,14 +62,14 @@ impl Eye3 {
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
     Tetrahedron([DVec3; 4], usize),
-    /// A pentahedron: over the triangle A, B, C of this degree and edges parallel to A–D of that one, points
+    /// A pentahedron over the triangle A, B, C, with edges parallel to A–D, by the degrees n of the triangle and m along the edges: points
     /// (i·A + j·B + k·C)/n + l·(D − A)/m with i + j + k = n and l from 0 to m.
     Prism([DVec3; 4], [usize; 2]),
-    /// Control points that need not be regular, between which a rational lattice finds its own coordinates.
+    /// Control points that need not be regular, between which a rational lattice finds local coordinates.
     Hull(Lattice3),
     /// A sheet: points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([DVec3; 3], usize),
-    /// Points i, j, k of a box, with degrees along the axes.
+    /// Points i, j, k of a box, by its degrees along the axes.
     Cuboid(Box3, [usize; 3]),
     /// Control points of B-splines over a box, with degrees and numbers of cells along the axes.
     Spline(Box3, [usize; 3], [usize; 3]),
@@ -86,7 +86,7 @@ impl Reference3 {
     /// Makes a reference from its points (four corners of a tetrahedron, three of a triangle, two of a box) for an eye.
     ///
     /// # Errors
-    /// The points do not span such a reference, or the eye lies in the plane of a sheet.
+    /// [`Error::Usage`] when the points do not span such a reference, or the eye lies in the plane of a sheet.
     pub fn new(points: &[DVec3], degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
         let eye = eye.into();
         let wrong = |problem: &str| Error::usage("reference", "", problem);
@@ -164,7 +164,7 @@ impl Reference3 {
     /// Makes a B-spline net over a box.
     ///
     /// # Errors
-    /// The box is flat.
+    /// [`Error::Usage`] when the box is flat.
     pub fn spline(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Result<Self, Error> {
         if region.size().min_element() > FLAT * region.diagonal() {
             return Ok(Self::Spline(region, degree, cells));
@@ -175,7 +175,7 @@ impl Reference3 {
     /// Makes tetrahedra that share faces, by the numbers of their corners among `points`: one δ for every point.
     ///
     /// # Errors
-    /// There is no such point, a tetrahedron is flat, or the middle of one lies in another.
+    /// [`Error::Usage`] when there is no such point, a tetrahedron is flat, or the middle of one lies in another.
     pub fn tetrahedra(points: Vec<DVec3>, all: Vec<[usize; 4]>) -> Result<Self, Error> {
         const MOST: usize = 1000;
         let wrong =
@@ -236,7 +236,7 @@ impl Reference3 {
         }
     }
 
-    /// Returns the same net relative to a point.
+    /// Returns the net in coordinates relative to a point.
     pub(super) fn relative_to(self, base: DVec3) -> Self {
         let less = |b: Box3| Box3 { min: b.min - base, max: b.max - base };
         match self {
@@ -254,7 +254,7 @@ impl Reference3 {
         }
     }
 
-    /// Lists the numbers of the control points. Only those of a tetrahedron and of a pentahedron have a fourth.
+    /// Lists the numbers of the control points. The fourth number is 0 except in a tetrahedron and a pentahedron.
     #[must_use]
     pub fn nodes(&self) -> Vec<[usize; 4]> {
         match *self {
@@ -276,7 +276,7 @@ impl Reference3 {
         }
     }
 
-    /// Returns the last numbers along the axes of a box.
+    /// Returns the highest numbers along the axes of a box.
     fn last(&self) -> [usize; 3] {
         match self {
             Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => *degree,
@@ -286,7 +286,7 @@ impl Reference3 {
         }
     }
 
-    /// Returns how many numbers a control point has.
+    /// Returns the count of numbers by which users name a control point.
     pub(super) fn indices(&self) -> usize {
         match self {
             Self::Tetrahedron(..) | Self::Prism(..) => 4,
@@ -333,8 +333,8 @@ impl Reference3 {
         }
     }
 
-    /// Whether a prescribed point must not move a control point: those on the face ABC of a tetrahedron or pentahedron, the side AB of a triangle,
-    /// and, if `local`, the boundary of a box or rectangle.
+    /// Returns `true` if a prescribed point must not move a control point: on the face ABC of a tetrahedron or pentahedron, on the side AB
+    /// of a triangle and, if `local`, on the boundary of a box or rectangle.
     #[must_use]
     pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
         match self {

@@ -1,5 +1,5 @@
-//! The rod that makes a sighting hole: cut out of a printed model, it leaves a hole through which only the right eye sees (figure 10 of
-//! the paper).
+//! The rod that makes a sighting hole: cut out of a printed model, it leaves a hole through which only an eye at the right point sees
+//! (figure 10 of the paper).
 
 use super::Eye3;
 use crate::deform::entry::Built3;
@@ -8,17 +8,17 @@ use glam::DVec3;
 use pathwarp::deform::SavedFile;
 use std::fmt::Write as _;
 
-/// Diameter of the rod, as a share of the model's diagonal.
+/// Diameter of the rod, as a fraction of the model's diagonal.
 const DIAMETER: f64 = 0.02;
-/// Length of the rod before and behind everything, as a share of the model's diagonal.
+/// Length of the rod before and behind the model and its image, as a fraction of the model's diagonal.
 const BEYOND: f64 = 0.1;
 /// Sides of the rod.
 const SIDES: usize = 24;
 /// Samples of the model's box along each axis.
 const SAMPLES: u32 = 5;
 
-/// Returns the rod as OBJ: a prism around the ray from the eye through the middle of the model's box, long enough for the model and its
-/// image.
+/// Returns the rod as OBJ: a prism around the ray from the eye through the middle of the model's box, long enough for the model and
+/// its image.
 pub(super) fn rod(eye: Eye3, bounds: &Box3, built: &Built3, name: &str) -> SavedFile {
     let (middle, size) = (bounds.center(), bounds.diagonal());
     let along = match eye {

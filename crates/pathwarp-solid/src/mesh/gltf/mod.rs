@@ -1,7 +1,7 @@
 //! glTF 2.0, `.glb` and `.gltf`, read by means of the crate gltf.
 //!
-//! Every node with a mesh becomes an object in the scene's coordinates. Materials, textures and pictures are carried along as they are.
-//! Nothing outside the file is opened. Lengths there are metres, and millimetres here.
+//! Every node with a mesh becomes an object in the scene's coordinates. Materials, textures and pictures are kept unchanged. Nothing
+//! outside the file is opened. glTF measures lengths in metres, the mesh in millimetres.
 
 #[cfg(test)]
 mod tests;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// Millimetres in glTF's unit of length.
 const METRE: f64 = 1000.0;
 
-/// Returns `true` if the file begins like binary glTF, or is JSON that says it is glTF.
+/// Returns `true` if the file begins like binary glTF, or is JSON with a key `asset`.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"glTF")
@@ -33,7 +33,8 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// Reads the meshes of the default scene, or of the first, in its coordinates as millimetres.
 ///
 /// # Errors
-/// The file is damaged, refers to buffers outside itself, or shows more than the limits allow.
+/// [`MeshFault::Text`](super::MeshFault::Text) when the file is damaged or refers to buffers outside itself, and
+/// [`MeshFault::Limit`](super::MeshFault::Limit) when it shows more than the budget allows.
 pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let damaged =
         |e: String| MeshError::whole(format!("is a damaged glTF file: {}", e.chars().take(200).collect::<String>()));
@@ -53,11 +54,11 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let scene = scene.ok_or_else(|| MeshError::whole("has no scene"))?;
     let mut mesh = Mesh::default();
     let mut lost = BTreeSet::new();
-    // A stack of its own: nodes may be nested deeper than the program's.
+    // An explicit stack, since nodes may be nested deeper than the program's stack allows.
     let mut open: Vec<(Node<'_>, DMat4)> = scene.nodes().map(|n| (n, DMat4::from_scale(DVec3::splat(METRE)))).collect();
     open.reverse();
     while let Some((node, parent)) = open.pop() {
-        // Without a limit, a node that is its own descendant would go on for ever.
+        // Without a limit, a node that is its descendant would be visited for ever.
         budget.take(Limit::Elements, 1.0)?;
         let own = node.transform().matrix().map(|column| column.map(f64::from));
         let to_scene = parent * DMat4::from_cols_array_2d(&own);
@@ -81,7 +82,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
 /// Parses a file and checks its references.
 fn checked(bytes: &[u8]) -> Result<Gltf, String> {
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
-    // When it checks a primitive whose positions are not among the accessors, gltf 1.4.1 panics.
+    // gltf 1.4.1 panics when it checks a primitive whose positions are not among the accessors.
     let root = document.into_json();
     let mut attributes = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
     if let Some(index) = attributes.find(|i| i.value() >= root.accessors.len()) {
@@ -107,17 +108,17 @@ fn object(
     mark(mesh, Mark::Object(name));
     for p in shape.primitives() {
         let material = p.material().index().and_then(|i| assets.materials.get(i));
-        // Without this mark, the material of the previous object would still hold.
+        // Without this mark, the material of the previous object would still apply.
         mark(mesh, Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
         append(mesh, &p, to_scene, buffers, lost)?;
-        // Many nodes may show the same mesh: each time, its vertices are more points to map.
+        // Many nodes may show one mesh; each time, its vertices are more points to map.
         let count = |a: Option<Accessor<'_>>| a.map_or(0, |a| a.count()) as f64;
         budget.spend(count(p.get(&Semantic::Positions)) + count(p.indices()))?;
     }
     Ok(())
 }
 
-/// The JSON of a text or binary file.
+/// Returns the JSON of a text or binary file.
 fn json(bytes: &[u8]) -> Option<Value> {
     if bytes.starts_with(b"glTF") {
         serde_json::from_slice(&Glb::from_slice(bytes).ok()?.json).ok()
@@ -126,7 +127,7 @@ fn json(bytes: &[u8]) -> Option<Value> {
     }
 }
 
-/// Appends a primitive with its vertices in scene coordinates. `lost` collects what is left out.
+/// Appends a primitive with its vertices in scene coordinates. `lost` collects the names of omitted features.
 fn append(
     mesh: &mut Mesh,
     primitive: &Primitive<'_>,
@@ -143,7 +144,7 @@ fn append(
     let first = mesh.positions.len();
     for p in own {
         let p = to_scene.transform_point3(DVec3::from_array(p));
-        // The square of a larger number overflows.
+        // The square of a larger number would overflow.
         if p.abs().max_element().is_nan() || p.abs().max_element() > 1e100 {
             return Err(MeshError::whole(format!("a vertex of accessor {} is not finite", positions.index())));
         }
@@ -260,7 +261,7 @@ struct Buffers(Vec<Vec<u8>>);
 
 impl Buffers {
     /// # Errors
-    /// A buffer is outside the file, or shorter than announced.
+    /// [`MeshFault::Text`](super::MeshFault::Text) when a buffer is outside the file, or shorter than announced.
     fn of(file: &mut Gltf) -> Result<Self, MeshError> {
         let mut blob = file.blob.take();
         let mut out = Vec::new();
@@ -278,13 +279,13 @@ impl Buffers {
         Ok(Self(out))
     }
 
-    /// The bytes of a view.
+    /// Returns the bytes of a view.
     fn view(&self, view: &View<'_>) -> Option<&[u8]> {
         let end = view.offset().checked_add(view.length())?;
         self.0.get(view.buffer().index())?.get(view.offset()..end)
     }
 
-    /// The numbers of an accessor, `N` at a time; missing components are 0.
+    /// Returns the numbers of an accessor, `N` at a time; missing components are 0.
     fn floats<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, MeshError> {
         let normalized = accessor.normalized();
         let mut out = Vec::new();
@@ -296,7 +297,7 @@ impl Buffers {
         Ok(out)
     }
 
-    /// The indices of an accessor.
+    /// Returns the indices of an accessor.
     fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, MeshError> {
         let mut out = Vec::new();
         self.each(accessor, |numbers| out.extend(numbers.first().map(Number::index)))?;
@@ -339,7 +340,7 @@ impl Buffers {
     }
 }
 
-/// A number as stored.
+/// A number of the type in which the file stores it.
 #[derive(Clone, Copy)]
 enum Number {
     I8(i8),
@@ -362,7 +363,7 @@ impl Number {
         })
     }
 
-    /// The value; normalized integers are fractions of the largest one.
+    /// Returns the value; normalized integers are fractions of the largest one.
     fn float(self, normalized: bool) -> f64 {
         let (value, largest) = match self {
             Self::I8(v) => (f64::from(v), f64::from(i8::MAX)),
@@ -375,7 +376,7 @@ impl Number {
         if normalized { (value / largest).max(-1.0) } else { value }
     }
 
-    /// The value as an index; out of range if the type is not one for indices.
+    /// Returns the value as an index, out of range if the type is not one for indices.
     fn index(&self) -> u32 {
         match self {
             Self::U8(v) => u32::from(*v),
@@ -386,7 +387,7 @@ impl Number {
     }
 }
 
-/// The bytes of a data URI.
+/// Returns the bytes of a data URI.
 fn inside(uri: &str) -> Result<Vec<u8>, String> {
     let shown: String = uri.chars().take(60).collect();
     let outside =
@@ -399,7 +400,7 @@ fn inside(uri: &str) -> Result<Vec<u8>, String> {
 /// split into triangles, and coordinates are stored in single precision.
 ///
 /// # Errors
-/// There are more bytes than the format can count.
+/// [`MeshFault::Text`](super::MeshFault::Text) when there are more bytes than the format can count.
 pub fn write_binary(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let (root, bin) = build(mesh, None);
     let text = serde_json::to_vec(&root).map_err(|e| MeshError::whole(e.to_string()))?;
@@ -411,7 +412,7 @@ pub fn write_binary(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
 /// Writes the text form, `.gltf`, with its buffer embedded.
 ///
 /// # Errors
-/// As [`write_binary`].
+/// [`MeshFault::Text`](super::MeshFault::Text) when there are more bytes than the format can count.
 pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let (root, _) = build(mesh, Some("data:application/octet-stream;base64,"));
     serde_json::to_vec(&root).map_err(|e| MeshError::whole(e.to_string()))
@@ -438,7 +439,7 @@ impl Part {
     }
 }
 
-/// The objects in order, each with its name and parts, and the names of materials that `assets` lacks.
+/// Returns the objects in order, each with its name and parts, and the names of materials that `assets` lacks.
 fn parts(mesh: &Mesh, assets: &Assets) -> (Vec<(String, Vec<Part>)>, Vec<String>) {
     let mut objects: Vec<(String, Vec<Part>)> = Vec::new();
     let mut added: Vec<String> = Vec::new();

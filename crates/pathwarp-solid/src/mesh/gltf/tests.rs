@@ -9,7 +9,7 @@ fn budget() -> Budget {
     Budget::new(Limits::default())
 }
 
-/// Two textured triangles, and the JSON of a file that shows them twice.
+/// Returns two textured triangles, and the JSON of a file that shows them twice.
 fn file() -> (Value, Vec<u8>) {
     let floats: [f32; 36] = [
         0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0., // positions
@@ -57,7 +57,7 @@ fn nodes_materials_textures_and_pictures_survive() {
     assert!(mesh.left_out.is_empty());
     assert_eq!((mesh.positions.len(), mesh.polygons.len()), (8, 4));
     assert_eq!((mesh.positions[1], mesh.positions[5]), (DVec3::new(11e3, 0.0, 0.0), DVec3::new(8e3, 0.0, 0.0)));
-    // Mirrored, its triangles still face the viewer.
+    // The triangles of a mirrored node still face the viewer.
     assert!(mesh.triangles().all(|t| {
         let [a, b, c] = t.map(|c| mesh.positions[c.vertex as usize]);
         (b - a).cross(c - a).z > 0.0 && t.iter().all(|c| mesh.normals[c.normal as usize].z == 1.0)
@@ -66,7 +66,7 @@ fn nodes_materials_textures_and_pictures_survive() {
     for again in [write_binary(&mesh).unwrap(), write_text(&mesh).unwrap()] {
         assert!(sniff(&again));
         let back = read(&again, &budget()).unwrap();
-        // The same corners, though their vertices may be numbered otherwise.
+        // The corners must be equal, though their vertices may be numbered otherwise.
         let corners = |m: &Mesh| -> Vec<(DVec3, [f64; 3], DVec3)> {
             let at = |c: &Corner| (m.positions[c.vertex as usize], m.uvs[c.uv as usize], m.normals[c.normal as usize]);
             m.corners.iter().map(at).collect()
@@ -82,7 +82,7 @@ fn nodes_materials_textures_and_pictures_survive() {
     }
 }
 
-/// Normals under a shear by hand, and faces of five corners as triangles.
+/// Checks normals under a shear against values by hand, and splits faces of five corners into triangles.
 #[test]
 fn polygons_become_triangles_and_objects_keep_their_materials() {
     let text = "o a\nusemtl red\nv 0 0 0\nv 4 0 0\nv 5 2 0\nv 2 4 0\nv -1 2 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1 5//1\no b\nusemtl blue\nf 1 2 3\nl 1 3\n";
@@ -162,7 +162,7 @@ fn damaged_and_outside_files_are_refused_quickly() {
         let e = read(&file, &budget()).unwrap_err().to_string();
         assert!(e.contains(part), "{part}: {e}");
     }
-    // A small file that shows a mesh again and again.
+    // A small file that shows one mesh again and again.
     let many = changed(&|r| {
         for i in 0..20 {
             r["nodes"]

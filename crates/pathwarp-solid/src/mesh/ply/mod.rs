@@ -13,7 +13,7 @@ use ply_rs_bw::ply::{
 use ply_rs_bw::writer::Writer;
 use std::borrow::Cow;
 
-/// The names of a vertex's numbers, in the order of [`Element::values`]; each number may go by several names.
+/// The names of a vertex's numbers, in the order of [`Element::values`]; each number may have several names.
 const NAMES: [&[&str]; 12] = [
     &["x"],
     &["y"],
@@ -28,7 +28,7 @@ const NAMES: [&[&str]; 12] = [
     &["s", "u", "texture_u"],
     &["t", "v", "texture_v"],
 ];
-/// Where normals, colours, opacity and texture coordinates start among them.
+/// Indices in [`Element::values`] of the first normal, colour, opacity and texture coordinate.
 const NORMAL: usize = 3;
 const COLOR: usize = 6;
 const ALPHA: usize = 9;
@@ -41,7 +41,7 @@ const TEXTURE: &str = "texcoord";
 /// The names of the ends of an edge.
 const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 
-/// The index of a vertex property in [`Element::values`].
+/// Returns the index of a vertex property in [`Element::values`].
 fn place(name: &str) -> Option<usize> {
     NAMES.iter().position(|all| all.contains(&name))
 }
@@ -55,7 +55,7 @@ struct Element {
     indices: Vec<u32>,
     /// u and v for each corner of a face.
     uvs: Vec<f32>,
-    /// Whether an index is negative or not a whole number.
+    /// `true` if an index is negative or not a whole number.
     damaged: bool,
 }
 
@@ -77,7 +77,7 @@ impl PropertyAccess for Element {
             _ => None,
         };
         if let (Some(v), Some(i)) = (single, place(name)) {
-            // Colours in single bytes go up to 255.
+            // Colours in single bytes range up to 255.
             let is_byte = (COLOR..UV).contains(&i) && matches!(property, Property::UChar(_));
             self.values[i] = if is_byte { v / 255.0 } else { v };
         } else if let (Some(v), true) = (single, ENDS.contains(&name)) {
@@ -140,7 +140,7 @@ impl Element {
     }
 }
 
-/// Whether the file starts like PLY.
+/// Returns `true` if the file starts like PLY.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
     bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r")
@@ -149,7 +149,7 @@ pub fn sniff(bytes: &[u8]) -> bool {
 /// Reads a mesh: vertices with normals, colours and texture coordinates, faces, and edges. Anything else is named in [`Mesh::left_out`].
 ///
 /// # Errors
-/// The file is damaged: it announces more than it holds, an index is out of range, or a number is not finite.
+/// [`MeshFault::Text`](super::MeshFault::Text) when the file announces too much, an index is out of range, or a number not finite.
 pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let damaged = |e: ParseError| {
         let text: String = e.to_string().lines().next().unwrap_or_default().chars().take(200).collect();
@@ -177,9 +177,9 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Text as the parser takes it: numbers like `.5` and `5.` get their zeros, and empty lines are left out. Binary files stay.
+/// Returns text that the parser can read: numbers like `.5` and `5.` get their zeros, empty lines go. Binary files are unchanged.
 fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
-    /// The format stands near the beginning.
+    /// Bytes at the beginning within which the format is declared.
     const HEAD: usize = 1024;
     const ASCII: &[u8] = b"format ascii";
     let is_text = bytes.windows(ASCII.len()).take(HEAD).any(|w| w == ASCII);
@@ -216,7 +216,7 @@ fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result
         ScalarType::Double => 8,
     };
     let min_size: usize = match header.encoding {
-        // A digit and a space or line end for each.
+        // A digit and a space or line end for each property.
         Encoding::Ascii => 2 * element.properties.len(),
         _ => element
             .properties
@@ -238,7 +238,7 @@ fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result
     Ok(())
 }
 
-/// Names properties that are not read.
+/// Names the properties that are not read.
 fn unknown(element: &ElementDef) -> Option<String> {
     let known = |name: &str| match element.name.as_str() {
         "vertex" => place(name).is_some(),
@@ -257,7 +257,7 @@ fn vertices(mesh: &mut Mesh, element: &ElementDef, all: &[Element]) -> Result<()
     }
     for (i, e) in all.iter().enumerate() {
         let v = &e.values;
-        // The square of a larger number overflows.
+        // The square of a larger number would overflow.
         if !v.iter().all(|v| v.abs() < 1e100) {
             return Err(MeshError::whole(format!("vertex {} is not finite", i + 1)));
         }
@@ -338,7 +338,7 @@ fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), M
 /// triangles.
 ///
 /// # Errors
-/// As for the crate's writer.
+/// [`MeshFault::Text`](super::MeshFault::Text) with the message of the crate that writes the file.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let unified = unify(mesh);
     let colored = mesh.colors.len() == mesh.positions.len() && !mesh.colors.is_empty();
@@ -368,11 +368,11 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         match kind {
             PolygonKind::Face => faces.push(element(own)),
             PolygonKind::Line => edges.extend(own.windows(2).map(element)),
-            // A vertex without a face is a point anyway.
+            // Points need no element: a vertex without a face is read as one.
             PolygonKind::Points => {}
         }
     }
-    // Some readers, such as trimesh, take faces of one size only.
+    // Some readers, such as trimesh, accept faces of one size only.
     if faces.windows(2).any(|w| w[0].indices.len() != w[1].indices.len()) {
         let fan = |f: &Element| -> Vec<Element> {
             let [first, rest @ ..] = f.indices.as_slice() else { return Vec::new() };

@@ -20,10 +20,10 @@ fn quads_colours_normals_and_edges_come_back() {
     assert!((mesh.colors[3], mesh.positions[4].z, mesh.uvs[2]) == ([0.2, 0.0, 0.0, 1.0], 1.0, [1.0, 1.0, 0.0]));
     let back = read(&write(&mesh).unwrap()).unwrap();
     assert_eq!((&back.positions, &back.colors), (&mesh.positions, &mesh.colors));
-    // Beside a triangle, the quad is two of them, from its first corner.
+    // Beside a triangle, the quad is written as two triangles from its first corner.
     let kinds = |mesh: &Mesh| -> Vec<_> { mesh.polygons().map(|(k, c)| (k, c.len())).collect() };
     assert_eq!(kinds(&back), [&[(PolygonKind::Face, 3); 3][..], &[(PolygonKind::Line, 2)]].concat());
-    // The edge has no texture coordinates, and its vertices have.
+    // The edge has no texture coordinates, but its vertices have.
     assert_eq!(back.corners[..9], [0, 1, 2, 0, 2, 3, 4, 5, 6].map(|i| mesh.corners[i]));
     let quad = read(TEXT.replace("face 2", "face 1").replace("3 1 4 2\n", "").as_bytes()).unwrap();
     let back = read(&write(&quad).unwrap()).unwrap();
@@ -31,7 +31,7 @@ fn quads_colours_normals_and_edges_come_back() {
     assert_eq!(back.corners[..4], quad.corners[..4]);
 }
 
-/// Other programs leave zeros out, and lines empty.
+/// Other programs omit zeros and leave lines empty.
 #[test]
 fn numbers_may_lack_zeros_and_lines_be_empty() {
     let loose = TEXT.replace("0.5", ".5").replace("1 1 .5", "1. +1.e0 5.E-1").replace("end_header\n", "end_header\n\n");
