@@ -164,8 +164,7 @@ fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::trim).filter(|l| !l.is_empty()).map(ToOwned::to_owned).collect()
 }
 
-/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it. Of several steps, the first one with the setting is changed, or else the
-/// first.
+/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it, in the first step that has the setting, or else in the first step.
 ///
 /// # Errors
 /// A message that quotes the first line of another form.

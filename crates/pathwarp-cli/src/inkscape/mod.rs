@@ -1,5 +1,5 @@
 //! Calls by Inkscape, which starts the program for every effect with ids, parameters and the drawing's file: `--id=path1
-//! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; anything on standard error
+//! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; text on standard error
 //! opens a window.
 //!
 //! A call is converted to the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
@@ -107,8 +107,7 @@ fn release(stage: &Stage<'_>) -> Result<String, Failure> {
     Ok(objects::restore(&drawing, &ids, &stage.limits())?.svg)
 }
 
-/// Warps the sources of the selected objects by their recipes, with changes. Returns the drawing, or nothing if only the settings are
-/// shown.
+/// Warps the sources of the selected objects by their recipes, with changes. Returns the drawing, or nothing to only show settings.
 fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
     let call = stage.call;
     let drawing = stage.drawing()?;

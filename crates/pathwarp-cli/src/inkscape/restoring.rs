@@ -82,8 +82,7 @@ fn changed_by_hand(id: &str) -> Failure {
     ))
 }
 
-/// Repeats the changes made to objects by hand since their warp: colours, labels, positions. `now` is the drawing before the sources were
-/// restored.
+/// Repeats the changes made to objects by hand since their warp: colours, labels, positions. `now` is the drawing with the changes.
 pub(super) fn as_by_hand(
     stage: &Stage<'_>,
     now: &str,
