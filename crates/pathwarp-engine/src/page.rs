@@ -173,7 +173,7 @@ impl PageCounts {
         }
     }
 
-    /// Returns `true` if nothing of any input is on its page.
+    /// Returns `true` if a page has nothing on it.
     pub fn are_blank(&self) -> bool {
         self.blank.0 > 0
     }
