@@ -1,4 +1,4 @@
-//! Bitmaps and gradients bent pixel by pixel, and pictures as files.
+//! Bends bitmaps and gradients pixel by pixel, and encodes pictures as files.
 
 use crate::failure::Failure;
 use crate::format::Format;
@@ -198,7 +198,7 @@ impl GradientPainter for Bender {
             finest,
         };
         count_evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
-        // The number of pixels follows from painting. Nothing is painted once the limit is reached.
+        // The number of pixels is known only after painting. Nothing is painted once the limit is reached.
         let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
         count_pixels(&self.budget, Pixel::Shaded, search).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
@@ -211,7 +211,7 @@ impl GradientPainter for Bender {
 /// Returns the fewest pixels across and down for one of `among` pictures of gradients with this size in px. Some programs show pixels
 /// unsmoothed.
 fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
-    /// Pixels along a side, and per px.
+    /// Fewest pixels along a side, and per px.
     const SIDE: f64 = 64.0;
     const DENSITY: f64 = 0.25;
     /// Most pixels in all pictures of a drawing that exist for such programs.

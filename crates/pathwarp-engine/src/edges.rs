@@ -46,7 +46,7 @@ impl EdgePainter for Bender {
     }
 }
 
-/// Gives every pixel the colour of the nearest one that counts. Pixels that count are opaque.
+/// Gives every pixel the colour of the nearest one that counts (`counts`). Those are opaque.
 pub(crate) fn continue_colors(picture: &mut Pixmap, counts: &[bool]) {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let nearest = nearest(width, height, |i| counts[i]);
@@ -57,7 +57,7 @@ pub(crate) fn continue_colors(picture: &mut Pixmap, counts: &[bool]) {
     }
 }
 
-/// No pixel.
+/// Stands for no pixel.
 const NONE: u32 = u32::MAX;
 
 /// For each pixel, the nearest one that counts: two passes that propagate the neighbours' distances (P.-E. Danielsson, Euclidean Distance

@@ -232,10 +232,10 @@ fn is_descriptor(file: &Path) -> bool {
     cfg!(unix) && ["/proc/self/fd", "/dev/fd"].iter().any(|fds| folder(file) == Path::new(fds))
 }
 
-/// A file in place.
+/// A file under its final name.
 struct Placed {
     to: PathBuf,
-    /// The file it replaced.
+    /// A backup of the file that it replaced.
     backup: Option<Temporary>,
 }
 

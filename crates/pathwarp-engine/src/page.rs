@@ -70,11 +70,11 @@ pub struct PageNews {
     pub(crate) shrunk: Option<f64>,
     /// `true` if the program decided on the change.
     pub(crate) by_itself: bool,
-    /// The artwork extends past the page and did not before.
+    /// The artwork that extends past the page and did not before.
     pub(crate) overhang: Option<Overhang>,
     /// The reason why the page stays although it could have grown.
     pub(crate) stays: Option<&'static str>,
-    /// Nothing of the result lies on the page.
+    /// `true` if nothing of the result lies on the page.
     pub is_blank: bool,
     /// The warning about artwork that has come onto the page.
     pub arrivals: Option<Warning>,

@@ -1,4 +1,4 @@
-//! Recipe files.
+//! Recipe files: steps with their parameters, and common options, in TOML.
 //!
 //! ```toml
 //! pathwarp = 1

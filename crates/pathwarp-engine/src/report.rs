@@ -10,7 +10,7 @@ use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// One input file.
+/// The report of one input file.
 #[derive(Debug, Clone, Serialize)]
 pub struct FileReport {
     /// The name of the file.

@@ -418,7 +418,7 @@ fn stretched(artwork: &dyn Artwork, built: &BuiltParts) -> Vec<String> {
     built.parts.iter().enumerate().filter_map(of_part).collect()
 }
 
-/// The baseline of a step.
+/// Returns the kind of baseline that a step has.
 fn baseline(registry: &Registry, step: &Step) -> Baseline {
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {

@@ -35,7 +35,7 @@ fn listed(registry: &Registry, plugins: &Plugins) -> Value {
             };
         }
         if p.range.0.is_finite() || p.range.1.is_finite() {
-            // JSON has no infinity: null.
+            // JSON has no infinity; `json!` writes null.
             v["range"] = json!([p.range.0, p.range.1]);
         }
         match p.kind {

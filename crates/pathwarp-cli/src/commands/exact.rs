@@ -1,4 +1,7 @@
-//! `map … --exact`: exact images of curves as text, as JSON, or as the splines of a DXF.
+//! `map … --exact`: exact images of curves, as text, as JSON, or as splines of a DXF.
+//!
+//! Where the map's coordinates are quotients of polynomials, the image of a rational Bézier curve is a rational Bézier curve, of a higher
+//! degree in general. Curves that cross a crease of the map or leave its domain are refused.
 
 use crate::ending::Status;
 use clap::{Arg, ArgMatches, value_parser};

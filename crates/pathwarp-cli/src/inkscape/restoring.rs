@@ -144,7 +144,7 @@ const LARGEST: f64 = 1e-5;
 /// Most means in a summary.
 const MEANS: usize = 12;
 
-/// A summary of nodes: their number, and means of consecutive groups.
+/// A summary of nodes: their number, and means of consecutive groups, which affine maps take to means.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Nodes {
     count: usize,

@@ -49,7 +49,7 @@ pub struct Details {
     pub value: Option<String>,
     /// The file, with a position in it if that is known.
     pub file: Option<String>,
-    /// The point of the drawing.
+    /// The point of the drawing at fault.
     pub at: Option<Point>,
     /// The exceeded limit, its value, and the amount needed.
     pub limit: Option<Exceeded>,

@@ -1,4 +1,4 @@
-//! Drawings as DXF, in millimetres.
+//! Drawings as DXF, in millimetres: lines are chained, rid of repetitions, and moved to make room for the cut.
 
 use super::contours::{self, Contour};
 use super::exported::{Exported, counted};

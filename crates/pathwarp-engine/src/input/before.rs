@@ -1,4 +1,4 @@
-//! Edits of a drawing before it is bent.
+//! Edits of a drawing before it is bent. They shift positions in the document; if selectors use these, elements get ids meanwhile.
 
 use crate::advice;
 use crate::bitmap::Bender;

@@ -4,7 +4,7 @@
 //! Method: Z. Zhang and L.-W. He, *Whiteboard scanning and image enhancement*, Digital Signal Processing 17 (2007). With
 //! corners (x, y, 1) from the middle, m₁ upper left, m₂ upper right, m₃ lower left, m₄ lower right:
 //!
-//! - k₂ = (m₁ × m₄)·m₃ / (m₂ × m₄)·m₃ and k₃ = (m₁ × m₄)·m₂ / (m₃ × m₄)·m₂,
+//! - k₂ = (m₁ × m₄)·m₃ / (m₂ × m₄)·m₃ and k₃ = (m₁ × m₄)·m₂ / (m₃ × m₄)·m₂, where (a × b)·c is twice the area of triangle abc,
 //! - n₂ = k₂ m₂ − m₁ and n₃ = k₃ m₃ − m₁ are the directions of width and height, seen by a camera of focal length 1,
 //! - they are at right angles: f² = −(n₂ₓ n₃ₓ + n₂ᵧ n₃ᵧ) / (n₂z n₃z),
 //! - (width / height)² = ((n₂ₓ² + n₂ᵧ²) / f² + n₂z²) / ((n₃ₓ² + n₃ᵧ²) / f² + n₃z²).

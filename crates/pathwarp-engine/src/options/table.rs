@@ -651,7 +651,7 @@ pub enum LeadingMinus {
 }
 
 impl CommonOption {
-    /// The help text with the default.
+    /// Returns the help text with the default.
     pub fn help(&self) -> String {
         match self.default {
             Some(d) => format!("{} [default: {d}]", self.help),
@@ -664,7 +664,7 @@ impl CommonOption {
         matches!(self.value, OptionValue::List { .. })
     }
 
-    /// The words of a choice, without those that are only for its [`alias`](Self::alias).
+    /// Returns the words of a choice, without those that are only for its [`alias`](Self::alias).
     pub fn words(&self) -> Vec<&'static str> {
         let OptionValue::Choice(words) = &self.value else { return Vec::new() };
         let is_old = |word: &str| self.alias.is_some() && ["on", "off"].contains(&word);
