@@ -66,7 +66,7 @@ pub struct Warped {
     pub result: WarpedResult,
     /// The report, without the name of an output.
     pub report: FileReport,
-    /// The changes of the page, about which the last warnings are.
+    /// The changes of the page; the last warnings describe them.
     pub page: PageNews,
     /// The lines of `--explain`.
     pub notes: Vec<String>,

@@ -37,7 +37,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Number of segments from which threads find folds faster.
+/// Fewest segments for which threads find folds faster.
 const WORTH_THREADS: usize = 5000;
 
 /// Relative difference of pages below which they have the same scale.
@@ -171,7 +171,7 @@ impl SvgArtwork {
         &self.read
     }
 
-    /// Returns the shapes that `which` selects.
+    /// Returns the selection that `which` means.
     fn selection(&self, which: Which) -> &Selection {
         let own = match which {
             Which::All => None,
