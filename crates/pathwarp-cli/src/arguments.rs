@@ -1,4 +1,4 @@
-//! The common options as clap's arguments, and as a parsed command line gives them.
+//! The common options as arguments of clap, and their values on a parsed command line.
 
 use clap::builder::PossibleValue;
 use clap::parser::ValueSource;
@@ -8,17 +8,17 @@ use pathwarp_engine::options::{CommonOption, Given, LeadingMinus, OPTIONS, Optio
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
-/// The inputs and options of a parsed command line. The command may have only some of them.
+/// Returns the inputs and options of a parsed command line. The command may have only some of them.
 pub(crate) fn given(m: &ArgMatches) -> Given {
     let is_declared = m.try_contains_id(INPUT).is_ok();
     let inputs = is_declared.then(|| m.get_many::<PathBuf>(INPUT)).flatten().into_iter().flatten().cloned();
     Given::new(inputs.collect(), values(OPTIONS.iter(), m))
 }
 
-/// The options about reading that a command line of [`reading_args`] gives.
+/// Returns the options of [`reading_args`] on a command line.
 ///
 /// # Errors
-/// A value with its own syntax cannot be parsed.
+/// [`Failure::Usage`] if a value cannot be parsed.
 pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
     Ok(Given::new(Vec::new(), values(OPTIONS.iter().filter(|o| o.reading), m)).read()?.reading)
 }
@@ -48,21 +48,21 @@ fn values(
 /// The id of the positional argument for the inputs.
 pub(crate) const INPUT: &str = "INPUT";
 
-/// The inputs and the common options.
+/// Returns the arguments for the inputs and the common options.
 pub(crate) fn args() -> impl Iterator<Item = Arg> {
     let help = "SVG files (also .svgz), PNG, JPEG or WebP pictures, or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none \
                 reads standard input";
     std::iter::once(inputs_arg().help(help)).chain(options_without_inputs())
 }
 
-/// The inputs of a command that reads drawings.
+/// Returns the argument for the inputs of a command that reads drawings.
 pub(crate) fn inputs_arg() -> Arg {
     let help =
         "SVG files (also .svgz), or GIMP paths (XCF, point lists; FILE or FILE#NAME); - or none reads standard input";
     Arg::new(INPUT).num_args(0..).value_parser(value_parser!(PathBuf)).help(help)
 }
 
-/// The common options, without the inputs.
+/// Returns the common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
     let is_there = |name: &&str| OPTIONS.iter().any(|o| o.name == *name);
     OPTIONS.iter().map(move |o| {
@@ -75,12 +75,12 @@ pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
 pub(crate) const OF_OUTPUT: [&str; 8] =
     ["format", "dxf-curves", "kerf", "engrave", "duplicates", "page-width", "page-height", "tolerance"];
 
-/// The common options of these names, for a command that has only some of them.
+/// Returns the common options with these names, for a command that has only some of them.
 pub(crate) fn some_options(names: &[&str]) -> impl Iterator<Item = Arg> {
     OPTIONS.iter().filter(|o| names.contains(&o.name)).map(|o| arg(o).help_heading("Common options"))
 }
 
-/// The options about reading drawings, for commands that have no other common options.
+/// Returns the options for reading drawings, for commands without other common options.
 pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
     OPTIONS.iter().filter(|o| o.reading).map(|o| arg(o).help_heading("Reading"))
 }

@@ -1,4 +1,4 @@
-//! `--data`: a command carried out for each row of a table, whose cells stand for `{column}` in its words and in the output's name.
+//! `--data` executes a command for each row of a table, whose cells replace `{column}` in its words and in the output's name.
 
 use crate::ending::Status;
 use crate::pipeline::Folders;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use unicode_normalization::UnicodeNormalization as _;
 
 const DATA: &str = "data";
-/// Most faults of a kind that are listed.
+/// Most faults of each kind in the list.
 const SHOWN: usize = 8;
 
 pub(crate) fn arg() -> Arg {
@@ -26,20 +26,20 @@ pub(crate) fn arg() -> Arg {
     )
 }
 
-/// Returns `true` if there is a table.
+/// Returns `true` if a table is given.
 pub(crate) fn is_given(m: &ArgMatches) -> bool {
     m.contains_id(DATA)
 }
 
 /// A row of a table.
 pub(crate) struct Row<'a> {
-    /// The columns' names, as written.
+    /// The columns' names, as in the table.
     names: &'a [String],
     cells: &'a [String],
 }
 
 impl Row<'_> {
-    /// A text with cells in the place of `{column}`.
+    /// Replaces each `{column}` in a text by its cell.
     pub(crate) fn filled(&self, text: &str) -> String {
         let cell = |name| self.names.iter().position(|n| same(n, name)).and_then(|i| self.cells.get(i));
         let filled = pieces(text).map(|piece| match piece {
@@ -49,7 +49,7 @@ impl Row<'_> {
         filled.collect()
     }
 
-    /// Lines with cells in the place of `{column}`, without blanks around them, and without the lines of which the cells leave nothing.
+    /// Replaces each `{column}` in lines of text by its cell, trims the lines, and drops those that cells make empty.
     pub(crate) fn filled_lines(&self, text: &str) -> String {
         let has_columns = |line: &str| columns(line).next().is_some();
         let lines = text.split('\n').map(|line| match has_columns(line) {
@@ -60,8 +60,8 @@ impl Row<'_> {
     }
 }
 
-/// Carries out a command for each row of the table that `--data` names. All rows, which may stand in `texts` and in the name of the output,
-/// are checked before the first; one that fails is reported, and the others go on. `reads` are other files that the command reads.
+/// Executes a command for each row of the table that `--data` names. All rows, which may fill `texts` and the name of the output, are
+/// checked first. A row that fails is reported, and the others continue. `reads` lists other files that the command reads.
 pub(crate) fn for_each_row(
     registry: &Registry,
     m: &ArgMatches,
@@ -103,7 +103,7 @@ pub(crate) fn for_each_row(
     Ok(Status::partial_if(partial || failed > 0))
 }
 
-/// The text of a file in UTF-8, or in UTF-16 with a byte order mark, which is dropped.
+/// Decodes a file in UTF-8, or in UTF-16 with a byte order mark, and drops the mark.
 pub(crate) fn decoded(bytes: &[u8], name: &str) -> Result<String, Failure> {
     let (encoding, mark) = Encoding::for_bom(bytes).unwrap_or((UTF_8, 0));
     let text = encoding.decode_without_bom_handling_and_without_replacement(&bytes[mark..]);
@@ -115,14 +115,14 @@ pub(crate) fn decoded(bytes: &[u8], name: &str) -> Result<String, Failure> {
 
 struct Table {
     names: Vec<String>,
-    /// The rows below the names, with their numbers in a spreadsheet.
+    /// The rows below the names, numbered as in a spreadsheet.
     rows: Vec<(usize, Vec<String>)>,
 }
 
 impl Table {
-    /// Reads a table. Cells are without blanks around them, and rows without any content are left out.
+    /// Parses a table. Cells are trimmed, and rows without content are dropped.
     fn read(text: &str) -> Result<Self, String> {
-        // Excel names the separator in a line of its own, if it is asked to.
+        // Excel can write the separator in a line before the names.
         let named =
             text.strip_prefix("sep=").and_then(|rest| Some((*rest.as_bytes().first()?, rest.split_once('\n')?.1)));
         let (separator, text) = named.unwrap_or_else(|| (separator(text), text));
@@ -132,7 +132,7 @@ impl Table {
         let (mut record, mut all) = (csv::StringRecord::new(), Vec::new());
         let (mut line, mut number) = (1, usize::from(named.is_some()));
         while reader.read_record(&mut record).map_err(|e| format!(": {e}"))? {
-            // A row may follow empty ones, which the reader skips, and its cells may have several lines.
+            // Count the empty rows that the reader skips, and the lines within cells.
             let within: usize = record.iter().map(|cell| cell.matches('\n').count()).sum();
             let after = reader.position().line() as usize;
             number += (after - line).saturating_sub(within).max(1);
@@ -150,7 +150,7 @@ impl Table {
         }
     }
 
-    /// Checks that every column that is asked for is there, and there once.
+    /// Checks that every column in use exists, and exists only once.
     fn check_columns(&self, texts: &[&str], out: &Path) -> Result<(), String> {
         for wanted in texts.iter().copied().chain([&*out.to_string_lossy()]).flat_map(columns) {
             match self.names.iter().filter(|name| same(name, wanted)).count() {
@@ -162,7 +162,7 @@ impl Table {
         Ok(())
     }
 
-    /// The output of each row, if every row has one of its own, with a name that file systems take.
+    /// Returns the output of each row, if all are different and valid names for file systems.
     fn targets(&self, out: &Path) -> Result<Vec<PathBuf>, String> {
         let (mut targets, mut faults) = (Vec::with_capacity(self.rows.len()), Vec::new());
         let mut known: HashMap<String, (usize, String)> = HashMap::new();
@@ -175,7 +175,7 @@ impl Table {
             });
             let target: PathBuf = parts.collect();
             let shown = target.display().to_string();
-            // Systems that ignore capitals or the spelling of accents would write one file over the other.
+            // Names that differ in capitals or in the encoding of accents are equal on some systems.
             let folded: String = shown.nfd().collect::<String>().to_uppercase().to_lowercase().nfc().collect();
             if let Some((first, other)) = known.get(&folded) {
                 faults.push(match *other == shown {
@@ -195,9 +195,9 @@ impl Table {
     }
 }
 
-/// Why the cells give no name of a file or a folder, with the columns that they are of.
+/// Explains why cells do not form a name of a file or folder, with their columns.
 fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
-    /// Characters and names that Windows keeps for itself, the names also before a dot (Win32, Naming Files, Paths, and Namespaces).
+    /// Characters and names that Windows reserves, the names also before a dot (Win32, Naming Files, Paths, and Namespaces).
     const KEPT: &str = "/\\<>:\"|?*";
     const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
     const PORTS: [&str; 2] = ["COM", "LPT"];
@@ -229,18 +229,18 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     (!columns.is_empty()).then(|| format!("column {}: “{name}” {problem}", columns.join(", ")))
 }
 
-/// Returns `true` if two names of columns are the same.
+/// Returns `true` if two names of columns are equal.
 fn same(a: &str, b: &str) -> bool {
     a.trim().to_lowercase() == b.trim().to_lowercase()
 }
 
-/// A part of a text: the name of a column, in braces, or what is between such names.
+/// A part of a text: the name of a column in braces, or the text between such names.
 enum Piece<'a> {
     Column(&'a str),
     Plain(&'a str),
 }
 
-/// The columns that a text names.
+/// Returns the columns that a text names.
 fn columns(text: &str) -> impl Iterator<Item = &str> {
     pieces(text).filter_map(|p| if let Piece::Column(name) = p { Some(name) } else { None })
 }
@@ -263,7 +263,7 @@ fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
     })
 }
 
-/// The separator that is in the first row most often, outside of quotes.
+/// Returns the most frequent separator in the first row, outside of quotes.
 fn separator(text: &str) -> u8 {
     let mut quoted = false;
     let first = text.bytes().take_while(|b| {
@@ -272,6 +272,6 @@ fn separator(text: &str) -> u8 {
     });
     let unquoted: Vec<u8> = first.collect::<Vec<_>>().split(|b| *b == b'"').step_by(2).flatten().copied().collect();
     let count = |separator: &u8| unquoted.iter().filter(|b| *b == separator).count();
-    // The last of several equals.
+    // Of equals, the last one is taken.
     [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
 }

@@ -1,4 +1,4 @@
-//! The ends of a run, each with its exit code.
+//! The ways in which a run ends, with their exit codes.
 
 use crate::terminal;
 use pathwarp_engine::advice::Flags;
@@ -7,7 +7,7 @@ use pathwarp_engine::failure::Failure;
 /// The result of a run that did not fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Status {
-    /// Everything was done.
+    /// All was done.
     Complete,
     /// Something was left unchanged or missed the tolerance, or a comparison exceeded its limit.
     Partial,
@@ -22,7 +22,7 @@ impl Status {
 
 /// The reason why a run ended early.
 pub(crate) enum Ending {
-    /// clap's own message: wrong usage, or a request for help.
+    /// A message of clap: wrong usage, or a request for help.
     Clap(clap::Error),
     Failed(Failure),
 }
@@ -36,7 +36,7 @@ impl Ending {
         }
     }
 
-    /// The reason as a failure, whose message has no colours and is printed nowhere yet.
+    /// Converts the reason to a failure, whose message has no colours and has not been printed.
     pub(crate) fn into_failure(self) -> Failure {
         match self {
             Self::Clap(e) => Failure::Usage(e.to_string()),
@@ -44,10 +44,10 @@ impl Ending {
         }
     }
 
-    /// Prints the message, with parameters as `flags`.
+    /// Prints the message, in which parameters appear as `flags`.
     pub(crate) fn show(&self, flags: &Flags) {
         match self {
-            // clap picks the stream: help goes to standard output. Ignore a closed pipe.
+            // clap selects the stream: help goes to standard output. Ignore a closed pipe.
             Self::Clap(e) => drop(e.print()),
             Self::Failed(failure) => terminal::error(&failure.message(flags)),
         }

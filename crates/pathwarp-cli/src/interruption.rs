@@ -1,16 +1,16 @@
-//! Ctrl-C and SIGTERM: a handler on a thread of its own waits for commits under way, removes all temporary files and ends the program.
+//! Ctrl-C and SIGTERM: a handler on another thread waits for commits under way, removes all temporary files and ends the program.
 
 use crate::terminal;
 use pathwarp_engine::temporaries;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The exit code after an interruption: a shell's for SIGINT.
+/// The exit code after an interruption, which shells use for SIGINT.
 const INTERRUPTED: i32 = 130;
 
 /// Number of inputs of a batch whose results are in place.
 static FINISHED: AtomicUsize = AtomicUsize::new(0);
-/// An interruption is the usual end of the command, so it needs no message.
+/// `true` if interruptions are the usual end of the command, and need no message.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Counts an input of a batch as finished.
@@ -18,7 +18,7 @@ pub(crate) fn count_finished() {
     FINISHED.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Interruptions end the program without a message from now on.
+/// Lets interruptions end the program without a message from now on.
 pub(crate) fn end_quietly() {
     IS_QUIET.store(true, Ordering::Relaxed);
     handle();
@@ -28,7 +28,7 @@ pub(crate) fn end_quietly() {
 pub(crate) fn handle() {
     static INSTALL: Once = Once::new();
     INSTALL.call_once(|| {
-        // A program around this library may have a handler already; it then answers for interruptions.
+        // If a host program has installed a handler, that one handles interruptions.
         let _ = ctrlc::set_handler(|| {
             end_after_cleaning(|| {
                 if !IS_QUIET.load(Ordering::Relaxed) {
@@ -44,7 +44,7 @@ pub(crate) fn handle() {
     });
 }
 
-/// Ends the plug-ins' programs, removes all temporary files, and calls `end`, which ends this program.
+/// Ends the plug-ins' processes, removes all temporary files, and calls `end`, which ends this program.
 pub(crate) fn end_after_cleaning(end: impl FnOnce()) {
     temporaries::remove_all_and(pathwarp_plugin::end_all, end);
 }

@@ -1,6 +1,6 @@
 //! The command line of pathwarp, for any registry of deformations.
 //!
-//! A program with deformations of its own is this short:
+//! A program with additional deformations is this short:
 //!
 //! ```no_run
 //! # use pathwarp::deform::Registry;
@@ -9,9 +9,9 @@
 //! }
 //! ```
 //!
-//! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out, or nothing is on the page of the
-//! result (the messages and the report say why); 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
-//! On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.
+//! Exit codes: 0 success; 1 done, but something was left unchanged or, of several inputs, left out, or nothing is on the page of the result
+//! (messages and the report give reasons); 2 wrong usage; 3 unreadable input, or input that exceeds a limit on work; 4 geometry without a
+//! valid result; 5 unwritable output; 130 interrupted. On 2 to 5 no output file is touched. An interrupted run leaves finished results.
 
 mod arguments;
 mod commands;
@@ -46,14 +46,14 @@ pub fn main_with(registry: Registry) -> ExitCode {
     run(&registry, std::env::args_os())
 }
 
-/// The whole command line of `registry` as a clap command, for man pages and completions.
+/// Returns the whole command line of `registry` as a clap command, for man pages and completions.
 #[must_use]
 pub fn command(registry: &Registry) -> clap::Command {
     commands::build(registry)
 }
 
-/// Prints nothing of the panics of linesweeper 0.5, which fails on the edges of some areas. The fitter catches them and sweeps another way
-/// (`TURNS` in `bezierfit`), and says so if none succeeds.
+/// Silences panics of linesweeper 0.5, which fails on the edges of some areas. The fitter catches them and sweeps in another direction
+/// (`TURNS` in `bezierfit`); it reports an error if none succeeds.
 fn keep_sweeps_quiet() {
     let print = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
@@ -75,7 +75,7 @@ pub fn run(registry: &Registry, args: impl IntoIterator<Item = OsString>) -> Exi
             commands::dispatch(registry, &args)
         }
     };
-    // A panic of a library is an error of the file that caused it. Temporary files are removed on the way.
+    // A panic of a library is reported as an error of the file that caused it. Temporary files are removed.
     let outcome = catch_unwind(AssertUnwindSafe(dispatch)).unwrap_or_else(|_| {
         Err(Ending::from(Failure::Input("the program failed (see the message above); please report it".into())))
     });

@@ -1,4 +1,4 @@
-//! Words that new users type: commands and options of other programs, values apart from their units, names without quotes.
+//! Mistakes of new users: commands and options of other programs, values apart from their units, names without quotes.
 
 use pathwarp_engine::advice::likely;
 use pathwarp_engine::catalogue::Catalogue;
@@ -8,7 +8,7 @@ use pathwarp_engine::input::split_reference;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Other names of options, and what to write if the command has that option.
+/// Synonyms of options, with the proper option, which is suggested if the command has it.
 const OPTIONS: [(&[&str], &str); 22] = [
     (&["output", "outfile", "out-file", "export-filename", "to", "o"], "out"),
     (&["angle", "rotation", "turn", "degrees"], "rotate"),
@@ -34,7 +34,7 @@ const OPTIONS: [(&[&str], &str); 22] = [
     (&["dy"], "move-y 10mm (a length)"),
 ];
 
-/// What an unknown command may mean.
+/// Explains an unknown command.
 pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let path = Path::new(word);
     let lower = word.to_lowercase();
@@ -52,7 +52,7 @@ pub(crate) fn command(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     coming_from::meant(catalogue, word)
 }
 
-/// The first option with one dash for two, which would be read as letters: `-rotate 5` as `-r -o tate 5`.
+/// Finds the first option with one dash instead of two, which would be read as letters: `-rotate 5` as `-r -o tate 5`.
 pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<String>) -> Option<String> {
     let name = |w: &OsString| w.to_str()?.strip_prefix('-')?.split('=').next().map(str::to_owned);
     let is_name =
@@ -62,9 +62,9 @@ pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<Stri
     names.into_iter().find(|n| known.contains(n)).map(|n| format!("-{n} is no option; use --{n}"))
 }
 
-/// What to write for an unknown option: those of the known ones that begin with it, a synonym, or one that is like it.
+/// Suggests a replacement for an unknown option: known ones that begin with it, a synonym, or a similar one.
 pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
-    /// The least likeness of a mistyped option.
+    /// The least similarity of a mistyped option.
     const NEAR: f64 = 0.6;
     let name = unknown.trim_start_matches('-').to_lowercase();
     let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
@@ -84,11 +84,11 @@ pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
     meant.map_or_else(|| "--help lists the options".to_owned(), |meant| format!("use --{meant}"))
 }
 
-/// A value that a space has torn from its option: the option with the whole value.
+/// An option's value that a space has split.
 struct Torn {
-    /// The word that stands alone.
+    /// The second part, a separate word.
     word: String,
-    /// As it has to be written.
+    /// The option with the whole value.
     whole: String,
     why: &'static str,
 }
@@ -112,13 +112,13 @@ fn is_measure(word: &str) -> bool {
     word.split([',', ':']).all(one)
 }
 
-/// Returns `true` for a letter of path data, or one with numbers after it.
+/// Returns `true` for a letter of path data, alone or followed by numbers.
 fn is_data(word: &str) -> bool {
     let numbers = word.trim_start_matches(|c| "MLHVCSQTAZmlhvcsqtaz".contains(c));
     numbers.len() < word.len() && (numbers.is_empty() || is_measure(numbers))
 }
 
-/// Finds the words of a command line that belong to the value of an option before them: `--size 40 mm`, `--target 0,0 9,0 9,9`.
+/// Finds words that belong to the value of the option before them: `--size 40 mm`, `--target 0,0 9,0 9,9`.
 fn torn(words: &[String]) -> Option<Torn> {
     for (i, word) in words.iter().enumerate().filter(|(_, w)| w.len() > 2 && w.starts_with("--")) {
         let (option, first, rest) = match (word.split_once('='), &words[i + 1..]) {
@@ -131,7 +131,7 @@ fn torn(words: &[String]) -> Option<Torn> {
             let why = "a number and its unit are one word";
             return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}"), why });
         }
-        // Points, or path data: M 0,0 C 1,2 …
+        // A list of points, or path data: M 0,0 C 1,2 …
         let is_begun = is_data(first) || first.contains(',') && is_measure(first);
         let more = rest.iter().take_while(|w| (is_measure(w) || is_data(w)) && !Path::new(w).exists());
         let more: Vec<&str> = more.map(String::as_str).collect();
@@ -149,14 +149,14 @@ fn torn(words: &[String]) -> Option<Torn> {
     None
 }
 
-/// A unit that is set as text: the warning about it.
+/// Warns if a unit is set as text.
 pub(crate) fn unit_as_text(words: &[OsString], text: &[&str]) -> Option<String> {
     let words: Vec<String> = words.iter().map(|w| w.to_string_lossy().into_owned()).collect();
     let Torn { word, whole, .. } = torn(&words).filter(|t| text.contains(&t.word.as_str()))?;
     Some(format!("“{word}” is set as a line of text; if it is the unit, write it without a space: {whole}"))
 }
 
-/// What is wrong with inputs that do not exist: parts of a value or of a name, or the output.
+/// Explains inputs that do not exist: parts of a value or of a name, or the output.
 pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> Option<String> {
     let exists = |p: &Path| p.as_os_str() == "-" || p.exists() || split_reference(&p.to_string_lossy()).0.exists();
     let missing = inputs.iter().position(|p| !exists(p))?;
@@ -168,7 +168,7 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
     if inputs.len() < 2 {
         return None;
     }
-    // `my logo.svg`: the words around it make a name that exists.
+    // For `my logo.svg`, the words around it form an existing name.
     for (from, to) in
         (0..=missing).flat_map(|from| (missing..inputs.len()).map(move |to| (from, to))).filter(|(a, b)| a < b)
     {
@@ -187,7 +187,7 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
         .then(|| format!("{name}: there is no such file; if the result is to be written there: -o {name}"))
 }
 
-/// What to do about a word that a command takes no more of.
+/// Advises on a word beyond those that a command takes.
 pub(crate) fn surplus(word: &str, words: &[OsString], known: &[&str]) -> String {
     let last = words.iter().position(|w| w == word).and_then(|i| words.get(i.checked_sub(1)?));
     let joined = format!("{} {word}", last.map_or_else(String::new, |w| w.to_string_lossy().into_owned()));

@@ -1,4 +1,4 @@
-//! Plug-ins that are programs: those of the user's folder and those named by `--plugin`, added to the registry.
+//! Plug-ins that are programs: from the user's folder and from `--plugin`, added to the registry.
 
 use crate::interruption;
 use crate::terminal;
@@ -11,7 +11,7 @@ use pathwarp_plugin::{Broken, Plugin, Reserved};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-/// The option that names a plug-in's file.
+/// The option for a plug-in's file.
 const OPTION: &str = "plugin";
 
 pub(crate) fn option() -> Arg {
@@ -19,7 +19,7 @@ pub(crate) fn option() -> Arg {
     option.help("Use the plug-in in this file, too (docs/plugin-protocol.md)")
 }
 
-/// Commands for which no plug-in of the folder matters.
+/// Commands that need no plug-ins of the folder.
 const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
 
 /// The plug-ins of a run.
@@ -32,12 +32,12 @@ pub(crate) struct Plugins {
 }
 
 impl Plugins {
-    /// The registry with the plug-ins.
+    /// Returns the registry with the plug-ins added.
     pub(crate) fn added_to(&self, registry: &Registry) -> Registry {
         self.plugins.iter().fold(registry.clone(), |all, p| all.with(p.clone()))
     }
 
-    /// Shows what the programs have written to standard error.
+    /// Shows the messages that the programs have written to standard error.
     pub(crate) fn tell(&self) {
         for p in &self.plugins {
             if let Some(said) = p.said() {
@@ -46,39 +46,38 @@ impl Plugins {
         }
     }
 
-    /// The plug-in called `name`.
+    /// Returns the plug-in called `name`.
     pub(crate) fn get(&self, name: &str) -> Option<&Plugin> {
         self.plugins.iter().find(|p| p.info().name == name)
     }
 
-    /// The plug-in whose file was named last.
+    /// Returns the plug-in whose file was named last.
     pub(crate) fn last_given(&self) -> Option<&Plugin> {
         self.plugins.last()
     }
 
-    /// The file of the plug-in called `name`.
+    /// Returns the file of the plug-in called `name`.
     pub(crate) fn file(&self, name: &str) -> Option<String> {
         self.get(name).map(|p| p.path().display().to_string())
     }
 
-    /// The options that name the files again.
+    /// Returns the options that name the files again.
     pub(crate) fn options(&self) -> Vec<(String, String)> {
         self.given.iter().map(|file| (OPTION.to_owned(), file.display().to_string())).collect()
     }
 
-    /// Name, file and fault of each plug-in that is broken.
+    /// Returns name, file and fault of each broken plug-in.
     pub(crate) fn broken(&self) -> impl Iterator<Item = [String; 3]> {
         self.broken.iter().map(|b| [b.name.clone(), b.path.display().to_string(), b.fault.to_string()])
     }
 
-    /// The failure of the plug-in called `name`, if it is broken.
+    /// Returns the failure of the plug-in called `name`, if it is broken.
     pub(crate) fn failure(&self, name: &str) -> Option<Failure> {
         self.broken.iter().find(|b| b.name == name).map(|b| b.fault.of(&b.path).into())
     }
 }
 
-/// Takes `--plugin FILE` out of the arguments, and loads the plug-ins that the rest may need. `commands` are the names that
-/// deformations cannot have.
+/// Removes `--plugin FILE` from the arguments, and loads plug-ins that the rest may need, whose names must not be among `commands`.
 pub(crate) fn load(
     registry: &Registry,
     args: &[OsString],
@@ -93,7 +92,7 @@ pub(crate) fn load(
     let mut plugins = Plugins::default();
     let wanted = need_installed(registry, &args);
     if wanted || !files.is_empty() {
-        // From here on programs run, which an interruption must end.
+        // Programs run from here on, and an interruption must end them.
         interruption::handle();
     }
     if wanted {
@@ -113,13 +112,13 @@ pub(crate) fn load(
     Ok((args, plugins))
 }
 
-/// Returns `true` if a word names a file and not a deformation.
+/// Returns `true` if a word names a file rather than a deformation.
 pub(crate) fn is_file_name(word: &Path) -> bool {
     word.components().count() > 1 || word.extension().is_some() || word.is_absolute()
 }
 
 impl Plugins {
-    /// Adds the plug-in in `file`, which takes the place of one of the same name.
+    /// Adds the plug-in in `file`, which replaces one with the same name.
     fn add(&mut self, file: &Path, reserved: Reserved<'_>) -> Result<(), Failure> {
         let plugin = pathwarp_plugin::by_file(file, reserved).map_err(|fault| Failure::from(fault.of(file)))?;
         self.plugins.retain(|p| p.info().name != plugin.info().name);
@@ -129,7 +128,7 @@ impl Plugins {
     }
 }
 
-/// The arguments without `--plugin FILE`, and the files.
+/// Returns the arguments without `--plugin FILE`, and the files.
 fn split(args: &[OsString]) -> Result<(Vec<OsString>, Vec<PathBuf>), Failure> {
     let (mut rest, mut files) = (Vec::with_capacity(args.len()), Vec::new());
     let mut words = args.iter();
@@ -154,10 +153,10 @@ fn need_installed(registry: &Registry, args: &[OsString]) -> bool {
     let known = |word: &OsStr| word.to_str().is_some_and(|w| registry.get(w).is_some());
     match args.get(1) {
         None => false,
-        // A dialog for each.
+        // Every deformation gets a dialog.
         Some(word) if word == "install" => args.get(2).is_some_and(|what| what == "inkscape"),
         Some(word) if WITHOUT.iter().any(|w| *w == word.as_os_str()) => false,
-        // A chain of built-in deformations.
+        // Skip plug-ins if the whole chain is built in.
         Some(word) if known(word) => args.windows(2).any(|w| w[0] == "+" && !known(&w[1])),
         Some(word) => !word.to_string_lossy().starts_with('-') || word == "--help" || word == "-h",
     }

@@ -1,4 +1,4 @@
-//! The report, `--report FILE`. A run writes it input by input, so that a large batch need not be held in memory.
+//! The report of `--report FILE`. It is written input by input, so that a large batch does not fill the memory.
 
 use pathwarp::recipe::Recipe;
 use pathwarp_engine::failure::Failure;
@@ -39,7 +39,7 @@ impl Totals {
     }
 }
 
-/// A report under way.
+/// A report that is being written.
 pub(crate) struct ReportFile {
     draft: Draft,
     totals: Totals,
@@ -47,7 +47,7 @@ pub(crate) struct ReportFile {
 }
 
 impl ReportFile {
-    /// Starts the report of a run of `recipe`.
+    /// Begins the report of a run of `recipe`.
     pub(crate) fn new(mut draft: Draft, recipe: &Recipe, started: Instant) -> Result<Self, Failure> {
         let steps: Vec<&str> = recipe.steps.iter().map(|s| s.deformation.as_str()).collect();
         let head = [
@@ -83,7 +83,7 @@ fn json(value: &impl Serialize) -> Result<String, Failure> {
     readable::json(value).map_err(|e| Failure::Output(format!("the report: {e}")))
 }
 
-/// JSON that stands `levels` deep in other JSON. Texts in it hold no raw newlines.
+/// Indents JSON by `levels`. Strings in JSON contain no raw newlines.
 fn indented(json: &str, levels: usize) -> String {
     json.replace('\n', &format!("\n{}", "  ".repeat(levels)))
 }

@@ -1,4 +1,4 @@
-//! Sources are never overwritten unasked: the files that a command reads, checked against those it writes.
+//! Checks the files that a command writes against those it reads, so that sources are overwritten only on request.
 
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::{display, split_reference};
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
-/// The files that a command reads and those that it is going to write, by identity.
+/// The files that a command reads and those that it will write, by identity.
 #[derive(Default)]
 pub(crate) struct Files {
     read: HashMap<PathBuf, Source>,
@@ -17,19 +17,19 @@ pub(crate) struct Files {
 
 /// A file that is read.
 struct Source {
-    /// As given.
+    /// The name as given.
     name: String,
-    /// `--in-place` allows it to be overwritten.
+    /// `true` if `--in-place` allows it to be overwritten.
     replaceable: bool,
 }
 
 impl Files {
-    /// Adds a file that is read. `FILE#NAME` is FILE; `-` is none.
+    /// Adds a file that is read: FILE of `FILE#NAME`, and nothing for `-`.
     pub(crate) fn read(&mut self, input: &Path) {
         self.add(input, false);
     }
 
-    /// Adds artwork: a file that is read, and may be overwritten if the user says so.
+    /// Adds artwork: a file that is read, and that `--in-place` may overwrite.
     pub(crate) fn read_artwork(&mut self, input: &Path) {
         self.add(input, true);
     }
@@ -51,7 +51,7 @@ impl Files {
     /// Adds an output. `option` is the option that names it, or empty for the result.
     ///
     /// # Errors
-    /// The output is a file that is read, or another output.
+    /// [`Failure::Usage`] if the output is a file that is read, or another output.
     pub(crate) fn write(&mut self, to: &Path, option: &str) -> Result<(), Failure> {
         if is_device(to) {
             return Ok(());
@@ -83,18 +83,18 @@ impl Files {
     }
 }
 
-/// Folders whose real places are known, as most files of a batch share one.
+/// A cache of the real paths of folders, since most files of a batch share one.
 #[derive(Default)]
 struct Folders(HashMap<PathBuf, PathBuf>);
 
 impl Folders {
-    /// A path that is the same for every way of naming a file: links followed, and case ignored where the system ignores it.
+    /// Returns a path that does not depend on how a file is named: links are resolved, and case is ignored where the system ignores it.
     fn identity(&mut self, file: &Path) -> PathBuf {
         let whole = self.real(file).unwrap_or_else(|| real(file));
         if cfg!(any(windows, target_os = "macos")) { whole.to_string_lossy().to_lowercase().into() } else { whole }
     }
 
-    /// The real path of a file that is no link, by that of its folder. Elsewhere than on Unix, a file may have two names.
+    /// Returns the real path of a file that is not a link, by its folder's. On systems other than Unix, a file may have two names.
     fn real(&mut self, file: &Path) -> Option<PathBuf> {
         if !cfg!(unix) || file.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
             // The target may not exist yet.
@@ -110,10 +110,10 @@ impl Folders {
     }
 }
 
-/// The absolute path with all links followed.
+/// Returns the absolute path with all links resolved.
 fn real(file: &Path) -> PathBuf {
     let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    // Of a file that does not exist yet, the folders that do exist are looked up.
+    // If the file does not exist yet, resolve its existing folders.
     let existing = absolute.ancestors().find_map(|folder| {
         let rest = absolute.strip_prefix(folder).ok()?;
         let folder = folder.canonicalize().ok()?;

@@ -1,4 +1,4 @@
-//! Steps of a recipe from the words of a command line.
+//! Converts the words of a command line to steps of a recipe.
 
 use crate::arguments;
 use crate::ending::Ending;
@@ -21,15 +21,15 @@ pub(crate) struct ChainPart {
     pub(crate) options: Given,
 }
 
-/// Other names of a deformation.
+/// Returns an alternative name of a deformation.
 pub(crate) fn aliases(name: &str) -> Option<&'static str> {
     (name == "projective").then_some("perspective")
 }
 
-/// The steps of all parts, and the options that hold for the whole chain.
+/// Joins the steps of all parts, and the options for the whole chain.
 pub(crate) fn chained(mut parts: Vec<ChainPart>) -> Result<(Recipe, Given), Failure> {
     assign(parts.iter_mut().map(|p| (std::slice::from_mut(&mut p.step), &mut p.options)));
-    // The first part's options come last, as its inputs do.
+    // The first part's options come last, since its inputs do.
     let mut options = parts.iter().skip(1).chain(parts.first()).map(|p| &p.options);
     let given = options.try_fold(Given::default(), |all, options| all.joined(options))?;
     Ok((Recipe { steps: parts.into_iter().map(|p| p.step).collect() }, given))
@@ -63,7 +63,7 @@ fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Resul
 
 const HEADING: &str = "Options";
 
-/// The parameters of a deformation as clap arguments, without the common options.
+/// Returns the parameters of a deformation as clap arguments.
 pub(crate) fn args(info: &Info) -> impl Iterator<Item = Arg> {
     let inverse = edits::info(info.name).is_none().then(|| {
         Arg::new(INVERSE)
@@ -84,7 +84,7 @@ pub(crate) fn param_arg(p: &Param) -> Arg {
     if p.kind == Kind::Flag {
         return arg.action(ArgAction::SetTrue);
     }
-    // Coordinates may start with a minus, but a missing value must not swallow the next option.
+    // Coordinates may begin with a minus, but the next option is not a value.
     arg.value_name(p.value_name())
         .allow_hyphen_values(true)
         .value_parser(
@@ -95,14 +95,14 @@ pub(crate) fn param_arg(p: &Param) -> Arg {
         .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
 }
 
-/// The step that the parsed subcommand of the deformation `name` asks for.
+/// Returns the step that the parsed subcommand of the deformation `name` requests.
 pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Step {
     let args = param_values(catalogue.info(name).map_or(&[][..], |i| i.params), m);
     let inverse = m.try_get_one(INVERSE).is_ok_and(|given| given == Some(&true));
     Step { inverse, ..Step::new(name, args) }
 }
 
-/// The values that a parsed command line gives for parameters.
+/// Returns the values of parameters on a parsed command line.
 pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
     let mut args = Args::new();
     for p in params {

@@ -1,4 +1,4 @@
-//! Messages on standard error; coloured only on a terminal.
+//! Messages on standard error, coloured on a terminal.
 
 use anstyle::{AnsiColor, Style};
 use pathwarp_engine::failure::Failure;
@@ -27,7 +27,7 @@ pub(crate) fn note(message: &str) {
     print(NOTE, "note", message);
 }
 
-/// Refuses to write what is not text to a terminal.
+/// Refuses to write binary data to a terminal.
 pub(crate) fn refuse_terminal(target: Option<&Path>, what: &str, extension: &str) -> Result<(), Failure> {
     let names_terminal = target.is_none_or(is_stdout) && io::stdout().is_terminal();
     if !names_terminal {
@@ -38,11 +38,11 @@ pub(crate) fn refuse_terminal(target: Option<&Path>, what: &str, extension: &str
     )))
 }
 
-/// Width of the column of names in a table.
+/// Returns the width of the column of names in a table.
 pub(crate) fn column<'a>(names: impl Iterator<Item = &'a str>) -> usize {
-    /// That of the heading.
+    /// The width of the heading.
     const LEAST: usize = 4;
-    /// Longer names break out of their column: one long name would pad all lines.
+    /// Longer names exceed the column, since padding all lines to the longest would waste space.
     const MOST: usize = 60;
     names.map(|n| n.chars().count()).max().unwrap_or(LEAST).clamp(LEAST, MOST)
 }

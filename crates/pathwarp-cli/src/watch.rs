@@ -1,8 +1,8 @@
-//! The last resort: a thread that ends the program when it takes too much processor time or memory.
+//! A watchdog: a thread that ends the program if it takes too much processor time or memory.
 //!
-//! All known work is counted before it is done (`pathwarp::budget`). Libraries below this program may still meet a file that
-//! they take forever to read, and nothing can interrupt them, so a thread looks at the process from time to time. Ending it so
-//! is like an interruption: temporary files are removed, and no output is half written.
+//! All known work is counted before it is done (`pathwarp::budget`). Libraries may still take forever to read some file, and nothing can
+//! interrupt them, so a thread checks the process periodically. It ends the program as an interruption does: temporary files are removed,
+//! and no output is half written.
 
 use crate::{interruption, terminal};
 use pathwarp_engine::meter;
@@ -14,36 +14,36 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Time between two looks. Memory grows by at most about ten megabytes in between.
+/// Time between two checks. Memory grows by at most about ten megabytes meanwhile.
 const INTERVAL: Duration = Duration::from_millis(4);
 
-/// The exit code: as for an input that cannot be read.
+/// The exit code, equal to that for an unreadable input.
 const TOO_MUCH: i32 = 3;
 
 /// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
-    /// Bytes and pixels that were counted before the inputs that are being worked on.
+    /// Bytes and pixels counted before the inputs under way.
     before: [u64; 2],
-    /// Number of these inputs beyond the first.
+    /// Number of inputs under way beyond the first.
     more: usize,
-    /// Processor time when the last input was finished.
+    /// Processor time at the end of the last input.
     since: Duration,
-    /// Nothing is watched until the next beginning.
+    /// `true` while nothing is watched.
     rests: bool,
 }
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 
-/// A program that calls this library with others beside it must not be ended, so watching is for `main_with` to allow.
+/// `true` if watching is allowed, which is up to `main_with`: a host program must not be ended.
 static ALLOWED: AtomicBool = AtomicBool::new(false);
 
-/// Allows to end the program.
+/// Allows the watchdog to end the program.
 pub(crate) fn allow() {
     ALLOWED.store(true, Ordering::Relaxed);
 }
 
-/// Begins to watch the process, if that is allowed. Further calls only change the limits.
+/// Begins to watch the process, if allowed. Further calls only change the limits.
 pub(crate) fn begin(limits: Limits) {
     if !ALLOWED.load(Ordering::Relaxed) {
         return;
@@ -58,18 +58,18 @@ pub(crate) fn begin(limits: Limits) {
     }
     *watched = Some(Watched { limits, before: meter::counted(), more: 0, since: Duration::ZERO, rests: false });
     drop(watched);
-    // Without a thread, work is still counted.
+    // Without the thread, work is still counted.
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
 }
 
-/// Stops watching until the next beginning: an editor may be open for hours, and counts the work of every picture.
+/// Stops watching until [`begin`]: an editor may stay open for hours, and counts the work of every picture.
 pub(crate) fn rest() {
     if let Some(watched) = lock().as_mut() {
         watched.rests = true;
     }
 }
 
-/// An input of a batch while it is worked on. Each has the whole allowance.
+/// An input of a batch while it is processed. Each has the whole allowance.
 pub(crate) struct InBatch(());
 
 impl InBatch {
@@ -97,7 +97,7 @@ fn lock() -> MutexGuard<'static, Option<Watched>> {
     WATCHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Processor time of all threads.
+/// Returns the processor time of all threads.
 fn used() -> Duration {
     ProcessTime::now().as_duration()
 }
@@ -115,7 +115,7 @@ fn watch() {
 }
 
 impl Watched {
-    /// The limit that is exceeded, if one is.
+    /// Returns the exceeded limit, if any.
     fn exceeded(&self) -> Option<Exceeded> {
         if self.rests {
             return None;

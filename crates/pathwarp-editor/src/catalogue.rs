@@ -1,4 +1,4 @@
-//! The deformations with their parameters as a page needs them: everything follows from the registry's tables.
+//! Descriptions of the deformations and their parameters for the page, derived from the registry's tables.
 
 use pathwarp::Outline;
 use pathwarp::deform::{Info, Registry};
@@ -7,8 +7,7 @@ use pathwarp::param::{Args, Axis, Frame, Kind, Param, Settings, is_inline, shape
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Describes all deformations, in menu order, and then what comes before them. `foreign` are names in other programs, with the deformation
-/// that each means.
+/// Describes all deformations, in menu order, and then the edits `first`. `foreign` pairs names in other programs with deformations.
 pub(crate) fn catalogue(registry: &Registry, first: &[Info], foreign: &[(&str, &str)]) -> Value {
     let described = |info: &Info| {
         let mut out = deformation(info);
@@ -24,7 +23,7 @@ pub(crate) fn catalogue(registry: &Registry, first: &[Info], foreign: &[(&str, &
     registry.entries().iter().map(|e| described(e.info())).chain(first).collect()
 }
 
-/// Returns `true` if a name of another program ends in that of a preset, which is found by its own.
+/// Returns `true` if another program's name ends in a preset's name, by which it is found already.
 fn is_preset(info: &Info, word: &str) -> bool {
     let presets = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets));
     let Some(Kind::NameOrFile(names) | Kind::Choice(names)) = presets.map(|p| p.kind) else { return false };
@@ -34,7 +33,7 @@ fn is_preset(info: &Info, word: &str) -> bool {
 
 fn deformation(info: &Info) -> Value {
     let words: Vec<&str> = info.params.iter().filter(|p| p.kind != Kind::Path).map(|p| p.name).collect();
-    // A page writes no files but the result.
+    // The page writes no file but the result.
     let params = info.params.iter().filter(|p| p.kind != Kind::Save);
     let variants = info.by_hand.variants.iter().map(|v| (v.label.to_owned(), v.param));
     let variants = variants.chain(shapes(info).map(|(label, param, _)| (label, param)));
@@ -95,7 +94,7 @@ fn axis_word(axis: Axis) -> &'static str {
     }
 }
 
-/// The kind as the page knows it: a file that is saved is chosen like one that is read.
+/// Returns the page's word for a kind. Files to save are chosen like files to read.
 fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::NameOrFile(_) => "name",
@@ -104,7 +103,7 @@ fn kind(kind: Kind) -> &'static str {
     }
 }
 
-/// The shapes by name that a deformation may begin with: a label, the parameter and the name.
+/// Lists the named shapes that a deformation may begin with: a label, the parameter and the name.
 fn shapes(info: &Info) -> impl Iterator<Item = (String, &'static str, &'static str)> {
     let taken =
         info.gallery.map(|g| g.presets).filter(|n| info.params.iter().any(|p| p.name == *n && p.kind == Kind::Path));
@@ -115,15 +114,14 @@ fn shapes(info: &Info) -> impl Iterator<Item = (String, &'static str, &'static s
     })
 }
 
-/// The values of a variant for artwork in `frame`: those that change nothing, or those that show something. A shape is path data, whose
-/// nodes can be dragged.
+/// Returns the values of a variant for artwork in `frame`: values without effect, or an example. A shape becomes draggable path data.
 pub(crate) fn of_variant(
     info: &Info,
     label: &str,
     frame: Rect,
     shows: bool,
 ) -> Result<BTreeMap<String, Vec<String>>, String> {
-    /// How far curves are from the shape's arcs, as a share of the width.
+    /// Distance of the curves from the shape's arcs, as a share of the frame's width.
     const FINE: f64 = 2e-4;
     if let Some(v) = info.by_hand.variants.iter().find(|v| v.label == label) {
         return Ok(BTreeMap::from([(
@@ -136,12 +134,12 @@ pub(crate) fn of_variant(
     let args = Args::from_pairs(&[(param, name)]);
     let path = Settings::new(info.params, &args, &Frame::new(frame)).and_then(|s| s.path_if(param));
     let path = path.map_err(|e| e.to_string())?;
-    // Arcs become curves of few nodes.
+    // Convert arcs to curves with few nodes.
     let curves = path.map(|p| Outline::from(&p.outline.to_bez_path(FINE * frame.width())));
     Ok(curves.map(|c| (param.to_owned(), vec![crate::grips::path_data(&c)])).into_iter().collect())
 }
 
-/// The first values of a deformation for artwork in `frame`.
+/// Returns the first values of a deformation for artwork in `frame`.
 pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     let mut out: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (param, value) in info.by_hand.neutral {
@@ -149,7 +147,7 @@ pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>>
         let laid = if is_data { laid_out(value, frame) } else { (*value).to_owned() };
         out.entry((*param).to_owned()).or_default().push(laid);
     }
-    // A preset stands for itself; the first one is as good as any.
+    // A preset shows its effect by itself, so the first one serves.
     if let Some((gallery, p)) = info.gallery.and_then(|g| Some((g, info.params.iter().find(|p| p.name == g.presets)?)))
         && p.default.is_none()
         && let Kind::NameOrFile([first, ..]) = p.kind
@@ -160,7 +158,7 @@ pub(crate) fn opening(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>>
     if out.is_empty() && !shows_something(info) { example(info, frame) } else { out }
 }
 
-/// The values that show the effect of a deformation on artwork in `frame`.
+/// Returns values that show the effect of a deformation on artwork in `frame`.
 pub(crate) fn example(info: &Info, frame: Rect) -> BTreeMap<String, Vec<String>> {
     if !info.by_hand.showing.is_empty() {
         return info.by_hand.showing.iter().map(|(param, v)| ((*param).to_owned(), vec![(*v).to_owned()])).collect();
@@ -184,7 +182,7 @@ fn is_path_data(p: &Param, value: &str) -> bool {
     p.kind == Kind::Path && is_inline(value) && value.trim_start().starts_with(['M', 'm'])
 }
 
-/// Path data laid from the box 0,0,100,100 onto the frame.
+/// Maps path data from the box 0,0,100,100 onto the frame.
 fn laid_out(data: &str, frame: Rect) -> String {
     let Ok(outline) = Outline::from_svg(data) else { return data.to_owned() };
     let place = Affine::translate(frame.origin().to_vec2())
@@ -192,7 +190,7 @@ fn laid_out(data: &str, frame: Rect) -> String {
     crate::grips::path_data(&outline.transformed(place))
 }
 
-/// An example value for the frame 0,0,100,100, for this frame: its coordinates become percentages.
+/// Maps an example value from the box 0,0,100,100 onto this frame: its coordinates become percentages.
 fn from_demo(p: &Param, value: &str, frame: Rect) -> String {
     if is_path_data(p, value) {
         return laid_out(value, frame);
@@ -221,7 +219,7 @@ mod tests {
     use pathwarp::param::{Args, Frame};
     use pathwarp::recipe::{Recipe, Step};
 
-    /// The shapes by name are as wide as the artwork, have its middle, and are closed paths that a page can drag.
+    /// The named shapes are as wide as the artwork, share its centre, and are closed paths that a page can drag.
     #[test]
     fn shapes_are_variants() {
         let registry = Registry::builtin();
@@ -316,7 +314,7 @@ mod tests {
         }
     }
 
-    /// On a word, no part of what the gallery shows is turned over: differences of the map keep their orientation all over the box.
+    /// No example turns a part of a word over: differences of the map keep their orientation all over the box.
     #[test]
     fn examples_do_not_fold_a_word() {
         const STEP: f64 = 1e-5;

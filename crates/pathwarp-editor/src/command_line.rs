@@ -1,4 +1,4 @@
-//! The command line with the same effect as the steps.
+//! The command line that has the same effect as the steps.
 
 use pathwarp::deform::Registry;
 use pathwarp::recipe::{Recipe, Step};
@@ -6,8 +6,7 @@ use pathwarp_engine::catalogue::Catalogue as _;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Writes the command line that bends `source` by the recipe into `out`, with these common options, for a POSIX shell. Flags have no
-/// value.
+/// Returns the command line, for a POSIX shell, that bends `source` by the recipe into `out` with these common options (flags: no value).
 pub(crate) fn command_line(
     registry: &Registry,
     recipe: &Recipe,
@@ -48,15 +47,15 @@ pub(crate) fn command_line(
     line
 }
 
-/// The options `select` and `exclude` for a step of a recipe. Beside steps for parts, one for the whole drawing says so: a selection in a
-/// single part of a command line holds for all.
+/// Returns the options `select` and `exclude` for a step. In a chain, steps for the whole drawing select it explicitly, because the
+/// selection of a single part applies to all.
 pub fn selectors<'a>(recipe: &'a Recipe, step: &'a Step) -> impl Iterator<Item = (&'static str, &'a str)> {
     let of_all = step.select.is_empty() && recipe.steps.iter().any(|s| !s.select.is_empty());
     let select = step.select.iter().map(String::as_str).chain(of_all.then_some("svg"));
     select.map(|s| ("select", s)).chain(step.exclude.iter().map(|s| ("exclude", s.as_str())))
 }
 
-/// A word as a shell reads it.
+/// Quotes a word for a shell.
 pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-,:%+=@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

@@ -1,4 +1,4 @@
-//! The draft: the steps of a drawing as they are, in the user's folder for state until they are saved, so that a crash loses nothing.
+//! The draft: the steps of a drawing until they are saved, stored in the user's folder for state, so that a crash loses nothing.
 
 use crate::host::Host;
 use crate::protocol::PageStep;
@@ -12,22 +12,22 @@ use std::path::{Path, PathBuf};
 
 /// The version of the file's format.
 const VERSION: u32 = 2;
-/// What is wrong where nothing can be kept.
+/// The problem if the folder for state is unknown.
 pub(crate) const NO_FOLDER: &str = "there is no folder for state (HOME is not set)";
 
-/// Most states that can be undone.
+/// Most changes that can be undone.
 const MOST_UNDO: usize = 500;
 
-/// The work as it is at one time.
+/// The state of the work at one time.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Moment {
     pub(crate) steps: Vec<PageStep>,
-    /// Which of the drawings that the words were set as is on show.
+    /// The index of the drawing on show, among those that the words have been set as.
     #[serde(default)]
     pub(crate) drawing: usize,
 }
 
-/// What a draft holds.
+/// The contents of a draft.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Kept {
     pathwarp: u32,
@@ -35,7 +35,7 @@ pub(crate) struct Kept {
     pub(crate) now: Moment,
     pub(crate) undo: Vec<Moment>,
     pub(crate) redo: Vec<Moment>,
-    /// The drawings that the words were set as, the oldest first; none before they are edited.
+    /// The drawings that the words have been set as, the oldest first; empty before the words are edited.
     #[serde(default)]
     drawings: Vec<String>,
 }
@@ -46,7 +46,7 @@ impl Kept {
         Self { pathwarp: VERSION, now, undo: Vec::new(), redo: Vec::new(), drawings: Vec::new() }
     }
 
-    /// Goes on with other steps.
+    /// Replaces the steps.
     pub(crate) fn go_on(&mut self, steps: Vec<PageStep>) {
         let next = Moment { steps, ..self.now };
         self.undo.push(mem::replace(&mut self.now, next));
@@ -56,31 +56,31 @@ impl Kept {
         self.redo.clear();
     }
 
-    /// Goes on with other words: from the drawing `old` to `new`, and these steps.
+    /// Replaces the words: the drawing `old` by `new`, and the steps.
     pub(crate) fn set_anew(&mut self, old: &str, new: String, steps: Vec<PageStep>) {
         if self.drawings.is_empty() {
             self.drawings.push(old.to_owned());
         }
         self.go_on(steps);
-        // The drawings of what could be redone until now are in the way.
+        // Drop the drawings of changes that could be redone until now.
         self.drawings.truncate(self.now.drawing + 1);
         self.drawings.push(new);
         self.now.drawing += 1;
     }
 
-    /// The drawing on show, if the words were edited.
+    /// Returns the drawing on show, if the words were edited.
     pub(crate) fn drawing(&self) -> Option<&str> {
         self.drawings.get(self.now.drawing).map(String::as_str)
     }
 
-    /// Takes back the last change.
+    /// Undoes the last change.
     pub(crate) fn undo(&mut self) {
         if let Some(old) = self.undo.pop() {
             self.redo.push(mem::replace(&mut self.now, old));
         }
     }
 
-    /// Makes the change again that was taken back last.
+    /// Redoes the change undone last.
     pub(crate) fn redo(&mut self) {
         if let Some(new) = self.redo.pop() {
             self.undo.push(mem::replace(&mut self.now, new));
@@ -91,33 +91,33 @@ impl Kept {
 /// The draft of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Draft {
-    /// A name for the drawing, with its place and content.
+    /// A name made from the drawing's location and content.
     pub(crate) key: String,
-    /// `None`: nothing can be kept.
+    /// `None` if drafts cannot be stored.
     path: Option<PathBuf>,
 }
 
 impl Draft {
-    /// The draft of the drawing `file` with this content; another content is another drawing.
+    /// Returns the draft of the drawing `file` with this content. Different contents have different drafts.
     pub(crate) fn of(state: Option<&Path>, file: &Path, content: &[u8]) -> Self {
         let key = key(file, content);
         Self { path: state.map(|s| s.join("drafts").join(format!("{key}.json"))), key }
     }
 
-    /// What was kept; `None` if there is no draft, or one of another version.
+    /// Reads the draft; `None` if there is none, or one of another version.
     pub(crate) fn read(&self) -> Option<Kept> {
         let text = fs::read_to_string(self.path.as_ref()?).ok()?;
         serde_json::from_str::<Kept>(&text).ok().filter(|k| k.pathwarp == VERSION)
     }
 
-    /// Keeps the steps.
+    /// Writes the steps.
     pub(crate) fn keep(&self, host: &dyn Host, kept: &Kept) -> Result<(), String> {
         let path = self.path.as_ref().ok_or(NO_FOLDER)?;
         let text = serde_json::to_string(kept).map_err(|e| e.to_string())?;
         write(host, path, text.as_bytes())
     }
 
-    /// Removes the file, after the steps have been saved.
+    /// Removes the file once the steps have been saved.
     pub(crate) fn remove(&self) {
         if let Some(path) = &self.path {
             let _ = fs::remove_file(path);
@@ -125,15 +125,15 @@ impl Draft {
     }
 }
 
-/// Most files of a kind that are kept: the newest.
+/// Most files of a kind that are kept; the oldest are removed.
 const MOST_FILES: usize = 100;
 
-/// The folder for settings.
+/// Returns the folder for settings.
 pub(crate) fn settings() -> Option<PathBuf> {
     of_user("XDG_CONFIG_HOME", ".config", "APPDATA")
 }
 
-/// The folder for what is kept from one run to the next.
+/// Returns the folder for state, which is kept from one run to the next.
 pub(crate) fn state() -> Option<PathBuf> {
     of_user("XDG_STATE_HOME", ".local/state", "LOCALAPPDATA")
 }
@@ -148,16 +148,16 @@ fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     Some(folder.join("pathwarp"))
 }
 
-/// A name made of a drawing's place, whichever way it is written, and `content`.
+/// Makes a name from a drawing's absolute path and `content`.
 pub(crate) fn key(drawing: &Path, content: &[u8]) -> String {
     let folder = drawing.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A drawing that was dropped on the page may be no file here.
+    // A drawing dropped on the page may not exist as a file here.
     let here = || folder.canonicalize().unwrap_or_default().join(drawing.file_name().unwrap_or_default());
     let place = drawing.canonicalize().unwrap_or_else(|_| here());
     hex(&[place.as_os_str().as_encoded_bytes(), &[0], content])
 }
 
-/// The SHA-256 sum of pieces of text.
+/// Returns the SHA-256 sum of pieces of text, in hexadecimal.
 pub(crate) fn hex(pieces: &[&[u8]]) -> String {
     let mut sum = Sha256::new();
     pieces.iter().for_each(|piece| sum.update(piece));
@@ -167,12 +167,12 @@ pub(crate) fn hex(pieces: &[&[u8]]) -> String {
     })
 }
 
-/// Writes a file for the user's eyes only. Where a new one makes too many of them, the oldest go.
+/// Writes a file that only the user may read. If it makes too many of them, the oldest are removed.
 pub(crate) fn write(host: &dyn Host, file: &Path, bytes: &[u8]) -> Result<(), String> {
     if !file.exists() {
         create(file).map_err(|e| format!("{}: {e}", file.display()))?;
     }
-    // Keeps the permissions of the file.
+    // The file keeps its permissions.
     host.write(file, bytes)
 }
 

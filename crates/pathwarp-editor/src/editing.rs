@@ -1,4 +1,4 @@
-//! Drawings in the editor, on the engine.
+//! The engine's implementation of drawings in the editor.
 
 use crate::host::{Artwork, Bent, Fineness, Host, Opened, PictureOptions, Summary};
 use crate::names::Names;
@@ -37,29 +37,29 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What stands for the drawing.
+/// A version of the drawing for one purpose.
 #[derive(Debug, Clone, Copy)]
 enum Version {
-    /// The drawing as it is saved.
+    /// The drawing, for results.
     File,
-    /// The drawing with an id for every element.
+    /// The drawing with an id for every element, for the page.
     Page,
-    /// The same with large pictures in few pixels, while something is dragged.
+    /// The drawing of the page with large pictures reduced to few pixels, while something is dragged.
     Light,
-    /// The drawing, or a bitmap of a large one.
+    /// The drawing, or a bitmap of it if it is large, for thumbnails.
     Small,
 }
 
 /// A drawing in the editor.
 struct EditedArtwork {
     svg: SvgArtwork,
-    /// The drawing with an id for every element, so that the page can tell what is clicked; `None` where all have one.
+    /// The drawing with an id for every element, which tells the page what is clicked; `None` if all elements have one.
     shown: Option<SvgArtwork>,
-    /// The drawing with the captions that were asked for last.
+    /// The drawing with the captions requested last.
     captioned: Option<(Vec<Step>, Document)>,
-    /// The drawing of the page with large pictures in few pixels, once something was dragged; inside, `None` if there are none.
+    /// The drawing of the page with large pictures reduced to few pixels, once it has been needed; inside, `None` without such pictures.
     light: Option<Option<SvgArtwork>>,
-    /// A bitmap of a large drawing in its place, once small pictures were asked for.
+    /// A bitmap that replaces a large drawing, once thumbnails have been requested.
     sketch: Option<SvgArtwork>,
     registry: Arc<Registry>,
     given: Given,
@@ -68,7 +68,7 @@ struct EditedArtwork {
     names: Arc<Names>,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
-    /// The drawing's file, beside which its results go.
+    /// The drawing's file; results go to its folder.
     file: PathBuf,
     /// The frame of the last picture.
     framed: Option<Framed>,
@@ -100,16 +100,16 @@ impl EditedArtwork {
         }
     }
 
-    /// The folder of the drawing.
+    /// Returns the folder of the drawing.
     fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
 
-    /// Makes the sketch of a large drawing, unless there is one.
+    /// Makes the bitmap of a large drawing, unless it exists.
     fn draw_sketch(&mut self) -> Result<(), Failure> {
-        /// Size of texts with their pictures, in bytes, from which small pictures show a bitmap: bending fifty of them takes seconds.
+        /// Length of a drawing's text, with pictures, from which thumbnails bend a bitmap: a page bends fifty of them.
         const LARGE: usize = 256 << 10;
-        /// The longer side of the bitmap, in pixels: small pictures are half as large.
+        /// The longer side of the bitmap, in pixels; thumbnails are half as large.
         const PIXELS: f32 = 256.0;
         let (document, reading) = (self.svg.document(), self.svg.reading());
         let with_pictures = Relinking { embed: true, ..Relinking::default() };
@@ -123,7 +123,7 @@ impl EditedArtwork {
         let place = document.user_to_px().inverse().transform_rect_bbox(filled);
         let boxed = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
         let ([x, y, width, height], page) = (boxed(place), boxed(document.view_box()).map(|v| v.to_string()).join(" "));
-        // Drafts have few pixels for each px of the page.
+        // The width keeps the resolution, since drafts draw few pixels per px of the page.
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{page}\" width=\"{}\"><image preserveAspectRatio=\"none\" x=\"{x}\" \
              y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/></svg>",
@@ -134,7 +134,7 @@ impl EditedArtwork {
         Ok(())
     }
 
-    /// Makes the version with pictures in few pixels, unless that has been tried.
+    /// Makes the version with reduced pictures, unless that has been tried.
     fn lighten(&mut self) -> Result<(), Failure> {
         if self.light.is_none() {
             let document = self.shown.as_ref().unwrap_or(&self.svg).document();
@@ -147,7 +147,7 @@ impl EditedArtwork {
         Ok(())
     }
 
-    /// Looks up files, and applies `work` to a version of the drawing and the session with these steps.
+    /// Looks up files, and applies `work` to a version of the drawing and a session with these steps.
     fn with_steps<T>(
         &mut self,
         recipe: &Recipe,
@@ -162,7 +162,7 @@ impl EditedArtwork {
             Version::Page => (shown.as_mut().unwrap_or(svg), framed),
             Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
             Version::Small => match sketch {
-                // Its frame is another.
+                // The bitmap's frame differs.
                 Some(sketch) => (sketch, &mut None),
                 None => (svg, framed),
             },
@@ -189,7 +189,7 @@ impl EditedArtwork {
         self.with_steps(recipe, version, |session, svg, ready| bent(session, svg, ready, recipe, fineness))
     }
 
-    /// The result as a file of this format; for a picture, as the SVG that it is drawn from.
+    /// Returns the result as a file of this format; for a picture, as the SVG to draw it from.
     fn finished(&mut self, recipe: &Recipe, format: Format, to: Destination) -> Result<Exported, Failure> {
         let folder = self.folder().to_owned();
         self.with_steps(recipe, Version::File, |session, svg, ready| {
@@ -209,7 +209,7 @@ impl EditedArtwork {
         })
     }
 
-    /// The result as the file `to`, and what its format cannot hold.
+    /// Returns the contents of the file `to`, and the losses of its format.
     fn written(
         &mut self,
         recipe: &Recipe,
@@ -239,24 +239,23 @@ impl EditedArtwork {
     }
 }
 
-/// Turns the options that stand for edits into steps, where the page has them.
+/// Replaces the options that abbreviate edits by steps, which the page has.
 fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
     let mut edits = saved.options.read()?.edits;
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
     let exclude = saved.recipe.steps.first().map(|s| s.exclude.clone()).unwrap_or_default();
     edits.iter_mut().for_each(|s| s.exclude.clone_from(&exclude));
-    // Words alone are saved with a step that moves nothing; once, edits alone were.
+    // Words without steps are saved with a step that moves nothing; earlier versions did so for edits.
     let is_still = |s: &Step| *s == Step { exclude: exclude.clone(), ..Step::new("affine", Args::new()) };
     let is_alone = matches!(&*saved.recipe.steps, [only] if is_still(only));
     saved.recipe.steps.splice(0..usize::from(is_alone), edits);
     Ok(())
 }
 
-/// What selects the whole drawing.
+/// The selector of the whole drawing.
 const WHOLE: &str = "svg";
 
-/// A recipe and options as a command line has them: what the only step selects is an option, and beside steps for parts, others name the
-/// whole drawing.
+/// Adapts a recipe to a command line: an only step's selection becomes an option; in a chain with selections, other steps select all.
 fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure> {
     let (mut recipe, mut given) = (recipe.clone(), given.clone());
     if let [step] = &mut *recipe.steps {
@@ -269,7 +268,7 @@ fn on_a_line(recipe: &Recipe, given: &Given) -> Result<(Recipe, Given), Failure>
     Ok((recipe, given))
 }
 
-/// Bends the drawing by these steps; `given` are the same as the user wrote them.
+/// Bends the drawing by these steps; `given` has them with their references.
 fn bent(
     session: &Session<'_>,
     svg: &SvgArtwork,
@@ -318,7 +317,7 @@ impl Artwork for EditedArtwork {
 
     fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String> {
         let captions: Vec<Step> = recipe.steps.iter().filter(|s| is_caption(s)).cloned().collect();
-        // Selectors are looked for again and again.
+        // Each check of selectors counts as work.
         self.svg.renew_budget();
         if captions.is_empty() {
             return Ok(self.svg.document());
@@ -386,12 +385,12 @@ impl Artwork for EditedArtwork {
     }
 }
 
-/// The engine with a registry and options, for drawings that are opened.
+/// A [`Host`] that opens drawings by the engine, with a registry and options.
 pub struct EngineHost {
     registry: Arc<Registry>,
-    /// Options where neither the user nor the drawing gives any.
+    /// Options that hold if neither the user nor the drawing gives them.
     usual: Given,
-    /// The options as given.
+    /// The options that the user gives.
     given: Given,
     /// The options that name plug-ins.
     plugins: Vec<(String, String)>,
@@ -406,7 +405,7 @@ impl fmt::Debug for EngineHost {
 }
 
 impl EngineHost {
-    /// A host with options where neither the user nor the drawing gives any, and those that the user gives.
+    /// Creates a host from defaults for options that neither the user nor the drawing gives, and the user's options.
     #[must_use]
     pub fn new(registry: Registry, usual: Given, given: Given) -> Self {
         let flags = Arc::new(Flags::of(&registry));
@@ -414,7 +413,7 @@ impl EngineHost {
         Self { registry: Arc::new(registry), usual, given, plugins: Vec::new(), flags, names: Arc::new(names) }
     }
 
-    /// Names plug-ins in command lines by these options.
+    /// Adds the options that name plug-ins in command lines.
     #[must_use]
     pub fn with_plugins(self, options: Vec<(String, String)>) -> Self {
         Self { plugins: options, ..self }
@@ -466,7 +465,7 @@ impl Host for EngineHost {
     }
 
     fn first(&self) -> &[Info] {
-        // A page shows no strokes that become outlines.
+        // The page does not offer the last edit, `outline`.
         &EDITS[..EDITS.len() - 1]
     }
 
@@ -503,7 +502,7 @@ impl Host for EngineHost {
 mod tests {
     use super::*;
 
-    /// Files of earlier programs have options for edits, and a step that moves nothing beside edits alone.
+    /// Files of earlier versions have options for edits, and a step that moves nothing beside edits alone.
     #[test]
     fn edits_saved_as_options_become_steps() {
         let opened = |step: &str| {

@@ -1,6 +1,6 @@
-//! The geometry of a step's parameters in user units, for handles: paths, points, pairs of points and nets.
+//! The handles of a step's parameters, in user units: paths, points, pairs of points and nets.
 //!
-//! Which handles a parameter has follows from its kind and, for text, from its notation; so parameters of plug-ins have theirs.
+//! The kind of a parameter and, for text, its notation determine its handles; therefore plug-ins have handles, too.
 
 use crate::nets::{self, Net, Space};
 use pathwarp::deform::{Info, Registry, TextShape};
@@ -14,18 +14,18 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
-/// The curves of a handle path are shown as cubics; arcs come as near as this share of the frame's diagonal.
+/// Distance within which cubics follow the arcs of a handle path, as a share of the frame's diagonal.
 const ARCS_WITHIN: f64 = 1e-6;
-/// Most control points of a net that get handles; more could not be told apart.
+/// Most control points of a net with handles; more could not be told apart.
 const MOST_NODES: usize = 400;
 
-/// The notations of parameters that place control points of nets.
+/// The notations of parameters that move control points of nets.
 const GRID: &str = "I,J:X,Y";
 const TRIANGLE: &str = "I,J,K:X,Y";
-/// The notation of the adjust values of text shapes.
+/// The notation for adjust values of text shapes.
 const ADJUST: &str = "[NAME=]VALUE";
 
-/// The handles of every step.
+/// Returns the handles of every step.
 pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe) -> Vec<Value> {
     let steps = resolved.steps.iter().zip(&built.frames);
     let steps = steps.map(|(step, frame)| {
@@ -36,19 +36,19 @@ pub(crate) fn grips(registry: &Registry, resolved: &Recipe, built: &BuiltRecipe)
     steps.collect()
 }
 
-/// The handles of a caption in this frame.
+/// Returns the handles of a caption in this frame.
 pub(crate) fn of_caption(args: &Args, frame: &Frame) -> Value {
     json!({ "frame": rect(frame.rect), "params": of_step(&CAPTION, args, frame) })
 }
 
-/// A box as x, y, width, height.
+/// Returns a box as x, y, width and height.
 pub(crate) fn rect(r: Rect) -> Value {
     json!([r.x0, r.y0, r.width(), r.height()])
 }
 
 fn of_step(info: &Info, args: &Args, frame: &Frame) -> Map<String, Value> {
     let mut out = Map::new();
-    // Values that are wrong have been reported when the step was built.
+    // Wrong values have been reported when the step was built.
     let Ok(settings) = Settings::new(info.params, args, frame) else { return out };
     for p in info.params {
         if let Some(geometry) = of_param(info, p, &settings) {
@@ -118,8 +118,7 @@ fn xy(p: Point) -> Value {
     json!([p.x, p.y])
 }
 
-/// The centre, the radius, and the angles in degrees at which a circle or an arc of one begins and ends, clockwise on the screen from the
-/// right.
+/// Describes a circle or arc: its centre, radius, and start and end angles in degrees, clockwise on the screen from the right.
 fn circle(outline: &Outline) -> Option<[f64; 5]> {
     let [only] = outline.subpaths.as_slice() else { return None };
     let arc = |s: &Seg| if let Seg::Arc(arc) = s { Some(*arc) } else { None };
@@ -130,7 +129,7 @@ fn circle(outline: &Outline) -> Option<[f64; 5]> {
     Some([first.center.x, first.center.y, first.a.hypot(), from, from + sweep.to_degrees()])
 }
 
-/// A path as subpaths: the start, and cubics as six numbers or lines as two.
+/// Converts a path to subpaths: the start, and then six numbers for a cubic or two for a line.
 fn path(outline: &Outline, arcs_within: f64) -> Value {
     let subpath = |s: &pathwarp::Subpath| {
         let mut segments: Vec<Value> = Vec::new();
@@ -153,7 +152,7 @@ fn cubic(a: Point, b: Point, c: Point) -> Value {
     json!([a.x, a.y, b.x, b.y, c.x, c.y])
 }
 
-/// Path data of an outline, with all digits.
+/// Returns path data of an outline, with all digits.
 pub(crate) fn path_data(outline: &Outline) -> String {
     let mut out = String::new();
     for s in &outline.subpaths {
@@ -180,11 +179,11 @@ pub(crate) fn path_data(outline: &Outline) -> String {
     out
 }
 
-/// The control points of a net whose parameter `p` places single ones: their indices as typed, and the rows they form. The net is
-/// that of the parameters `degree`, `cells`, `spline`, `region`, `reference` and `move`, as the deformation's notation has them.
+/// Returns the net whose control points the parameter `p` moves one by one: their indices as typed, and the rows that they form. The
+/// parameters `degree`, `cells`, `spline`, `region`, `reference` and `move` define it, in the deformation's notation.
 fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
     let has = |name: &str| info.params.iter().any(|p| p.name == name);
-    // These say where control points are in ways of their own.
+    // These parameters define control points in other ways.
     if ["lattice", "pin"].iter().any(|name| has(name) && s.given(name)) || !has("degree") {
         return None;
     }
@@ -214,13 +213,13 @@ fn net(info: &Info, p: &Param, s: &Settings<'_>) -> Option<Net> {
     Some(net)
 }
 
-/// The parameter that places single control points, and the net of a deformation that has one.
+/// Returns the parameter that moves single control points and its net, if the deformation has one.
 pub(crate) fn net_of<'a>(info: &'a Info, args: &Args, frame: &Frame) -> Option<(&'a Param, Net)> {
     let p = info.params.iter().find(|p| matches!(p.kind, Kind::Text(GRID | TRIANGLE)))?;
     Some((p, net(info, p, &Settings::new(info.params, args, frame).ok()?)?))
 }
 
-/// The values with which the net of `new` bends as that of `old` does: of the parameter that places control points, and of `weight`.
+/// Returns values for the parameter that moves control points, and for `weight`, with which the net of `new` bends like that of `old`.
 pub(crate) fn with_net_of(info: &Info, old: &Args, new: &Args, frame: &Frame) -> Option<Vec<(String, Vec<String>)>> {
     let (_, old) = net_of(info, old, frame)?;
     let (p, mut net) = net_of(info, new, frame)?;
@@ -235,7 +234,7 @@ pub(crate) fn with_net_of(info: &Info, old: &Args, new: &Args, frame: &Frame) ->
     Some(vec![(p.name.to_owned(), placed.collect()), ("weight".to_owned(), weighted.collect())])
 }
 
-/// An undistorted grid over the region.
+/// Returns the undistorted grid over the region.
 fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
     let numbers = |name: &str| {
         let text = s.texts(name).last().copied()?;
@@ -268,7 +267,7 @@ fn grid(s: &Settings<'_>, has: &dyn Fn(&str) -> bool) -> Option<Net> {
     })
 }
 
-/// An undistorted triangular net: control point i,j,k stands at (iA + jB + kC)/n.
+/// Returns the undistorted triangular net: control point i,j,k lies at (iA + jB + kC)/n.
 fn triangle(s: &Settings<'_>) -> Option<Net> {
     let n = s.number("degree").ok()? as usize;
     let frame = s.frame().rect;
@@ -276,7 +275,7 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
     let given = s.texts("reference").pop().map(|text| s.points_in("reference", text));
     let corners = match given.transpose().ok()? {
         Some(corners) => corners,
-        // As the deformation has it: about the frame, twice as wide and twice as high.
+        // The deformation's default: about the frame, twice as wide and high.
         None => vec![
             Point::new(frame.center().x, frame.y0 - frame.height()),
             Point::new(frame.x0 - half, frame.y1),
@@ -292,7 +291,7 @@ fn triangle(s: &Settings<'_>) -> Option<Net> {
         let sum = a.to_vec2() * *i as f64 + b.to_vec2() * *j as f64 + c.to_vec2() * *k as f64;
         (sum / n as f64).to_point()
     };
-    // Along each side: the points with the same index of the opposite corner.
+    // Lines along each side: points with equal index of the opposite corner.
     let line = |axis: usize, m: usize| (0..all.len()).filter(|p| all[*p][axis] == m).collect::<Vec<_>>();
     let lines = (0..3).flat_map(|axis| (0..n).map(move |m| (axis, m))).map(|(axis, m)| line(axis, m));
     Some(Net {
@@ -361,7 +360,7 @@ mod tests {
         recipe.build(&Registry::builtin(), Frame::new(FRAME), &std::iter::once(&art)).unwrap()
     }
 
-    /// The largest distance between a deformation and the same with the net carried over.
+    /// The largest distance between a deformation and the one to which its net was carried over.
     fn apart(name: &str, before: &[(&str, &str)], after: &[(&str, &str)]) -> f64 {
         let registry = Registry::builtin();
         let info = registry.get(name).unwrap().info();
@@ -388,7 +387,7 @@ mod tests {
         assert!(apart("triangle", &triangle, &[("degree", "4")]) < 1e-4);
     }
 
-    /// The line nearest to a symmetric arch is level.
+    /// The line that is nearest to a symmetric arch is level.
     #[test]
     fn fewer_control_points_stay_near() {
         let arch = [("degree", "2x1"), ("move", "1,0:0,-60 1,1:0,-60")];

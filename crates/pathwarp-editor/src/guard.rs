@@ -1,7 +1,7 @@
-//! Who may talk to the server: a browser on this computer that knows the token, from the server's own page.
+//! Access control: the server answers only a browser on this computer that knows the token, and only the server's page.
 //!
-//! The token in the address keeps out other users of the computer. The `Host` header keeps out pages that reach the server by a
-//! name of their own (DNS rebinding), and `Origin` keeps out the scripts of other pages, which browsers let open WebSockets anywhere.
+//! The token in the address keeps out other users of the computer. The `Host` header keeps out pages that reach the server by a name of
+//! theirs (DNS rebinding). `Origin` keeps out the scripts of other pages, which browsers let open WebSockets anywhere.
 
 use crate::draft;
 use crate::host::Host;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Bytes of the token: too many to guess.
+/// Length of the token in bytes, too long to guess.
 const TOKEN_BYTES: usize = 24;
 
 /// Conditions for answering a request.
@@ -24,47 +24,47 @@ pub(crate) struct Guard {
 /// The reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refusal {
-    /// The host's name is not this computer's own.
+    /// The host name is not this computer's.
     Host,
-    /// The request comes from the page of another server.
+    /// The request comes from another server's page.
     Origin,
     /// The address lacks the token.
     Token,
 }
 
 impl Guard {
-    /// A guard with a new token for the server at `port`.
+    /// Creates a guard with a new token for the server at `port`.
     pub(crate) fn new(port: u16) -> io::Result<Self> {
         let mut bytes = [0; TOKEN_BYTES];
         getrandom::fill(&mut bytes).map_err(|e| io::Error::other(e.to_string()))?;
         Ok(Self { token: URL_SAFE_NO_PAD.encode(bytes), port })
     }
 
-    /// The file that remembers the guard of the last run on a drawing.
+    /// Returns the file that stores the guard of the last run on a drawing.
     fn file(state: &Path, drawing: &Path) -> PathBuf {
         state.join("addresses").join(draft::key(drawing, &[]) + ".json")
     }
 
-    /// The guard of the last run on a drawing.
+    /// Reads the guard of the last run on a drawing.
     pub(crate) fn last(state: &Path, drawing: &Path) -> Option<Self> {
         let text = std::fs::read_to_string(Self::file(state, drawing)).ok()?;
         let guard: Self = serde_json::from_str(&text).ok()?;
-        // Half a file is no secret.
+        // A truncated file holds no valid token.
         URL_SAFE_NO_PAD.decode(&guard.token).is_ok_and(|t| t.len() == TOKEN_BYTES).then_some(guard)
     }
 
-    /// Remembers the guard for the next run on a drawing.
+    /// Stores the guard for the next run on a drawing.
     pub(crate) fn keep(&self, host: &dyn Host, state: &Path, drawing: &Path) -> Result<(), String> {
         let text = serde_json::to_string(self).map_err(|e| e.to_string())?;
         draft::write(host, &Self::file(state, drawing), text.as_bytes())
     }
 
-    /// Shows that the token is known here, without telling it: what the page has sent decides the answer.
+    /// Proves that this server knows the token, without revealing it, by the answer to a question of the page.
     pub(crate) fn proof(&self, question: &str) -> String {
         draft::hex(&[self.token.as_bytes(), question.as_bytes()])
     }
 
-    /// The address of the page.
+    /// Returns the address of the page.
     pub(crate) fn address(&self) -> String {
         format!("http://127.0.0.1:{}/?token={}", self.port, self.token)
     }
@@ -91,7 +91,7 @@ impl Guard {
     }
 }
 
-/// Compares in a time that does not depend on the place of the first difference.
+/// Compares in a time that does not depend on the position of the first difference.
 fn same(a: &[u8], b: &[u8]) -> bool {
     a.len() == b.len() && a.iter().zip(b).fold(0, |sum, (x, y)| sum | (x ^ y)) == 0
 }

@@ -1,4 +1,4 @@
-//! [`Host`]: what the editor needs from the program around it, which knows files, formats and options.
+//! [`Host`]: the editor's interface to the program that contains it, which knows files, formats and options.
 
 use crate::words::Words;
 use pathwarp::Outline;
@@ -10,18 +10,18 @@ use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The usual width of pictures, in px: enough for a screen in full.
+/// The usual width of pictures, in px: enough for a full screen.
 const PICTURE_WIDTH: u32 = 2000;
 
-/// What a picture of a drawing is like.
+/// The properties of a picture of a drawing.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct PictureOptions {
-    /// The width in px, unless there is a scale.
+    /// The width in px, if `scale` is `None`.
     pub width: u32,
     /// Pixels for each px of the drawing.
     pub scale: Option<f32>,
-    /// The colour behind the drawing, as in CSS; `None` for none, which is white in a JPEG.
+    /// The colour behind the drawing, as in CSS. Without one, pictures are transparent, and JPEG files white.
     pub background: Option<String>,
 }
 
@@ -32,7 +32,7 @@ impl Default for PictureOptions {
 }
 
 impl PictureOptions {
-    /// The options of `pathwarp render` for such a picture.
+    /// Returns the options of `pathwarp render` for such a picture.
     pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
         let size = self.scale.map_or_else(|| ("width", self.width.to_string()), |s| ("scale", s.to_string()));
         let background = self.background.as_ref().map(|b| ("background", b.clone()));
@@ -40,56 +40,56 @@ impl PictureOptions {
     }
 }
 
-/// The program around the editor. Errors are sentences for the user.
+/// The program that contains the editor. Errors are sentences for the user.
 pub trait Host: Send + Sync {
-    /// The deformations on offer.
+    /// Returns the available deformations.
     fn registry(&self) -> &Registry;
 
-    /// What changes a drawing before it is bent, as steps that come before all others.
+    /// Returns the edits, which change a drawing before it is bent and therefore come before all other steps.
     fn first(&self) -> &[Info] {
         &[]
     }
 
-    /// Names that other programs have for deformations, each with that of the deformation: what a user may search for.
+    /// Returns names of deformations in other programs, which users may search for, each with the deformation's name.
     fn foreign_words(&self) -> Vec<(&str, &str)> {
         Vec::new()
     }
 
-    /// The families of the fonts there are.
+    /// Returns the families of the available fonts.
     ///
     /// # Errors
-    /// The options that name fonts are wrong.
+    /// A sentence if the options that name fonts are wrong.
     fn families(&self) -> Result<Vec<String>, String>;
 
     /// Sets words as a drawing, and lists the characters that no font has.
     ///
     /// # Errors
-    /// The font is missing, or the words cannot be set.
+    /// A sentence if the font is missing, or the words cannot be set.
     fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String>;
 
-    /// Reads a drawing. If it is the result of an earlier run with its source embedded, that source is opened, with its recipe.
+    /// Reads a drawing. For the result of an earlier run with its source embedded, this is the source, with its recipe.
     ///
     /// # Errors
-    /// The bytes are not a drawing that can be read.
+    /// A sentence if the bytes are not a readable drawing.
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String>;
 
-    /// The text that names a file in a step.
+    /// Returns the text that names a file in a step.
     fn reference(&self, file: &Path) -> String;
 
     /// Writes a file completely or not at all.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// A sentence if the file cannot be written.
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String>;
 }
 
-/// A drawing that has been read.
+/// A drawing that has been opened.
 pub struct Opened {
-    /// The drawing to be bent.
+    /// The drawing to bend.
     pub artwork: Box<dyn Artwork>,
-    /// The steps that the file was made by; empty for a drawing that was not bent.
+    /// The steps of the file; empty if it was not made by bending.
     pub recipe: Recipe,
-    /// The file is the result of an earlier run, so saving replaces it.
+    /// `true` for the result of an earlier run, which saving replaces.
     pub is_result: bool,
 }
 
@@ -104,35 +104,35 @@ impl fmt::Debug for Opened {
 
 /// A drawing, ready to be bent again and again.
 pub trait Artwork: Send {
-    /// The drawing.
+    /// Returns the drawing.
     fn document(&self) -> &Document;
 
-    /// The drawing with the captions of a recipe.
+    /// Returns the drawing with the captions of a recipe.
     ///
     /// # Errors
-    /// A caption cannot be set.
+    /// A sentence if a caption cannot be set.
     fn captioned(&mut self, recipe: &Recipe) -> Result<&Document, String>;
 
-    /// The options that it was read with, which results are read with, too.
+    /// Returns the options for reading the drawing and its results.
     fn reading(&self) -> &ReadOptions;
 
-    /// The box that percentages of the first step refer to.
+    /// Returns the box that percentages of the first step refer to.
     fn frame(&self) -> Rect;
 
-    /// The outlines of the artwork.
+    /// Returns the outlines of the artwork.
     fn outlines(&self) -> Vec<&Outline>;
 
     /// Bends the drawing by a recipe.
     ///
     /// # Errors
-    /// A step cannot be built, or the drawing cannot be bent.
+    /// A sentence if a step cannot be built, or the drawing cannot be bent.
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String>;
 
-    /// Bends the drawing and writes it in the format that the extension of `to` names, an SVG with the recipe and the source in it, and with
-    /// its linked pictures if it does not `stay` on this machine. Returns the bytes and what the format cannot hold.
+    /// Bends the drawing and writes it in the format of `to`'s extension: an SVG with its recipe and source, and with linked pictures
+    /// embedded unless it `stays` on this machine. Returns the bytes and the losses of the format.
     ///
     /// # Errors
-    /// As for [`bend`](Self::bend), or the format is unknown.
+    /// A sentence if a step cannot be built, the drawing cannot be bent, or the format is unknown.
     fn written(
         &mut self,
         recipe: &Recipe,
@@ -144,81 +144,81 @@ pub trait Artwork: Send {
     /// Looks up the recipe's references and builds its steps, without bending anything.
     ///
     /// # Errors
-    /// A step cannot be built.
+    /// A sentence if a step cannot be built.
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
 
-    /// The options that the command line would need for the same result beside those of the steps, by name.
+    /// Returns the options that a command line with these steps needs for an equal result, by name.
     fn options(&self) -> Vec<(String, String)>;
 
-    /// The text of a recipe file with these steps.
+    /// Returns the text of a recipe file with these steps.
     ///
     /// # Errors
-    /// The recipe cannot be written as text.
+    /// A sentence if the recipe cannot be written as text.
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String>;
 }
 
-/// The effort that a picture is worth.
+/// The quality of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fineness {
-    /// While something is dragged: curves within this distance in user units, gradients by affine fits, no report.
+    /// For dragging: curves within this distance in user units, affine fits of gradients, no report.
     Draft(f64),
-    /// For a picture of some dozens of pixels: as a draft, and of a large drawing only a bitmap is bent.
+    /// For thumbnails: a draft, for which a bitmap replaces a large drawing.
     Small(f64),
-    /// As the program writes it, but on the page of the source.
+    /// The final result, on the page of the source.
     Exact,
 }
 
-/// A drawing under a recipe.
+/// A drawing bent by a recipe.
 #[derive(Debug)]
 pub struct Bent {
-    /// The text of the result.
+    /// The result's text.
     pub svg: String,
-    /// The page that the saved result has, if that is not the source's, in user units.
+    /// The page of the saved result in user units, if it differs from the source's.
     pub page: Option<Rect>,
     /// The recipe with its references looked up.
     pub resolved: Recipe,
     /// The recipe, built.
     pub built: BuiltRecipe,
-    /// What was done; `None` for a draft.
+    /// Measures of the result; `None` for a draft.
     pub summary: Option<Summary>,
     /// Messages about the result.
     pub warnings: Vec<String>,
 }
 
-/// What was done to a drawing.
+/// Measures of a bent drawing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Summary {
-    /// Segments of the drawing before.
+    /// Number of segments of the drawing.
     pub segments_in: usize,
-    /// Segments of the result.
+    /// Number of segments of the result.
     pub segments_out: usize,
     /// The largest distance to the exact image, in user units.
     pub max_error: f64,
-    /// The distance that was asked for, in user units.
+    /// The tolerance in user units.
     pub tolerance: f64,
-    /// The shapes that fold over, with the places in the source where they begin to.
+    /// The shapes that fold over, each with the point of the source where that begins.
     pub folds: Vec<(String, Point)>,
 }
 
-/// The use of the steps once they are chosen.
+/// The use of the finished steps.
 #[derive(Debug, Clone)]
 pub enum Purpose {
-    /// Results are saved to files; `out` is the one that *Save* writes, `None` a name beside the drawing.
+    /// Results are saved to files.
     Files {
-        /// The file that *Save* writes.
+        /// The file that *Save* writes; `None` for a name beside the drawing.
         out: Option<PathBuf>,
     },
-    /// A program waits for the steps, and nothing is written. Without a page, it would wait in vain, so that is an error.
+    /// A program waits for the steps, and nothing is written. It is an error if no page opens.
     Program {
-        /// Its name.
+        /// The program's name.
         name: String,
-        /// The drawing's name there.
+        /// The drawing's name in the program.
         drawing: String,
     },
 }
 
 impl Purpose {
-    /// The program that waits.
+    /// Returns the name of the program that waits, if any.
     pub(crate) fn program(&self) -> Option<&str> {
         if let Self::Program { name, .. } = self { Some(name) } else { None }
     }

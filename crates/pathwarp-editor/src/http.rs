@@ -1,4 +1,4 @@
-//! The requests of a page: its few files, and the upgrade to a WebSocket. Each connection carries one request.
+//! The HTTP requests of a page: its files, and the upgrade to a WebSocket. Each connection carries one request.
 
 use crate::guard::{Guard, Refusal};
 use std::io::{self, Read as _, Write};
@@ -11,15 +11,15 @@ use tungstenite::http::{Method, Request, Version};
 const LONGEST_HEAD: usize = 16 << 10;
 /// Most headers of a request.
 const MOST_HEADERS: usize = 64;
-/// A browser that has connected sends its request at once, all of it within this time.
+/// A browser that has connected sends its whole request within this time.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The rules for the page. Its own script and style are files; a drawing may hold styles in attributes and embedded pictures, but
+/// The content security policy. The page's script and style are files; a drawing may hold style attributes and embedded pictures, but
 /// nothing is ever loaded from elsewhere.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src data: blob:; connect-src 'self'; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// Answers the request on a new connection. Returns the connection if it has become a WebSocket.
+/// Answers the request on a new connection. Returns the connection if it was upgraded to a WebSocket.
 pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<TcpStream>> {
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
@@ -34,13 +34,13 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
         return refuse(&mut stream, "405 Method Not Allowed", "only GET is allowed");
     }
     let (path, query) = (request.uri().path(), request.uri().query().unwrap_or_default());
-    // The script and the style hold nothing of the user's; browsers ask for them without the page's query.
+    // The script and the style contain nothing private; browsers ask for them without the page's query.
     let public = ["/editor.js", "/editor.css", "/proof"].contains(&path);
     if !public && let Err(refusal) = guard.check_token(query) {
         return refuse(&mut stream, "403 Forbidden", explain(refusal));
     }
     if path == "/socket" {
-        // Browsers name the origin of every WebSocket.
+        // Browsers state the origin of every WebSocket.
         if header("origin").is_none() {
             return refuse(&mut stream, "403 Forbidden", explain(Refusal::Origin));
         }
@@ -52,7 +52,7 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
             Err(_) => refuse(&mut stream, "400 Bad Request", "this is not a WebSocket"),
         };
     }
-    // A page that has lost the program tells its token to nobody else who may listen here now.
+    // A page that has lost the server asks for this proof, instead of telling its token to whoever listens here now.
     if path == "/proof" {
         respond(&mut stream, "200 OK", "text/plain", &guard.proof(query))?;
         return Ok(None);
@@ -72,13 +72,13 @@ fn explain(refusal: Refusal) -> &'static str {
     }
 }
 
-/// Reads the head of a request; `None` if it is none.
+/// Reads the head of a request; `None` if it is not one.
 fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
     let begun = Instant::now();
     let mut head = Vec::new();
     let mut piece = [0; 2048];
     loop {
-        // One that comes in drops would hold one of the few connections for hours.
+        // A head sent byte by byte would occupy a connection for hours.
         let rest = PATIENCE.checked_sub(begun.elapsed()).filter(|d| !d.is_zero()).ok_or(io::ErrorKind::TimedOut)?;
         stream.set_read_timeout(Some(rest))?;
         let n = stream.read(&mut piece)?;
@@ -92,7 +92,7 @@ fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
     }
 }
 
-/// Parses a head. The outer option is `None` while it is incomplete, the inner one if it is wrong.
+/// Parses a head. The outer option is `None` if it is incomplete, the inner one if it is malformed.
 fn parse(head: &[u8]) -> Option<Option<Request<()>>> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut parsed = httparse::Request::new(&mut headers);

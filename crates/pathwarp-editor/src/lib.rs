@@ -1,16 +1,15 @@
 //! Bends artwork by hand: a page in the browser, and a server on this computer that computes every picture.
 //!
-//! The page (`assets/`) draws and drags; it computes nothing. The server listens on the loopback interface only, and answers only
-//! a browser that knows the token in its address. A program supplies what it knows about files and formats as a [`Host`] and
-//! calls [`serve`]:
+//! The page (`assets/`) draws and drags; it computes nothing. The server listens on the loopback interface only, and answers only a browser
+//! that knows the token in its address. A program implements [`Host`] for files and formats, and calls [`serve`]:
 //!
-//! * `http`, `guard`: the few requests of a page, and who may make them;
+//! * `http`, `guard`: the requests of a page, and the conditions for answering them;
 //! * `socket`: one connection of a page, with messages in JSON (`protocol`);
 //! * `session`: the document, its steps, undo, and the `draft` on disk, in one of the user's folders;
 //! * `picture`: the drawing as the page shows it, through usvg, so that nothing in a file can run or load anything;
 //! * `catalogue`, `grips`: the deformations, their first values, and the geometry that handles show;
 //! * `names`: the engine's messages in the words of the page;
-//! * `nets`: control points of nets that become more or fewer.
+//! * `nets`: conversion between nets with different numbers of control points.
 
 mod catalogue;
 mod command_line;

@@ -1,15 +1,15 @@
-//! The engine's messages in the words of the page, which has controls and no options.
+//! Translates the engine's messages, which name options, to the page's terms: it has controls instead.
 
 use pathwarp::deform::Info;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// What the page calls parameters.
+/// The page's names of parameters.
 #[derive(Debug)]
 pub(crate) struct Names(BTreeMap<&'static str, String>);
 
 impl Names {
-    /// The names of all parameters. One that has several labels is called by its own name.
+    /// Collects the names of all parameters. A parameter with several labels keeps its name in the registry.
     pub(crate) fn of<'a>(infos: impl Iterator<Item = &'a Info>) -> Self {
         let mut names: BTreeMap<&'static str, String> = BTreeMap::new();
         for info in infos {
@@ -25,13 +25,13 @@ impl Names {
         Self(names)
     }
 
-    /// A message without options: those of parameters become names of controls, and advice that takes others is left out.
+    /// Removes options from a message: those of parameters become names of controls, and advice about others is dropped.
     pub(crate) fn plain(&self, message: &str) -> String {
         let parts: Vec<String> = message.split("; ").filter_map(|part| self.part(part)).collect();
         if parts.is_empty() { self.named(message, true) } else { parts.join("; ") }
     }
 
-    /// A part of a message between semicolons; `None` if nothing is left of it.
+    /// Converts a part of a message, between semicolons; `None` if nothing is left of it.
     fn part(&self, text: &str) -> Option<String> {
         let mut text = self.named(text, false);
         while let Some(option) = option(&text, 0) {
@@ -46,10 +46,10 @@ impl Names {
         Some(text)
     }
 
-    /// The text with the names of options instead of them: of parameters, or of all.
+    /// Replaces options by names of controls: options of parameters, or all.
     fn named(&self, text: &str, all: bool) -> String {
         let (mut out, mut done) = (String::with_capacity(text.len()), 0);
-        // Quotes say where an option ends; around a name they are no use.
+        // Quotes delimit options; around names of controls they are dropped.
         let mut quoted = false;
         let between = |text: &str, quoted: bool| if quoted { text.replacen('`', "", 1) } else { text.to_owned() };
         while let Some(range) = option(text, done) {
@@ -67,7 +67,7 @@ impl Names {
     }
 }
 
-/// The first option at or after a place in a text.
+/// Finds the first option in a text from an offset on.
 fn option(text: &str, from: usize) -> Option<Range<usize>> {
     text[from..].match_indices("--").map(|(at, _)| from + at).find_map(|at| {
         let begins = text[..at].chars().next_back().is_none_or(|c| c.is_whitespace() || "(`'“".contains(c));
@@ -78,7 +78,7 @@ fn option(text: &str, from: usize) -> Option<Range<usize>> {
     })
 }
 
-/// A name in kebab case as words: `reverse-shaper` is “Reverse shaper”.
+/// Converts a name in kebab case to words: `reverse-shaper` to “Reverse shaper”.
 fn words(name: &str) -> String {
     let mut out = String::new();
     for c in name.chars() {
@@ -131,7 +131,7 @@ mod tests {
         }
     }
 
-    /// Whatever option the engine has: no sentence shows it, wherever it stands in it.
+    /// No option of the engine remains, at any position in a sentence.
     #[test]
     fn no_option_is_left() {
         let registry = Registry::builtin();

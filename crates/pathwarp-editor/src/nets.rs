@@ -1,20 +1,20 @@
-//! Nets with more or fewer control points that bend as before.
+//! Conversion between nets with different numbers of control points.
 //!
-//! A net is a sum of basis functions. Where those of the new net span the old ones, as after raising a degree or halving cells, the net
-//! stays the same map; otherwise it becomes the nearest one by least squares over a grid of samples. Weights go along in homogeneous
-//! coordinates (w·x, w·y, w).
+//! A net is a sum of basis functions. If the new functions span the old ones, as after raising a degree or halving cells, the map stays the
+//! same; otherwise it is approximated by least squares on a grid of samples. Rational nets are converted in homogeneous coordinates (w·x,
+//! w·y, w).
 
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use pathwarp::map::Lattice;
 
-/// Samples along an axis for each control point there.
+/// Number of samples per control point along each axis.
 const SAMPLES: usize = 6;
-/// Shares of the net's size, and of a weight, that are rounding.
+/// Relative size of differences that count as rounding, of points and of weights.
 const ROUNDING: f64 = 1e-9;
 
 type Matrix = Vec<Vec<f64>>;
 
-/// Control points with their indices as typed, and the lines that join them.
+/// Control points with their indices as typed, and the lines that connect them.
 pub(crate) struct Net {
     pub(crate) space: Space,
     pub(crate) names: Vec<String>,
@@ -23,13 +23,13 @@ pub(crate) struct Net {
     pub(crate) lines: Vec<Vec<usize>>,
 }
 
-/// The functions that the control points of a net stand before.
+/// The basis functions of a net.
 pub(crate) enum Space {
     Grid { degree: [usize; 2], cells: [usize; 2] },
     Triangle(usize),
 }
 
-/// Gives `net`, at rest, the shape of `old`.
+/// Moves the control points of `net`, which is undistorted, so that it bends like `old`.
 pub(crate) fn carry_over(old: &Net, net: &mut Net) {
     let Some(matrix) = matrix(&old.space, &net.space) else { return };
     let rest = net.points.clone();
@@ -40,7 +40,7 @@ pub(crate) fn carry_over(old: &Net, net: &mut Net) {
         net.weights[k] = if (w - 1.0).abs() < ROUNDING { 1.0 } else { w };
         net.points[k] = Point::new(sum(0) / w, sum(1) / w);
     }
-    // Weights that the nearest net cannot have would tear the artwork.
+    // The nearest net may need weights that are not positive, which would tear the artwork.
     if net.weights.iter().any(|w| *w <= ROUNDING) {
         net.weights.fill(1.0);
         for (k, row) in matrix.iter().enumerate() {
@@ -56,7 +56,7 @@ pub(crate) fn carry_over(old: &Net, net: &mut Net) {
     }
 }
 
-/// Each new control point as a combination of the old ones.
+/// Returns the matrix that computes the new control points from the old ones.
 fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
     match (old, new) {
         (Space::Grid { degree: n, cells: c }, Space::Grid { degree: m, cells: d }) => {
@@ -77,7 +77,7 @@ fn matrix(old: &Space, new: &Space) -> Option<Matrix> {
     }
 }
 
-/// The B-splines of a uniform, clamped net along one axis, at `count` + 1 places from 0 to 1.
+/// Returns the B-splines of a uniform, clamped net along one axis, at `count` + 1 parameters from 0 to 1.
 fn splines(degree: usize, cells: usize, count: usize) -> Matrix {
     let line = Lattice::regular(Rect::new(0.0, 0.0, 1.0, 1.0), [degree, 1], [cells, 1]);
     let at = |i: usize| {
@@ -90,7 +90,7 @@ fn splines(degree: usize, cells: usize, count: usize) -> Matrix {
     (0..=count).map(at).collect()
 }
 
-/// The indices of a triangular net, in the order of its control points.
+/// Returns the indices of a triangular net, in the order of its control points.
 pub(crate) fn indices(n: usize) -> impl Iterator<Item = [usize; 3]> {
     (0..=n).flat_map(move |i| (0..=n - i).map(move |j| [i, j, n - i - j]))
 }
@@ -102,7 +102,7 @@ fn bernstein(n: usize, u: [f64; 3]) -> Vec<f64> {
     indices(n).map(|ijk| factorial(n) * term(ijk)).collect()
 }
 
-/// The matrix X that brings A·X nearest to B, by Householder reflections.
+/// Returns the matrix X that minimizes the distance of A·X from B, by Householder reflections.
 fn nearest(a: Matrix, b: Matrix) -> Matrix {
     let n = a[0].len();
     let mut rows: Matrix = a.into_iter().zip(b).map(|(a, b)| [a, b].concat()).collect();

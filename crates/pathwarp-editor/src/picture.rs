@@ -1,7 +1,7 @@
-//! The drawing as a page shows it: written anew by usvg, so that only shapes, paints and embedded pictures are left of a file.
+//! The drawing as a page shows it: rewritten by usvg, so that only shapes, paints and embedded pictures remain.
 //!
-//! usvg resolves scripts, events, links, foreign objects and style sheets away; the page gets plain elements with attributes, one a
-//! line. While something is dragged, most lines stay and most of the others differ in one attribute, so only that is sent.
+//! usvg resolves scripts, events, links, foreign objects and style sheets away; the page gets plain elements with attributes, one per line.
+//! While something is dragged, most lines stay and most others differ in one attribute, so only changed attributes are sent.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -15,17 +15,17 @@ use std::ops::Range;
 use std::sync::Arc;
 use usvg::{Indent, Node, Transform, WriteOptions};
 
-/// Put before every id of the drawing, so that it cannot be one of the page's.
+/// Prefix of every id of the drawing, which distinguishes them from the page's.
 const ID_PREFIX: &str = "art-";
 
-/// A drawing, ready to be shown: one element a line.
+/// A drawing in the form that is shown: one element per line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Picture {
     lines: Vec<String>,
 }
 
 impl Picture {
-    /// Resolves a drawing. `decimals` is the number of decimals of coordinates, in px.
+    /// Resolves a drawing. Coordinates get this number of decimals, in px.
     pub(crate) fn of(svg: &str, decimals: u8, reading: &ReadOptions) -> Result<Self, String> {
         let tree = resolved(svg, reading)?;
         let options = WriteOptions {
@@ -38,9 +38,9 @@ impl Picture {
         Ok(Self { lines: text.lines().map(ToOwned::to_owned).collect() })
     }
 
-    /// The text of a drawing that shows all there is, and not the page.
+    /// Returns the text of a drawing whose page is the box of its content.
     pub(crate) fn small(svg: &str, reading: &ReadOptions) -> Result<String, String> {
-        /// Space around the drawing, as a share of its size.
+        /// Margin around the content, as a share of its size.
         const MARGIN: f64 = 0.02;
         let tree = resolved(svg, reading)?;
         let seen = seen(&tree, svg.len())?;
@@ -57,24 +57,24 @@ impl Picture {
         ))
     }
 
-    /// A bitmap of all that a drawing shows, with its longer side of this many pixels: the PNG, and the box that it fills, in px.
+    /// Draws the content of a drawing as a PNG with this length of the longer side in pixels. Also returns the box that it fills, in px.
     pub(crate) fn bitmap(svg: &str, longest: f32, reading: &ReadOptions) -> Result<(Vec<u8>, Rect), String> {
         let (drawn, filled) = drawn(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
         Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
     }
 
-    /// The whole text.
+    /// Returns the whole text.
     pub(crate) fn text(&self) -> String {
         self.lines.join("\n")
     }
 
-    /// The lines that are paths, with their path data.
+    /// Returns the lines that are paths, with their path data.
     pub(crate) fn paths(&self) -> Vec<(usize, &str)> {
         let lines = self.lines.iter().enumerate();
         lines.filter_map(|(i, line)| Some((i, &line[data_range(line)?]))).collect()
     }
 
-    /// Gives lines new path data.
+    /// Replaces the path data of lines.
     pub(crate) fn redraw(&mut self, changes: &[(usize, String)]) {
         for (line, data) in changes {
             if let Some(line) = self.lines.get_mut(*line)
@@ -88,13 +88,13 @@ impl Picture {
         }
     }
 
-    /// The message that turns `old` into this picture: the attributes that differ, if only attributes do, else everything.
+    /// Returns the message that turns `old` into this picture: the changed attributes if only attributes differ, else everything.
     pub(crate) fn message(&self, old: Option<&Self>) -> Value {
         let changes = old.and_then(|old| self.changes(old));
         changes.map_or_else(|| json!({ "whole": self.text() }), |changes| json!({ "changes": changes }))
     }
 
-    /// The changed attributes as line, name, value.
+    /// Returns the changed attributes as line, name, value.
     fn changes(&self, old: &Self) -> Option<Vec<(usize, &str, &str)>> {
         if self.lines.len() != old.lines.len() {
             return None;
@@ -106,7 +106,7 @@ impl Picture {
                 return None;
             }
             for ((name, value), (old_name, old_value)) in new.attributes.iter().zip(&old.attributes) {
-                // Entities would have to be decoded; they occur in ids only, which rarely change.
+                // Entities occur only in ids, which rarely change; decoding them here is not worth it.
                 if name != old_name || value.contains('&') {
                     return None;
                 }
@@ -119,11 +119,11 @@ impl Picture {
     }
 }
 
-/// The text of a drawing with its large embedded pictures in few pixels, where they have a size of their own; `None` if it has none.
+/// Returns the text of a drawing with its large embedded pictures reduced to few pixels; `None` without large ones of a given size.
 pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
-    /// Length of a picture's text from which it is large.
+    /// Length of a large picture's text.
     const LARGE: usize = 1 << 16;
-    /// The longer side, in pixels.
+    /// The longer side of reduced pictures, in pixels.
     const PIXELS: f32 = 400.0;
     let (mut out, mut done) = (String::new(), 0);
     for (start, _) in svg.match_indices("data:image/") {
@@ -152,8 +152,8 @@ pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
     (done > 0).then(|| out + &svg[done..])
 }
 
-/// A bitmap of all that a drawing shows, with its longer side of this many pixels, and the box that it fills, in px. `length` is that of
-/// the drawing's text.
+/// Draws the content of a drawing with this length of the longer side in pixels. Also returns the box that it fills, in px. `length` is the
+/// length of the drawing's text.
 fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
     let seen = tree.root().abs_layer_bounding_box();
     let scale = longest / seen.width().max(seen.height());
@@ -165,9 +165,9 @@ fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect
     Ok((drawn, Rect::from_origin_size(corner, Size::new(size[0], size[1]) / f64::from(scale))))
 }
 
-/// The box of all that a drawing shows, in px: without the clear pixels at the edges of bent bitmaps.
+/// Returns the box of a drawing's content in px, without the transparent pixels at the edges of bent bitmaps.
 fn seen(tree: &usvg::Tree, length: usize) -> Result<Rect, String> {
-    /// Pixels of the bitmap in which clear edges are looked for.
+    /// Longer side of the bitmap in which transparent edges are searched for, in pixels.
     const PIXELS: f32 = 128.0;
     let all = tree.root().abs_layer_bounding_box();
     let all = Rect::new(all.left().into(), all.top().into(), all.right().into(), all.bottom().into());
@@ -191,7 +191,7 @@ fn has_image(node: &Node) -> bool {
     }
 }
 
-/// Escapes the names in a text of usvg's, which escapes quotes alone, and keeps each on its line.
+/// Escapes the names in usvg's text, which escapes only quotes, and keeps each on one line.
 fn well_formed(text: &str) -> String {
     let (mut out, mut done, mut quoted) = (String::with_capacity(text.len()), 0, false);
     for (at, sign) in text.match_indices(['"', '<', '&', '\n']) {
@@ -211,14 +211,14 @@ fn well_formed(text: &str) -> String {
     out + &text[done..]
 }
 
-/// The place of the path data in a line.
+/// Returns the range of the path data in a line.
 fn data_range(line: &str) -> Option<Range<usize>> {
     const NAME: &str = " d=\"";
     let start = line.starts_with("<path ").then(|| line.find(NAME)).flatten()? + NAME.len();
     Some(start..start + line[start..].find('"')?)
 }
 
-/// An opening tag as usvg writes it.
+/// An opening tag in usvg's output.
 struct Element<'t> {
     tag: &'t str,
     attributes: Vec<(&'t str, &'t str)>,
@@ -240,26 +240,26 @@ impl<'t> Element<'t> {
     }
 }
 
-/// Markup that rules the short way out: shapes without path data, shapes that are drawn elsewhere or again, and paints and effects
-/// that usvg computes from bounding boxes.
+/// Markup that excludes the quick update: shapes without path data, shapes drawn elsewhere or again, and paints and effects that usvg
+/// derives from bounding boxes.
 const DERIVED: [&str; 16] = [
     "<rect", "<circle", "<ellipse", "<line", "<poly", "<text", "<use", "<svg:", "<switch", "Gradient", "<pattern",
     "clipPath", "<mask", "<filter", "<marker", "<style",
 ];
-/// Largest distance between the boxes of the same path in the text and in the picture: coordinates are rounded.
+/// Largest distance between the boxes of a path in the text and in the picture, due to rounded coordinates.
 const ROUNDING: f64 = 0.05;
 
-/// The text of the last picture, and the line of the picture that each path of it has.
+/// A quick update between pictures that differ in path data only: the last text, and the line of the picture for each path in it.
 #[derive(Debug)]
 pub(crate) struct Quick {
     text: String,
-    /// The places of path data in the text.
+    /// The ranges of path data in the text.
     data: Vec<Range<usize>>,
     lines: Vec<usize>,
 }
 
 impl Quick {
-    /// Prepares the quick way from this text, of which `picture` is the picture. Returns `None` if there is none.
+    /// Prepares quick updates from this text, which `picture` shows. Returns `None` if the text does not permit them.
     pub(crate) fn from(text: String, picture: &Picture) -> Option<Self> {
         if DERIVED.iter().any(|word| text.contains(word)) {
             return None;
@@ -272,7 +272,7 @@ impl Quick {
         })
     }
 
-    /// Goes on to the next text: the lines whose path data differ, with the new data. Returns `None` if anything else differs.
+    /// Proceeds to the next text. Returns the lines whose path data differ, with the new data, or `None` if anything else differs.
     pub(crate) fn next(&mut self, text: &str) -> Option<Vec<(usize, String)>> {
         let new = data(text);
         if self.data.len() != new.len() {
@@ -286,7 +286,7 @@ impl Quick {
             }
             (old_end, new_end) = (old.end, new.end);
             let value = &text[new.clone()];
-            // A path without segments or with entities is usvg's to read.
+            // Paths without segments or with entities are left to usvg.
             if value.is_empty() || value.contains(['&', '"', '<']) {
                 return None;
             }
@@ -303,9 +303,9 @@ impl Quick {
     }
 }
 
-/// The places of path data in a text, between their quotes.
+/// Returns the ranges of path data in a text, without their quotes.
 fn data(text: &str) -> Vec<Range<usize>> {
-    /// The attribute's name with what is around it.
+    /// The attribute's name with the characters around it.
     const NAME: &str = " d=";
     let mut out = Vec::new();
     let mut from = 0;
@@ -377,7 +377,7 @@ mod tests {
         assert_eq!(changes.len(), 1);
         assert_eq!((&changes[0][1], &changes[0][2]), (&json!("d"), &json!("M 5 5 L 8 5 L 8 9")));
         assert_eq!(a.message(Some(&a)), json!({ "changes": [] }));
-        // Another number of elements, or none before: everything.
+        // If the number of elements differs, or there is no old picture, everything is sent.
         let c = picture("<path d='M0,0 H9 V9'/>");
         assert_eq!(c.message(Some(&a))["whole"].as_str().unwrap().matches("<path").count(), 1);
         assert!(c.message(None)["whole"].is_string());
@@ -429,7 +429,7 @@ mod tests {
         assert_eq!(start().next(&text("M0,0h9v9z", "blue")), None);
         assert_eq!(start().next(&text("", "red")), None);
         assert_eq!(start().next(&text("M0,0h9v9z", "red").replace("<path d", "<path/><path d")), None);
-        // Paths that are not drawn, and whatever is drawn otherwise.
+        // Undrawn paths, and paths drawn in other ways, exclude the quick update.
         assert!(quick(&text("M0,0h9v9z", "red").replace("fill", "display='none' fill")).is_none());
         assert!(
             quick(&text("M0,0h9v9z", "red").replace("<path d='M5,5H9V9z'", "<rect width='4' height='3'")).is_none()

@@ -1,7 +1,7 @@
-//! Named sets of steps, for any drawing: kept in one file in the user's folder for settings.
+//! Named sets of steps for any drawing, stored in one file in the user's folder for settings.
 //!
-//! Percentages fit every drawing by themselves. Path data is in the units of one drawing, so the frames are kept as well, and paths
-//! are laid from the old frame onto the new one.
+//! Percentages suit every drawing. Path data is in the units of one drawing, so the frames are stored as well, and paths are mapped from
+//! the old frame onto the new one.
 
 use crate::draft;
 use crate::grips::path_data;
@@ -25,7 +25,7 @@ const LONGEST_NAME: usize = 60;
 pub(crate) struct Preset {
     pub(crate) name: String,
     pub(crate) steps: Vec<PageStep>,
-    /// The frame of every step, as x0, y0, x1, y1.
+    /// The frames of the steps, as x0, y0, x1, y1.
     frames: Vec<[f64; 4]>,
 }
 
@@ -35,12 +35,12 @@ struct PresetFile {
     presets: Vec<Preset>,
 }
 
-/// The file, if the user has a folder for settings.
+/// Returns the file, if there is a folder for settings.
 fn file() -> Option<PathBuf> {
     Some(draft::settings()?.join("presets.json"))
 }
 
-/// All presets, by name.
+/// Reads all presets, sorted by name.
 pub(crate) fn all() -> Result<Vec<Preset>, String> {
     let Some(file) = file().filter(|f| f.exists()) else { return Ok(Vec::new()) };
     let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
@@ -62,7 +62,7 @@ fn write(host: &dyn Host, mut presets: Vec<Preset>) -> Result<(), String> {
     host.write(&file, text.as_bytes())
 }
 
-/// Keeps steps under a name; those of the same name are replaced.
+/// Stores steps under a name, replacing a preset of this name.
 pub(crate) fn keep(host: &dyn Host, name: &str, steps: Vec<PageStep>, frames: &[Rect]) -> Result<(), String> {
     let name = name.trim();
     if name.is_empty() || name.chars().count() > LONGEST_NAME {
@@ -74,20 +74,20 @@ pub(crate) fn keep(host: &dyn Host, name: &str, steps: Vec<PageStep>, frames: &[
     write(host, presets)
 }
 
-/// Forgets a preset.
+/// Deletes a preset.
 pub(crate) fn forget(host: &dyn Host, name: &str) -> Result<(), String> {
     write(host, all()?.into_iter().filter(|p| p.name != name).collect())
 }
 
 impl Preset {
-    /// The steps, each with the box of the artwork that it was made for.
+    /// Returns the steps, each with the box of the artwork that it was made for.
     pub(crate) fn steps_with_frames(self) -> impl Iterator<Item = (PageStep, Option<Rect>)> {
         let frames = self.frames.into_iter().map(|[x0, y0, x1, y1]| Some(Rect::new(x0, y0, x1, y1)));
         self.steps.into_iter().zip(frames.chain(std::iter::repeat(None)))
     }
 }
 
-/// A step with its paths laid from one box onto another.
+/// Maps the paths of a step from one box onto another.
 pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect) -> PageStep {
     let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
     let onto = onto(from, to);
@@ -103,8 +103,7 @@ pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect
     step
 }
 
-/// A step of another drawing, laid from the box it had onto one of this drawing with its circles and arcs, and for no parts: those of another
-/// drawing have other names.
+/// Adapts a step of another drawing: its paths, circles and arcs are mapped onto a box of this drawing, and its selection is dropped.
 pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, to: Rect) -> PageStep {
     let step = PageStep { select: Vec::new(), exclude: Vec::new(), ..step };
     let Some(from) = from else { return step };
@@ -117,11 +116,10 @@ pub(crate) fn brought(registry: &Registry, step: PageStep, from: Option<Rect>, t
     step
 }
 
-/// Decimals of circles that have been laid onto another box.
+/// Decimals of circles that were mapped onto another box.
 const DECIMALS: usize = 4;
 
-/// A circle or an arc with its centre in another place, and as large as that place's scale has it. `None` if it is given by other units, or
-/// the text is something else.
+/// Maps the centre and the radius of a circle or an arc. `None` if it is in other units, or the text is something else.
 fn laid_arc(text: &str, onto: Affine) -> Option<String> {
     let (kind, rest) = text.split_once(':').filter(|(kind, _)| ["circle", "arc"].contains(kind))?;
     let pairs: Vec<(&str, &str)> = rest.split(',').map(|pair| pair.split_once('=')).collect::<Option<_>>()?;
@@ -136,7 +134,7 @@ fn laid_arc(text: &str, onto: Affine) -> Option<String> {
     Some(format!("{kind}:{}", pairs.iter().map(pair).collect::<Vec<_>>().join(",")))
 }
 
-/// The map of one box onto another; a box without width or height keeps its scale there.
+/// Returns the map of one box onto another; a box without width or height is not scaled in that direction.
 fn onto(from: Rect, to: Rect) -> Affine {
     let scale = |from: f64, to: f64| if from > 0.0 && to > 0.0 { to / from } else { 1.0 };
     Affine::translate(to.origin().to_vec2())

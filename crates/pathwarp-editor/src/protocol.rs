@@ -1,7 +1,7 @@
-//! The messages between page and server: one JSON object each.
+//! The messages between page and server, each a JSON object.
 //!
-//! A page sends requests with a number, and gets one answer with the same number for each, in order. It sends the next picture
-//! of a drag only when it has the last one, so nothing piles up.
+//! A page numbers its requests and gets one answer with the same number for each, in order. While something is dragged, it requests the
+//! next picture only after the last one has arrived, so that requests do not pile up.
 
 use crate::host::PictureOptions;
 use crate::words::Words;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A step as pages and drafts have it: values as typed.
+/// A step in pages and drafts, with values as typed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PageStep {
     pub(crate) deformation: String,
@@ -19,15 +19,15 @@ pub(crate) struct PageStep {
     pub(crate) inverse: bool,
     #[serde(default)]
     pub(crate) args: BTreeMap<String, Vec<String>>,
-    /// Selectors of the part of the drawing that the step holds for, and of what it leaves out.
+    /// Selectors of the parts of the drawing that the step applies to, and of those that it leaves out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) select: Vec<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) exclude: Vec<String>,
-    /// The user's name for it, in the draft alone.
+    /// The user's name for the step; only drafts store it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<String>,
-    /// It bends nothing for the time being, and is in no result.
+    /// `true` if the step is switched off and in no result.
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) hidden: bool,
 }
@@ -48,14 +48,14 @@ pub(crate) struct Message {
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 pub(crate) enum Request {
-    /// Everything a page needs to begin.
+    /// Requests everything that a page needs at its start.
     Hello,
-    /// A picture under these steps. They are not stored.
+    /// Requests a picture under these steps, without storing them.
     Bend {
         steps: Vec<PageStep>,
         draft: Option<f64>,
     },
-    /// The steps as they are to be from now on, and their picture.
+    /// Stores these steps, and requests their picture.
     Commit {
         steps: Vec<PageStep>,
         shown: Option<usize>,
@@ -66,31 +66,31 @@ pub(crate) enum Request {
     Redo {
         shown: Option<usize>,
     },
-    /// The drawing without any steps.
+    /// Requests the drawing without steps.
     Before,
-    /// The drawing under these steps, to lie behind a picture of fewer; `draft` is its tolerance while something is dragged.
+    /// Requests the drawing under these steps, shown behind a picture of fewer steps; `draft` is its tolerance while something is dragged.
     Ahead {
         steps: Vec<PageStep>,
         draft: Option<f64>,
     },
-    /// A drawing as it is, given as base64.
+    /// Requests the picture of a drawing given as base64.
     Drawn {
         name: String,
         bytes: String,
     },
-    /// The background of the page, if one is kept.
+    /// Requests the background of the page, if one is stored.
     Background,
-    /// Keeps the background of the page, whatever that is, until the program ends.
+    /// Stores the background of the page until the program ends; only pages know its format.
     KeepBackground {
         background: Value,
     },
-    /// The parts of the drawing.
+    /// Requests the list of the drawing's parts.
     Parts,
-    /// How much these steps stretch the drawing.
+    /// Requests the stretch of the drawing under these steps.
     Stretch {
         steps: Vec<PageStep>,
     },
-    /// The first values of a deformation that is put after these steps.
+    /// Requests the first values of a deformation that follows these steps.
     Opening {
         deformation: String,
         variant: Option<String>,
@@ -98,90 +98,90 @@ pub(crate) enum Request {
         #[serde(default)]
         select: Vec<String>,
     },
-    /// The last of these steps for other parts of the drawing: its paths are laid onto their box.
+    /// Requests the last of these steps for other parts of the drawing, with its paths mapped onto their box.
     Scope {
         steps: Vec<PageStep>,
         select: Vec<String>,
     },
-    /// A small picture of the drawing under these steps, or under a deformation, or a variant of it, as its examples show it.
+    /// Requests a small picture of the drawing under these steps, or under an example of a deformation or a variant.
     Thumbnail {
         steps: Option<Vec<PageStep>>,
         example: Option<String>,
         variant: Option<String>,
     },
-    /// The families of fonts.
+    /// Requests the families of fonts.
     Families,
-    /// Makes these words the drawing; if it consists of words already, with the present steps.
+    /// Sets words as the drawing. If it consists of words already, the present steps stay.
     SetWords {
         words: Words,
     },
-    /// Opens a file that was dropped on the page, as base64.
+    /// Opens a file, given as base64, that was dropped on the page.
     Open {
         name: String,
         bytes: String,
     },
-    /// Puts a file that a step is to read, as base64, beside the drawing.
+    /// Writes a file, given as base64, that a step reads, beside the drawing.
     Bring {
         name: String,
         bytes: String,
     },
-    /// Writes the result to a file; without a name to the usual one.
+    /// Writes the result to a file; without a name, to the usual one.
     Save {
         #[serde(flatten)]
         to: Target,
         replace: bool,
     },
-    /// The bytes that *Save* would write to this file, for the browser to keep.
+    /// Requests the contents that *Save* would write to this file, for a download.
     Download {
         #[serde(flatten)]
         to: Target,
     },
-    /// Keeps the steps for the program that waits for them.
+    /// Confirms the steps for the program that waits for them.
     HandOver,
-    /// The names of the sets of steps that were kept.
+    /// Requests the names of the presets.
     Presets,
-    /// Keeps the present steps under a name.
+    /// Stores the present steps as a preset.
     KeepPreset {
         name: String,
     },
     ForgetPreset {
         name: String,
     },
-    /// The steps of a preset for this drawing.
+    /// Requests the steps of a preset, adapted to this drawing.
     Preset {
         name: String,
     },
-    /// The place that the last of these steps takes to this one.
+    /// Requests the point that the last of these steps maps to `at`.
     Preimage {
         steps: Vec<PageStep>,
         at: (f64, f64),
     },
-    /// The last of these steps with other values of what says how many control points its net has; it bends as before.
+    /// Requests the last of these steps with other values that determine the size of its net, which bends as before.
     Renet {
         steps: Vec<PageStep>,
         values: BTreeMap<String, Vec<String>>,
     },
-    /// The command line with the same effect, for a file of this name.
+    /// Requests the command line with the same effect, for a file of this name.
     CommandLine {
         #[serde(flatten)]
         to: Target,
     },
 }
 
-/// The file that a result goes to.
+/// The file of a result.
 #[derive(Debug, Default, Deserialize)]
 pub(crate) struct Target {
-    /// `None`: the usual one.
+    /// `None` for the usual name.
     pub(crate) name: Option<String>,
-    /// `None`: that of the drawing.
+    /// `None` for the drawing's folder.
     #[serde(default)]
     pub(crate) folder: Option<String>,
-    /// What a picture of the result is like.
+    /// The properties of a picture of the result.
     #[serde(default)]
     pub(crate) picture: PictureOptions,
 }
 
-/// The recipe of the steps that are not hidden.
+/// Returns the recipe of the steps that are not hidden.
 pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
     let step = |s: &PageStep| {
         let mut args = Args::new();
@@ -194,7 +194,7 @@ pub(crate) fn recipe(steps: &[PageStep]) -> Recipe {
     Recipe { steps: steps.iter().filter(|s| !s.hidden).map(step).collect() }
 }
 
-/// The steps of a recipe.
+/// Returns the steps of a recipe.
 pub(crate) fn steps(recipe: &Recipe) -> Vec<PageStep> {
     let step = |s: &Step| PageStep {
         deformation: s.deformation.clone(),

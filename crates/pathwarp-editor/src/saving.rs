@@ -1,19 +1,19 @@
-//! Names of results: where *Save* writes, and which files it must not replace.
+//! Names of results: the file that *Save* writes, and files that it must not replace.
 
 use std::path::{Path, PathBuf};
 
-/// Added to the drawing's name.
+/// Suffix of the drawing's name in results.
 const SUFFIX: &str = "-bent";
 /// Most names that are tried.
 const MOST_NAMES: usize = 1000;
 
-/// The usual name of the result of `source`: a free one beside it.
+/// Returns the usual name for the result of `source`: an unused one beside it.
 pub(crate) fn usual(source: &Path) -> PathBuf {
     let stem = source.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     free(source, &(stem + SUFFIX))
 }
 
-/// A free name for words, beside `beside`.
+/// Returns an unused name for words, beside `beside`.
 pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
     /// Longest name, in letters.
     const LONGEST: usize = 40;
@@ -23,14 +23,14 @@ pub(crate) fn of_words(text: &str, beside: &Path) -> PathBuf {
     free(beside, &if words.is_empty() { "words".to_owned() } else { words.join("-") })
 }
 
-/// A name beside a file that no file has, with a number if need be.
+/// Returns an unused name beside a file, numbered if necessary.
 fn free(beside: &Path, stem: &str) -> PathBuf {
     names(beside, stem)
         .find(|p| !p.exists())
         .unwrap_or_else(|| beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg")))
 }
 
-/// Names beside a file, with numbers from the second on.
+/// Returns names beside a file, numbered from the second on.
 fn names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
     (1..MOST_NAMES).map(move |n| {
         let number = if n == 1 { String::new() } else { format!("-{n}") };
@@ -38,8 +38,8 @@ fn names(beside: &Path, stem: &str) -> impl Iterator<Item = PathBuf> {
     })
 }
 
-/// The file of a drawing, or of that which a result was made from, by its name, and whether it is there: its content is `source`.
-/// Otherwise a free name for that content.
+/// Returns the file of a drawing, or of a result's source, judging by its name, and `true` if it exists with the content `source`.
+/// Otherwise the name is an unused one.
 pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)> {
     let stem = result.file_stem()?.to_string_lossy().into_owned();
     let stem = stem.rfind(SUFFIX).map_or(stem.as_str(), |at| &stem[..at]);
@@ -50,7 +50,7 @@ pub(crate) fn source_of(result: &Path, source: &[u8]) -> Option<(PathBuf, bool)>
     Some(known.map_or_else(|| (free(result, &beside), false), |name| (name, true)))
 }
 
-/// The file called `name` in the folder of `beside`.
+/// Returns the path of the file `name` in the folder of `beside`.
 pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     let name = name.trim();
     let wrong = |problem: &str| Err(format!("`{name}` {problem}"));
@@ -65,7 +65,7 @@ pub(crate) fn named(name: &str, beside: &Path) -> Result<PathBuf, String> {
     Ok(beside.with_file_name(with_extension))
 }
 
-/// The folder that a user names: as a whole, from the drawing's folder, or from their own by `~`. It has to be there.
+/// Returns the folder that a user names: absolute, relative to the drawing's folder, or beginning with `~`. It must exist.
 pub(crate) fn folder(name: &str, drawing: &Path) -> Result<PathBuf, String> {
     let named = match (name.strip_prefix('~'), std::env::home_dir()) {
         (Some(rest), Some(home)) if rest.is_empty() || rest.starts_with(['/', '\\']) => {
@@ -81,7 +81,7 @@ pub(crate) fn has_extension(file: &Path, all: &[&str]) -> bool {
     file.extension().is_some_and(|e| all.iter().any(|a| e.eq_ignore_ascii_case(a)))
 }
 
-/// Returns `true` if both are the same file.
+/// Returns `true` if both paths lead to the same file.
 pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

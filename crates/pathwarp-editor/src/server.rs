@@ -1,4 +1,4 @@
-//! The server: listens on the loopback interface, and ends when its page is closed.
+//! The server: it listens on the loopback interface, and ends when its page is closed.
 
 use crate::guard::Guard;
 use crate::host::{Host, Purpose};
@@ -13,48 +13,48 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// A page that is reloaded connects again within this time.
+/// Time within which a reloaded page connects again.
 const GRACE: Duration = Duration::from_secs(4);
-/// The time between two looks for new connections and for the end.
+/// Time between checks for new connections and for the end.
 const TICK: Duration = Duration::from_millis(20);
-/// Longest time until the first page, where a program waits for it.
+/// Longest wait for the first page, if a program waits for it.
 const FIRST_PAGE: Duration = Duration::from_secs(120);
-/// The last answer reaches its page within this time.
+/// Time within which the last answer reaches its page.
 const FAREWELL: Duration = Duration::from_millis(300);
-/// Most connections at a time; a page has one socket, and asks for three files.
+/// Most simultaneous connections; a page has one socket and requests three files.
 const MOST_CONNECTIONS: usize = 64;
 
-/// What to edit, and how.
+/// The options of the editor.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The drawing.
+    /// The drawing to edit.
     pub file: PathBuf,
-    /// The use of the steps once they are chosen.
+    /// The use of the finished steps.
     pub purpose: Purpose,
-    /// The port; `None`: a free one.
+    /// The port; `None` for an unused one.
     pub port: Option<u16>,
-    /// Open the page in a browser.
+    /// `true` to open the page in a browser.
     pub open: bool,
 }
 
-/// News for the user while the server starts.
+/// Messages to the user while the server starts.
 #[derive(Debug)]
 pub enum News<'a> {
     /// The address of the page.
     Address(&'a str),
-    /// No browser could be started to show it.
+    /// No browser could be started to show the page.
     NoBrowser(&'a io::Error),
 }
 
-/// Opens the drawing, announces the address of the page, and answers it until it is closed. Returns the steps that the
-/// user has kept, if a program waits for them.
+/// Opens the drawing, announces the address of the page, and serves it until it is closed. Returns the steps that the user has confirmed,
+/// if a program waits for them.
 ///
 /// # Errors
-/// The drawing cannot be opened, the port is taken, or a program waits and no page opens. Errors are sentences for the user.
+/// A sentence for the user if the drawing cannot be opened, the port is taken, or a program waits and no page opens.
 pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>)) -> Result<Option<Recipe>, String> {
     let bytes = std::fs::read(&options.file).map_err(|e| format!("{}: cannot be read: {e}", options.file.display()))?;
     let waits = options.purpose.program().is_some();
-    // Without a result, the program that waits has its drawing as it was.
+    // Drafts are not stored for programs, whose drawings stay unchanged without a result.
     let state = if waits { None } else { draft::state() };
     let (listener, guard) = listen(options, state.as_deref())?;
     let session = Session::open(host, &options.file, &bytes, options.purpose.clone(), state)?;
@@ -64,7 +64,7 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
     if options.open && (waits || has_display()) {
         match open_browser(&address) {
             Err(e) if waits => return Err(format!("no browser can be started: {e}")),
-            // The user has the address.
+            // The user can open the printed address.
             Err(e) => announce(&News::NoBrowser(&e)),
             Ok(()) => {}
         }
@@ -75,7 +75,7 @@ pub fn serve(host: Arc<dyn Host>, options: &Options, announce: impl Fn(&News<'_>
     Ok(shared.with_session(|s| s.result()))
 }
 
-/// Listens where the last run on this drawing did, if that is free, so that a page which is still open finds the program again.
+/// Listens at the port of the last run on this drawing, if it is unused, so that a page which is still open connects again.
 fn listen(options: &Options, state: Option<&Path>) -> Result<(TcpListener, Guard), String> {
     let at = |port: u16| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
     let last = state.and_then(|s| Guard::last(s, &options.file));
@@ -94,7 +94,7 @@ fn failed(e: &io::Error) -> String {
     format!("the server cannot run: {e}")
 }
 
-/// The reason why nothing can listen at a port.
+/// Explains why the server cannot listen at a port.
 fn unusable(port: u16, e: &io::Error) -> String {
     match e.kind() {
         io::ErrorKind::AddrInUse => {
@@ -104,23 +104,23 @@ fn unusable(port: u16, e: &io::Error) -> String {
     }
 }
 
-/// Opens the browser that the user names in the usual variable, or else the system's.
+/// Opens the browser in the usual environment variable, or else the system's.
 fn open_browser(address: &str) -> io::Result<()> {
     match std::env::var("BROWSER") {
-        // Lists and patterns are for the desktop's own opener to read.
+        // Lists and patterns are left to the desktop's opener.
         Ok(name) if !name.is_empty() && !name.contains([':', '%', ';']) => open::with_detached(address, name),
         _ => open::that_detached(address),
     }
 }
 
-/// Returns `false` where no browser could show itself.
+/// Returns `false` if no browser could display anything.
 fn has_display() -> bool {
     let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     cfg!(any(windows, target_os = "macos")) || set("DISPLAY") || set("WAYLAND_DISPLAY")
 }
 
-/// Answers connections until all pages have been closed for a while, or the steps are kept for the program that waits for them. The
-/// first page must open within a time if one is given.
+/// Answers connections until all pages have been closed for a while, or the steps are confirmed for the program that waits. The first page
+/// must open within the given time, if any.
 fn accept(
     listener: &TcpListener,
     guard: &Guard,
@@ -129,7 +129,7 @@ fn accept(
 ) -> Result<(), String> {
     let busy = Arc::new(AtomicUsize::new(0));
     let start = Instant::now();
-    // Counted from the moment that is noticed, so that a program that was stopped for a while waits as long as any other.
+    // Starts when the loop notices it, so that a program that was suspended still waits for the full time.
     let mut alone_since: Option<Instant> = None;
     loop {
         if shared.pages.is_done() {
@@ -160,7 +160,7 @@ fn accept(
     }
 }
 
-/// One connection; its end needs no report, as browsers break connections at will.
+/// Serves one connection. Its errors are ignored, since browsers break connections at any time.
 fn connection(stream: TcpStream, guard: &Guard, shared: &Arc<Shared>) {
     if stream.set_nonblocking(false).is_err() {
         return;

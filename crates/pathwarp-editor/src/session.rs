@@ -1,4 +1,4 @@
-//! The session: one drawing with its steps, shared by all pages that are open.
+//! The session: one drawing with its steps, shared by all open pages.
 
 use crate::catalogue::{example, of_variant, opening};
 use crate::command_line::{command_line, quoted};
@@ -27,62 +27,62 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most parts of a drawing that are listed.
+/// Most parts of a drawing in the list.
 const MOST_PARTS: usize = 2000;
-/// Decimals of the coordinates of pictures, in px: a picture is zoomed, a draft hardly.
+/// Decimals of coordinates in pictures, in px. Pictures may be zoomed, drafts hardly.
 const DECIMALS: u8 = 4;
 const DRAFT_DECIMALS: u8 = 2;
-/// Tolerance of small pictures, as a share of the artwork's diagonal: far below a pixel of any of them.
+/// Tolerance of thumbnails, as a share of the artwork's diagonal: far below a pixel of theirs.
 const THUMBNAIL_TOLERANCE: f64 = 1e-3;
 
-/// The distance from a place within which its preimage has to arrive, as a share of the frame's size.
+/// Largest distance of a preimage's image from the point, as a share of the frame's size.
 const PREIMAGE: f64 = 1e-6;
 
 /// The drawing and its steps.
 pub(crate) struct Session {
     host: Arc<dyn Host>,
-    /// The file on show; results go beside it.
+    /// The file on show; results go to its folder.
     file: PathBuf,
-    /// The file that the editor was started with, once another one is on show.
+    /// The file that the editor was started with, if another one is on show.
     first: Option<PathBuf>,
     purpose: Purpose,
-    /// The steps are the result of the session.
+    /// `true` if the user has confirmed the steps as the session's result.
     handed_over: bool,
     opened: Opened,
-    /// The words that the drawing was set from, if it was.
+    /// The words that the drawing was set from, if any.
     words: Option<Words>,
     kept: Kept,
     /// The user's folder for drafts and addresses.
     drafts: Option<PathBuf>,
     draft: Draft,
-    /// A name for what is on show; another drawing, or the same in other words, has another.
+    /// A name for the drawing on show. It differs for other drawings, and for other words.
     drawing: String,
-    /// The last file saved, and what is in it.
+    /// The file saved last, and the state in it.
     saved: Option<(PathBuf, Moment)>,
-    /// The steps come from a draft that was left behind.
+    /// `true` if the steps come from a draft of an earlier run.
     restored: bool,
-    /// The draft cannot be written.
+    /// The error of writing the draft, if any.
     problem: Option<String>,
 }
 
-/// A bent drawing with everything that a page shows about it.
+/// A bent drawing with all that a page shows about it.
 pub(crate) struct Shown {
     pub(crate) svg: String,
-    /// A look at it while something is dragged.
+    /// `true` for a preview while something is dragged.
     pub(crate) is_draft: bool,
     pub(crate) about: Value,
     reading: ReadOptions,
 }
 
 impl Shown {
-    /// The picture of the drawing.
+    /// Returns the picture of the drawing.
     pub(crate) fn picture(&self) -> Result<Picture, String> {
         Picture::of(&self.svg, if self.is_draft { DRAFT_DECIMALS } else { DECIMALS }, &self.reading)
     }
 }
 
 impl Session {
-    /// Opens a drawing, with its draft if one was left behind.
+    /// Opens a drawing, with its draft if an earlier run has left one.
     pub(crate) fn open(
         host: Arc<dyn Host>,
         file: &Path,
@@ -118,14 +118,14 @@ impl Session {
         })
     }
 
-    /// Keeps the address of the page for the next run. Without it, only a page that is open now does not find that.
+    /// Stores the address of the page for the next run. If that fails, only pages that are open now cannot reconnect.
     pub(crate) fn keep_address(&self, guard: &Guard) {
         if let Some(state) = &self.drafts {
             let _ = guard.keep(&*self.host, state, &self.file);
         }
     }
 
-    /// Opens a drawing that was dropped on the page, with its own draft; that of the present one stays.
+    /// Opens a drawing that was dropped on the page, with its draft; the present draft stays.
     pub(crate) fn replace(&mut self, name: &str, bytes: &str) -> Result<(), String> {
         self.refuse_for_program("another drawing cannot be opened")?;
         let file = saving::named(name, &self.file)?;
@@ -133,19 +133,19 @@ impl Session {
         let (host, purpose) = (Arc::clone(&self.host), Purpose::Files { out: None });
         let mut other = Self::open(host, &file, &content, purpose, self.drafts.clone())?;
         let first = self.first.take().or_else(|| Some(std::mem::take(&mut self.file)));
-        // A file of this name in the folder may be another one.
+        // Another file may have this name in the folder.
         let saved = other.saved.take().filter(|(there, _)| std::fs::read(there).is_ok_and(|c| c == content));
         *self = Self { first, saved, ..other };
         Ok(())
     }
 
-    /// The families of the fonts there are.
+    /// Returns the families of the available fonts.
     pub(crate) fn families(&self) -> Result<Vec<String>, String> {
         self.host.families()
     }
 
-    /// Sets words, and makes them the drawing: a file beside the present one. If that consists of words, the new ones take their place
-    /// under its steps, whose paths are laid onto their box. Lists the characters that no font has.
+    /// Sets words as the drawing, in a file beside the present one. If that consists of words, the new ones replace them under its steps,
+    /// whose paths are mapped onto the new box. Lists the characters that no font has.
     pub(crate) fn set_words(&mut self, words: &Words) -> Result<Vec<char>, String> {
         self.refuse_for_program("words cannot be set")?;
         let (svg, lacking) = self.host.set_words(words)?;
@@ -172,7 +172,7 @@ impl Session {
         let (old_steps, mut steps) = (self.kept.now.steps.clone(), Vec::new());
         let frames = self.frames(&old_steps)?;
         for (step, from) in old_steps.into_iter().zip(frames) {
-            // A step for letters that have gone waits until they are back.
+            // Keep a step as it is while the letters that it applies to are missing.
             let waits = self.waits(&step) || other.waits(&step);
             let to = if waits { from } else { other.frame_of(&steps, &step.select)? };
             steps.push(presets::laid(other.host.registry(), step, from, to));
@@ -182,13 +182,13 @@ impl Session {
         self.redraw(other, kept)
     }
 
-    /// The steps for the parts that the drawing has; those that have none of theirs are hidden.
+    /// Restricts the steps to existing parts of the drawing. Steps without any such part are hidden.
     fn present(&mut self, given: &[PageStep]) -> Vec<PageStep> {
         let mut out = given.to_vec();
         if given.iter().all(|s| s.select.is_empty() && s.exclude.is_empty()) {
             return out;
         }
-        // A caption that is wrong is reported where the drawing is bent.
+        // A wrong caption is reported when the drawing is bent.
         let Ok(document) = self.opened.artwork.captioned(&recipe(given)) else { return out };
         let is_here = |selector: &String| {
             let select = vec![selector.clone()];
@@ -203,17 +203,17 @@ impl Session {
         out
     }
 
-    /// Returns `true` if the drawing has none of the parts that a step is for.
+    /// Returns `true` if a step applies to missing parts only.
     fn waits(&mut self, step: &PageStep) -> bool {
         !step.hidden && self.present(std::slice::from_ref(step)).iter().all(|s| s.hidden)
     }
 
-    /// The recipe of steps, as far as their parts are there.
+    /// Returns the recipe of the steps, restricted to existing parts.
     fn recipe(&mut self, given: &[PageStep]) -> Recipe {
         recipe(&self.present(given))
     }
 
-    /// The recipe that results are made by. Words need no step, and then nothing moves.
+    /// Returns the recipe for results. Without steps, as for words, it has one that moves nothing.
     fn finishing(&mut self) -> Recipe {
         let mut given = self.recipe(&self.kept.now.steps.clone());
         if given.steps.is_empty() {
@@ -222,16 +222,16 @@ impl Session {
         given
     }
 
-    /// A session like this one for the drawing `svg`, which is to be the content of `file`.
+    /// Opens the drawing `svg`, which will be the content of `file`, in a session with the same settings.
     fn with_drawing(&self, file: &Path, svg: &str) -> Result<Self, String> {
         let (host, purpose) = (Arc::clone(&self.host), self.purpose.clone());
         Self::open(host, file, svg.as_bytes(), purpose, self.drafts.clone())
     }
 
-    /// Goes over to another drawing and to what `kept` has, and writes the drawing's file.
+    /// Switches to another drawing and its history `kept`, and writes the drawing's file.
     fn redraw(&mut self, other: Self, kept: Kept) -> Result<(), String> {
         let mut other = Self { kept, saved: self.saved.clone(), restored: false, ..other };
-        // A crash in between loses neither.
+        // Store the draft first: if the program crashes before the next line, nothing is lost.
         other.keep();
         self.host.write(&other.file, other.opened.artwork.document().text().as_bytes())?;
         if other.draft != self.draft {
@@ -241,8 +241,7 @@ impl Session {
         Ok(())
     }
 
-    /// Copies a file that a step is to read beside the drawing, and answers with the text that names it in a step. A file that is
-    /// there already is left as it is.
+    /// Writes a file that a step reads beside the drawing, unless an equal one is there. Answers with the text that names it in a step.
     pub(crate) fn bring(&self, name: &str, bytes: &str) -> Result<Value, String> {
         self.refuse_for_program("a file cannot be put beside the drawing")?;
         let to = saving::named(name, &self.file)?;
@@ -259,7 +258,7 @@ impl Session {
         Ok(json!({ "written": self.host.reference(&to), "copied": copied }))
     }
 
-    /// What a page shows about the session.
+    /// Describes the session for a page.
     pub(crate) fn state(&self) -> Value {
         let document = self.opened.artwork.document();
         let page = document.view_box();
@@ -295,7 +294,7 @@ impl Session {
         crate::catalogue::catalogue(self.host.registry(), first, &self.host.foreign_words())
     }
 
-    /// The drawing under these steps; `draft` is the tolerance while something is dragged.
+    /// Bends the drawing by these steps; `draft` is the tolerance while something is dragged.
     pub(crate) fn bend(&mut self, given: &[PageStep], draft: Option<f64>) -> Result<Shown, String> {
         let fineness = draft.map_or(Fineness::Exact, Fineness::Draft);
         let present = self.present(given);
@@ -305,13 +304,13 @@ impl Session {
         Ok(Shown { svg: bent.svg, is_draft: draft.is_some(), about, reading })
     }
 
-    /// The drawing as it is without steps.
+    /// Returns the drawing without steps.
     pub(crate) fn before(&self) -> Result<Picture, String> {
         let artwork = &self.opened.artwork;
         Picture::of(artwork.document().text(), DECIMALS, artwork.reading())
     }
 
-    /// A drawing of a file, as it is.
+    /// Returns the picture of a drawing given as base64.
     pub(crate) fn drawn(&self, name: &str, bytes: &str) -> Result<Picture, String> {
         let wrong = |e: &dyn std::fmt::Display| format!("{name}: {e}");
         let content = STANDARD.decode(bytes).map_err(|e| wrong(&e))?;
@@ -320,12 +319,12 @@ impl Session {
         Picture::of(document.text(), DECIMALS, reading)
     }
 
-    /// Returns `true` for a step that comes before bending.
+    /// Returns `true` for an edit, which comes before bending.
     fn is_first(&self, step: &PageStep) -> bool {
         self.host.first().iter().any(|i| i.name == step.deformation)
     }
 
-    /// For each step what `of_bending` has for those that bend, in order; what comes before bending and what is hidden has `other`.
+    /// Distributes values of the steps that bend, in order, to all steps; edits and hidden steps get `other`.
     fn spread<T: Clone>(&self, given: &[PageStep], of_bending: impl IntoIterator<Item = T>, other: &T) -> Vec<T> {
         let mut of_bending = of_bending.into_iter();
         let rests = |s: &PageStep| s.hidden || self.is_first(s);
@@ -333,14 +332,14 @@ impl Session {
         given.iter().map(one).map(|found| found.unwrap_or_else(|| other.clone())).collect()
     }
 
-    /// What a page shows about a drawing under these steps, of which those `present` have their parts.
+    /// Describes a drawing bent by these steps for a page; `present` are the steps restricted to existing parts.
     fn about(&self, given: &[PageStep], present: &[PageStep], bent: &Bent) -> Value {
         let artwork = &self.opened.artwork;
         let grips = grips(self.host.registry(), &bent.resolved, &bent.built);
         let without = json!({ "frame": rect(artwork.frame()), "params": {} });
         let mut grips = self.spread(present, grips, &without);
         for (step, grips) in given.iter().zip(&mut grips) {
-            // Of what comes before bending, captions alone have handles.
+            // Of the edits, only captions have handles.
             if let [caption] = &*recipe(std::slice::from_ref(step)).steps
                 && is_caption(caption)
             {
@@ -367,7 +366,7 @@ impl Session {
         about
     }
 
-    /// Takes over these steps, unless the drawing cannot be bent by them.
+    /// Replaces the steps, unless the drawing cannot be bent by the new ones.
     pub(crate) fn commit(&mut self, given: Vec<PageStep>, shown: Option<usize>) -> Result<Shown, String> {
         let visible = visible(&given, shown);
         let picture = self.bend(visible, None)?;
@@ -382,7 +381,7 @@ impl Session {
         Ok(picture)
     }
 
-    /// Takes back the last change, or makes the one again that was taken back last.
+    /// Undoes the last change (`back`), or redoes the one undone last.
     pub(crate) fn turn(&mut self, back: bool, shown: Option<usize>) -> Result<Shown, String> {
         let mut kept = self.kept.clone();
         if back {
@@ -418,14 +417,14 @@ impl Session {
         };
     }
 
-    /// The stretch of these steps over the artwork's box.
+    /// Returns the stretch of these steps over the artwork's box.
     pub(crate) fn stretch(&mut self, given: &[PageStep]) -> Result<Value, String> {
         let given = self.recipe(given);
         let (_, built) = self.opened.artwork.settle(&given)?;
         Ok(stretch(&built.map, self.opened.artwork.frame()))
     }
 
-    /// The place that the last of these steps takes to `at`, if there is one.
+    /// Returns the point that the last of these steps maps to `at`, if there is one.
     pub(crate) fn preimage(&mut self, given: &[PageStep], at: Point) -> Result<Value, String> {
         let given = self.recipe(given);
         let (_, built) = self.opened.artwork.settle(&given)?;
@@ -438,8 +437,8 @@ impl Session {
         Ok(json!({ "at": from }))
     }
 
-    /// The last of these steps with other values of what says how many control points its net has; it bends as before, or as nearly as it can;
-    /// and how far it then moves what.
+    /// Changes the values of the last step that determine the size of its net, and adapts the net to bend as before, or nearly. Returns the
+    /// step and the largest distance by which points move.
     pub(crate) fn renet(&mut self, given: &[PageStep], values: BTreeMap<String, Vec<String>>) -> Result<Value, String> {
         let present = self.recipe(given);
         let (resolved, built) = self.opened.artwork.settle(&present)?;
@@ -459,7 +458,7 @@ impl Session {
         after.args.retain(|_, values| !values.is_empty());
         let all = given.iter().take(given.len() - 1).chain([&after]).cloned().collect::<Vec<_>>();
         let all = self.recipe(&all);
-        // Values that are wrong are reported when they are committed.
+        // Wrong values are reported when they are committed.
         let new = self.opened.artwork.settle(&all).ok();
         let new = new.as_ref().and_then(|(_, new)| new.steps.last());
         let both = built.steps.last().zip(built.frames.last()).zip(new);
@@ -467,7 +466,7 @@ impl Session {
         Ok(json!({ "step": after, "moved": moved }))
     }
 
-    /// The first values of a deformation after these steps.
+    /// Returns the first values of a deformation that follows these steps.
     pub(crate) fn opening(
         &mut self,
         deformation: &str,
@@ -479,7 +478,7 @@ impl Session {
         Ok(PageStep { select, ..self.begun(deformation, variant, frame, false)? })
     }
 
-    /// The box of these parts of the drawing after these steps.
+    /// Returns the box of these parts of the drawing after these steps.
     fn frame_of(&mut self, given: &[PageStep], select: &[String]) -> Result<Rect, String> {
         if select.is_empty() {
             return self.frame_after(given);
@@ -491,7 +490,7 @@ impl Session {
         built.frames.last().map(|f| f.rect).ok_or_else(|| "the parts have no box".into())
     }
 
-    /// The last of these steps for other parts of the drawing, with its paths laid onto their box.
+    /// Returns the last of these steps for other parts of the drawing, with its paths mapped onto their box.
     pub(crate) fn scope(&mut self, mut given: Vec<PageStep>, select: Vec<String>) -> Result<PageStep, String> {
         let Some(step) = given.pop() else { return Err("there is no step".into()) };
         let [from, to] = [self.frame_of(&given, &step.select)?, self.frame_of(&given, &select)?];
@@ -499,7 +498,7 @@ impl Session {
         Ok(PageStep { select, ..step })
     }
 
-    /// The parts of the drawing, for a list.
+    /// Lists the parts of the drawing.
     pub(crate) fn parts(&mut self) -> Result<Value, String> {
         let document = self.opened.artwork.captioned(&recipe(&self.kept.now.steps))?;
         let parts = document.parts().into_iter().take(MOST_PARTS);
@@ -507,14 +506,14 @@ impl Session {
         Ok(parts.map(part).collect())
     }
 
-    /// The box that each of these steps refers to.
+    /// Returns the box that each of these steps refers to.
     fn frames(&mut self, given: &[PageStep]) -> Result<Vec<Rect>, String> {
         let present = self.present(given);
         let (_, built) = self.opened.artwork.settle(&recipe(&present))?;
         Ok(self.spread(&present, built.frames.iter().map(|f| f.rect), &self.opened.artwork.frame()))
     }
 
-    /// The frame of a step after these.
+    /// Returns the frame of a step that follows these.
     fn frame_after(&mut self, given: &[PageStep]) -> Result<Rect, String> {
         let given = self.recipe(given);
         let (_, built) = self.opened.artwork.settle(&given)?;
@@ -523,12 +522,12 @@ impl Session {
         Ok(image.unwrap_or_else(|| artwork.frame()))
     }
 
-    /// The names of all presets.
+    /// Returns the names of all presets.
     pub(crate) fn presets(&self) -> Result<Vec<String>, String> {
         Ok(presets::all()?.into_iter().map(|p| p.name).collect())
     }
 
-    /// Keeps the present steps as a preset.
+    /// Stores the present steps as a preset.
     pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
         let given = self.kept.now.steps.clone();
         let frames = self.frames(&given)?;
@@ -539,7 +538,7 @@ impl Session {
         presets::forget(&*self.host, name)
     }
 
-    /// The steps of a preset, laid onto this drawing.
+    /// Returns the steps of a preset, adapted to this drawing.
     pub(crate) fn preset(&mut self, name: &str) -> Result<Vec<PageStep>, String> {
         let preset = presets::all()?.into_iter().find(|p| p.name == name);
         let preset = preset.ok_or_else(|| format!("there is no preset {name}"))?;
@@ -551,7 +550,7 @@ impl Session {
         Ok(out)
     }
 
-    /// A small picture of the drawing under these steps.
+    /// Returns a small picture of the drawing under these steps.
     pub(crate) fn thumbnail(&mut self, given: &[PageStep]) -> Result<String, String> {
         let frame = self.opened.artwork.frame();
         let tolerance = THUMBNAIL_TOLERANCE * frame.width().hypot(frame.height());
@@ -560,12 +559,12 @@ impl Session {
         Picture::small(&bent.svg, self.opened.artwork.reading())
     }
 
-    /// A deformation with the values of its examples.
+    /// Returns a deformation with the values of its example.
     pub(crate) fn example(&self, deformation: &str, variant: Option<&str>) -> Result<PageStep, String> {
         self.begun(deformation, variant, self.opened.artwork.frame(), true)
     }
 
-    /// A deformation with the first values for artwork in this frame, or with those that show what it does.
+    /// Returns a deformation with its first values for artwork in this frame, or with the values of its example if it `shows` one.
     fn begun(&self, deformation: &str, variant: Option<&str>, frame: Rect, shows: bool) -> Result<PageStep, String> {
         let bending = self.host.registry().get(deformation).map(|e| e.info());
         let info = bending.or_else(|| self.host.first().iter().find(|i| i.name == deformation));
@@ -578,13 +577,13 @@ impl Session {
         Ok(PageStep { deformation: deformation.to_owned(), args, ..PageStep::default() })
     }
 
-    /// The file that *Save* writes unless another is named.
+    /// Returns the file that *Save* writes by default.
     fn target(&self) -> PathBuf {
         let saved = self.saved.as_ref().map(|(p, _)| p.clone());
         saved.or_else(|| self.out().cloned()).unwrap_or_else(|| saving::usual(&self.file))
     }
 
-    /// The file that a page names.
+    /// Returns the file that a page names.
     fn place(&self, target: &Target) -> Result<PathBuf, String> {
         let Some(name) = &target.name else { return Ok(self.target()) };
         let named = saving::named(name, &self.file)?;
@@ -594,12 +593,12 @@ impl Session {
         Ok(folder.join(named.file_name().unwrap_or_default()))
     }
 
-    /// The file that the user asked for.
+    /// Returns the output file that the user named, if any.
     fn out(&self) -> Option<&PathBuf> {
         if let Purpose::Files { out } = &self.purpose { out.as_ref() } else { None }
     }
 
-    /// What is said about the drawing to the user: its file has another name if a program waits for it.
+    /// Replaces the name of the drawing's file in a message by the drawing's name in the program that waits, if any.
     pub(crate) fn said(&self, text: &str) -> String {
         let Purpose::Program { drawing, .. } = &self.purpose else { return text.to_owned() };
         let name = self.file.file_name().unwrap_or_default().to_string_lossy();
@@ -610,7 +609,7 @@ impl Session {
         self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
     }
 
-    /// Makes the present steps the result, for the program that waits for it.
+    /// Confirms the present steps as the result for the program that waits.
     pub(crate) fn hand_over(&mut self) -> Result<(), String> {
         if self.purpose.program().is_none() {
             return Err("no program waits for the steps".into());
@@ -619,12 +618,12 @@ impl Session {
         Ok(())
     }
 
-    /// The result, if the user has kept it.
+    /// Returns the result, if the user has confirmed it.
     pub(crate) fn result(&self) -> Option<Recipe> {
         self.handed_over.then(|| recipe(&self.kept.now.steps))
     }
 
-    /// Writes the result. Answers with the name, or says that the file exists.
+    /// Writes the result. Answers with the file's name, or reports that the file exists.
     pub(crate) fn save(&mut self, target: &Target, replace: bool) -> Result<Value, String> {
         self.refuse_for_program("nothing can be saved")?;
         let to = self.place(target)?;
@@ -660,7 +659,7 @@ impl Session {
         Ok(json!({ "written": to.display().to_string(), "warnings": lost }))
     }
 
-    /// The result as *Save* would write it to the file of this name, for a page that keeps it elsewhere.
+    /// Returns the contents that *Save* would write to this file, for a download.
     pub(crate) fn download(&mut self, target: &Target) -> Result<Value, String> {
         self.refuse_for_program("nothing can be downloaded")?;
         let to = self.place(target)?;
@@ -669,7 +668,7 @@ impl Session {
         Ok(json!({ "written": name, "bytes": STANDARD.encode(bytes), "warnings": lost }))
     }
 
-    /// The result in the format of the file `to`, where it `stays` unless that is elsewhere, and what it cannot hold.
+    /// Returns the result in the format of the file `to`, and the losses of the format. Unless it `stays` there, pictures are embedded.
     fn finished(&mut self, to: &Path, stays: bool, picture: &PictureOptions) -> Result<(Vec<u8>, Vec<String>), String> {
         let given = self.finishing();
         if saving::has_extension(to, &["toml"]) {
@@ -678,8 +677,8 @@ impl Session {
         self.opened.artwork.written(&given, to, stays, picture)
     }
 
-    /// The file that a command line bends, what has to be run before, and the name of the file if it has been written now: a drawing that
-    /// was dropped on the page, or a picture, is in no file.
+    /// Returns the file that a command line bends, a command to run first, and the file's name if it was written now: a drawing that was
+    /// dropped on the page, or a picture, may not exist as a file.
     fn source(&self) -> Result<(PathBuf, String, Option<String>), String> {
         let content = self.opened.artwork.document().source();
         let is_there = |holds: &dyn Fn(&[u8]) -> bool| std::fs::read(&self.file).is_ok_and(|bytes| holds(&bytes));
@@ -701,8 +700,7 @@ impl Session {
         Ok((source, String::new(), name))
     }
 
-    /// The command line that writes the result as *Save* does, under a name or the usual one; and the drawing's file if it was written
-    /// for that.
+    /// Returns the command line that writes the same result as *Save*, and the name of the drawing's file if it was written now.
     pub(crate) fn command_line(&mut self, target: &Target) -> Result<Value, String> {
         let to = self.place(target)?;
         let (given, mut options) = (self.finishing(), self.opened.artwork.options());
@@ -729,9 +727,9 @@ impl Session {
     }
 }
 
-/// The largest distance between two images of a place in a box, over a grid of them.
+/// Returns the largest distance between two images of the same point, over a grid in a box.
 fn apart(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
-    /// Places along a side.
+    /// Number of points along a side.
     const PLACES: u32 = 25;
     let share = |k: u32| f64::from(k) / f64::from(PLACES - 1);
     let places = (0..PLACES * PLACES).map(|k| (share(k % PLACES), share(k / PLACES)));
@@ -739,23 +737,23 @@ fn apart(a: &dyn Map, b: &dyn Map, r: Rect) -> f64 {
     at.map(|p| a.point(p).distance(b.point(p))).filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
-/// The folder of a file, for people.
+/// Returns the folder of a file, for display.
 fn folder_of(file: &Path) -> String {
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).display().to_string()
 }
 
-/// Returns `true` for a file that holds the source and the steps, to go on with.
+/// Returns `true` for a file that stores the source and the steps.
 fn is_svg(file: &Path) -> bool {
     saving::has_extension(file, &["svg", "svgz"])
 }
 
-/// The steps that a page shows.
+/// Returns the steps whose effect the page shows.
 fn visible(steps: &[PageStep], shown: Option<usize>) -> &[PageStep] {
     steps.get(..shown.unwrap_or(steps.len()).min(steps.len())).unwrap_or_default()
 }
 
-/// Guides of the last step that no parameter shows: cages and images of the base.
+/// Returns the guides of the last step that no parameter defines: cages and images of the base.
 fn guides(built: &BuiltRecipe) -> Value {
     let overlays = built.steps.last().map(|s| s.explanation.overlays.as_slice()).unwrap_or_default();
     overlays.iter().map(|o| o.path.to_svg()).collect()

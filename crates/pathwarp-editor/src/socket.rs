@@ -1,4 +1,4 @@
-//! One connection of a page: requests are answered in order, and changes that other pages make are announced.
+//! One connection of a page: answers its requests in order, and announces changes made by other pages.
 
 use crate::picture::{Picture, Quick};
 use crate::protocol::{Message, Request};
@@ -12,12 +12,12 @@ use std::time::Duration;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, WebSocket};
 
-/// Largest message: a dropped drawing.
+/// Largest message in bytes, enough for a dropped drawing.
 const LARGEST_MESSAGE: usize = 256 << 20;
-/// The time after which a quiet page learns of changes made elsewhere.
+/// Time after which an idle page learns of changes made by others.
 const GLANCE: Duration = Duration::from_millis(200);
 
-/// Answers a page until it closes.
+/// Serves a page until it closes.
 pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> {
     stream.set_read_timeout(Some(GLANCE))?;
     let config =
@@ -37,7 +37,7 @@ pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> 
             Err(Error::Io(e)) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
                 page.announce()?;
             }
-            // A program that was stopped and goes on finds its call interrupted.
+            // Resuming a suspended program interrupts the call.
             Err(Error::Io(e)) if e.kind() == io::ErrorKind::Interrupted => {}
             Err(e) => return Err(e),
         }
@@ -49,9 +49,9 @@ struct Page {
     shared: Arc<Shared>,
     /// The last picture sent.
     picture: Option<Picture>,
-    /// The quick way from there to the next.
+    /// The quick update from that picture to the next.
     quick: Option<Quick>,
-    /// The number of changes that the page knows of.
+    /// The number of changes that the page has been told.
     seen: usize,
 }
 
@@ -60,7 +60,7 @@ impl Page {
         self.socket.send(tungstenite::Message::text(value.to_string()))
     }
 
-    /// Tells of changes by other pages.
+    /// Announces changes by other pages.
     fn announce(&mut self) -> Result<(), Error> {
         let now = self.shared.pages.changes.load(Ordering::SeqCst);
         if now == self.seen {
@@ -165,7 +165,7 @@ impl Page {
         }
     }
 
-    /// The message with a picture.
+    /// Returns the message with a picture.
     fn show(&mut self, shown: Shown) -> Result<Value, String> {
         let is_draft = shown.is_draft;
         if let (true, Some(quick), Some(picture)) = (is_draft, &mut self.quick, &mut self.picture)
@@ -184,7 +184,7 @@ impl Page {
         Ok(answer)
     }
 
-    /// The message after a change of the steps.
+    /// Returns the message after a change of the steps.
     fn changed(&mut self, session: &Session, shown: Shown) -> Result<Value, String> {
         self.count_change();
         let mut answer = self.show(shown)?;
@@ -192,22 +192,22 @@ impl Page {
         Ok(answer)
     }
 
-    /// Counts a change that this page knows of.
+    /// Counts a change that this page has made.
     fn count_change(&mut self) {
         self.seen = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
     }
 }
 
-/// The message that gives lines of the picture new path data.
+/// Returns the message that gives lines of the picture new path data.
 fn changed_paths(changes: Vec<(usize, String)>) -> Value {
     let change = |(line, data)| Value::Array(vec![json!(line), json!("d"), Value::String(data)]);
     json!({ "changes": changes.into_iter().map(change).collect::<Vec<_>>() })
 }
 
-/// What the connections share.
+/// State shared by the connections.
 pub(crate) struct Shared {
     session: Mutex<Session>,
-    /// What the page shows behind the drawing.
+    /// The page's picture behind the drawing.
     background: Mutex<Value>,
     pub(crate) pages: Pages,
 }
@@ -217,14 +217,14 @@ pub(crate) struct Shared {
 pub(crate) struct Pages {
     open: AtomicUsize,
     ever: AtomicUsize,
-    /// Counts the changes of the session, so that every page notices those of the others.
+    /// The number of changes, by which every page notices those of the others.
     pub(crate) changes: AtomicUsize,
-    /// The steps are kept for the program that waits for them.
+    /// `true` once the steps are confirmed for the program that waits.
     pub(crate) done: AtomicBool,
 }
 
 impl Pages {
-    /// Returns `true` while a page is open, and before the first one is.
+    /// Returns `true` while a page is open, and before the first one opens.
     pub(crate) fn is_awaited(&self) -> bool {
         self.open.load(Ordering::SeqCst) > 0 || !self.was_open()
     }
@@ -234,13 +234,13 @@ impl Pages {
         self.ever.load(Ordering::SeqCst) > 0
     }
 
-    /// Returns `true` if nothing is left to do.
+    /// Returns `true` if the session has ended.
     pub(crate) fn is_done(&self) -> bool {
         self.done.load(Ordering::SeqCst)
     }
 }
 
-/// A page while it is connected.
+/// A page, counted as open while this exists.
 pub(crate) struct OpenPage(Arc<Shared>);
 
 impl OpenPage {
@@ -266,8 +266,7 @@ impl Shared {
         self.background.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Works on the session. A panic in another connection does not end the editor: steps are taken over only after the drawing has been bent by
-    /// them.
+    /// Locks the session, even after a panic in another connection: steps replace the old ones only after bending has succeeded.
     pub(crate) fn with_session<T>(&self, f: impl FnOnce(&mut Session) -> T) -> T {
         f(&mut self.session.lock().unwrap_or_else(PoisonError::into_inner))
     }

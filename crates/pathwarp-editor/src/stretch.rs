@@ -1,19 +1,19 @@
-//! The stretch of a map over the artwork's box, as a grid of cells with their images: what a page shows as a heat map.
+//! The stretch of a map over the artwork's box, as a grid of cells with their images, which the page shows as a heat map.
 
 use pathwarp::kurbo::{Point, Rect};
 use pathwarp::map::{Jet, Map};
 use serde_json::{Value, json};
 
-/// Cells along the longer side of the box: fine enough to see where a drawing suffers.
+/// Cells along the longer side of the box, fine enough to show local distortion.
 const CELLS: f64 = 80.0;
 /// Fewest cells along the shorter side.
 const FEWEST: f64 = 6.0;
 
-/// Areas that shrink by less than this have not changed: maps that keep areas are computed in floating point.
+/// Relative change of areas that counts as rounding: maps that keep areas are computed in floating point.
 const SAME_AREA: f64 = 1e-6;
 
-/// The images of the grid's points, row by row (`null` outside of the map's domain), and for each cell the factor of lengths at its
-/// middle in the direction that changes most, negative where the map turns the drawing over against the rest.
+/// Returns the images of the grid's points, row by row (`null` outside of the map's domain), and for each cell the factor of lengths at its
+/// centre, in the direction of the largest change; it is negative where the orientation differs from the majority's.
 pub(crate) fn stretch(map: &dyn Map, frame: Rect) -> Value {
     let longer = frame.width().max(frame.height());
     let cells = |side: f64| (CELLS * side / longer).round().max(FEWEST) as usize;
@@ -29,15 +29,15 @@ pub(crate) fn stretch(map: &dyn Map, frame: Rect) -> Value {
     let points: Vec<Value> = grid.map(|p| map.point(p)).map(shown).collect();
     let middles = (0..rows).flat_map(|j| (0..columns).map(move |i| at(i as f64 + 0.5, j as f64 + 0.5)));
     let factors: Vec<f64> = middles.map(|p| factor(&map.jet(p))).collect();
-    // A map may mirror the whole drawing on purpose.
+    // The map may mirror the whole drawing.
     let mirrored = factors.iter().filter(|f| **f < 0.0).count() * 2 > factors.len();
     let sign = if mirrored { -1.0 } else { 1.0 };
     let shown = |f: &f64| if f.is_finite() { json!(sign * f) } else { Value::Null };
     json!({ "columns": columns, "points": points, "factors": factors.iter().map(shown).collect::<Vec<_>>() })
 }
 
-/// The singular value of the derivative that is farther from 1 by its logarithm, with the sign of the determinant. If areas stay the
-/// same, as under a wave or a swirl, both are equally far, and the larger one is shown.
+/// Returns the singular value of the derivative whose logarithm is farther from 0, with the sign of the determinant. If the map keeps
+/// areas, as waves and swirls do, both are equally far, and the larger one is returned.
 fn factor(jet: &Jet) -> f64 {
     let (a, b, c) = (jet.dx.hypot2(), jet.dy.hypot2(), jet.dx.dot(jet.dy));
     let area = jet.dx.cross(jet.dy);
@@ -57,7 +57,7 @@ mod tests {
 
     struct Fold;
     impl Formula for Fold {
-        // Twice as wide, and folded over along y = 30.
+        // Twice as wide, and folded along y = 30.
         fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
             (x * 2.0, (y - 30.0) * (y - 30.0) * 0.05)
         }
@@ -85,8 +85,8 @@ mod tests {
         assert_eq!((columns, factors.len() % columns), (CELLS as usize, 0));
         let rows = factors.len() / columns;
         assert_eq!(out["points"].as_array().unwrap().len(), (rows + 1) * (columns + 1));
-        // The larger part, above, is turned over: so the rest stands out. At the top, heights grow more than widths, which are
-        // doubled; beside the fold, they shrink to almost nothing.
+        // The larger part, above the fold, is mirrored, so the rest is negative. At the top, heights grow more than widths, which double;
+        // near the fold, they shrink to almost nothing.
         let height = |row: usize| 0.1 * (30.0 - 40.0 * (row as f64 + 0.5) / rows as f64);
         assert!((factors[0].as_f64().unwrap() - height(0)).abs() < 1e-9);
         let last = (0..rows).rfind(|&row| height(row) > 0.0).unwrap();

@@ -1,36 +1,36 @@
-//! Words that a drawing was set from: it carries them in an attribute of its root, so that they can be changed when it is opened again.
+//! Words that a drawing was set from. An attribute of its root stores them, so that they can be edited when it is opened again.
 
 use serde::{Deserialize, Serialize};
 
-/// The attribute.
+/// The attribute's name.
 const WORDS: &str = "data-words";
 
-/// Words that a drawing consists of.
+/// The words that make up a drawing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Words {
     /// The text, with line breaks.
     pub text: String,
     /// The family; `None` for the bundled font.
     pub font: Option<String>,
-    /// The size of the letters' em, in mm.
+    /// The size of the em, in mm.
     pub size: f64,
     /// Space between letters, in per cent of the size.
     pub spacing: f64,
 }
 
 impl Words {
-    /// The drawing `svg` of these words, with the words.
+    /// Stores the words in the drawing `svg` made from them.
     pub(crate) fn written(&self, svg: &str) -> String {
         #[expect(clippy::expect_used, reason = "structures without maps become text in any case")]
         let json = serde_json::to_string(self).expect("there is no map");
-        // JSON has no line breaks and tabs of its own.
+        // JSON escapes line breaks and tabs, which attributes would turn into spaces.
         let value = json.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
         svg.replacen("<svg ", &format!("<svg {WORDS}=\"{value}\" "), 1)
     }
 
-    /// The words that a drawing was set from.
+    /// Reads the words that a drawing was set from.
     pub(crate) fn of(svg: &str) -> Option<Self> {
-        // Most drawings need not be parsed for this.
+        // Most drawings need no parsing here.
         let document = svg.contains(WORDS).then(|| usvg::roxmltree::Document::parse(svg).ok()).flatten()?;
         serde_json::from_str(document.root_element().attribute(WORDS)?).ok()
     }

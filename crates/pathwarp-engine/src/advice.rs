@@ -1,4 +1,4 @@
-//! Advice in flags, added to the errors and warnings of the libraries, which know no command line.
+//! Advice that names flags, added to the errors and warnings of the libraries, which know no command line.
 
 use crate::catalogue::Catalogue;
 use crate::readable::{listed, three_figures};
@@ -13,15 +13,15 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The error of edits of a picture.
 pub(crate) const NO_PATHS_TO_EDIT: &str = "edits (caption, simplify, offset, unite, contour, outline, --simplify, --outset) work on paths; a picture has none";
 
-/// The warning about characters that no font has.
+/// Warns of characters that no font has.
 pub fn missing_letters(chars: &[char]) -> String {
-    /// Number of characters that fit a line or two.
+    /// Number of characters that fit in two lines.
     const SHOWN: usize = 12;
     let shown: Vec<String> = chars.iter().map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
     format!("no font has {}; install one that has them, or name it with --font", listed(&shown, SHOWN))
 }
 
-/// The warning about shapes of which an edit leaves nothing.
+/// Warns of shapes of which an edit leaves nothing.
 pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Option<String> {
     const NAMED: usize = 5;
     let gone = shapes.filter(|s| s.path.segments_in > 0 && s.path.segments_out == 0);
@@ -29,12 +29,12 @@ pub(crate) fn vanished<'a>(shapes: impl Iterator<Item = &'a ShapeReport>) -> Opt
     (!gone.is_empty()).then(|| format!("nothing is left of {}: narrower than the distance", listed(&gone, NAMED)))
 }
 
-/// The message of an error of the libraries: parameters as flags, with the options that help.
+/// Returns the message of an error of the libraries, with parameters as flags and advice on options.
 pub(crate) fn error(e: &Error, flags: &Flags) -> String {
     match e {
-        // The value is quoted as the user typed it, so only the problem is searched for parameters.
+        // The value is the user's text, so only the problem is searched for parameters.
         Error::Usage { param, value, problem, advice } => {
-            // A likely name says more than the list of all.
+            // A likely name helps more than the list of all.
             let likely = flags.likely(param, value).filter(|_| !advice.is_empty());
             let advice = likely.map_or_else(|| flags.in_text(advice), |name| format!("; did you mean {name}?"));
             Error::usage(&format!("--{param}"), value, flags.in_text(problem) + &advice).to_string()
@@ -65,7 +65,7 @@ pub fn raise(exceeded: &Exceeded) -> String {
     format!("if you trust the file, raise the limit with --limit {}={value}{guess}", exceeded.limit)
 }
 
-/// The message of an error about a picture, with advice.
+/// Returns the message of an error about a picture, with advice.
 pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
     match e {
         pathwarp_raster::Error::TooLarge { exceeded, .. } | pathwarp_raster::Error::TooMuch(exceeded) => {
@@ -75,7 +75,7 @@ pub(crate) fn picture(e: &pathwarp_raster::Error) -> String {
     }
 }
 
-/// The message of an error about a surface in space, with advice.
+/// Returns the message of an error about a surface in space, with advice.
 pub fn surface(e: &pathwarp_solid::artwork::Error) -> String {
     match e {
         pathwarp_solid::artwork::Error::TooMany { exceeded, .. } => {
@@ -85,9 +85,9 @@ pub fn surface(e: &pathwarp_solid::artwork::Error) -> String {
     }
 }
 
-/// Describes artwork that the page cuts off and the map stretches, with the frame that prevents it.
+/// Describes artwork that the page cuts off and the map stretches, and the frame that prevents it.
 pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
-    // Three figures, rounded outwards.
+    // Round outwards to three figures.
     let digits = (2.0 - uncut.width().max(uncut.height()).log10().floor()).clamp(0.0, 9.0) as usize;
     let unit = 0.1f64.powi(digits as i32);
     let [x0, y0] = [uncut.x0, uncut.y0].map(|v| (v / unit).floor() * unit);
@@ -101,13 +101,12 @@ pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
     )
 }
 
-/// A warning about fonts that are missing.
+/// Warns of fonts that are missing.
 fn missing_fonts(families: &[String]) -> Option<String> {
     (!families.is_empty()).then(|| Warning::MissingFonts(families.to_vec()).to_string())
 }
 
-/// Lists what a picture of a drawing lacks: fonts, images, and what else is not drawn, of which the first are named; and what browsers
-/// show a little otherwise.
+/// Lists what a picture of a drawing lacks (fonts, images, and other content, the first of it by name), and how browsers differ.
 pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], notes: &[String]) -> Vec<String> {
     const NAMED: usize = 10;
     let mut out: Vec<String> = missing_fonts(fonts).into_iter().chain(unread(images)).collect();
@@ -118,14 +117,14 @@ pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], note
     out
 }
 
-/// Describes images that were not read because they lie outside of the drawing's folder.
+/// Describes images that were not read because they lie outside the drawing's folder.
 fn outside(unread: &UnreadImages) -> Option<String> {
     let n = unread.outside.len();
     let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
     (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
 }
 
-/// Lists the images that were not read and that are not among those skipped, which are named already; and says how many lie outside.
+/// Lists the images that were not read, except those among `skipped`, and counts those outside the drawing's folder.
 pub(crate) fn unread_besides(images: &UnreadImages, skipped: &[Skipped]) -> Vec<String> {
     let besides = |link: &&String| !skipped.iter().any(|s| s.why.contains(link.as_str()));
     let named = images.unreadable.iter().chain(&images.outside).filter(besides);
@@ -139,7 +138,7 @@ pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
     unreadable.chain(outside_links).chain(outside(unread)).collect()
 }
 
-/// Describes why there is no frame around lettering, with the options that help.
+/// Describes why no frame around lettering exists, and the options that help.
 pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
     let advice = match error {
         LetteringFrameError::NoLettering => "write it with `pathwarp text`, or use --frame X,Y,W,H or artwork",
@@ -150,15 +149,15 @@ pub(crate) fn lettering_frame(error: &LetteringFrameError) -> String {
     format!("cannot make a frame: {error}; {advice}")
 }
 
-/// The parameters that messages may name.
+/// The parameters that messages may turn into flags.
 pub struct Flags {
     params: BTreeSet<&'static str>,
-    /// The names that a parameter's value may have.
+    /// The names allowed as values of a parameter.
     names: BTreeMap<&'static str, Vec<&'static str>>,
 }
 
 impl Flags {
-    /// The parameters of all deformations.
+    /// Collects the parameters of all deformations.
     pub fn of(catalogue: &dyn Catalogue) -> Self {
         let params = || catalogue.infos().into_iter().flat_map(|i| i.params);
         let mut names: BTreeMap<&'static str, Vec<&'static str>> = BTreeMap::new();
@@ -170,7 +169,7 @@ impl Flags {
         Self { params: params().map(|p| p.name).collect(), names }
     }
 
-    /// The parameters of both.
+    /// Adds the parameters of `other`.
     pub fn and(mut self, other: Self) -> Self {
         self.params.extend(other.params);
         for (name, values) in other.names {
@@ -179,7 +178,7 @@ impl Flags {
         self
     }
 
-    /// The name that a wrong value of the parameter `param` most likely means.
+    /// Returns the name that was most likely meant by a wrong value of the parameter `param`.
     pub fn likely(&self, param: &str, value: &str) -> Option<&'static str> {
         likely(&value.to_lowercase(), self.names.get(param)?.iter().copied())
     }
@@ -200,7 +199,7 @@ impl Flags {
         let parts: Vec<&str> = message.split('`').collect();
         let mut out = String::with_capacity(message.len() + 2);
         for (i, part) in parts.iter().enumerate() {
-            // Every second part is quoted, except behind a last unpaired quote.
+            // Every second part is quoted, except behind an unpaired last quote.
             let quoted = i % 2 == 1;
             let closed = i + 1 < parts.len();
             if quoted && closed && is_param(part) {
@@ -220,7 +219,7 @@ impl Flags {
     }
 }
 
-/// Returns the message that there is no `what` called `name`, with the known name that is most like it.
+/// Returns the message that no `what` is called `name`, with the known name that is most like it.
 pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     match likely(name, known) {
         Some(likely) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
@@ -228,9 +227,9 @@ pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>)
     }
 }
 
-/// Returns the known name that is most like `name`, if any is like it.
+/// Returns the known name that is most like `name`, if any is similar.
 pub fn likely<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    /// Names below this similarity are not suggested.
+    /// Least similarity of a suggestion.
     const LIKELY: f64 = 0.8;
     let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
     likeness.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, likely)| likely)

@@ -1,4 +1,4 @@
-//! Bitmaps and gradients bent pixel by pixel, and pictures as files.
+//! Bends bitmaps and gradients pixel by pixel, and encodes pictures as files.
 
 use crate::failure::Failure;
 use crate::format::Format;
@@ -16,22 +16,21 @@ use std::borrow::Cow;
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 
-/// Pixels per inch of a drawing at 100 %.
+/// Pixels per inch of a drawing shown at 100 %.
 const PX_PER_INCH: f64 = 96.0;
 
-/// Evaluations of the map that a picture takes besides those of its pixels, to find its place; and a gradient, to find its
-/// resolution.
+/// Evaluations of the map for one picture in addition to those for its pixels: to find its box, or the resolution of a gradient.
 const PICTURE: f64 = 40e3;
 const GRADIENT: f64 = 24e3;
 
-/// A picture of no more pixels is drawn at the size of the result where its pixels are larger than [`LARGE_PIXEL`], in px: QR codes,
-/// pixel art, swatches. Bent at its own size, its edges would be as coarse as its pixels.
+/// Pictures with at most this many pixels (QR codes, pixel art, swatches) are enlarged to the size of the result if their pixels are larger
+/// than [`LARGE_PIXEL`], in px. Otherwise, their bent edges would be as coarse as their pixels.
 const FEW_PIXELS: f64 = 65_536.0;
 const LARGE_PIXEL: f64 = 2.0;
-/// Most pixels that such a picture is enlarged to.
+/// Most pixels of an enlarged picture.
 const MOST_ENLARGED: f64 = 4e6;
 
-/// Work to find the resolution of a gradient, in pixels of it; and where no difference may be visible.
+/// Work to find the resolution of a gradient, in pixels of it; the second holds where no difference may be visible.
 const SEARCHED: f64 = 500.0;
 const SEARCHED_STRICTLY: f64 = 2000.0;
 
@@ -39,15 +38,15 @@ const SEARCHED_STRICTLY: f64 = 2000.0;
 #[derive(Debug)]
 pub struct Bender {
     pub(crate) map: Arc<dyn Map>,
-    /// Pixels per inch; `None`: as many as keep every detail.
+    /// Pixels per inch; `None` keeps every detail.
     dpi: Option<f64>,
     pub(crate) budget: Arc<Budget>,
-    /// The work that filters' pictures leave to others, once there are any.
+    /// The work left by the pictures of filters, once there are any.
     pub(crate) filters_leave: OnceLock<f64>,
 }
 
 impl Bender {
-    /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` uses as many as keep every detail.
+    /// Creates a bender for `map` at `dpi` pixels per inch of the drawing; `None` keeps every detail.
     #[must_use]
     pub fn new(map: Arc<dyn Map>, dpi: Option<f64>) -> Self {
         Self { map, dpi, budget: Arc::default(), filters_leave: OnceLock::new() }
@@ -59,16 +58,16 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
-    /// Pixels per inch, if they are given.
+    /// The pixels per inch, if given.
     pub(crate) fn dpi(&self) -> Option<f64> {
         self.dpi
     }
 
-    /// Pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
+    /// Returns the pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
     pub(crate) fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
         /// Pixels per px of the drawing in each direction: the resolution of a screen of twice the density.
         const DENSITY: f64 = 2.0;
-        /// The same for small drawings, which are often shown enlarged, along the longer side.
+        /// Pixels along the longer side of a small drawing, which is often shown enlarged.
         const LEAST: f64 = 256.0;
         match self.dpi {
             Some(dpi) => dpi / PX_PER_INCH * unit,
@@ -83,7 +82,7 @@ impl Bender {
     }
 }
 
-/// The whole pixels that are shown of a picture of this size, with one more around them, which interpolation asks for.
+/// Returns the pixels that are shown of a picture of this size, with a margin of one, which interpolation needs.
 fn shown_part((width, height): (u32, u32), crop: Option<Rect>) -> Option<IntRect> {
     let whole = Rect::new(0.0, 0.0, width.into(), height.into());
     let part = crop.map_or(whole, |c| c.inflate(1.0, 1.0).expand().intersect(whole));
@@ -92,7 +91,7 @@ fn shown_part((width, height): (u32, u32), crop: Option<Rect>) -> Option<IntRect
 
 impl ImageWarper for Bender {
     fn warp(&self, r: &ImageRequest<'_>) -> Result<BentImage, PictureError> {
-        /// Largest growth of the pixel count: where the map compresses the image, keeping every detail takes more pixels.
+        /// Largest growth of the pixel count. Where the map compresses the image, keeping every detail takes more pixels.
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
@@ -149,7 +148,7 @@ impl ImageWarper for Bender {
         let mut pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
         if r.clipped {
-            // The clip path has the picture's edge, where pixels are partly transparent.
+            // The clip path follows the picture's edge, where pixels are partly transparent.
             let whole: Vec<bool> = pixmap.pixels().iter().map(|p| p.alpha() == u8::MAX).collect();
             edges::continue_colors(&mut pixmap, &whole);
         }
@@ -165,7 +164,7 @@ impl ImageWarper for Bender {
     }
 }
 
-/// The error about a bitmap that takes too much work.
+/// Returns the error about a bitmap that takes too much work.
 pub(crate) fn too_much(e: Exceeded) -> PictureError {
     format!("bending it takes {e}; {}", advice::raise(&e)).into()
 }
@@ -199,7 +198,7 @@ impl GradientPainter for Bender {
             finest,
         };
         count_evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
-        // The number of pixels follows from painting. Nothing is painted once the limit is reached.
+        // The number of pixels is known only after painting. Nothing is painted once the limit is reached.
         let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
         count_pixels(&self.budget, Pixel::Shaded, search).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
@@ -209,13 +208,13 @@ impl GradientPainter for Bender {
     }
 }
 
-/// The fewest pixels across and down of the picture of a gradient of this size in px, one `among` others: programs that do not smooth
-/// pictures show their pixels.
+/// Returns the fewest pixels across and down for one of `among` pictures of gradients with this size in px. Some programs show pixels
+/// unsmoothed.
 fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
-    /// Pixels along a side, and per px.
+    /// Fewest pixels along a side, and per px.
     const SIDE: f64 = 64.0;
     const DENSITY: f64 = 0.25;
-    /// Most pixels in all pictures of a drawing that are only there for that.
+    /// Most pixels in all pictures of a drawing that exist for such programs.
     const MAX_TOGETHER: f64 = 4e6;
     let least = Vec2::new((DENSITY * width).max(SIDE), (DENSITY * height).max(SIDE));
     least * (MAX_TOGETHER / among.max(1) as f64 / (least.x * least.y)).sqrt().min(1.0)
@@ -224,11 +223,11 @@ fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
 /// A length that exceeds whole pixels by less than this is rounding error.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Returns the map's own inverse if it holds on all of `area`, else Newton's method over it. Either counts its evaluations.
+/// Returns the map's analytic inverse if it holds on all of `area`, else Newton's method over it. Both count their evaluations.
 pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Inverse {
-    /// Reach beyond the area as a fraction of its diagonal: the source footprint of the pixels along its edge.
+    /// Reach beyond the area, as a fraction of its diagonal: the footprint of the pixels along its edge.
     const REACH: f64 = 0.02;
-    /// Test points per side.
+    /// Number of test points per side.
     const TRIED: usize = 9;
     let diagonal = area.width().hypot(area.height());
     let returns = |inverse: &Arc<dyn Map>| {
@@ -242,16 +241,16 @@ pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> I
     Inverse::new(own.unwrap_or_else(newton), Arc::clone(budget))
 }
 
-/// What is done with a pixel, in pixels painted.
+/// The work on one pixel, in units of painting one.
 #[derive(Clone, Copy)]
 pub enum Pixel {
-    /// Of a model, for every face in front of or behind it.
+    /// Sampled for a face of a model, once for every face in front of or behind it.
     Sampled = 2,
-    /// Read from a compressed picture, or from the text of a drawing.
+    /// Decoded from a compressed picture or from the text of a drawing.
     Decoded = 4,
     /// Sampled and compressed.
     Warped = 60,
-    /// Of a gradient.
+    /// Shaded by a gradient.
     Shaded = 40,
 }
 
@@ -260,7 +259,7 @@ pub fn count_pixels(budget: &Budget, pixel: Pixel, pixels: f64) -> Result<(), Ex
     budget.spend(cost::PIXEL * f64::from(pixel as u8) * pixels)
 }
 
-/// Counts a picture that is read or made, which the limits on time and memory allow for.
+/// Counts a picture that is read or made; the limits on time and memory allow for it.
 pub(crate) fn count_picture(budget: &Budget, pixel: Pixel, (width, height): (f64, f64)) -> Result<(), Exceeded> {
     budget.take(Limit::Pixels, width * height)?;
     meter::count_pixels(width * height);
@@ -272,8 +271,7 @@ pub(crate) fn count_evaluations(budget: &Budget, map: &dyn Map, n: f64) -> Resul
     budget.spend(n * map.work())
 }
 
-/// An inverse whose evaluations are counted, and which is undefined everywhere once nothing is left: a bitmap asks about once in a while, or
-/// for every pixel.
+/// An inverse that counts its evaluations and is undefined everywhere once the budget is spent.
 pub(crate) struct Inverse {
     map: Arc<dyn Map>,
     budget: Arc<Budget>,
@@ -332,7 +330,7 @@ pub fn background(text: &str) -> Result<Background, String> {
     Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }
 
-/// The file of a picture in a format; PNG for formats that are not pictures'.
+/// Encodes a picture in a format; formats of drawings become PNG.
 pub fn encode(pixmap: Pixmap, format: Format, quality: Option<u8>) -> Result<Vec<u8>, Failure> {
     match format.of_picture(quality) {
         None | Some(PictureFormat::Png) => Ok(encode_png(&pixmap)?),

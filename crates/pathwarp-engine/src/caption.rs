@@ -1,4 +1,4 @@
-//! Captions: words that are set on a drawing before all other edits, so that a recipe has them as words.
+//! Captions: words that are set on a drawing before all other edits; a recipe stores their text.
 
 use crate::advice;
 use crate::edits::CAPTION;
@@ -19,17 +19,17 @@ pub fn is_caption(step: &Step) -> bool {
     step.deformation == CAPTION.name
 }
 
-/// The frame that captions are set in: the box of what the drawing shows without them, or else its page.
+/// Returns the frame for captions: the box of the drawing without them, or else its page.
 pub fn frame(document: &Document) -> Frame {
     let bounds = document.seen_box(&Selection::default()).unwrap_or_else(|| document.view_box());
     Frame::new(bounds).with_units_per_px(units_per_px(document))
 }
 
-/// The drawing with captions, read as `read` says, and warnings about letters that no font has. The group of the k-th is called `caption-k`, and
-/// its letters `caption-k-1` and so on; with hyphens before the numbers where the drawing has such names.
+/// Returns the drawing with captions, read by the options `read`, and warnings about letters that no font has. The group of the k-th is
+/// called `caption-k`, and its letters `caption-k-1` and so on, with hyphens before the numbers if the drawing has such names.
 ///
-/// # Errors
-/// A value is wrong, a font is missing, or the words are too many.
+/// [`Failure::Usage`] without words, [`Failure::Library`] for a wrong value or unknown family, else [`Failure::Input`].
+/// [`Failure`] if a value is wrong, a font is missing, or the words are too many.
 pub fn captioned(
     document: &Document,
     steps: &[Step],
@@ -53,7 +53,7 @@ pub fn captioned(
     Ok((Document::read(document.with_appended(&groups).as_bytes(), document.name(), read)?, warnings))
 }
 
-/// Sets a caption. Returns it with the point that comes to lie at its place.
+/// Sets a caption. Returns its outlines, and their point that is placed at the given position.
 fn set(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<(OutlinedText, Point), Failure> {
     let lines = s.texts("words").join("\n");
     if lines.trim().is_empty() {

@@ -1,18 +1,18 @@
-//! Descriptions of deformations, of the plane or of space: all that reading a command line or a recipe needs of a registry.
+//! Descriptions of deformations of the plane or of space: the part of a registry that reading a command line or a recipe needs.
 
 use crate::edits;
 use pathwarp::deform::{Info, Registry};
 use pathwarp_solid::deform::Registry3;
 
-/// A registry, as its deformations' descriptions.
+/// A registry, reduced to its deformations' descriptions.
 pub trait Catalogue {
-    /// The descriptions, in the order of help.
+    /// Returns the descriptions, in the order of help.
     fn infos(&self) -> Vec<&Info>;
 
-    /// The description of the deformation called `name`; of the plane, also of an edit.
+    /// Returns the description of the deformation called `name`, or, in the plane, of the edit.
     fn info(&self, name: &str) -> Option<&Info>;
 
-    /// Returns `true` if the deformations are those of space.
+    /// Returns `true` for deformations of space.
     fn is_solid(&self) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! Words of other programs and plain words, and what to use here: the table `coming_from.txt`.
+//! Names of other programs and plain words for what pathwarp does: the table `coming_from.txt`.
 
 use crate::catalogue::Catalogue;
 use pathwarp::deform::Info;
@@ -11,28 +11,28 @@ const TABLE: &str = include_str!("coming_from.txt");
 /// Separates the parts of a menu path.
 const STEP: char = '›';
 
-/// A word for something that pathwarp may do.
+/// A word for a task.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ForeignWord {
-    /// The program that has it; `None` for plain words.
+    /// The program that uses the word; `None` for plain words.
     pub program: Option<&'static str>,
-    /// Its names there; the first is the usual one. Menu paths have ` › ` in them.
+    /// The names of the task in that program, the usual one first. Menu paths contain ` › `.
     pub words: Vec<&'static str>,
-    /// What to know about it here; may be empty.
+    /// Advice for users of the word; may be empty.
     pub text: &'static str,
-    /// The command line after `pathwarp`, on samples. `None` if there is nothing like it yet.
+    /// A command line on samples, without `pathwarp`; `None` if pathwarp cannot do the task yet.
     pub command: Option<&'static str>,
 }
 
 impl ForeignWord {
-    /// The subcommand to use.
+    /// Returns the subcommand of the command line.
     #[must_use]
     pub fn subcommand(&self) -> Option<&'static str> {
         self.command?.split(' ').next()
     }
 
-    /// Returns `true` if this is what a user calls `wanted`, which is [`plain`]: the whole name, or a part of its menu path.
+    /// Returns `true` if `wanted`, which is [`plain`], is one of the names or a part of its menu path.
     fn is_called(&self, wanted: &str) -> bool {
         self.words.iter().any(|w| plain(w) == wanted || w.split(STEP).any(|part| plain(part) == wanted))
     }
@@ -46,7 +46,7 @@ impl ForeignWord {
         })
     }
 
-    /// The command line on a drawing of the reader's.
+    /// Returns the command line with a drawing of the reader's.
     fn line(&self) -> Option<String> {
         let words = self.command?.split(' ').enumerate();
         let own = words.map(|(i, w)| match w.strip_prefix("samples/").and_then(|file| file.rsplit('.').next()) {
@@ -57,7 +57,7 @@ impl ForeignWord {
     }
 }
 
-/// The whole table.
+/// Parses the whole table.
 pub fn all() -> impl Iterator<Item = ForeignWord> {
     let mut program = None;
     TABLE.lines().filter_map(move |line| {
@@ -72,7 +72,7 @@ pub fn all() -> impl Iterator<Item = ForeignWord> {
     })
 }
 
-/// The entries that are called `word`, plain ones first.
+/// Returns the entries that are called `word`, plain ones first.
 fn named(word: &str) -> Vec<ForeignWord> {
     let wanted = plain(word);
     let mut named: Vec<ForeignWord> = all().filter(|w| !wanted.is_empty() && w.is_called(&wanted)).collect();
@@ -80,13 +80,13 @@ fn named(word: &str) -> Vec<ForeignWord> {
     named
 }
 
-/// The entries that `word` may mean: those of that name, or else those that mention it.
+/// Returns the entries that are called `word`, or else those that mention it.
 fn found(word: &str) -> Vec<ForeignWord> {
     let (named, wanted) = (named(word), plain(word));
     if named.is_empty() && !wanted.is_empty() { all().filter(|w| w.mentions(&wanted)).collect() } else { named }
 }
 
-/// The styles and presets called `word`, with their command lines.
+/// Lists the styles and presets called `word`, with their command lines.
 fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let name = plain(word).replace(' ', "-");
     let params = catalogue.infos().into_iter().flat_map(|info| info.params.iter().map(move |p| (info, p)));
@@ -106,10 +106,10 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     (!lines.is_empty()).then(|| format!("{word} is {}", lines.join("; or ")))
 }
 
-/// What a word may mean that was typed as a command.
+/// Explains a word that was typed as a command but is none.
 pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let preset = presets(catalogue, word);
-    // Programs call by the name of a preset what it is.
+    // Programs call by a preset's name the deformation itself.
     let is_meant = |w: &ForeignWord| w.program.is_none() || preset.is_none() && w.command.is_some();
     let entry = named(word).into_iter().find(is_meant);
     let line = entry.as_ref().and_then(ForeignWord::line);
@@ -132,7 +132,7 @@ fn has_in_help(info: &Info, word: &str) -> bool {
     wanted.len() > 3 && texts.any(|text| format!(" {} ", plain(text)).contains(&wanted))
 }
 
-/// A name in small letters without accents, without signs and without words that say only what it is.
+/// Reduces a name to small letters without accents and signs, and leaves out words that only name its kind.
 pub fn plain(name: &str) -> String {
     const KINDS: [&str; 5] = ["tool", "effect", "filter", "panel", "lpe"];
     let name: String = name.to_lowercase().chars().filter_map(without_accent).collect();
@@ -140,7 +140,7 @@ pub fn plain(name: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// The letter that a small Latin letter with an accent has below it; `None` for an accent alone.
+/// Removes the accent of a small Latin letter; `None` for an accent alone.
 fn without_accent(c: char) -> Option<char> {
     #[rustfmt::skip]
     const ACCENTED: [&str; 17] = [
@@ -151,7 +151,7 @@ fn without_accent(c: char) -> Option<char> {
     (!matches!(c, '\u{300}'..='\u{36f}')).then(|| plain.unwrap_or(c))
 }
 
-/// What `pathwarp help WORD` says; `title` returns what a subcommand does. `None` if the word is unknown.
+/// Returns the text of `pathwarp help WORD`; `title` describes a subcommand. `None` if the word is unknown.
 pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Option<String>) -> Option<String> {
     let mut out = presets(catalogue, word).map(|p| p + "\n\n").unwrap_or_default();
     for entry in found(word) {

@@ -1,14 +1,14 @@
-//! Where pictures are opaque, and what lies beyond the edge of a drawing.
+//! The opaque parts of pictures, and the colours beyond the edge of a drawing.
 
 use crate::bitmap::{Bender, Pixel, count_picture, count_pixels, too_much};
 use pathwarp_raster::{Picture, Pixmap, RenderOptions, Size, encode_png, header_size};
 use pathwarp_svg::ReadOptions;
 use pathwarp_svg::engine::{EdgePainter, Opacity, PictureError};
 
-/// Pixels of a bleed in a px, without a resolution of its own: 300 in an inch. And the most there are.
+/// Pixels of a bleed per px without a given resolution, which is 300 in an inch; and the most pixels that a bleed gets.
 const PRINTED: f64 = 300.0 / 96.0;
 const MOST: f64 = 16e6;
-/// So many pixels from the edge, colours are pure.
+/// Distance from the edge, in pixels, at which colours are pure.
 const EDGE: usize = 2;
 
 impl EdgePainter for Bender {
@@ -30,7 +30,7 @@ impl EdgePainter for Bender {
         let options = RenderOptions { size: Size::Width(pixels as u32), background: None };
         let mut drawn = options.render_counted(&tree, &self.budget).map_err(|e| e.to_string())?;
         let (width, height) = (drawn.width() as usize, drawn.height() as usize);
-        // At edges, colours of what lies below shine through.
+        // Pixels at edges mix in the colours below.
         let opaque = |x: usize, y: usize| drawn.pixels()[y * width + x].alpha() == 255;
         let inside = |i: usize| {
             let (x, y) = (i % width, i / width);
@@ -46,22 +46,22 @@ impl EdgePainter for Bender {
     }
 }
 
-/// Gives every pixel the colour of the nearest one that counts. Pixels that count are opaque.
+/// Gives every pixel the colour of the nearest one that counts (`counts`). Those are opaque.
 pub(crate) fn continue_colors(picture: &mut Pixmap, counts: &[bool]) {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let nearest = nearest(width, height, |i| counts[i]);
     let pixels = picture.pixels_mut();
-    // Pixels that count are their own nearest, so none of their colours is written before it is read.
+    // A pixel that counts is its nearest one, so no colour is overwritten before it is read.
     for (i, from) in nearest.into_iter().enumerate().filter(|(_, from)| *from != NONE) {
         pixels[i] = pixels[from as usize];
     }
 }
 
-/// No pixel.
+/// Stands for no pixel.
 const NONE: u32 = u32::MAX;
 
-/// For each pixel of a picture the nearest that counts: two passes with the distances to those of the neighbours (P.-E. Danielsson, Euclidean
-/// Distance Mapping, 1980), exact but for a fraction of a pixel.
+/// For each pixel, the nearest one that counts: two passes that propagate the neighbours' distances (P.-E. Danielsson, Euclidean Distance
+/// Mapping, 1980), exact but for a fraction of a pixel.
 fn nearest(width: usize, height: usize, counts: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut found: Vec<u32> = (0..width * height).map(|i| if counts(i) { i as u32 } else { NONE }).collect();
     let far = |i: usize, from: u32| {
@@ -96,7 +96,7 @@ fn nearest(width: usize, height: usize, counts: impl Fn(usize) -> bool) -> Vec<u
 mod tests {
     use super::nearest;
 
-    /// All distances are those to the nearest of all.
+    /// Compares the distances with those found by trying all pixels.
     #[test]
     fn pixels_find_the_nearest() {
         let (width, height) = (31, 23);

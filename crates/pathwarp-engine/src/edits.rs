@@ -1,12 +1,11 @@
-//! Edits: steps at the beginning of a recipe that change shapes without bending them. The options `simplify` and `outset` stand for the usual
-//! ones.
+//! Edits: steps at the beginning of a recipe that change shapes without bending them. The options `simplify` and `outset` are shortcuts.
 
 use crate::failure::Failure;
 use pathwarp::deform::{ByHand, Info};
 use pathwarp::param::{Axis, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 
-/// The edits. Each has the name of its command. Captions come before the others wherever they stand among them.
+/// The edits, each named after its command. Captions are done before the others wherever they stand among them.
 pub static EDITS: [Info; 6] = [
     CAPTION,
     Info::new("simplify", "give paths the fewest nodes within a distance")
@@ -20,7 +19,7 @@ pub static EDITS: [Info; 6] = [
                 "Joints that turn by more than this stay corners. Default: those for which no smooth curve can stand within the distance.",
             )
             .within(0.0, 180.0),
-            // Recipes of older versions have it.
+            // For recipes of older versions.
             Param::flag("polylines", ""),
         ])
         .by_hand(ByHand { neutral: &[("within", "0.05%")], showing: &[("within", "1%")], ..ByHand::NONE }),
@@ -135,15 +134,15 @@ const CONTOUR: [Param; 8] = [
     Param::flag("marks", "Draw crop and register marks around the line."),
 ];
 
-/// The description of the edit called `name`.
+/// Returns the description of the edit called `name`.
 pub fn info(name: &str) -> Option<&'static Info> {
     EDITS.iter().find(|info| info.name == name)
 }
 
-/// Divides a recipe into its edits and the steps that bend.
+/// Splits a recipe into its edits and the steps that bend.
 ///
 /// # Errors
-/// An edit comes later, or is inverse.
+/// [`Failure::Usage`] if an edit follows a step that bends, or is inverse.
 pub fn divided(recipe: &Recipe) -> Result<(Vec<Step>, Recipe), Failure> {
     let is_edit = |s: &&Step| info(&s.deformation).is_some();
     let (edits, steps) = recipe.steps.split_at(recipe.steps.iter().take_while(is_edit).count());

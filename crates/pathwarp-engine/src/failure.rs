@@ -18,37 +18,37 @@ pub enum Failure {
     Limited(String, Exceeded, u8),
     /// An output cannot be written.
     Output(String),
-    /// The geometry does not allow it.
+    /// The geometry does not allow the deformation.
     Geometry(String),
     /// An error of the libraries; flags and advice are added when it is shown.
     Library {
         /// The error.
         error: Box<pathwarp::Error>,
-        /// The input that it concerns; `None` if the message names a file already.
+        /// The input at fault; `None` if the message already names a file.
         input: Option<String>,
-        /// The error occurred in a recipe: an [`Error::Input`](pathwarp::Error::Input) concerns a side file (a cage, a style, a
-        /// mesh), which the message names.
+        /// `true` if the error occurred in a recipe: an [`Error::Input`](pathwarp::Error::Input) is then about a side file (a cage, a
+        /// style, a mesh), which the message names.
         of_recipe: bool,
     },
 }
 
 impl Failure {
-    /// Wrong usage.
+    /// A failure because of wrong usage.
     pub fn usage(message: impl Into<String>) -> Self {
         Self::Usage(message.into())
     }
 
-    /// A problem with the file `path`.
+    /// A failure because of a problem with the file `path`.
     pub fn file(path: &Path, problem: impl Display) -> Self {
         Self::Input(format!("{}: {problem}", path.display()))
     }
 
-    /// A problem with the output file `path`.
+    /// A failure because of a problem with the output file `path`.
     pub fn output(path: &Path, problem: impl Display) -> Self {
         Self::Output(format!("{}: {problem}", path.display()))
     }
 
-    /// A failed write to standard output.
+    /// A failure to write to standard output.
     pub fn stdout(e: &std::io::Error) -> Self {
         Self::Output(format!("standard output: {e}"))
     }
@@ -61,7 +61,7 @@ impl Failure {
         }
     }
 
-    /// The shape and the point at which the map is infinite or undefined.
+    /// Returns the shape and the point at which the map is infinite or undefined, if that is the failure.
     pub(crate) fn infinity(&self) -> Option<(&str, Point)> {
         match self {
             Self::Library { error, .. } => match &**error {
@@ -88,7 +88,7 @@ impl Failure {
         }
     }
 
-    /// The message, with parameters as `flags`.
+    /// The message, in which parameters appear as `flags`.
     pub fn message(&self, flags: &Flags) -> String {
         match self {
             Self::Usage(m) | Self::Input(m) | Self::Limited(m, ..) | Self::Output(m) | Self::Geometry(m) => m.clone(),
@@ -99,12 +99,12 @@ impl Failure {
         }
     }
 
-    /// An error from looking up references or building a recipe.
+    /// The failure of looking up references or building a recipe.
     pub fn of_recipe(error: pathwarp::Error) -> Self {
         Self::Library { error: Box::new(error), input: None, of_recipe: true }
     }
 
-    /// The same failure with the name of the input in front, unless it is wrong usage or concerns another file.
+    /// Puts the name of the input in front, unless the failure is wrong usage or concerns another file.
     pub fn about(self, name: &str) -> Self {
         match self {
             Self::Input(m) => Self::Input(prefixed(name, &m)),

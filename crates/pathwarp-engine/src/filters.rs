@@ -1,4 +1,4 @@
-//! What filters draw, bent pixel by pixel where their affine fit would look different.
+//! Pictures of filter effects, bent pixel by pixel where affine fits of the filters would look different.
 
 use crate::bitmap::{Bender, Pixel, count_evaluations, count_pixels, too_much};
 use pathwarp::budget::{Budget, Limit};
@@ -7,7 +7,7 @@ use pathwarp_svg::ReadOptions;
 use pathwarp_svg::engine::{BentImage, FilterPainter, FilterRequest, PictureError};
 use pathwarp_svg::usvg_tree::{ReadTree, read_tree};
 
-/// The share of the work left for a drawing that its filters may take, and that of the rest of it which one may take.
+/// The share of a drawing's remaining work that its filters may take, and the share of the remainder that a single filter may take.
 const SHARE: f64 = 0.5;
 const SHARE_OF_ONE: f64 = 0.5;
 
@@ -24,18 +24,18 @@ impl FilterPainter for Bender {
 
 impl Bender {
     fn pictures(&self, r: &FilterRequest<'_>, budget: &Budget) -> Result<Option<Vec<Option<BentImage>>>, PictureError> {
-        /// Most pixels of a picture, and of those of a drawing together.
+        /// Most pixels of one picture, and of all pictures of a drawing.
         const MOST: f64 = 2e6;
         const MOST_TOGETHER: f64 = 8e6;
-        /// Evaluations of the map for a filter, and for a pixel.
+        /// Evaluations of the map for each filter and for each pixel.
         const FILTER: f64 = 12e3;
         const EVALUATED: f64 = 0.5;
-        /// Pixels per px of a picture that shows little, and where the fit is compared.
+        /// Pixels per px of a picture with little detail, and where the fit is compared.
         const COARSEST: f64 = 0.25;
         const COMPARED: f64 = 2.0;
-        /// Share of the page on which differences of all filters together are not seen.
+        /// Share of the page on which the differences of all filters together stay unseen.
         const UNSEEN: f64 = 0.002;
-        /// The density of a picture beside a shape whose edges are sharp, of that of pictures that stand alone.
+        /// Density of a picture beside a shape with sharp edges, as a share of the density of pictures that stand alone.
         const FINEST: f64 = 0.75;
         let reason = |e: Error| PictureError::from(e.to_string());
         let count = |width: f64, height: f64| {

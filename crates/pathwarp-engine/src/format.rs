@@ -40,14 +40,14 @@ pub const DRAWINGS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format
 pub const PICTURES: &[Format] = &[Format::Png, Format::Jpeg, Format::WebP];
 
 impl Format {
-    /// The format that the extension of a file says; `None` if it says none that is known.
+    /// Returns the format of a file by its extension; `None` if that is unknown.
     pub fn of(file: &Path) -> Option<Self> {
         let extension = file.extension()?;
         let is = |known: &&str| extension.eq_ignore_ascii_case(known);
         TABLE.iter().find(|(.., extensions)| extensions.iter().any(is)).map(|(format, ..)| *format)
     }
 
-    /// The name and the extensions.
+    /// Returns the format's name and its extensions.
     fn entry(self) -> (&'static str, &'static [&'static str]) {
         TABLE
             .iter()
@@ -55,12 +55,12 @@ impl Format {
             .map_or(("", &[]), |(_, name, extensions)| (*name, *extensions))
     }
 
-    /// The usual extension, which is also the word for `--format`.
+    /// Returns the usual extension, which is also the word for `--format`.
     pub fn extension(self) -> &'static str {
         self.entry().1.first().copied().unwrap_or_default()
     }
 
-    /// The format as the encoder knows it, if it is that of a picture.
+    /// Returns the encoder's format, if this is a format of pictures.
     pub fn of_picture(self, quality: Option<u8>) -> Option<PictureFormat> {
         match self {
             Self::Png => Some(PictureFormat::Png),
@@ -71,20 +71,20 @@ impl Format {
     }
 }
 
-/// A thing that commands write, with the formats it can have; the first is that of standard output.
+/// A kind of output, with the formats it can have; the first is that of standard output.
 #[derive(Clone, Copy)]
 pub struct Choice<'a> {
-    /// The thing with its verb: `a drawing is`.
+    /// The output with a verb: `a drawing is`.
     pub what: &'a str,
     /// The formats, the usual one first.
     pub among: &'a [Format],
 }
 
 impl Choice<'_> {
-    /// The format of the output `target`, `None` being standard output. `given` is the value of `--format`.
+    /// Returns the format of the output `target`, `None` being standard output. `given` is the value of `--format`.
     ///
     /// # Errors
-    /// The format is unknown, not one of these, or the extension says another one.
+    /// [`Failure::Usage`] if the format is unknown or not among these, or if the extension contradicts it.
     pub fn format(self, target: Option<&Path>, given: Option<Format>) -> Result<Format, Failure> {
         if let Some(format) = given {
             let word = format.extension();
@@ -119,7 +119,7 @@ impl Choice<'_> {
         out
     }
 
-    /// The way to a file with an extension that is not among these.
+    /// Suggests the command that writes files with an extension that is not among these.
     fn hint(self, extension: &str) -> &'static str {
         let has = |f: Format| self.among.contains(&f);
         match extension {

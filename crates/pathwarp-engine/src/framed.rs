@@ -8,8 +8,8 @@ use pathwarp::kurbo::Size;
 use pathwarp_raster::{Picture, PictureFormat};
 use std::borrow::Cow;
 
-/// A drawing of a PNG, JPEG or WebP alone, a px for each of its pixels; `None` for other files. Not every program turns images of
-/// drawings as their metadata say, so the pixels are turned.
+/// Returns a drawing of a PNG, JPEG or WebP alone, with one px for each of its pixels; `None` for other files. The pixels are turned as the
+/// metadata ask, since not every program does that for images of drawings.
 pub fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure> {
     if !Picture::sniff(bytes) {
         return Ok(None);
@@ -30,14 +30,14 @@ pub fn framed(bytes: &[u8], limits: &Limits) -> Result<Option<Vec<u8>>, Failure>
     Ok(Some(format!("{}data:{media_type};base64,{shown}\"/></svg>", before([width, height])).into_bytes()))
 }
 
-/// The markup before the data of a picture of this size.
+/// Returns the markup before the data of a picture of this size.
 fn before([width, height]: [u32; 2]) -> String {
     let size = format!("width=\"{width}\" height=\"{height}\"");
     let page = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"0 0 {width} {height}\">");
     page + &format!("<image id=\"picture\" {size} href=\"")
 }
 
-/// Returns `true` if a drawing holds one picture alone, on a page of this size.
+/// Returns `true` if a drawing consists of one picture, on a page of this size.
 pub fn is_framed(svg: &str, page: Size) -> bool {
     svg.starts_with(&before([page.width as u32, page.height as u32]))
 }

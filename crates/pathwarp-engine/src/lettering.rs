@@ -14,7 +14,7 @@ use std::path::Path;
 /// The weight of a family's regular font.
 pub const REGULAR: u16 = 400;
 
-/// Finds a font by its file or by its family.
+/// Finds a font by its file or family.
 pub fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -> Result<FontFile, Failure> {
     let read = |path: &Path, index| input::bytes(path).map(|bytes| FontFile { bytes, index });
     let path = Path::new(name);
@@ -35,7 +35,7 @@ pub fn find_font(name: &str, weight: u16, italic: bool, options: &ReadOptions) -
     Ok(pathwarp_svg::engine::find_font(name, weight, italic, options)?)
 }
 
-/// Sets words in a family, or in the bundled font, as a drawing in mm, and lists the characters that neither has.
+/// Sets words in a family, or in the bundled font, as a drawing in mm. Lists the characters that neither font has.
 pub fn set_plainly(
     words: &str,
     family: Option<&str>,
@@ -52,17 +52,17 @@ pub fn set_plainly(
     Ok((write_lettering(&text, &options)?, text.missing))
 }
 
-/// The font in a file that `name` names.
+/// Reads the font in a file that `name` names.
 pub fn read_font<'a>(name: &str, file: &'a FontFile) -> Result<Font<'a>, Failure> {
     Font::new(&file.bytes, file.index).map_err(|e| Failure::Input(format!("{name}: {e}")))
 }
 
-/// The bundled font.
+/// Returns the bundled font.
 pub fn bundled() -> Result<Font<'static>, Failure> {
     Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
 }
 
-/// Lays out words within the limits. Letters that the fonts lack come from installed ones, of a weight and upright or italic.
+/// Lays out words within the limits. Installed fonts of the given weight and slope supply letters that the fonts lack.
 pub fn laid_out_with_installed(
     words: &str,
     fonts: &[Font<'_>],
@@ -88,7 +88,7 @@ pub fn laid_out(words: &str, fonts: &[Font<'_>], style: &TextStyle, limits: &Lim
     layout_within(words, fonts, style, &max).map_err(|e| failure(&e, limits))
 }
 
-/// Maps an error of the layout: a bad option is wrong usage, anything else a problem of the font or the text.
+/// Turns an error of the layout into a failure: a bad option is wrong usage, anything else a problem of the font or the text.
 fn failure(e: &pathwarp_text::Error, limits: &Limits) -> Failure {
     use pathwarp_text::Error as E;
     match e {

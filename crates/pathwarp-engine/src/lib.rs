@@ -15,8 +15,8 @@
 //! # Ok::<(), pathwarp_engine::Error>(())
 //! ```
 //!
-//! A front end that reads and writes files takes the same road in parts: [`options`] are read, an [`Input`](input::Input) is opened, a
-//! [`Session`](session::Session) builds the steps for it and warps it, and [`output`] puts the files in place.
+//! A front end that reads and writes files takes the same steps one by one: it reads the [`options`], opens an [`Input`](input::Input),
+//! lets a [`Session`](session::Session) build the recipe for it and warp it, and puts the files in place through [`output`].
 
 #![expect(missing_debug_implementations, reason = "front ends show none of the parts")]
 

@@ -1,4 +1,4 @@
-//! Links of a drawing to files, where the drawing goes: they lead to the same files as before, or pictures are put in.
+//! Links of a drawing to files: where the drawing goes, they are rewritten to lead to the same files, or pictures are embedded.
 
 use crate::failure::Failure;
 use crate::output::is_stream;
@@ -10,30 +10,30 @@ use std::path::{Component, Path, PathBuf};
 /// Where a drawing goes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum Destination {
-    /// Back to where it comes from: links stay as they are.
+    /// Back to the input: links stay as they are.
     #[default]
     Back,
     /// To a file: relative links lead from its folder.
     File(PathBuf),
-    /// To no known place, such as standard output: pictures are put in.
+    /// To an unknown folder, as with standard output: pictures are embedded.
     Anywhere,
 }
 
 impl Destination {
-    /// The destination of an output; `None` is standard output.
+    /// Returns the destination of an output; `None` is standard output.
     pub fn of(target: Option<&Path>) -> Self {
         target.filter(|to| !is_stream(to)).map_or(Self::Anywhere, |to| Self::File(to.to_owned()))
     }
 
-    /// A result with the links that it has there. `read` says where they lead now, and what may be read.
+    /// Rewrites the links of a result for its destination. `read` tells where they lead now, and what may be read.
     ///
     /// # Errors
-    /// The pictures that are put in exceed the limits.
+    /// [`Failure::Library`] if the embedded pictures exceed the limits.
     pub fn linked(&self, svg: String, read: &ReadOptions) -> Result<String, Failure> {
         Ok(self.relinking(read).of(&svg, read)?.unwrap_or(svg))
     }
 
-    /// The source of a result, to be kept in it. Pictures that could not be read from there are put in.
+    /// Returns the source of a result, to be stored in it. Pictures that could not be read from the destination are embedded.
     pub(crate) fn source(&self, document: &Document, read: &ReadOptions) -> Result<Vec<u8>, Failure> {
         let mut relinking = self.relinking(read);
         relinking.embed |= relinking.way.starts_with("..");
@@ -51,7 +51,7 @@ impl Destination {
     }
 }
 
-/// The way to a folder from that of a file, as the beginning of a link. `None` if there is none.
+/// Returns the relative path from a file to a folder, as the beginning of a link, if there is one.
 fn way(from: &Path, file: &Path) -> Option<String> {
     let full = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

@@ -1,4 +1,4 @@
-//! The size of what this process has read and drawn so far, for a front end that bounds its time and memory by it.
+//! Counts the bytes that this process has read and the pixels that it has drawn: front ends bound its time and memory by them.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,12 +10,12 @@ pub fn count_input(bytes: usize) {
     BYTES.fetch_add(bytes as u64, Ordering::Relaxed);
 }
 
-/// Adds a picture: large ones may take longer, whatever the size of the file.
+/// Adds a picture: a large one may take long even if its file is small.
 pub fn count_pixels(pixels: f64) {
     PIXELS.fetch_add(pixels as u64, Ordering::Relaxed);
 }
 
-/// The bytes and the pixels so far.
+/// Returns the bytes and the pixels so far.
 #[must_use]
 pub fn counted() -> [u64; 2] {
     [&BYTES, &PIXELS].map(|n| n.load(Ordering::Relaxed))

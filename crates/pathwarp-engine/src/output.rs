@@ -30,7 +30,7 @@ impl PendingFile {
         }
     }
 
-    /// The bytes for standard output.
+    /// An output for standard output.
     pub fn stdout(bytes: Vec<u8>) -> Self {
         Self { content: Content::Stdout(bytes), to: PathBuf::from("-") }
     }
@@ -46,9 +46,9 @@ impl PendingFile {
         Ok(Self { content: Content::File(temporary), to })
     }
 
-    /// Puts all outputs in place. If one cannot be, the files before it are put back as they were.
+    /// Puts all outputs in place. If one fails, those before it are restored to what they were.
     pub fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
-        // Print first: printing cannot be undone, and if it fails, no file is in place yet.
+        // Print first: printing cannot be undone, and if it fails, no file has been replaced yet.
         let (files, streams): (Vec<Self>, Vec<Self>) =
             all.into_iter().partition(|p| matches!(p.content, Content::File(_)));
         for stream in streams {
@@ -82,7 +82,7 @@ impl PendingFile {
         }
     }
 
-    /// Renames a file to its final name. A file that is not `alone` keeps what it replaces, to be able to put it back.
+    /// Renames a file to its final name. Unless it is `alone`, the file that it replaces is kept, so that it can be restored.
     fn put_in_place(self, alone: bool) -> io::Result<Placed> {
         let backup =
             if !alone && self.to.exists() { Some(Temporary::backup(&self.to, folder(&self.to))?) } else { None };
@@ -101,7 +101,7 @@ pub struct Draft {
 
 enum Sink {
     File(Temporary, BufWriter<File>),
-    /// For a stream, which gets nothing before everything has succeeded.
+    /// The bytes for a stream, which gets nothing before everything has succeeded.
     Bytes(Vec<u8>),
 }
 
@@ -117,7 +117,7 @@ impl Draft {
         }
     }
 
-    /// Adds to the output.
+    /// Appends to the output.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         let written = match &mut self.sink {
             Sink::File(_, file) => file.write_all(bytes),
@@ -126,7 +126,7 @@ impl Draft {
         written.map_err(|e| Failure::output(&self.to, cannot_be_written(&e)))
     }
 
-    /// The output, complete.
+    /// Returns the complete output.
     pub fn finish(self) -> Result<PendingFile, Failure> {
         match self.sink {
             Sink::File(temporary, mut file) => {
@@ -138,17 +138,17 @@ impl Draft {
     }
 }
 
-/// The kinds of places that an output's name may stand for.
+/// The kinds of destinations that an output's name may stand for.
 enum Place {
     Stdout,
     Device,
     Folder,
-    /// A file, which may not exist yet. Of a symbolic link, what it points to: the link is kept.
+    /// A file, which may not exist yet. A symbolic link stands for its target, so that the link is kept.
     File(PathBuf),
 }
 
 impl Place {
-    /// Asks the system once, unless `to` is a symbolic link.
+    /// Classifies the name `to`. Asks the system once, unless it is a symbolic link.
     fn of(to: &Path) -> Self {
         if is_stdout(to) {
             return Self::Stdout;
@@ -163,17 +163,17 @@ impl Place {
         }
     }
 
-    /// The place behind a link to a file, or to nothing yet.
+    /// Classifies a symbolic link, whose target may not exist yet.
     fn of_link(link: &Path) -> Self {
         let file = behind(link);
         if is_descriptor(&file) {
-            // Keep what the open file holds so far; it may have no name any more.
+            // Keep the content of the open file; it may have no name any more.
             return if file.ends_with("1") { Self::Stdout } else { Self::Device };
         }
         Self::File(link.canonicalize().unwrap_or(file))
     }
 
-    /// A temporary file beside the file, and the file.
+    /// Creates a temporary file in the destination's folder. Returns the destination and the temporary file.
     fn temporary(self, to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
         let file = match self {
             Self::File(file) => file,
@@ -194,16 +194,16 @@ impl Place {
     }
 }
 
-/// Gives a new file the permissions of the one that it will replace, which may be private.
+/// Gives a new file the permissions of the file that it will replace, which may be private.
 #[cfg(unix)]
 fn like_the_old(old: &Path, new: &File) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
-    /// Without the bits that let a program run as its owner.
+    /// Excludes the bits that let a program run as its owner.
     const PERMISSIONS: u32 = 0o777;
     let Ok(old) = old.metadata() else { return Ok(()) };
     let own = new.metadata()?;
     if (old.uid(), old.gid()) != (own.uid(), own.gid()) {
-        // Only some users may give files away. Others own what they write.
+        // Only some users may give files away; the others stay owners of what they write.
         let _ = fchown(new, Some(old.uid()), Some(old.gid()));
     }
     new.set_permissions(std::fs::Permissions::from_mode(old.mode() & PERMISSIONS))
@@ -214,33 +214,33 @@ fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// The file that a chain of symbolic links leads to, which may not exist.
+/// Follows a chain of symbolic links to its last file, which may not exist.
 pub fn behind(link: &Path) -> PathBuf {
-    /// The system follows no more.
+    /// Systems follow no longer chains.
     const MOST_LINKS: usize = 40;
     let mut at = link.to_owned();
     for _ in 0..MOST_LINKS {
-        // A descriptor is a link to the name that its file once had.
+        // A descriptor links to a name that its file may have lost.
         let Some(next) = at.read_link().ok().filter(|_| !is_descriptor(&at)) else { break };
         at = folder(&at).join(next);
     }
     at
 }
 
-/// Returns `true` for a name of an open file, such as that behind `/dev/stdout`.
+/// Returns `true` for the name of an open file, such as the target of `/dev/stdout`.
 fn is_descriptor(file: &Path) -> bool {
     cfg!(unix) && ["/proc/self/fd", "/dev/fd"].iter().any(|fds| folder(file) == Path::new(fds))
 }
 
-/// A file in place.
+/// A file under its final name.
 struct Placed {
     to: PathBuf,
-    /// The file it replaced.
+    /// A backup of the file that it replaced.
     backup: Option<Temporary>,
 }
 
 impl Placed {
-    /// Puts back the file that was there. An error on the way back has no remedy; the first error is reported.
+    /// Restores the file that was replaced. An error here is ignored; the first error is the one reported.
     fn undo(self) {
         let _ = match self.backup {
             Some(old) => old.rename(&self.to),
@@ -265,7 +265,7 @@ pub fn is_stdout(to: &Path) -> bool {
     to.as_os_str() == "-"
 }
 
-/// Returns `true` if `to` stands for no place in a folder: standard output, a pipe, a terminal.
+/// Returns `true` if `to` stands for no file in a folder, but for standard output, a pipe or a terminal.
 pub(crate) fn is_stream(to: &Path) -> bool {
     matches!(Place::of(to), Place::Stdout | Place::Device)
 }
@@ -283,7 +283,7 @@ pub fn write(target: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes to standard output. The reader may close the pipe early; ignore that.
+/// Writes to standard output. Ignores that the reader has closed the pipe.
 pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {

@@ -1,4 +1,4 @@
-//! The page of a drawing under `--fit`: which pages stay as they are, and what is said about the page.
+//! The page of a drawing under `--fit`: pages that stay as they are, and the notes and warnings about the page.
 
 use crate::options::{CommonOptions, FrameChoice};
 use crate::readable::three_figures;
@@ -9,12 +9,12 @@ use pathwarp::recipe::Recipe;
 use pathwarp_svg::engine::Overhang;
 use pathwarp_svg::{Document, PageFit, Warning};
 
-/// Side of the largest square page that is an icon's, in px.
+/// Side in px of the largest square page that counts as an icon's.
 const ICON: f64 = 64.0;
 /// Largest relative difference of a page's sides from those of a square, or of a sheet of paper.
 const SAME: f64 = 0.005;
 
-/// The largest sheets of the series A and B of ISO 216 and the series B of JIS P 0138, in mm. The next sheet of a series is half of it.
+/// The largest sheets of the series A and B of ISO 216 and the series B of JIS P 0138, in mm. Each next sheet of a series is half as large.
 const SERIES: [[f64; 2]; 3] = [[841.0, 1189.0], [1000.0, 1414.0], [1030.0, 1456.0]];
 /// The last number of a series.
 const LAST: usize = 10;
@@ -41,7 +41,7 @@ pub(crate) fn stays(doc: &Document, options: &CommonOptions, recipe: &Recipe) ->
     if !doc.is_measured() && is_near(px[0], px[1]) && px[0] <= ICON && is_near(units[0], units[1]) {
         return Some("it is an icon's");
     }
-    // Programs write mm, inches or points as plain numbers, too.
+    // Some programs write mm, inches or points as plain numbers.
     let plain = [MM_PER_PX, 1.0, 25.4, 25.4 / 72.0].map(|unit| units.map(|v| v * unit));
     let is_paper = plain.into_iter().filter(|_| !doc.is_measured()).chain([px.map(|v| v * MM_PER_PX)]).any(is_paper);
     is_paper.then_some("it is a sheet of paper")
@@ -51,7 +51,7 @@ fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * b
 }
 
-/// Returns `true` for the size of a sheet of paper in mm, either way round.
+/// Returns `true` for the size of a sheet of paper in mm, upright or lying.
 fn is_paper([w, h]: [f64; 2]) -> bool {
     let is = |[a, b]: [f64; 2]| is_near(w.min(h), a) && is_near(w.max(h), b);
     let in_series = |largest: [f64; 2]| {
@@ -61,27 +61,27 @@ fn is_paper([w, h]: [f64; 2]) -> bool {
     SHEETS.into_iter().any(is) || SERIES.into_iter().any(in_series)
 }
 
-/// What became of a page.
+/// The changes of a page.
 #[derive(Debug, Clone, Default)]
 pub struct PageNews {
     /// The page before and after, in user units, if it is adapted.
     pub change: Option<[Rect; 2]>,
-    /// The share of its size that the result was scaled to for staying on its page.
+    /// The scale of the result, as a share of its size, that keeps it on its page.
     pub(crate) shrunk: Option<f64>,
-    /// The change was the program's decision.
+    /// `true` if the program decided on the change.
     pub(crate) by_itself: bool,
-    /// The artwork extends past the page and did not before.
+    /// The artwork that extends past the page and did not before.
     pub(crate) overhang: Option<Overhang>,
-    /// Why the page stays where it could have grown.
+    /// The reason why the page stays although it could have grown.
     pub(crate) stays: Option<&'static str>,
-    /// Nothing of the result lies on the page.
+    /// `true` if nothing of the result lies on the page.
     pub is_blank: bool,
-    /// What has come onto the page.
+    /// The warning about artwork that has come onto the page.
     pub arrivals: Option<Warning>,
 }
 
 impl PageNews {
-    /// Takes the news out of the result of a warp.
+    /// Takes the news about the page from the result of a warp.
     pub(crate) fn of(warped: &mut pathwarp_svg::WarpedDocument, fit: PageFit, stays: Option<&'static str>) -> Self {
         let at = warped.warnings.iter().position(|w| matches!(w, Warning::Arrivals(_)));
         Self {
@@ -95,7 +95,7 @@ impl PageNews {
         }
     }
 
-    /// Says that the page is another by `--fit auto`, or that the result is on it by `--fit shrink`.
+    /// Reports that `--fit auto` has changed the page, or that `--fit shrink` keeps the result on it.
     pub fn note(&self) -> Option<String> {
         if let Some(by) = self.shrunk {
             return Some(match three_figures(100.0 * by).as_str() {
@@ -145,19 +145,19 @@ fn overhang(o: Overhang, stays: Option<&str>) -> String {
     )
 }
 
-/// What became of the pages of a batch: one warning of each kind for all.
+/// The changes of the pages of a batch: one warning of each kind for all.
 #[derive(Debug, Default)]
 pub struct PageCounts {
     past: usize,
-    /// The largest share of the page's size by which artwork extends past it, and the input that has it.
+    /// The largest share of the page's size by which artwork extends past it, with the input concerned.
     most: Option<(f64, String)>,
-    /// The number of inputs, and the first.
+    /// The number of inputs without anything on their page, and the first of them.
     blank: (usize, Option<String>),
     arrivals: (usize, Option<String>),
 }
 
 impl PageCounts {
-    /// Counts the input `file`.
+    /// Adds the input `file` to the counts.
     pub fn add(&mut self, news: &PageNews, file: &str) {
         if let Some(o) = news.overhang {
             self.past += 1;
@@ -173,12 +173,12 @@ impl PageCounts {
         }
     }
 
-    /// Returns `true` if nothing is on a page.
+    /// Returns `true` if a page has nothing on it.
     pub fn are_blank(&self) -> bool {
         self.blank.0 > 0
     }
 
-    /// The warnings about a batch of so many inputs.
+    /// The warnings about a batch of `inputs` files.
     pub fn warnings(&self, inputs: usize) -> Vec<String> {
         let past = self.most.as_ref().map(|(share, file)| {
             format!(

@@ -1,21 +1,20 @@
-//! Text that came from files, made fit for a terminal: without control characters, which could move the cursor or rename the window,
-//! and not as long as a file.
+//! Text from files, made fit for a terminal: shortened, and without control characters, which could move the cursor or rename the window.
 
 use pathwarp::engine::decimal::trimmed;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// Most characters of a message that are shown. An id or a name in it can be as long as its file.
+/// Most characters of a message that are shown; an id or name in it can be as long as its file.
 const LONGEST: usize = 2000;
-/// The part of them before the gap; the end of a message says what to do.
+/// Number of these characters before the gap. The end of a message is kept, since it tells what to do.
 const HEAD: usize = 1400;
 
-/// A name for a table: control characters are written as escapes.
+/// Prepares a name for a table: control characters become escapes.
 pub fn name(name: &str) -> Cow<'_, str> {
     escaped(name, is_unsafe_in_names)
 }
 
-/// A message, whose lines and tabs are kept, and which has a gap in its middle if it is very long.
+/// Prepares a message: lines and tabs are kept, and a very long text gets a gap in its middle.
 pub fn message(message: &str) -> Cow<'_, str> {
     let length = message.chars().count();
     if length <= LONGEST {
@@ -27,12 +26,12 @@ pub fn message(message: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{} … ({left_out} characters) … {}", escaped(&head, is_unsafe), escaped(&tail, is_unsafe)))
 }
 
-/// Writes JSON, indented, and escapes the control characters that JSON allows as they are.
+/// Writes indented JSON, with escapes for the control characters that JSON allows unescaped.
 pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
     serde_json::to_string_pretty(value).map(escaped_json)
 }
 
-/// Control characters stand in the texts of JSON only.
+/// Escapes control characters in JSON, where they occur in strings only.
 fn escaped_json(mut json: String) -> String {
     if json.contains(is_unsafe) {
         let escaped = |c: char| if is_unsafe(c) { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
@@ -45,7 +44,7 @@ fn is_unsafe(c: char) -> bool {
     is_unsafe_in_names(c) && c != '\n' && c != '\t'
 }
 
-/// Control characters, and those that change the order of what is shown (Unicode annex 9, table 4).
+/// Returns `true` for control characters and characters that change the order of the text (Unicode annex 9, table 4).
 fn is_unsafe_in_names(c: char) -> bool {
     c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -63,12 +62,12 @@ fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
 
 /// Formats a positive number with three significant figures.
 pub(crate) fn three_figures(v: f64) -> String {
-    /// No page is so small that more would matter.
+    /// Enough for the smallest page.
     const MOST_DECIMALS: f64 = 12.0;
     trimmed(v, (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize)
 }
 
-/// Lists the first `most` names, and how many more there are.
+/// Lists the first `most` names, and the number of the others.
 pub fn listed(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<&str> = names.iter().take(most).map(AsRef::as_ref).collect();
     let more = names.len().saturating_sub(most);

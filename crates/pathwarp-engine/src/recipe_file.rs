@@ -1,4 +1,4 @@
-//! Recipe files.
+//! Recipe files: steps with their parameters, and common options, in TOML.
 //!
 //! ```toml
 //! pathwarp = 1
@@ -41,7 +41,7 @@ const EXCLUDE: &str = "exclude";
 #[serde(deny_unknown_fields)]
 struct RecipeFile {
     pathwarp: i64,
-    /// The steps deform solids, not drawings.
+    /// `true` if the steps deform solids instead of drawings.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     solid: bool,
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
@@ -70,15 +70,15 @@ pub fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<Sa
     parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
 }
 
-/// Reads the text of a recipe that stands in the file of a drawing. Paths as in [`read`].
+/// Reads a recipe embedded in a drawing's file. Relative paths refer to `folder`; absolute ones are allowed only if `external`.
 pub fn from_text(catalogue: &dyn Catalogue, text: &str, folder: &Path, external: bool) -> Result<SavedRecipe, String> {
     parse(catalogue, text, &Folder { path: folder, external })
 }
 
-/// The folder of a recipe.
+/// The folder that paths in a recipe refer to.
 struct Folder<'a> {
     path: &'a Path,
-    /// Files anywhere may be named.
+    /// `true` if paths may lead anywhere.
     external: bool,
 }
 
@@ -159,7 +159,7 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
     Ok(step)
 }
 
-/// The values of a key as they would be typed on the command line.
+/// Converts the values of a key to words as typed on a command line.
 fn texts(value: &Value) -> Option<Vec<String>> {
     let text = |v: &Value| match v {
         Value::String(s) => Some(s.clone()),
@@ -184,8 +184,7 @@ fn names_file(param: &Param, value: &str, folder: &Path) -> bool {
     }
 }
 
-/// A value with its path relative to the current folder. A path must lead to a regular file, and be relative unless the user
-/// allows others.
+/// Makes the path in a value relative to the current folder. The file must be a regular one, and the path relative unless `external`.
 fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<String, String> {
     if !names_file(param, &value, folder.path) {
         return Ok(value);
@@ -198,14 +197,14 @@ fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<Stri
     }
     let placed = folder.path.join(path);
     let file = if placed.exists() { placed.clone() } else { split_reference(&placed.to_string_lossy()).0 };
-    // A file that does not exist gets its error where it is read.
+    // A missing file is reported where it is read.
     if file.exists() && !file.is_file() {
         return Err(format!("`{value}` is not a regular file"));
     }
     Ok(placed.display().to_string())
 }
 
-/// The text of a recipe file in `folder` with these steps and the options that recipes store.
+/// Returns the text of a recipe file in `folder` with these steps and the options that recipes store.
 pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: &Path) -> Result<String, Failure> {
     let here = std::env::current_dir().map_err(|e| Failure::Input(e.to_string()))?;
     let same_place = folder.as_os_str().is_empty()
@@ -245,13 +244,13 @@ pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: 
     toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
 }
 
-/// The path of a file relative to the current folder, as steps name files.
+/// Returns the path of a file relative to the current folder, as steps name files.
 pub fn from_here(file: &Path) -> String {
     std::env::current_dir().map_or_else(|_| file.display().to_string(), |here| relative(&here.join(file), &here))
 }
 
-/// The path of a file relative to a folder, as recipes name files; the absolute path where there is none, on another drive. A
-/// reference `FILE#NAME` keeps its name.
+/// Returns the path of a file relative to a folder, as recipes name files; an absolute path if the file is on another drive. A reference
+/// `FILE#NAME` keeps its name.
 fn relative(file: &Path, folder: &Path) -> String {
     let (path, name) = if file.exists() {
         (file.to_owned(), None)
@@ -268,7 +267,7 @@ fn relative(file: &Path, folder: &Path) -> String {
     name.map_or_else(|| shown.clone(), |n| format!("{shown}#{n}"))
 }
 
-/// Typed values as TOML: a single one as a string or `true`, several as a list.
+/// Converts typed values to TOML: a single one to a string or `true`, several to a list.
 fn value(mut values: Vec<String>) -> Value {
     match values.pop() {
         Some(only) if values.is_empty() => {

@@ -26,9 +26,8 @@ pub fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &R
     Ok(())
 }
 
-/// Looks up the references that [`resolve_files`] leaves open: `in_input` finds a path of the input document.
-///
-/// Returns the names: those paths are guides, not artwork.
+/// Looks up the references that [`resolve_files`] leaves open: `in_input` finds a path of the input document. Returns the names of these
+/// paths, which are guides, not artwork.
 pub(crate) fn resolve_names(
     registry: &Registry,
     recipe: &mut Recipe,
@@ -50,7 +49,7 @@ pub(crate) fn resolve_names(
     Ok(guides)
 }
 
-/// The files that a recipe reads.
+/// Returns the files that a recipe reads.
 pub fn files_read(catalogue: &dyn Catalogue, recipe: &Recipe) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for step in &recipe.steps {
@@ -67,7 +66,7 @@ pub fn files_read(catalogue: &dyn Catalogue, recipe: &Recipe) -> Vec<PathBuf> {
     files
 }
 
-/// The files that a recipe's parameters ask to be written.
+/// Returns the files that a recipe's parameters ask to be written.
 pub fn files_written<'a>(
     catalogue: &'a dyn Catalogue,
     recipe: &'a Recipe,
@@ -79,22 +78,22 @@ pub fn files_written<'a>(
     })
 }
 
-/// Returns `true` if a path reference that is read in `folder` names a file, and not a shape, a path of the input or the path itself.
+/// Returns `true` if a path reference, read in `folder`, names a file rather than a shape, a path of the input or path data.
 pub fn names_file(reference: &str, folder: &Path) -> bool {
     let is_name = reference.starts_with('#') || is_inline(reference);
     !is_name && (!is_shape(reference) || folder.join(split_reference(reference).0).is_file())
 }
 
-/// The current folder.
+/// Stands for the current folder.
 pub const HERE: &str = "";
 
-/// Looks up `FILE#NAME` or `FILE`, in px.
+/// Looks up the path that `FILE#NAME` or `FILE` names, and scales it to px.
 pub fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error> {
     let (outline, to_px) = found(reference, reading)?;
     Ok(outline.transformed(to_px))
 }
 
-/// The outline of a reference, and the map from its user units to px.
+/// Returns the outline of a reference, and the map from its user units to px.
 fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
     let (file, name) = split_reference(reference);
     if let Some(outline) = outline(&file, name, &reading.limits)? {

@@ -10,21 +10,21 @@ use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// One input file.
+/// The report of one input file.
 #[derive(Debug, Clone, Serialize)]
 pub struct FileReport {
-    /// Its name.
+    /// The name of the file.
     pub file: String,
-    /// `None`: standard output, or none because of an error.
+    /// The name of the output; `None` for standard output or after an error.
     pub output: Option<String>,
-    /// Why the input could not be warped; omitted if it was.
+    /// The error, if the input could not be warped; omitted otherwise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// User units; `None` after an error.
+    /// The tolerance in user units; `None` after an error.
     pub(crate) tolerance: Option<f64>,
     /// The frame that percentages refer to: x, y, width and height in user units; `None` after an error.
     pub frame: Option<[f64; 4]>,
-    /// What every step holds for; omitted if all hold for the same.
+    /// The part of the artwork that each step applies to; omitted if all apply to the same.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) selections: Vec<StepSelection>,
     /// The height of the lettering's baseline, if the frame has one.
@@ -40,15 +40,15 @@ pub struct FileReport {
     /// The contours that `--kerf` moved; omitted without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) kerf: Option<KerfReport>,
-    /// The proportions that `--crop` found in a photograph; omitted where it tells none.
+    /// The proportions that `--crop` found in a photograph; omitted if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) proportions: Option<Proportions>,
-    /// Warnings about all of it.
+    /// Warnings about the whole file.
     pub warnings: Vec<String>,
 }
 
 impl FileReport {
-    /// An input that could not be warped.
+    /// Reports an input that could not be warped.
     pub fn failed(file: String, error: String) -> Self {
         Self {
             file,
@@ -77,31 +77,31 @@ impl FileReport {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct StepSelection {
     pub(crate) deformation: String,
-    /// Selectors; none for all artwork.
+    /// Selectors; empty for all artwork.
     pub(crate) select: Vec<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) exclude: Vec<String>,
-    /// The frame that its percentages refer to, as in a report.
+    /// The frame that its percentages refer to: x, y, width and height in user units.
     pub(crate) frame: [f64; 4],
 }
 
-/// One shape: what became of its curves and paint, and what the run knows of it.
+/// One shape: the changes of its curves and paint, the steps that applied to it, and its folds.
 #[derive(Debug, Clone)]
 pub struct ReportedShape {
-    /// Its curves and its paint, before and after.
+    /// Its curves and paint, before and after.
     pub shape: ShapeReport,
-    /// The steps that hold for the shape, counted from 1, unless all do.
+    /// The steps that apply to the shape, counted from 1; `None` if all do.
     pub(crate) steps: Option<Vec<usize>>,
-    /// Where the map turned it over.
+    /// Its folds.
     pub fold: Fold,
 }
 
-/// A fold of one shape.
+/// The folds of one shape.
 #[derive(Debug, Clone)]
 pub struct Fold {
     /// Number of orientation changes along the shape, at least 1; 0 if it does not fold.
     pub count: usize,
-    /// The first place where it folds.
+    /// The first point where it folds.
     pub at: Option<Point>,
 }
 
@@ -113,7 +113,7 @@ impl Fold {
     }
 }
 
-/// Numbers that are usual, and texts that have nothing to say, are omitted. Unknown numbers are infinite here and null in JSON.
+/// Serializes without usual numbers and empty texts. Infinite numbers are unknown, and null in JSON.
 impl Serialize for ReportedShape {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, united, .. } =
@@ -131,7 +131,7 @@ impl Serialize for ReportedShape {
         map.serialize_entry("segments_out", &path.segments_out)?;
         map.serialize_entry("max_error", &path.max_error)?;
         map.serialize_entry("share", &path.share)?;
-        // Proven, by interval arithmetic or because the map is exact on the curve.
+        // Proven by interval arithmetic, or because the map is exact on the curve.
         map.serialize_entry("certified", &(path.assurance >= Assurance::Certified))?;
         map.serialize_entry("assurance", assurance_word(path.assurance))?;
         map.serialize_entry("folds", &self.fold.count)?;
@@ -166,9 +166,9 @@ impl Serialize for ReportedShape {
 /// A shape that was left unchanged, or warped only in part.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct SkippedShape {
-    /// Its id, or its place.
+    /// Its id, or its position in the document.
     pub id: String,
-    /// The reason. It begins with `only` if the shape is warped in part.
+    /// The reason; begins with `only` if the shape was warped in part.
     pub why: String,
 }
 

@@ -1,5 +1,5 @@
-//! The one road: artwork and steps in, result and report out. References are looked up, frames chosen, steps built, artwork warped. The
-//! command line, the editor, Inkscape and other languages all take it.
+//! The pipeline from artwork and steps to a result and a report: look up references, choose frames, build steps, warp artwork. The command
+//! line, the editor, Inkscape and other languages all run it.
 
 use crate::advice::{self, Flags};
 use crate::caption::is_caption;
@@ -29,13 +29,13 @@ use std::sync::atomic::AtomicBool;
 
 /// Steps and options, to be applied to artwork.
 pub struct Session<'a> {
-    /// The deformations that there are.
+    /// The deformations known.
     pub registry: &'a Registry,
-    /// The steps, with the contents of files.
+    /// The steps, with the contents of the files that they name.
     pub recipe: &'a Recipe,
-    /// The options as read.
+    /// The options, parsed.
     pub options: &'a CommonOptions,
-    /// The options as given, for a recipe that is written.
+    /// The options as given; a recipe that is written stores these.
     pub given: &'a Given,
 }
 
@@ -43,34 +43,34 @@ pub struct Session<'a> {
 pub struct Ready {
     /// The steps that bend, with all references looked up.
     pub recipe: Recipe,
-    /// The edit that is done if there are none.
+    /// The edit to do if no step bends.
     edit: Option<Step>,
     /// The maps of all parts of the artwork.
     pub built: BuiltParts,
     /// The frame of the first step.
     pub frame: Frame,
-    /// The frames of the steps, or of the edit, whose artwork no other step has moved before.
+    /// For each step, or for the edit: its frame, if no earlier step has moved its artwork.
     starts: Vec<Option<Frame>>,
 }
 
-/// The frame of all artwork, and what it depends on: the guides, the edits that are done first, and the baseline of the next step.
+/// The frame of all artwork, and what it depends on: the guides, the edits that are done first, and the first step's baseline.
 pub struct Framed {
     of: (Vec<String>, Vec<Step>, Baseline),
     /// The box that percentages refer to.
     pub frame: Frame,
 }
 
-/// Artwork that was warped. Nothing is written yet, not even to temporary files, except for `files`.
+/// Warped artwork. Nothing is written yet, except for the temporary files behind `files`.
 pub struct Warped {
-    /// The file.
+    /// The warped file.
     pub result: WarpedResult,
-    /// Names no output.
+    /// The report, without the name of an output.
     pub report: FileReport,
-    /// What became of the page; the last warnings say so.
+    /// The changes of the page; the last warnings describe them.
     pub page: PageNews,
     /// The lines of `--explain`.
     pub notes: Vec<String>,
-    /// Something was left out or missed the tolerance.
+    /// `true` if something was left out or missed the tolerance.
     pub partial: bool,
     /// Files that deformations save.
     pub saves: Vec<SavedFile>,
@@ -80,8 +80,8 @@ pub struct Warped {
     pub preview: Option<Vec<u8>>,
 }
 
-/// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up
-/// beside `name`, which is empty if there is no such place; `destination` says what becomes of links. The switch `stop` ends the work.
+/// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up beside
+/// `name`; if it is empty, there are none. `destination` decides about links in the result. The switch `stop` ends the work.
 pub fn warp_bytes(
     registry: &Registry,
     recipe: &Recipe,
@@ -90,7 +90,7 @@ pub fn warp_bytes(
     (name, destination): (&Path, Destination),
     bytes: &[u8],
 ) -> Result<(Vec<u8>, Warped), Failure> {
-    // The page of a drawing stays in the program that calls; a picture has none.
+    // A drawing keeps its page in the calling program; a picture has none.
     let mut options = if Picture::sniff(bytes) { given.read()? } else { given.keeping_pages().read()? };
     options.reading.stop(stop);
     let (session, flags) = (Session { registry, recipe, options: &options, given }, Flags::of(registry));
@@ -99,14 +99,13 @@ pub fn warp_bytes(
     let mut warped = warped.map_err(|f| f.about(&display(name)))?;
     match &mut warped.result {
         WarpedResult::Bytes(bytes) => Ok((std::mem::take(bytes), warped)),
-        // Only an XCF is written to a file, and it is not read from memory.
+        // Only an XCF is written to a file, and an XCF is never read from memory.
         WarpedResult::File(_) => Err(Failure::usage("the result is a file")),
     }
 }
 
 impl Session<'_> {
-    /// Looks up references in the artwork, chooses the frames and builds the steps. An editor, which bends artwork again and again, keeps
-    /// its frame in `framed`.
+    /// Looks up references in the artwork, chooses frames and builds steps. An editor passes `framed` to keep the frame from call to call.
     pub fn ready(&self, artwork: &mut dyn Artwork, framed: Option<&mut Option<Framed>>) -> Result<Ready, Failure> {
         let mut recipe = self.recipe.clone();
         let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
@@ -143,7 +142,7 @@ impl Session<'_> {
         Ok(Ready { recipe, edit, built, frame, starts })
     }
 
-    /// The frame of some of the artwork.
+    /// Returns the frame of the selected artwork.
     fn frame(&self, artwork: &dyn Artwork, which: Which, baseline: Baseline) -> Result<Frame, Failure> {
         let frame = artwork.frame(which, self.options.frame, artwork.bounding_box(which), baseline)?;
         let frame = frame.with_units_per_px(artwork.units_per_px());
@@ -153,7 +152,7 @@ impl Session<'_> {
         })
     }
 
-    /// The frame of all artwork, as the last time if what it depends on is the same.
+    /// Returns the frame of all artwork: the cached one if nothing that it depends on has changed.
     fn framed(
         &self,
         artwork: &dyn Artwork,
@@ -168,7 +167,7 @@ impl Session<'_> {
         Ok(frame)
     }
 
-    /// The warp of artwork by steps that are built for it, with the tolerance for its frame.
+    /// Returns the request to warp artwork by steps that are built for it, with the tolerance for its frame.
     pub fn request<'r>(&'r self, artwork: &dyn Artwork, ready: &'r Ready) -> Result<WarpRequest<'r>, Failure> {
         let (options, painted) = (self.options, artwork.painted_box());
         let edit = ready.edit.as_ref().map(|step| planned(step, options, (painted, &ready.frame), true));
@@ -192,7 +191,7 @@ impl Session<'_> {
         })
     }
 
-    /// Warps artwork, and writes nothing. Messages of the steps get parameters as flags.
+    /// Warps artwork and writes nothing. Messages of the steps name parameters as flags.
     pub fn warp(&self, artwork: &mut dyn FileArtwork, flags: &Flags) -> Result<Warped, Failure> {
         let options = self.options;
         let ready = self.ready(artwork, None)?;
@@ -249,7 +248,7 @@ impl Session<'_> {
         })
     }
 
-    /// The decisions made on the user's behalf.
+    /// Returns the lines of `--explain`: the decisions made on the user's behalf.
     fn notes(&self, flags: &Flags, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
         if !self.options.explain {
             return Vec::new();
@@ -262,7 +261,7 @@ impl Session<'_> {
     }
 }
 
-/// The numbers of nodes before and after, and the largest error.
+/// Reports the numbers of nodes before and after simplifying, and the largest error.
 fn simplified(shapes: &[ReportedShape]) -> String {
     let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
     let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
@@ -272,7 +271,7 @@ fn simplified(shapes: &[ReportedShape]) -> String {
     format!("{before} nodes became {after}, within {error} units of the original")
 }
 
-/// The number of lines around artwork, if there are several.
+/// Reports the number of lines around the artwork, if there are several.
 fn islands(ready: &Ready, shapes: &[ReportedShape]) -> Option<String> {
     let count =
         shapes.first().filter(|_| ready.edit.as_ref().is_some_and(|e| e.deformation == "contour"))?.shape.copies;
@@ -283,7 +282,7 @@ fn islands(ready: &Ready, shapes: &[ReportedShape]) -> Option<String> {
     })
 }
 
-/// What shapes have become one.
+/// Reports which shapes have become one.
 fn united(shapes: &[ReportedShape]) -> Option<String> {
     const NAMED: usize = 5;
     let all: Vec<&ReportedShape> = shapes.iter().filter(|s| !s.shape.united.is_empty()).collect();
@@ -292,7 +291,7 @@ fn united(shapes: &[ReportedShape]) -> Option<String> {
     (!all.is_empty()).then(|| format!("{count} shapes became {}: {}", all.len(), listed(&names, NAMED)))
 }
 
-/// The warning about shapes of which nothing is left.
+/// Warns of shapes of which nothing is left.
 fn vanished(shapes: &[ReportedShape]) -> Option<String> {
     advice::vanished(shapes.iter().map(|s| &s.shape))
 }
@@ -306,7 +305,7 @@ fn in_flags(
     built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| flags.in_text(m))
 }
 
-/// What the steps hold for, for the report.
+/// For the report: the part of the artwork that each step applies to.
 fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
     if !recipe.steps.iter().any(Step::is_selective) {
         return Vec::new();
@@ -320,7 +319,7 @@ fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
     recipe.steps.iter().zip(&built.frames).map(of_step).collect()
 }
 
-/// The notes about the frames of the steps that start.
+/// Returns the notes about the frames of the steps that no other step precedes.
 fn frames(choice: FrameChoice, steps: &[Step], starts: &[Option<Frame>], seen: bool) -> Vec<String> {
     let several = steps.iter().any(Step::is_selective);
     let note = |(i, (step, frame)): (usize, (&Step, &Option<Frame>))| {
@@ -331,7 +330,7 @@ fn frames(choice: FrameChoice, steps: &[Step], starts: &[Option<Frame>], seen: b
     steps.iter().zip(starts).enumerate().filter_map(note).collect()
 }
 
-/// The frame: the box, and the reason for it. `seen` is `true` if any artwork is visible.
+/// Describes the frame: its box, and why it was chosen. `seen` is `true` if any artwork is visible.
 fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
     let [x, y] = frame.units_per_px;
     let Rect { x0, y0, .. } = frame.rect;
@@ -368,13 +367,13 @@ fn strokes(shapes: &[ReportedShape]) -> Option<String> {
 }
 
 impl Ready {
-    /// The steps that bend, or else the last edit.
+    /// Returns the steps that bend, or else the last edit.
     fn steps(&self) -> &[Step] {
         self.edit.as_ref().map_or(&self.recipe.steps[..], std::slice::from_ref)
     }
 
-    /// The outcome of a warp. The map of a plug-in may fail at any time; nothing that was computed with it is used then, not even another
-    /// error. To an error where the map is undefined it adds which operation is, if a step can say so.
+    /// Returns the outcome of a warp. If the map of a plug-in has failed meanwhile, that failure takes precedence over any result or other
+    /// error. An error where the map is undefined is completed by the operation that is undefined there, if a step knows it.
     pub fn checked<T>(&self, outcome: Result<T, Failure>) -> Result<T, Failure> {
         sound(&self.built)?;
         outcome.map_err(|failure| self.explained(failure))
@@ -404,7 +403,7 @@ fn sound(built: &BuiltParts) -> Result<(), Failure> {
     built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
 }
 
-/// A box as reports have it: x, y, width and height.
+/// A box for reports: x, y, width and height.
 fn shown(r: Rect) -> [f64; 4] {
     [r.x0, r.y0, r.width(), r.height()]
 }
@@ -419,7 +418,7 @@ fn stretched(artwork: &dyn Artwork, built: &BuiltParts) -> Vec<String> {
     built.parts.iter().enumerate().filter_map(of_part).collect()
 }
 
-/// The baseline of a step.
+/// Returns the kind of baseline that a step has.
 fn baseline(registry: &Registry, step: &Step) -> Baseline {
     let Some(info) = registry.get(&step.deformation).map(|e| e.info()) else { return Baseline::None };
     match info.baseline {
@@ -430,7 +429,7 @@ fn baseline(registry: &Registry, step: &Step) -> Baseline {
     }
 }
 
-/// Warns of decimals that are too few for the tolerance.
+/// Warns if the decimals are too few for the tolerance.
 fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String> {
     let worst = shapes.iter().map(|s| &s.shape.path).max_by(|a, b| a.share.total_cmp(&b.share))?;
     let (n, off, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
@@ -442,15 +441,15 @@ fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String>
     })
 }
 
-/// Samples of a side of a box.
+/// Number of samples on each side of a box.
 const SAMPLES: u32 = 16;
-/// Shortest length beyond the frame that counts, relative to the frame's diagonal.
+/// Shortest distance from the frame that counts, as a share of the frame's diagonal.
 const FAR: f64 = 0.02;
-/// Smallest ratio that is worth a warning.
+/// Smallest ratio that deserves a warning.
 const STRETCHED: f64 = 3.0;
 
 /// Compares how much the map stretches the artwork between the frame and the edge of `uncut` with how much it stretches the frame. Returns
-/// the ratio if it is large. Does not ask maps that are other programs: they may fail at points that no shape has.
+/// the ratio if it is large. Skips maps of other programs, which may fail at points that no shape has.
 pub(super) fn stretch_beyond(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<f64> {
     if map.prefers_batches() {
         return None;
@@ -466,14 +465,14 @@ pub(super) fn stretch_beyond(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<
     (most > STRETCHED).then_some(most)
 }
 
-/// The diagonal of the image of a box.
+/// The diagonal of the image of a box under a map.
 fn image_size(map: &dyn Map, rect: Rect) -> Option<f64> {
     let image = edge(rect).map(|p| map.point(p)).filter(|p| p.is_finite());
     let bounds = image.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
     Some(bounds.size().to_vec2().hypot()).filter(|d| *d > 0.0)
 }
 
-/// Points around a box.
+/// Samples along the sides of a box.
 fn edge(r: Rect) -> impl Iterator<Item = Point> {
     (0..SAMPLES).flat_map(move |i| {
         let t = f64::from(i) / f64::from(SAMPLES);
@@ -495,7 +494,7 @@ fn pictures(shapes: &[ReportedShape]) -> Option<String> {
     (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
 }
 
-/// Names the elements whose filters became pictures, and those whose filters did not have to.
+/// Names the elements whose filters became pictures, and those whose filters kept their affine fits.
 fn filters([pictured, kept]: &[Vec<String>; 2]) -> Option<String> {
     const NAMED: usize = 5;
     let said = |of: &Vec<String>, before: &str, after: &str| {

@@ -1,4 +1,4 @@
-//! Steps of a recipe as a line of words has them: options of one step, and values in any case of letters.
+//! Recipes on command lines: options of single steps, and values in any case of letters.
 
 use crate::options::Given;
 use pathwarp::param::{Kind, Param};
@@ -7,13 +7,13 @@ use pathwarp::recipe::Step;
 /// The switch that every deformation has.
 pub const INVERSE: &str = "inverse";
 
-/// Where a step keeps the values of an option.
+/// The field of a step that holds the values of an option.
 pub(crate) type OfStep = fn(&mut Step) -> &mut Vec<String>;
 
-/// Options that apply to the whole chain if one part gives them, and else to the step of each part that does.
+/// Options that apply to the whole chain if one part gives them, and else to the steps of each part that does.
 pub const OF_STEPS: [(&str, OfStep); 2] = [("select", |s| &mut s.select), ("exclude", |s| &mut s.exclude)];
 
-/// Gives the steps of parts what is theirs alone: the selection, if several parts have one.
+/// Moves the selection of each part to its steps, if several parts have one.
 pub fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given)>) {
     let mut parts: Vec<_> = parts.into_iter().collect();
     for (name, of) in OF_STEPS {
@@ -27,7 +27,7 @@ pub fn assign<'a>(parts: impl IntoIterator<Item = (&'a mut [Step], &'a mut Given
     }
 }
 
-/// A name that differs from a known one only in case, as that one.
+/// Replaces a value that differs from a known name only in case by that name.
 pub fn in_lower_case(p: &Param, value: &str) -> String {
     let (Kind::NameOrFile(names) | Kind::Choice(names)) = p.kind else { return value.to_owned() };
     let same = names.iter().find(|n| n.eq_ignore_ascii_case(value));

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard, OnceLock, PoisonError, RwLock, RwLockReadGuard};
 use tempfile::{Builder, TempPath};
 
-/// Every temporary file there is.
+/// The paths of all temporary files that exist.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-/// Held for reading while files are created or put in place, and for writing, to the end, by who ends the program.
+/// Locked for reading while files are created or put in place, and for writing by the thread that ends the program.
 static GATE: RwLock<()> = RwLock::new(());
 /// Called whenever a temporary file is made.
 static PROTECT: OnceLock<fn()> = OnceLock::new();
@@ -35,7 +35,7 @@ impl Temporary {
         Ok((Self::registered(path), file))
     }
 
-    /// A second name for `file`, or a copy of it where there are no hard links.
+    /// Gives `file` a second name, or copies it where there are no hard links.
     pub(crate) fn backup(file: &Path, folder: &Path) -> io::Result<Self> {
         let linked = builder().make_in(folder, |path| std::fs::hard_link(file, path));
         let made = linked.or_else(|_| builder().make_in(folder, |path| std::fs::copy(file, path).map(drop)))?;
@@ -50,12 +50,12 @@ impl Temporary {
         Self(Some(path))
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         self.0.as_deref().unwrap_or(Path::new(""))
     }
 
-    /// Renames the file, over an existing one.
+    /// Renames the file; an existing file is replaced.
     pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
         let Some(path) = self.0.take() else { return Ok(()) };
         live().remove(&*path);
@@ -71,7 +71,7 @@ impl Drop for Temporary {
     }
 }
 
-/// Lets a program prepare for interruptions once there are temporary files, and not before: `protect` is called for each of them.
+/// Sets a function that is called for each temporary file, so that a program prepares for interruptions only once there is one.
 pub fn protect_by(protect: fn()) {
     let _ = PROTECT.set(protect);
 }
@@ -91,8 +91,8 @@ fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits for commits under way, so that files that belong together appear together; calls `begin`, removes all temporary files, and calls
-/// `end`, which ends this program.
+/// Waits for commits under way, so that files that belong together appear together. Then calls `begin`, removes all temporary files, and
+/// calls `end`, which ends this program.
 pub fn remove_all_and(begin: impl FnOnce(), end: impl FnOnce()) {
     let _gate = GATE.write().unwrap_or_else(PoisonError::into_inner);
     begin();
@@ -104,14 +104,14 @@ pub fn remove_all_and(begin: impl FnOnce(), end: impl FnOnce()) {
 
 const PREFIX: &str = ".pathwarp-";
 
-/// The start of the names of this run's temporary files.
+/// The prefix of the names of this run's temporary files.
 pub(crate) static OWN_PREFIX: LazyLock<String> =
     LazyLock::new(|| format!("{PREFIX}{}-{}-", machine(), std::process::id()));
 
-/// Folders that need no further look.
+/// Folders that have been cleaned already.
 static CLEAN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes what killed runs left in `folder`, at the first call for it.
+/// Removes the temporary files that killed runs left in `folder`, when it is called for it the first time.
 pub(crate) fn remove_from(folder: &Path) {
     let mut clean = CLEAN.lock().unwrap_or_else(PoisonError::into_inner);
     if clean.contains(folder) {
@@ -137,7 +137,7 @@ fn is_leftover(name: &OsStr) -> bool {
     process().is_some_and(|p: i32| !is_running(p))
 }
 
-/// This machine's name, of letters and digits alone.
+/// Returns this machine's name, reduced to letters and digits.
 #[cfg(unix)]
 fn machine() -> String {
     let name = rustix::system::uname();
@@ -152,11 +152,11 @@ fn machine() -> String {
 #[cfg(unix)]
 fn is_running(process: i32) -> bool {
     use rustix::process::{Pid, test_kill_process};
-    // A process of another user may not be signalled, but it exists.
+    // A process of another user exists even if it may not be signalled.
     Pid::from_raw(process).is_none_or(|p| test_kill_process(p) != Err(rustix::io::Errno::SRCH))
 }
 
-/// There is no way to ask without unsafe code, so nothing is removed.
+/// Returns `true`, so that nothing is removed: asking the system takes unsafe code.
 #[cfg(not(unix))]
 fn is_running(_: i32) -> bool {
     true

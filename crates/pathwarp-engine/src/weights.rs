@@ -1,4 +1,4 @@
-//! Weights and italics that are asked for: which fonts have them, by themselves or by an axis, and what is made where they lack them.
+//! Weights and italics: which fonts have the requested ones, as they are or by an axis, and how missing ones are synthesised.
 
 use crate::failure::Failure;
 use pathwarp_text::{Font, Variation};
@@ -16,25 +16,25 @@ pub const WEIGHTS: [(&str, u16); 9] = [
     ("black", 900),
 ];
 
-/// The style asked for.
+/// The requested style.
 pub struct Wanted {
-    /// From 1 to 1000; `None` for that of the font.
+    /// From 1 to 1000; `None` for the font's.
     pub weight: Option<u16>,
-    /// Upright otherwise.
+    /// `true` for italic, `false` for upright.
     pub italic: bool,
-    /// Make what a font lacks.
+    /// `true` to synthesise styles that a font lacks.
     pub synthesize: bool,
 }
 
 impl Wanted {
-    /// The weight, if a font has neither it nor an axis for it.
+    /// Returns the requested weight, if a font has neither it nor an axis for it.
     pub fn weight_lacking(&self, font: &Font<'_>) -> Option<u16> {
-        /// Weights this far apart look alike: neighbouring names.
+        /// Largest difference between weights that look alike: neighbouring names.
         const NEAR: f64 = 150.0;
         self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
     }
 
-    /// The weight that a font has instead of the one asked for.
+    /// Returns the weight that a font has instead of the requested one.
     pub fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
         let wanted = f64::from(self.weight?);
         let axis = font.axes().into_iter().find(|a| a.tag == "wght");
@@ -43,17 +43,17 @@ impl Wanted {
         ((has - wanted).abs() >= 1.0 && !made).then_some(has)
     }
 
-    /// Returns `true` if a font should be italic, and has neither that nor an axis for it.
+    /// Returns `true` if italics are requested, and the font has neither them nor an axis for them.
     pub fn italic_lacking(&self, font: &Font<'_>) -> bool {
         self.italic && !font.is_italic() && !has_axis(font, &["ital", "slnt"])
     }
 
-    /// Makes what a font lacks.
+    /// Synthesises the weight and slant that a font lacks.
     fn synthesized<'a>(&self, font: Font<'a>) -> Font<'a> {
         /// Thickness of stems, as a share of the em, for each step of weight: em/24 from regular to bold (FreeType's
         /// FT_GlyphSlot_Embolden).
         const PER_WEIGHT: f64 = 1.0 / 24.0 / 300.0;
-        /// The angle of a synthesised oblique, degrees (CSS Fonts 4, font-style).
+        /// The angle of a synthesised oblique, in degrees (CSS Fonts 4, font-style).
         const SLANT: f64 = 14.0;
         if !self.synthesize {
             return font;
@@ -68,7 +68,7 @@ fn has_axis(font: &Font<'_>, tags: &[&str]) -> bool {
     font.axes().iter().any(|a| tags.contains(&a.tag.as_str()))
 }
 
-/// Sets the fonts to their variations: `--variation` applies to the first font, `--weight` to every font with a weight axis.
+/// Sets the fonts to their variations: `--variation` for the first font, `--weight` for every font with a weight axis.
 pub fn with_variations<'a>(
     fonts: Vec<Font<'a>>,
     positions: &[Variation],

@@ -1,4 +1,4 @@
-//! What the program says of itself: `list`, `schema`, `man` and `completions`.
+//! The commands that describe the program: `list`, `schema`, `man` and `completions`.
 
 use crate::commands::args::switch;
 use crate::ending::Status;
@@ -22,7 +22,7 @@ pub(super) fn list_command() -> Command {
     Command::new("list").about("List the deformations").arg(switch("json", "Print JSON, with every parameter"))
 }
 
-/// The deformations with their parameters, and the plug-ins that are broken.
+/// Lists the deformations with their parameters, and the plug-ins that are broken.
 fn listed(registry: &Registry, plugins: &Plugins) -> Value {
     let param = |p: &Param| {
         let mut v =
@@ -35,7 +35,7 @@ fn listed(registry: &Registry, plugins: &Plugins) -> Value {
             };
         }
         if p.range.0.is_finite() || p.range.1.is_finite() {
-            // JSON has no infinity: null.
+            // JSON has no infinity; `json!` writes null.
             v["range"] = json!([p.range.0, p.range.1]);
         }
         match p.kind {
@@ -144,7 +144,7 @@ fn property(p: &Param) -> Value {
         Kind::Number | Kind::Length(_) | Kind::Angle => json!({ "type": ["number", "string"] }),
         Kind::Count => json!({ "type": ["integer", "string"] }),
         Kind::Choice(words) => json!({ "enum": words }),
-        // The value may also be a file, so the names are only examples.
+        // The value may be a file instead, so the names are only examples.
         Kind::NameOrFile(names) => json!({ "type": "string", "examples": names }),
         _ => json!({ "type": "string" }),
     };
@@ -154,7 +154,7 @@ fn property(p: &Param) -> Value {
         v["default"] = json!(d);
     }
     for (key, limit) in [("minimum", p.range.0), ("maximum", p.range.1)] {
-        // A length or angle may be given in other units than its limits, so only plain numbers carry them.
+        // A length or angle may be in other units than its limits, so only plain numbers have limits in the schema.
         if limit.is_finite() && matches!(p.kind, Kind::Number | Kind::Count) {
             v[key] = json!(limit);
         }
@@ -199,7 +199,7 @@ pub(super) fn man(whole: Command, m: &ArgMatches) -> Result<Status, Failure> {
     Ok(Status::Complete)
 }
 
-/// Writes every page to a folder, or none.
+/// Writes all pages to a folder, or none.
 fn write_all(whole: &Command, folder: &Path) -> Result<Status, Failure> {
     fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
     let all = std::iter::once(whole.clone()).chain(whole.get_subcommands().map(subcommand));
@@ -211,13 +211,13 @@ fn write_all(whole: &Command, folder: &Path) -> Result<Status, Failure> {
     Ok(Status::Complete)
 }
 
-/// A part of the program under the name of its page.
+/// Renames a part of the program after its page.
 fn subcommand(part: &Command) -> Command {
     let name = part.get_name();
     part.clone().name(format!("pathwarp-{name}")).bin_name(format!("pathwarp {name}"))
 }
 
-/// The text of a page.
+/// Returns the text of a page.
 fn page(command: Command) -> Result<Vec<u8>, Failure> {
     let mut out = Vec::new();
     clap_mangen::Man::new(command).render(&mut out).map_err(|e| Failure::stdout(&e))?;

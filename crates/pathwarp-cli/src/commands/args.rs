@@ -14,7 +14,7 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
 }
 
-/// An option `--NAME` with one of these words as its value.
+/// An option `--NAME` whose value is one of these words.
 pub(super) fn choice(name: &'static str, words: &[&'static str], help: &'static str) -> Arg {
     let arg = Arg::new(name).long(name).value_name(words.join("|")).value_parser(words.to_vec());
     arg.hide_possible_values(true).help(help)
@@ -25,21 +25,21 @@ pub(super) fn file_arg(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name).required(true).value_parser(value_parser!(PathBuf)).help(help)
 }
 
-/// The file given for the required argument `name`.
+/// Returns the file given for the required argument `name`.
 pub(super) fn given_file<'a>(m: &'a ArgMatches, name: &str) -> Result<&'a Path, Failure> {
     let file = m.get_one::<PathBuf>(name).map(PathBuf::as_path);
     file.ok_or_else(|| Failure::usage(format!("{name} is required")))
 }
 
-/// `-o, --out`.
+/// The option `-o, --out`.
 pub(super) fn out_arg(value_name: &'static str, help: &'static str) -> Arg {
     Arg::new(OUT).short('o').long(OUT).value_name(value_name).value_parser(value_parser!(PathBuf)).help(help)
 }
 
-/// The output file; `None` is standard output.
+/// Returns the output file; `None` is standard output.
 ///
 /// # Errors
-/// The output is one of the files `read`.
+/// [`Failure::Usage`] if the output is one of the files `read`.
 pub(super) fn target(
     m: &ArgMatches,
     read: impl IntoIterator<Item = impl AsRef<Path>>,

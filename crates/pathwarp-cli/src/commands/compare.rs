@@ -145,9 +145,9 @@ fn compare((a, shown_a): &(Document, Pixmap), (b, shown_b): &(Document, Pixmap))
     })
 }
 
-/// For every path of `a` the index of the path of `b` that it is compared with: the first with the same id, which is the one
-/// that every SVG reader uses. Paths without an id are matched by their order within the closest ancestor that has one; if
-/// that element holds a different number of them in each drawing, they are matched by their place in the file.
+/// Returns, for every path of `a`, the index of its counterpart in `b`: the first path with an equal id, which is the one that SVG readers
+/// use. Paths without an id are matched by their order within the closest ancestor with an id or, if the drawings differ in the number of
+/// such paths there, by their position in the file.
 fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
     let unnamed = |paths: &[NamedPath]| {
         let mut out: HashMap<Arc<str>, Vec<usize>> = HashMap::new();
@@ -175,17 +175,16 @@ fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
     out
 }
 
-/// The paths of `b` that have no counterpart. A repeated id counts only once.
+/// Returns the paths of `b` without counterpart. A repeated id counts only once.
 fn unpaired_in(b: &[NamedPath], counterparts: &[Option<usize>]) -> impl Iterator<Item = usize> {
     let paired: HashSet<usize> = counterparts.iter().flatten().copied().collect();
     let ids: HashSet<&str> = paired.iter().map(|&i| b[i].id.as_str()).collect();
     (0..b.len()).filter(move |&i| !paired.contains(&i) && (b[i].group.is_some() || !ids.contains(b[i].id.as_str())))
 }
 
-/// Matches the paths that have no counterpart yet by the distance of their boxes, nearest first. Those of other places have none: a box
-/// reaches half its size beyond itself.
+/// Matches the remaining paths by the distance of their boxes, nearest first. Boxes farther apart than half their size do not match.
 fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<usize>]) {
-    /// Most pairs that are compared. Among more paths, those of the same place in the file are matched.
+    /// Most pairs that are compared. Larger numbers of paths are matched by their order in the file.
     const MOST: usize = 4_000_000;
     let left: Vec<usize> = (0..a.len()).filter(|&i| counterparts[i].is_none()).collect();
     let others: Vec<usize> = unpaired_in(b, counterparts).collect();

@@ -1,5 +1,5 @@
-//! What is in a file, taken out of it: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists them;
-//! `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
+//! Commands that extract the contents of a file: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists
+//! them; `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
 use crate::arguments;
 use crate::arguments::{OF_OUTPUT, reading_args, some_options};
@@ -63,8 +63,7 @@ pub(super) fn convert(m: &ArgMatches) -> Result<Status, Failure> {
     convert_file(file, target, &arguments::given(m).read()?, split, m.get_flag("salvage"))
 }
 
-/// Copies the paths of a file into another format, or each to its own file, or a drawing into a PDF or DXF; without a target to standard
-/// output.
+/// Copies the paths of a file into another format, or each to a file, or a drawing into a PDF or DXF; without a target, to standard output.
 pub(crate) fn convert_file(
     file: &Path,
     target: Option<&Path>,
@@ -154,7 +153,7 @@ pub(super) fn list_paths(m: &ArgMatches) -> Result<Status, Failure> {
     let reading = arguments::reading(m)?;
     let is_json = m.get_flag("json");
     if let Some(gimp) = GimpFile::open(file, m.get_flag("salvage"), &reading.limits)? {
-        // For GIMP files the JSON holds only stored data.
+        // For GIMP files, the JSON contains only stored data.
         let path = |p| if is_json { ListedPath { bounds: None, ..of_gimp(p) } } else { of_gimp(p) };
         print(file, gimp.paths().map(path).collect(), is_json)?;
         let Some(damage) = gimp.damage else { return Ok(Status::Complete) };

@@ -40,7 +40,7 @@ pub(super) fn edit_command() -> Command {
 }
 
 pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
-    /// Size in bytes of files that open at once.
+    /// Size in bytes up to which files open without noticeable delay.
     const SMALL: u64 = 2 << 20;
     let file = given_file(m, "FILE")?;
     if output::is_stdout(file) {

@@ -1,4 +1,7 @@
-//! `map … --exact`: exact images of curves as text, as JSON, or as the splines of a DXF.
+//! `map … --exact`: exact images of curves, as text, as JSON, or as splines of a DXF.
+//!
+//! Where the map's coordinates are quotients of polynomials, the image of a rational Bézier curve is a rational Bézier curve, of a higher
+//! degree in general. Curves that cross a crease of the map or leave its domain are refused.
 
 use crate::ending::Status;
 use clap::{Arg, ArgMatches, value_parser};
@@ -24,7 +27,7 @@ const EXACT: Param = Param::path(
 
 const OUT: &str = "out";
 
-/// `--exact`, and the file that its result goes to.
+/// The arguments `--exact` and `--out`, the file for its result.
 pub(super) fn args() -> [Arg; 2] {
     let exact = Arg::new(EXACT.name).long(EXACT.name).value_name("PATHREF").help(EXACT.help);
     let out = Arg::new(OUT).short('o').long(OUT).value_name("OUT").value_parser(value_parser!(PathBuf));
@@ -34,14 +37,14 @@ pub(super) fn args() -> [Arg; 2] {
     ]
 }
 
-/// The curves of `--exact`.
+/// The curves given by `--exact`.
 pub(super) enum Curves {
     Path(Outline),
     Nurbs(Vec<Surface>),
 }
 
 impl Curves {
-    /// Reads them, if the option is given.
+    /// Reads the curves, if the option is given.
     pub(super) fn read(m: &ArgMatches, reading: &Reading) -> Result<Option<Self>, Failure> {
         let Some(text) = m.get_one::<String>(EXACT.name) else { return Ok(None) };
         let file = Path::new(text);
@@ -63,7 +66,7 @@ impl Curves {
         Ok(path.map_err(Failure::of_recipe)?.map(|path| Self::Path(path.outline)))
     }
 
-    /// The bounding box: of paths, or of the control points.
+    /// Returns the bounding box of the path, or of the curves' control points.
     pub(super) fn bounds(&self) -> Rect {
         let bounds = match self {
             Self::Path(path) => path.bounding_box(),
@@ -96,7 +99,7 @@ impl Curves {
         Ok(Status::Complete)
     }
 
-    /// A line x y weight for every control point, and an empty line behind each curve.
+    /// Formats every control point as a line with x, y and weight, and ends each curve with an empty line.
     fn text(&self, map: &dyn Map) -> Result<String, String> {
         let mut out = String::new();
         for curve in self.contours(map)?.iter().flat_map(|c| &c.images) {
@@ -108,7 +111,7 @@ impl Curves {
         Ok(out)
     }
 
-    /// The images of all curves, each contour in pieces.
+    /// Returns the images of all contours, piece by piece.
     fn contours(&self, map: &dyn Map) -> Result<Vec<Contour>, String> {
         let (mut out, mut before) = (Vec::new(), 0);
         match self {
@@ -134,7 +137,7 @@ impl Curves {
         Ok(out)
     }
 
-    /// The images of all contours, each as one spline. A map that is linear in homogeneous coordinates keeps knots.
+    /// Returns the image of each contour as one spline. A map that is linear in homogeneous coordinates keeps the knots.
     fn splines(&self, map: &dyn Map) -> Result<Vec<Surface>, String> {
         if let (Self::Nurbs(all), Class::Affine(_) | Class::Projective(_)) = (self, map.class()) {
             let linear = all.iter().map(|s| {
@@ -161,7 +164,7 @@ struct Contour {
 }
 
 impl Contour {
-    /// The images as one spline of their highest degree; `None` if a weight is not positive.
+    /// Joins the images to one spline of their highest degree; `None` if a weight is not positive.
     fn joined(&self) -> Option<Surface> {
         let parts = &self.images;
         let degree = parts.iter().map(RationalBezier::degree).max()?.max(1);
@@ -169,7 +172,7 @@ impl Contour {
         for part in parts {
             part.hull()?;
             let own = part.raised(degree).points;
-            // A curve with its homogeneous points multiplied by a number is the same one, so that weights meet at joints.
+            // Scaling homogeneous control points does not change a curve, so the weights can be made to agree at joints.
             let last = points.pop().unwrap_or([0.0, 0.0, 1.0]);
             let scale = last[2] / own[0][2];
             points.extend(own.iter().map(|p| p.map(|v| v * scale)));
@@ -184,7 +187,7 @@ impl Contour {
     }
 }
 
-/// The curve with these homogeneous points as a surface of two equal rows.
+/// Returns the curve with these homogeneous points as a surface with two equal rows.
 fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: &[[f64; 3]]) -> Surface {
     let row: Vec<DVec3> = points.iter().map(|[x, y, w]| DVec3::new(x / w, y / w, 0.0)).collect();
     let weights: Vec<f64> = points.iter().take(n).map(|p| p[2]).collect();
@@ -198,9 +201,9 @@ fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: &[[f64; 
     }
 }
 
-/// The image of a rational Bézier curve that no crease crosses. Errors call it `what`.
+/// Returns the image of a rational Bézier curve that no crease crosses. Errors call the curve `what`.
 fn image(map: &dyn Map, points: &[DVec4], what: &str) -> Result<RationalBezier, String> {
-    /// Places at which the image is compared with the map, and rounding there relative to the coordinates.
+    /// Number of parameters at which the image is compared with the map, and the tolerance relative to the coordinates.
     const PLACES: u32 = 64;
     const ROUNDING: f64 = 1e-9;
     let curve = RationalBezier { points: points.iter().map(|p| [p.x, p.y, p.w]).collect() };
@@ -232,7 +235,7 @@ fn named(all: &[Surface], i: usize) -> String {
     format!("{kind} {}{}", i + 1, if name.is_empty() { String::new() } else { format!(" ({name})") })
 }
 
-/// Curves in space, in millimetres, as the splines of a DXF. The error says of which curve that cannot be, and what to do.
+/// Writes curves in space, in millimetres, as the splines of a DXF. The error names the curve at fault and advises.
 pub(super) fn dxf(curves: &[Surface]) -> Result<String, String> {
     if let Some(i) = curves.iter().position(|s| !s.is_curve()) {
         return Err(format!("{}: a DXF holds curves alone; write surfaces as .json or .bpt", named(curves, i)));

@@ -1,4 +1,4 @@
-//! Paths copied from one file into another, as GIMP stores them.
+//! Copies paths from one file into another, as GIMP stores them.
 
 use crate::ending::Status;
 use crate::sources::Files;
@@ -15,8 +15,7 @@ use pathwarp_svg::NamedPath;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Copies the paths of a file into another format, with `split` each to its own file. `None` if `format` shows more of the drawing than
-/// its paths.
+/// Copies the paths of a file into another format, with `split` each to a file. `None` if `format` can show more than paths.
 pub(super) fn copy(
     file: &Path,
     target: Option<&Path>,
@@ -53,7 +52,7 @@ pub(super) fn copy(
     Ok(Some(Status::partial_if(damage.is_some())))
 }
 
-/// The size of an SVG's viewBox and its paths as GIMP would store them, in units of the viewBox.
+/// Returns the size of an SVG's viewBox, and its paths in units of it, as GIMP would store them.
 fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), Failure> {
     let doc = input::document(file, reading)?;
     let page = doc.view_box();
@@ -65,12 +64,12 @@ fn drawing(file: &Path, reading: &Reading) -> Result<([f64; 2], Vec<GimpPath>), 
     Ok(([page.width(), page.height()], doc.paths().into_iter().map(path).collect()))
 }
 
-/// A file name for every path, distinct even on file systems that ignore case.
+/// Returns a file name for every path, distinct even on file systems that ignore case.
 fn names(out: &Path, format: Format, paths: &[GimpPath]) -> Vec<PathBuf> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let extension = out.extension().map_or_else(|| format.extension().into(), |e| e.to_string_lossy());
     let mut taken = HashSet::new();
-    // The next number of each name, so that many paths of one name do not try all numbers.
+    // The next number to try for each name, so that many paths with equal names do not try all numbers.
     let mut next: HashMap<String, usize> = HashMap::new();
     let mut unique = |p: &GimpPath| {
         let name = input::file_name(&p.name);

@@ -1,12 +1,12 @@
-//! Help that people read: a screen of it for `-h`, a page of a few screens for `--help` and `help NAME`, and one page, `help options`,
-//! for the options that most commands share. Manual pages and completions have everything.
+//! Help for reading: one screen for `-h`, a page of a few screens for `--help` and `help NAME`, and the page `help options` for options
+//! that most commands share. Manual pages and completions are complete.
 
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgAction, Command};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
-/// The common options by task. Those of the first line of a page stand on it, the others are explained in `help options`.
+/// The common options by task. A command's page explains those in `COMMON`, and `help options` explains all.
 const TASKS: [(&str, &[&str]); 9] = [
     ("Files", &["out", "out-dir", "format", "in-place", "recursive", "dry-run", "on-error", "into", "salvage"]),
     ("What is bent", &["select", "exclude", "frame", "simplify", "outset", "clones", "text", "images"]),
@@ -39,14 +39,14 @@ const TASKS: [(&str, &[&str]); 9] = [
 const SHARED: &str = "Common options";
 /// Width of a page.
 const PAGE: usize = 100;
-/// Lines of a page, as far as leaving out examples helps.
+/// Most lines of a page; examples are left out to achieve that.
 const LONGEST: usize = 130;
-/// Column of the texts of a page.
+/// Column at which the texts of a page begin.
 const TEXT: usize = 30;
-/// Length of the text of a common option on the page of a command: two lines.
+/// Length of a common option's text on the page of a command: two lines.
 const BRIEF: usize = 2 * (PAGE - TEXT) - 10;
 
-/// The command line, with a page as the help of the subcommand that `words` name.
+/// Sets a page as the help of the subcommand that `words` name.
 pub(super) fn paged(command: Command, words: &[OsString]) -> Command {
     let named = words.iter().find_map(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
     let Some(name) = named else { return command };
@@ -62,7 +62,7 @@ pub(super) fn paged(command: Command, words: &[OsString]) -> Command {
     })
 }
 
-/// The page of a command.
+/// Returns the page of a command.
 fn page(mut command: Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let name = command.get_name();
@@ -73,7 +73,7 @@ fn page(mut command: Command) -> String {
     };
     let usage = command.render_usage().to_string();
     let _ = write!(out, "\n{}\n", usage.trim_end());
-    // Who has found the page needs no line about it.
+    // The reader knows the help option already.
     let is_shown = |a: &&Arg| !a.is_hide_set() && !a.is_hide_long_help_set() && a.get_id() != "help";
     let args: Vec<&Arg> = command.get_arguments().filter(is_shown).collect();
     let mut headings = vec!["Arguments"];
@@ -96,11 +96,11 @@ fn page(mut command: Command) -> String {
     format!("{out}\n{after}")
 }
 
-/// Removes the last of several examples. Returns `false` if there is but one.
+/// Removes the last of several examples. Returns `false` if there is only one.
 fn without_last_example(after: &mut String) -> bool {
     let begins: Vec<usize> = after.match_indices("\n    pathwarp ").map(|(i, _)| i).collect();
     let [_, .., last] = begins[..] else { return false };
-    // Its title is the line before.
+    // The line before is its title.
     let start = after[..last].rfind('\n').map_or(0, |i| i + 1);
     let end = after[last + 1..].find('\n').map_or(after.len(), |i| last + i + 2);
     after.replace_range(start..end, "");
@@ -120,13 +120,13 @@ fn heading(arg: &Arg) -> &str {
     }
 }
 
-/// Options under a heading, or nothing if there are none.
+/// Formats options under a heading; empty without options.
 fn section<'a>(heading: &str, args: impl Iterator<Item = &'a Arg>) -> String {
     let rows: String = args.map(|a| row(a, TASKS.iter().any(|t| t.0 == heading))).collect();
     if rows.is_empty() { rows } else { format!("\n{heading}:\n{rows}") }
 }
 
-/// The names of options that have their explanation in `help options`, by task.
+/// Lists the options that `help options` explains, by task.
 fn other_options(args: &[&Arg]) -> String {
     let named = |names: &[&str]| -> Vec<String> {
         let is_there = |name: &&&str| args.iter().any(|a| a.get_id() == **name);
@@ -137,7 +137,7 @@ fn other_options(args: &[&Arg]) -> String {
     if rows.is_empty() { rows } else { format!("\nMore options (pathwarp help options):\n{rows}") }
 }
 
-/// The page of the options that most commands share.
+/// Returns the page of the options that most commands share.
 pub(super) fn options(args: impl Iterator<Item = Arg>) -> String {
     let mut command = Command::new("options").args(args);
     command.build();
@@ -150,7 +150,7 @@ pub(super) fn options(args: impl Iterator<Item = Arg>) -> String {
     out
 }
 
-/// An option or argument with its text, which is short for a common option unless it is to be whole.
+/// Formats an option or argument with its text, which is shortened for a common option unless `is_whole`.
 fn row(arg: &Arg, is_whole: bool) -> String {
     let mut text = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
     if is_shared(arg) && !is_whole {
@@ -173,7 +173,7 @@ fn row(arg: &Arg, is_whole: bool) -> String {
     beside(&format!("{short}{arg}"), &text)
 }
 
-/// A name, and its text in a column of its own.
+/// Formats a name with its text beside it.
 fn beside(name: &str, text: &str) -> String {
     let text = wrapped(text, TEXT);
     match TEXT.checked_sub(name.chars().count() + 4) {
@@ -182,8 +182,7 @@ fn beside(name: &str, text: &str) -> String {
     }
 }
 
-/// The lines of a text, indented, none of which is longer than a page. A line that begins with spaces goes on below its text, and
-/// commands stay whole, to be copied.
+/// Wraps a text into indented lines that fit a page. A line that begins with spaces continues below its text; commands stay whole.
 fn wrapped(text: &str, indent: usize) -> String {
     let mut out = String::new();
     for line in text.lines() {
@@ -213,17 +212,17 @@ fn wrapped(text: &str, indent: usize) -> String {
     out
 }
 
-/// The screen.
+/// Lines of a screen.
 const LINES: usize = 40;
 const COLUMNS: usize = 80;
 
-/// The common options that every page has, and a screen as far as there is room.
+/// The common options that every page explains; a screen has as many of them as fit.
 const COMMON: [&str; 10] =
     ["out", "out-dir", "format", "select", "tolerance", "nodes", "strokes", "fit", "preview", "explain"];
 /// The common options for which a screen always has room.
 const ALWAYS: [&str; 6] = ["out", "out-dir", "select", "tolerance", "fit", "preview"];
 
-/// The command line, with the help of the subcommand that `words` name made short. `line` is the name of the program.
+/// Shortens the help of the subcommand that `words` name. `line` is the name of the program.
 pub(super) fn shortened(command: Command, words: &[OsString], line: &str) -> Command {
     let named = words.first().and_then(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
     let Some(name) = named else { return command };
@@ -234,7 +233,7 @@ pub(super) fn shortened(command: Command, words: &[OsString], line: &str) -> Com
     })
 }
 
-/// A command whose help has at most so many lines: a line for each option, and one example.
+/// Shortens a command's help to a screen: a line for each option, and one example.
 fn fitted(command: Command, line: &str) -> Command {
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let lines: Vec<&str> = after.lines().map(str::trim).collect();
@@ -244,7 +243,7 @@ fn fitted(command: Command, line: &str) -> Command {
     });
     let mut shown: Vec<String> =
         command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
-    // Who has found `-h` needs no line about it.
+    // The reader knows `-h` already.
     let help = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).hide(true);
     let after = format!("{}All options: {line} --help", example.unwrap_or_default());
     let command = command.disable_help_flag(true).arg(help).term_width(COLUMNS).after_help(after);
@@ -253,7 +252,7 @@ fn fitted(command: Command, line: &str) -> Command {
         let width = |a: &Arg| a.get_long().map_or(0, |l| "      --".len() + l.len() + values(a));
         let is_shown = |a: &Arg| shown.iter().any(|s| *a.get_id() == s.as_str());
         let widest = command.get_arguments().filter(|a| is_shown(a)).map(width).max().unwrap_or_default();
-        // The parser of command lines puts a help that has less room on a line of its own.
+        // With less room, clap puts a help text on a separate line.
         let room = COLUMNS - widest.min(COLUMNS / 2) - 12;
         let mut short = command.clone().mut_args(|a| {
             let (hidden, help) = (!is_shown(&a), brief(&a, room));
@@ -281,14 +280,14 @@ fn is_wanted(arg: &Arg) -> bool {
     wanted && !arg.is_hide_set() && !arg.is_hide_short_help_set()
 }
 
-/// The name of an option's value; of many words `WORD`.
+/// Returns the name of an option's value; `WORD` if it has many words.
 fn value_of(arg: &Arg) -> Option<String> {
     const LONG: usize = 16;
     let name = arg.get_value_names().filter(|_| arg.get_action().takes_values())?.first()?;
     Some(if name.len() > LONG { "WORD".to_owned() } else { name.to_string() })
 }
 
-/// The words of an option's value, or the beginning of its text, with the default, in `room` columns.
+/// Returns the words of an option's value, or the beginning of its text, with the default, in `room` columns.
 fn brief(arg: &Arg, room: usize) -> String {
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
     let words = arg.get_value_names().and_then(|n| n.first()).filter(|n| value_of(arg).is_some_and(|v| v != **n));
@@ -297,13 +296,13 @@ fn brief(arg: &Arg, room: usize) -> String {
     words.unwrap_or_else(|| clipped(&help, room))
 }
 
-/// The default that an option's text ends with, in brackets, unless it takes more than a third of the room.
+/// Returns the default, in brackets, at the end of an option's text, unless it takes more than a third of the room.
 fn default_in(help: &str, room: usize) -> String {
     let default = help.split_once(" [default: ").map_or("", |(_, default)| default.trim_end_matches(']'));
     if default.is_empty() || default.len() > room / 3 { String::new() } else { format!(" [{default}]") }
 }
 
-/// The beginning of an option's text that fits in `room` columns, with its default.
+/// Cuts an option's text to `room` columns, and keeps its default.
 fn clipped(help: &str, room: usize) -> String {
     let text = help.split_once(" [default: ").map_or(help, |(text, _)| text);
     let default = default_in(help, room);

@@ -81,20 +81,20 @@ pub(super) fn install(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
 
 /// A file to install.
 struct Part {
-    /// Name relative to the plug-in's folder.
+    /// Path relative to the plug-in's folder.
     name: PathBuf,
     content: Vec<u8>,
-    /// The file is a program.
+    /// `true` if the file is executable.
     runs: bool,
 }
 
-/// This program's own file.
+/// Reads this program's executable file.
 fn own_program() -> Result<Vec<u8>, Failure> {
     let own = env::current_exe().and_then(fs::read);
     own.map_err(|e| Failure::Input(format!("the program file cannot be read: {e}")))
 }
 
-/// A path in an environment variable.
+/// Returns a path from an environment variable.
 fn variable(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from)
 }
@@ -121,7 +121,7 @@ fn install_files(home: &Path, parts: &[Part], dry: bool) -> Result<String, Failu
     Ok(done)
 }
 
-/// Removes those of the files that exist, and the folders if nothing else is in them. Returns a line for each file.
+/// Removes the files that exist, and folders that become empty. Returns a line for each file.
 fn uninstall_files(home: &Path, names: &[PathBuf], dry: bool) -> Result<String, Failure> {
     let mut done = String::new();
     let existing: Vec<PathBuf> = names.iter().map(|n| home.join(n)).filter(|f| f.exists()).collect();
@@ -135,7 +135,7 @@ fn uninstall_files(home: &Path, names: &[PathBuf], dry: bool) -> Result<String, 
         }
     }
     if !dry {
-        // A folder that holds other files stays.
+        // Folders with other files stay.
         for folder in existing.iter().filter_map(|f| f.parent()).filter(|f| *f != home) {
             let _ = fs::remove_dir(folder);
         }
@@ -148,13 +148,13 @@ fn uninstall_files(home: &Path, names: &[PathBuf], dry: bool) -> Result<String, 
 const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
 const PLUG_IN_NAME: &str = "pathwarp-gimp";
 
-/// Names of the files, relative to the plug-in's folder: the script and the program.
+/// Returns the paths of the script and the program, relative to the plug-in's folder.
 fn gimp_names() -> [PathBuf; 2] {
     let program = Path::new("bin").join("pathwarp").with_extension(env::consts::EXE_EXTENSION);
     [PathBuf::from(PLUG_IN_NAME).with_extension("py"), program]
 }
 
-/// The files, with names relative to the plug-in's folder.
+/// Returns the files to install for GIMP.
 fn gimp_parts() -> Result<Vec<Part>, Failure> {
     let [script, program] = gimp_names();
     Ok(vec![
@@ -163,7 +163,7 @@ fn gimp_parts() -> Result<Vec<Part>, Failure> {
     ])
 }
 
-/// The plug-ins folders of all versions of GIMP 3 that this user has started.
+/// Returns the plug-ins folders of all versions of GIMP 3 that this user has started.
 fn gimp_folders() -> Vec<PathBuf> {
     if let Some(own) = env::var_os("GIMP3_DIRECTORY") {
         return vec![PathBuf::from(own).join("plug-ins")];
@@ -192,11 +192,10 @@ fn gimp_folders() -> Vec<PathBuf> {
     out
 }
 
-/// The folder in Inkscape's folder of extensions.
+/// The program's folder within Inkscape's folder of extensions.
 const HOME: &str = "pathwarp";
 
-/// The files, with names relative to the extension's folder. `program` is called instead of a copy of this one if it is given: a name
-/// on the search path, or a path.
+/// Returns the files to install for Inkscape. The extension calls `program`, a name or path, or by default a copy of this program.
 fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Part>, Failure> {
     let copy = Path::new("pathwarp").with_extension(env::consts::EXE_EXTENSION);
     let name = program.unwrap_or(&copy).display().to_string();
@@ -215,7 +214,7 @@ fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Par
     Ok(parts)
 }
 
-/// The files that [`inkscape_parts`] may have written, by this or another version of the program.
+/// Returns the files that [`inkscape_parts`] may have written, in this or another version of the program.
 fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
     let is_ours = |name: &Path| {
         let name = name.to_string_lossy();
@@ -227,7 +226,7 @@ fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// The extensions folders of every Inkscape that this user has.
+/// Returns the extensions folders of every Inkscape that this user has.
 fn inkscape_folders() -> Vec<PathBuf> {
     if let Some(own) = variable("INKSCAPE_PROFILE_DIR") {
         return vec![own.join("extensions")];
@@ -249,7 +248,7 @@ fn inkscape_folders() -> Vec<PathBuf> {
     };
     let mut found: Vec<PathBuf> = roots.into_iter().filter(|r| r.is_dir()).collect();
     if found.is_empty() {
-        // Inkscape is installed but was never started.
+        // Inkscape is installed, but the user has never started it.
         let mut ask = process::Command::new("inkscape");
         let answer = ask.arg("--user-data-directory").stdin(Stdio::null()).stderr(Stdio::null()).output().ok();
         let folder = answer.and_then(|a| String::from_utf8(a.stdout).ok()).map(|t| PathBuf::from(t.trim()));

@@ -27,9 +27,9 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The work of a point, in evaluations of the map with all that a fit does.
+/// The work for a point, relative to an evaluation of the map with its share of a fit.
 const POINT: f64 = 0.25;
-/// The work of a point with all its preimages, in the same evaluations.
+/// The work for all preimages of a point, in the same unit.
 const ALL: f64 = 5000.0;
 
 pub(super) fn map_command(registry: &Registry) -> Command {
@@ -65,7 +65,7 @@ pub(super) fn map_command(registry: &Registry) -> Command {
     c
 }
 
-/// The file of points, and what is printed of their images.
+/// The arguments for the file of points, and for derivatives.
 pub(super) fn points_args() -> [Arg; 2] {
     let points = Arg::new("points")
         .long("points")
@@ -76,7 +76,7 @@ pub(super) fn points_args() -> [Arg; 2] {
     [points, switch("jacobian", "Print the partial derivatives too")]
 }
 
-/// Reads the file of points that a command line names. Returns the number of its bytes, too.
+/// Reads the file of points named on the command line. Also returns its size in bytes.
 pub(super) fn read_points<const N: usize>(m: &ArgMatches, wanted: &str) -> Result<(Vec<[f64; N]>, usize), Failure> {
     let file = m.get_one::<PathBuf>("points").cloned().unwrap_or_else(|| "-".into());
     let bytes = input::bytes(&file)?;
@@ -84,7 +84,7 @@ pub(super) fn read_points<const N: usize>(m: &ArgMatches, wanted: &str) -> Resul
     Ok((points.map_err(|e| Failure::Input(format!("{}:{e}", input::display(&file))))?, bytes.len()))
 }
 
-/// Prints images, each with its derivatives if they are wanted; `None` where the map is undefined.
+/// Prints images, with their derivatives if requested; `None` where the map is undefined.
 pub(super) fn print_images<const N: usize, const M: usize>(
     m: &ArgMatches,
     images: impl Iterator<Item = (Option<[f64; N]>, [f64; M])>,
@@ -153,7 +153,7 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
 }
 
-/// Prints where all steps lead, with every preimage of those that are inverses.
+/// Prints the image of each point under all steps, with every preimage for inverse steps.
 fn print_preimages(points: &[Point], recipe: &Recipe, steps: &[Built], frame: Rect) -> Result<Status, Failure> {
     let mut all: Vec<Vec<Point>> = points.iter().map(|p| vec![*p]).collect();
     for (step, built) in recipe.steps.iter().zip(steps) {
@@ -174,11 +174,11 @@ fn print_preimages(points: &[Point], recipe: &Recipe, steps: &[Built], frame: Re
     Ok(if all.iter().any(Vec::is_empty) { Status::Partial } else { Status::Complete })
 }
 
-/// Characters of a wrong line that a message shows.
+/// Most characters of a wrong line in a message.
 const SHOWN: usize = 60;
 
-/// Parses points of N coordinates, separated by spaces, commas or tabs. Empty lines and those that begin with `#` are skipped. The
-/// error starts with the line's number and says that the line is not `wanted`.
+/// Parses points of N coordinates, separated by spaces, commas or tabs. Empty lines and lines that begin with `#` are skipped. The error
+/// states the line's number, and that the line is not `wanted`.
 fn parse_points<const N: usize>(text: &str, wanted: &str) -> Result<Vec<[f64; N]>, String> {
     let mut out = Vec::new();
     for (i, line) in text.lines().enumerate() {

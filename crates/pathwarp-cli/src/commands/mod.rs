@@ -1,5 +1,4 @@
-//! The command line: one subcommand per deformation of the registry, and one file per further subcommand, which holds its
-//! arguments and its run.
+//! The command line: one subcommand for each deformation of the registry, and one file for each further subcommand.
 
 mod about;
 mod args;
@@ -58,14 +57,13 @@ Exit codes: 0 success; 1 done, but something was left unchanged or missed the to
 2 wrong usage; 3 unreadable input, or one that takes more work than a limit allows; 4 the geometry does not allow it; 5 an output cannot be written; 130 interrupted.
 On 2 to 5 no output file is touched. An interrupted run leaves the results it has finished.";
 
-/// The whole command line.
+/// Returns the whole command line.
 pub(crate) fn build(registry: &Registry) -> Command {
     let deformations = registry.entries().iter().map(|e| warp::deformation_command(e.info()));
     root().subcommands(deformations).subcommands(OTHERS.iter().map(|o| (o.declare)(registry)))
 }
 
-/// The command line with no other subcommand than the one that `word` names: declaring them all takes longer than warping a
-/// small drawing.
+/// Returns the command line with only the subcommand that `word` names: declaring all takes longer than warping a small drawing.
 fn build_for(registry: &Registry, word: Option<&OsString>) -> Command {
     let word = word.and_then(|w| w.to_str()).unwrap_or_default();
     if let Some(entry) = registry.get(word) {
@@ -176,7 +174,7 @@ pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status,
     result
 }
 
-/// The command that `help WORD…` asks about, if it is one in other letters: capitals, accents, spaces or underscores for hyphens.
+/// Corrects the spelling of a command in `help WORD…`: capitals, accents, spaces or underscores for hyphens. `None` if that does not help.
 fn respelled(registry: &Registry, args: &[OsString]) -> Option<Vec<OsString>> {
     let [program, help, words @ ..] = args else { return None };
     let wanted = coming_from::plain(&joined(words));
@@ -189,7 +187,7 @@ fn respelled(registry: &Registry, args: &[OsString]) -> Option<Vec<OsString>> {
 fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Ending> {
     let respelled = respelled(registry, args);
     let args = respelled.as_deref().unwrap_or(args);
-    // Each part after a lone `+` is a command line of its own.
+    // Each part after a lone `+` is parsed separately.
     let mut parts = args.split(|a| a == "+");
     let first = parts.next().unwrap_or_default();
     let later: Vec<&[OsString]> = parts.collect();
@@ -218,11 +216,11 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations").into());
     };
     let reading = arguments::reading(m)?;
-    // An editor may be open for hours; it counts the work of every picture.
+    // An editor may stay open for hours; it counts the work of each picture.
     if name != "edit" {
         watch::begin(reading.limits);
     }
-    // The pipeline checks the fonts itself, when it has the options of all parts and of the recipe.
+    // The pipeline checks the fonts later, when it knows the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return warp::deform(registry, name, m, first, &later).map_err(|e| match e {
             Ending::Clap(e) => suggested(registry, args, e),
@@ -240,12 +238,12 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     (other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
 }
 
-/// Words as one text.
+/// Joins words to a text.
 fn joined(words: &[OsString]) -> String {
     words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-/// What `help WORD` says about a word that is no command, and which may be several words.
+/// Returns the text of `help WORD` for a word, or several words, that is not a command.
 fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     let [_, help, words @ ..] = args else { return None };
     let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
@@ -256,14 +254,13 @@ fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     coming_from::help(registry, &wanted, |name| known(name)?.get_about().map(ToString::to_string))
 }
 
-/// The error that the deformation that `args` begin with is a broken plug-in.
+/// Returns the error that `args` begin with a deformation whose plug-in is broken.
 fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
     let word = args.get(1).filter(|w| *w != "help").or(args.get(2));
     plugins.failure(word?.to_str()?)
 }
 
-/// Adds to an error of clap what is most likely meant: commands and options of other programs, quotes around `#NAME`, which shells
-/// take for a comment.
+/// Adds suggestions to an error of clap: commands and options of other programs, and quotes for `#NAME`, a comment to shells.
 fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Ending {
     let context = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),
@@ -308,7 +305,7 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
     error.into()
 }
 
-/// The options of the commands that a command line names.
+/// Returns the options of the commands that a command line names.
 fn options_of(registry: &Registry, args: &[OsString]) -> Vec<String> {
     let commands = args.iter().enumerate().skip(1).filter(|(i, _)| *i == 1 || args[i - 1] == "+").map(|(_, word)| word);
     let names = commands.flat_map(|word| {

@@ -1,4 +1,4 @@
-//! For authors of plug-ins: `new-plugin` writes one to start from, `check` checks it, or a deformation built in, as the tests do.
+//! Commands for authors of plug-ins: `new-plugin` writes a template, and `check` checks a plug-in or a built-in deformation.
 
 use crate::ending::Status;
 use crate::plugins::{Plugins, is_file_name};
@@ -47,7 +47,7 @@ pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> R
         Some(p) => format!("{name}, the plug-in {}\n", p.path().display()),
     };
     output::to_stdout(whose.as_bytes())?;
-    // Before the checks, which take long if it is slow.
+    // Measure before the checks, which take long if it is slow.
     let speed = speed(entry).map(|speed| format!("  ok    {:<10}  {speed}\n", "speed")).unwrap_or_default();
     let mut told = output::to_stdout(speed.as_bytes());
     let (mut wrong, mut count) = (0, 0);
@@ -74,15 +74,15 @@ fn show(check: &Check) -> Result<(), Failure> {
     output::to_stdout(out.as_bytes())
 }
 
-/// Describes the time for a point and for a jet, alone and in large batches; `None` if the map cannot be built or fails.
+/// Describes the time for a point and for a jet, singly and in large batches; `None` if the map cannot be built or fails.
 fn speed(entry: &dyn Deformation) -> Option<String> {
     /// Points in a batch.
     const BATCH: usize = 4096;
-    /// Points in a small batch, and calls for single points.
+    /// Points in a small batch, and number of calls for single points.
     const FEW: usize = 50;
-    /// The time for a point from which on larger batches are not waited for.
+    /// Time for a point from which larger batches are skipped.
     const SLOW: Duration = Duration::from_micros(500);
-    /// Points that a drawing of some hundred segments takes, about.
+    /// Approximate number of points for a drawing of some hundred segments.
     const DRAWING: u32 = 20_000;
     let built = entry.build_from(&Args::from_pairs(entry.info().demo), &frame()).ok()?;
     let map = &*built.map;
@@ -109,7 +109,7 @@ fn speed(entry: &dyn Deformation) -> Option<String> {
     built.failure.as_ref().is_none_or(|failed| failed().is_none()).then_some(speed)
 }
 
-/// The words that stand for the name in the templates.
+/// The placeholder for the name in the templates.
 const PLACEHOLDER: &str = "@NAME@";
 
 const PYTHON: &str = include_str!("../../plug-ins/new/plugin.py");
@@ -141,7 +141,7 @@ pub(super) fn new_plugin_command() -> Command {
         )
 }
 
-/// Writes it. `taken` tells whether a name is that of a command.
+/// Writes the template. `taken` returns `true` for names of commands.
 pub(super) fn new_plugin(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result<Status, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let (language, name) = (word("LANGUAGE"), word("NAME"));
@@ -182,7 +182,7 @@ pub(super) fn new_plugin(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result
     Ok(Status::Complete)
 }
 
-/// Writes the files, none of which may exist; scripts can be executed.
+/// Writes the files, none of which may exist; scripts become executable.
 fn write(files: &[(PathBuf, &str)], name: &str) -> Result<(), Failure> {
     let mut pending = Vec::new();
     for (file, template) in files {

@@ -1,4 +1,4 @@
-//! Pictures: `render` draws an SVG file, `gallery` artwork under every preset of a set, or words in every font, on one sheet.
+//! Commands for pictures: `render` draws an SVG file; `gallery` shows artwork under presets, or words in fonts, on one sheet.
 
 use crate::arguments;
 use crate::arguments::{reading_args, some_options};
@@ -80,7 +80,7 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
             return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
         }
         Some(Background(color)) => *color,
-        // Encoded as a JPEG, a picture gets white behind it.
+        // JPEG files get a white background when they are encoded.
         None => None,
     };
     let bytes = input::bytes(file)?;
@@ -101,17 +101,17 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
 /// The formats of sheets.
 const SHEETS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Png, Format::Jpeg, Format::WebP];
 
-/// Tolerance as a fraction of the artwork's diagonal: far below a pixel of any sheet.
+/// Tolerance as a fraction of the artwork's diagonal, far below a pixel of any sheet.
 const TOLERANCE: f64 = 2e-4;
 
-/// The word for all sets together.
+/// The word that selects all sets.
 const ALL: &str = "all";
 
 const FONTS: &str = "fonts";
 
-/// The deformations with presets.
+/// Returns the deformations with presets.
 fn sets(registry: &Registry) -> impl Iterator<Item = (&dyn Deformation, Gallery)> {
-    // Sets whose presets bend by an amount come before those of shapes.
+    // Sets whose presets bend by an amount come before sets of shapes.
     let all = || registry.entries().iter().filter_map(|e| Some((&**e, e.info().gallery?)));
     all().filter(|(_, g)| g.bend.is_some()).chain(all().filter(|(_, g)| g.bend.is_none()))
 }
@@ -234,14 +234,14 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     Ok(Status::partial_if(!left_out.is_empty()))
 }
 
-/// The cells and the title of a sheet, with the reasons for cells that are left out.
+/// The cells and the title of a sheet, with the reasons for missing cells.
 struct Content {
     cells: Vec<Cell>,
     title: String,
     left_out: Vec<String>,
 }
 
-/// Words in every installed family that has all their letters.
+/// Sets words in every installed family that has all their letters.
 fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
     let (read, limits) = (options.reading.read_options(), options.reading.limits.for_input(words.len()));
     let families = families(&read);
@@ -251,7 +251,7 @@ fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
         let svg = write_lettering(&text, &LetteringOptions::default())?;
         Ok((Cell { svg, label: family.clone() }, text.missing.is_empty()))
     };
-    // Fonts that cannot be read are left out: installed files may be damaged or hold no outlines.
+    // Skip fonts that cannot be read: installed files may be damaged or without outlines.
     let set: Vec<_> = families.par_iter().map(set).filter_map(Result::ok).collect();
     let cells: Vec<Cell> = set.into_iter().filter(|(_, has_all)| *has_all).map(|(cell, _)| cell).collect();
     if cells.is_empty() {
@@ -261,7 +261,7 @@ fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
     Ok(Content { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
 }
 
-/// A drawing under every preset of a set.
+/// Bends a drawing by every preset of a set.
 fn under_presets(
     registry: &Registry,
     m: &ArgMatches,
@@ -287,7 +287,7 @@ fn under_presets(
     let drawn: Vec<(Cell, Vec<Skipped>)> = presets.par_iter().map(draw).collect::<Result<_, Failure>>()?;
     let (mut cells, skipped): (Vec<Cell>, Vec<_>) = drawn.into_iter().unzip();
     let skipped = reasons(skipped.iter().flatten());
-    // Beside presets that bend the artwork by some amount, the sheet shows it unbent.
+    // If presets bend by an amount, the sheet shows the unbent artwork, too.
     if sets.iter().any(|(_, g)| g.bend.is_some()) {
         let svg = doc.decoded().into_owned();
         cells.insert(0, Cell { svg, label: "as it is".into() });
@@ -296,7 +296,7 @@ fn under_presets(
     Ok(Content { cells, title: title(file, &sets, bend, axis), left_out })
 }
 
-/// Lists what is not warped, or is left out, in some cell: the first ones, and how many more there are.
+/// Lists the first reasons why something is not warped, or is left out, in a cell, and counts the others.
 fn reasons<'a>(skipped: impl Iterator<Item = &'a Skipped>) -> Vec<String> {
     const NAMED: usize = 10;
     let all: BTreeSet<String> = skipped.map(|s| SkippedShape::from(s.clone()).to_string()).collect();
@@ -306,7 +306,7 @@ fn reasons<'a>(skipped: impl Iterator<Item = &'a Skipped>) -> Vec<String> {
     out
 }
 
-/// The title of the sheet: the file, and the sets with the bend where it applies.
+/// Returns the title of the sheet: the file, and the sets, with the bend where it applies.
 fn title(file: &Path, sets: &[(&dyn Deformation, Gallery)], bend: &str, axis: &str) -> String {
     let name = file.file_name().map_or_else(|| "standard input".into(), |n| n.to_string_lossy().into_owned());
     if let [(_, only)] = sets
@@ -328,7 +328,7 @@ struct Preset<'a> {
     args: Args,
 }
 
-/// The presets of a deformation.
+/// Returns the presets of a deformation.
 fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: &str) -> Vec<Preset<'a>> {
     let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map_or(&[][..], Param::names);
     let preset = |&name: &&'static str| {
@@ -344,7 +344,7 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
 }
 
 impl Preset<'_> {
-    /// The artwork under the preset.
+    /// Bends the artwork by the preset.
     fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);

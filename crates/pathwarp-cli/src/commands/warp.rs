@@ -1,4 +1,4 @@
-//! Commands that warp files: `pathwarp DEFORMATION …` by one deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
+//! Commands that warp files: `pathwarp DEFORMATION …` by a deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
 //! `offset`, `unite`, `contour` and `outline`.
 
 use crate::arguments;
@@ -25,7 +25,7 @@ pub(super) fn deformation_command(info: &Info) -> Command {
     described(info).args(arguments::args())
 }
 
-/// The subcommand of a deformation, of the plane or of space, with its help and its own parameters.
+/// Returns the subcommand of a deformation, of the plane or of space, with its help and parameters.
 pub(super) fn described(info: &Info) -> Command {
     let mut examples = String::from("Examples:");
     for e in info.examples {
@@ -61,7 +61,7 @@ pub(super) fn deform(
     Ok(pipeline::run(registry, &recipe, &given, None)?)
 }
 
-/// Refuses inputs that are parts of something else.
+/// Refuses inputs that are parts of values, options or names.
 pub(super) fn mistaken(words: &[OsString], given: &Given) -> Result<(), Failure> {
     mistakes::inputs(words, given.inputs(), given.gives("out") || given.gives("out-dir"))
         .map_or(Ok(()), |said| Err(Failure::Usage(said)))
@@ -85,7 +85,7 @@ pub(super) fn run_command(registry: &Registry) -> Command {
         )
 }
 
-/// The parameters of all deformations, which override the recipe's: hidden, as the recipe decides which of them apply.
+/// Returns the parameters of all deformations, which override the recipe's. They are hidden, since the recipe determines which apply.
 fn parameters(registry: &Registry) -> Vec<Arg> {
     let mut known: BTreeMap<&'static str, bool> = BTreeMap::new();
     for p in registry.entries().iter().flat_map(|e| e.info().params) {
@@ -132,13 +132,13 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
     override_parameters(registry, &mut saved.recipe, m)?;
     let given = saved.options.overridden_by(&arguments::given(m));
     mistaken(words, &given)?;
-    // The command line alone has no conflicts, so one that shows up now involves the recipe.
+    // The command line has no conflicts by itself, so a conflict found now involves the recipe.
     given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
     pipeline::run(registry, &recipe, &given, Some(file))
 }
 
-/// The common options of which the help of edits tells: what is read and where the result goes.
+/// The common options in the help of edits, which concern inputs and outputs.
 const SHARED: [&str; 29] = [
     "out",
     "format",
@@ -171,7 +171,7 @@ const SHARED: [&str; 29] = [
     "quiet",
 ];
 
-/// The options that some of the three commands have beside their parameters.
+/// The options that some edits list beside their parameters.
 const OF_EDITS: [&str; 3] = ["text", "union", "image-dpi"];
 
 pub(super) fn caption_command() -> Command {
@@ -265,7 +265,7 @@ pub(super) fn outline_command() -> Command {
         )
 }
 
-/// The command of an edit. Of the common options, `own` stand beside its parameters.
+/// Returns the command of an edit. The common options `own` are listed beside its parameters.
 fn declared(name: &'static str, about: &'static str, own: &[&str]) -> Command {
     let option = |arg: Arg| match OPTIONS.iter().find(|o| arg.get_id() == o.name) {
         Some(o) if own.contains(&o.name) => arg.help_heading("Options"),
@@ -274,7 +274,7 @@ fn declared(name: &'static str, about: &'static str, own: &[&str]) -> Command {
         None => arg,
     };
     let params = edits::info(name).into_iter().flat_map(steps::args);
-    // The tolerance says it in a command of its own.
+    // As a command, the edit uses the option `tolerance` instead of `within`.
     let params = params.map(|arg| if arg.get_id() == "within" { arg.hide(true) } else { arg });
     let options = arguments::options_without_inputs().map(option);
     let command = Command::new(name).about(about).arg(inputs_arg()).args(params).args(options);

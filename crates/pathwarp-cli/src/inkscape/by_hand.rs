@@ -1,4 +1,4 @@
-//! Objects bent by hand: the editor is opened on them, and its steps become words of a command line.
+//! Bends objects by hand: opens the editor on them, and converts its steps to words of a command line.
 
 use super::line::{exclusions, referred, settled};
 use super::names::{CHAIN, joined, split};
@@ -17,11 +17,10 @@ use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The options of a warp that had none before, as in the dialogs.
+/// The options for objects without a warp, as in the dialogs.
 const USUAL: &str = "--clones=follow";
 
-/// Opens the page, and warps the selected objects by the steps that the user keeps. Returns the drawing, or nothing if no steps are
-/// kept.
+/// Opens the page, and warps the selected objects by the steps that the user confirms. Returns the drawing, or nothing if there are none.
 pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
@@ -32,7 +31,7 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
         return Err(Failure::usage("there is nothing to bend in the drawing"));
     }
     let again = warped_together(&all, &artwork);
-    // Objects whose nodes were moved since are bent as they are: starting again would undo that.
+    // Objects whose nodes were moved after their warp are bent as they are, since their sources would lose that.
     let (Restoration { svg, objects: returned }, again) =
         match restored(stage, &drawing, if again.is_some() { &artwork } else { &[] }, false) {
             Ok(restoration) => (restoration, again),
@@ -45,7 +44,7 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     }
     let scope = Scope { ids: if whole { &[] } else { &artwork } };
     let opened = match &again {
-        // A result with its source and recipe in it opens with its steps.
+        // The editor opens a result that contains its source and recipe with its steps.
         Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
         None => svg.clone(),
     };
@@ -62,7 +61,7 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     as_by_hand(stage, &drawing, result, &returned)
 }
 
-/// The recipe by which all of these objects were warped, if they were warped by one whose guides are still there.
+/// Returns the recipe of these objects, if all have the same and its guides still exist.
 fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
     let mut recipes = all.iter().filter(|o| ids.contains(&o.id)).map(|o| o.recipe.as_ref());
     let first = recipes.next()??;
@@ -71,7 +70,7 @@ fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
     (recipes.all(|r| r == Some(first)) && referred(&line).iter().all(is_there)).then_some(line)
 }
 
-/// Opens the page on a drawing. Returns the steps that the user keeps.
+/// Opens the page on a drawing. Returns the steps that the user confirms.
 fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
     let mut given = Given::default();
     let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
@@ -101,7 +100,7 @@ fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -
     pathwarp_editor::serve(host, &options, |_| ()).map_err(Failure::Input)
 }
 
-/// The words of a recipe's steps.
+/// Converts a recipe's steps to words of a command line.
 fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
     let mut line = Vec::new();
     for step in &recipe.steps {
@@ -123,7 +122,7 @@ fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
     line
 }
 
-/// The common options among the words of a recipe.
+/// Returns the common options among the words of a recipe.
 fn options_of(line: &[String]) -> Vec<String> {
     let is_option = |word: &&String| {
         let own = word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name));
@@ -132,7 +131,7 @@ fn options_of(line: &[String]) -> Vec<String> {
     line.iter().filter(is_option).cloned().collect()
 }
 
-/// A temporary file with this content.
+/// Creates a temporary file with this content.
 fn temporary(content: &[u8]) -> Result<Temporary, Failure> {
     let folder = std::env::temp_dir();
     let failed = |e: std::io::Error| Failure::output(&folder, format!("a temporary file cannot be written: {e}"));

@@ -1,4 +1,4 @@
-//! Sorts the selection into guides and artwork.
+//! Divides the selection into guides and artwork.
 
 use super::line::word;
 use super::names::{AUTOMATIC, GUIDES};
@@ -9,25 +9,25 @@ use pathwarp_engine::failure::Failure;
 use pathwarp_svg::objects::Object;
 use std::collections::HashSet;
 
-/// Labels that stand for the first guide of any deformation.
+/// Labels that mark the first guide of any deformation.
 const LABELS: [&str; 3] = ["cage", "skeleton", "guide"];
 
-/// The selection, sorted.
+/// A selection divided into guides and artwork.
 pub(super) struct Sorted {
-    /// The parameters that guides are the values of, with the guides' ids.
+    /// The parameters that take guides, with the guides' ids.
     pub(super) guides: Vec<(&'static str, String)>,
-    /// The objects to be warped. They hold no guide.
+    /// The ids of the objects to warp, without guides in them.
     pub(super) artwork: Vec<String>,
 }
 
 impl Sorted {
-    /// The words of a command line that name the guides.
+    /// Returns the words of a command line that name the guides.
     pub(super) fn words(&self) -> impl Iterator<Item = String> {
         self.guides.iter().map(|(param, id)| word(param, &format!("#{id}")))
     }
 }
 
-/// Sorts the selection of a call. `given` are the words for the deformation's parameters as the dialog gives them.
+/// Divides the selection of a call. `given` has the words for the deformation's parameters from the dialog.
 pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[String]) -> Result<Sorted, Failure> {
     let is_given =
         |p: &Param| given.iter().any(|w| w.strip_prefix("--").and_then(|w| w.split('=').next()) == Some(p.name));
@@ -41,13 +41,13 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         None | Some(AUTOMATIC) => None,
         Some(n) => Some(n.parse::<usize>().map_err(|_| Failure::usage(format!("`{n}` is no number of guides")))?),
     };
-    // A path, a file or points in the dialog take the place of guides.
+    // A path, a file or points given in the dialog replace guides.
     let otherwise = || info.params.iter().any(|p| is_alternative(p) && is_given(p));
     let count = wanted.unwrap_or(if guides.is_empty() && !otherwise() { info.guides.usual } else { 0 });
     let inside = |o: &&Object| call.ids.is_empty() && !o.is_locked || call.ids.contains(&o.id);
     let mut paths: Vec<&Object> = objects.iter().filter(|o| o.is_path && inside(o)).collect();
     paths.retain(|o| !guides.iter().any(|(_, id)| *id == o.id));
-    // Something must be left to warp.
+    // At least one object must remain to be warped.
     let spare = if call.ids.is_empty() { paths.len() } else { artwork.len() }.saturating_sub(1);
     let count = count.min(paths.len()).min(spare);
     if wanted.is_some() || count >= info.guides.usual {
@@ -56,7 +56,7 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         let free: Vec<&'static str> = free.filter(|name| !guides.iter().any(|(p, _)| p == *name)).copied().collect();
         guides.extend(free.into_iter().zip(topmost.map(|o| o.id.clone())));
     }
-    // A deformation that usually has a guide needs one, unless the dialog says something else instead.
+    // A deformation that usually has a guide needs one, unless the dialog gives an alternative.
     let usual = info.guides.params.first().filter(|_| info.guides.usual > 0 && wanted.is_none() && !otherwise());
     let is_needed = |p: &Param| p.needed || p.default.is_none() && usual == Some(&p.name);
     if let Some(p) = open.iter().find(|p| is_needed(p) && !guides.iter().any(|(name, _)| *name == p.name)) {
@@ -70,7 +70,7 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
     Ok(Sorted { guides, artwork })
 }
 
-/// The paths whose label or id is a parameter's name, or, for the first guide, one of the general labels. Selected ones go first.
+/// Finds paths whose label or id is a parameter's name or, for the first guide, one of the general labels. Selected ones take precedence.
 fn labelled(info: &Info, open: &[&Param], objects: &[Object], selected: &[&Object]) -> Vec<(&'static str, String)> {
     let first = info.guides.params.first();
     let called = |o: &Object, p: &Param| {
@@ -84,7 +84,7 @@ fn labelled(info: &Info, open: &[&Param], objects: &[Object], selected: &[&Objec
     open.iter().filter_map(find).collect()
 }
 
-/// Returns `true` for a parameter without a default that says where things are.
+/// Returns `true` for a parameter without a default that gives positions.
 fn is_alternative(p: &Param) -> bool {
     let says_where = matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_) | Kind::Choice(_));
     p.default.is_none() && (p.repeat || says_where)
@@ -98,7 +98,7 @@ fn missing(p: &Param, call: &Call) -> Failure {
     Failure::usage(format!("this effect needs a path, --{name} ({help}): {what}, or label it `{name}`"))
 }
 
-/// Objects without those that are guides; an object around a guide is replaced by what it holds beside it.
+/// Removes guides from objects; an object that contains a guide is replaced by its other children.
 fn without(objects: &[Object], ids: &[&str], guides: &HashSet<&str>) -> Vec<String> {
     let mut out = Vec::new();
     for &id in ids {

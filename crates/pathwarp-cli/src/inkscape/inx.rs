@@ -1,4 +1,4 @@
-//! Inkscape's descriptions of extensions (`.inx`), from the registry and the table of common options.
+//! Generates Inkscape's descriptions of extensions (`.inx`) from the registry and the table of common options.
 
 use crate::inkscape::names::{
     ACTION, ADD, AGAIN, AUTOMATIC, CHANGES, DEFORMATION, DISCARD, FILE, GUIDES, NONE, PERCENT, REPLACE, SHOW, UNIT,
@@ -9,7 +9,7 @@ use pathwarp::param::{Kind, Param};
 use pathwarp_engine::options::{CommonOption, OPTIONS, OptionValue};
 use std::fmt::Write as _;
 
-/// All descriptions: file name and content.
+/// Returns the name and the content of every description.
 pub(crate) fn files(registry: &Registry, program: &Program) -> Vec<(String, String)> {
     let effects = registry.entries().iter().map(|e| {
         let info = e.info();
@@ -18,14 +18,14 @@ pub(crate) fn files(registry: &Registry, program: &Program) -> Vec<(String, Stri
     effects.chain(others(program)).collect()
 }
 
-/// The command that the descriptions name: a file beside them, a program on the search path, or a path.
+/// The command in the descriptions: a file beside them, a program on the search path, or a path.
 pub(crate) struct Program {
     /// `inx`, `path` or `absolute`.
     pub(crate) location: &'static str,
     pub(crate) name: String,
 }
 
-/// The common options that a dialog shows, in its order. The others make no sense for a part of an open drawing.
+/// The common options that a dialog shows, in its order. The others do not apply to a part of an open drawing.
 const SHOWN: [&str; 12] = [
     "fit",
     "clones",
@@ -41,10 +41,10 @@ const SHOWN: [&str; 12] = [
     "frame",
 ];
 
-/// Other defaults than the command line has: in Inkscape, clones show what happens to their original, and pages stay.
+/// Defaults that differ from the command line's: in Inkscape, clones follow their originals, and pages stay.
 const DEFAULTS: [(&str, &str); 2] = [("clones", "follow"), ("fit", "none")];
 
-/// Describes the effect.
+/// Returns the description of a deformation.
 fn inx(info: &Info, program: &Program) -> String {
     let name = format!("{} – {}", label(info.name), info.title);
     let mut settings = String::new();
@@ -68,13 +68,13 @@ fn inx(info: &Info, program: &Program) -> String {
     effect(&name, info.name, info.title, &body, Some(info.group), true, program)
 }
 
-/// The default of an option in a dialog.
+/// Returns the default of an option in a dialog.
 fn default(o: &CommonOption) -> &'static str {
     let other = DEFAULTS.iter().find(|(name, _)| *name == o.name).map(|(_, value)| *value);
     other.or(o.default).unwrap_or_default()
 }
 
-/// An effect in the menu, in a submenu of ours if `group` names one.
+/// Describes an effect in the menu, in the submenu `group` if given.
 fn effect(
     name: &str,
     id: &str,
@@ -98,7 +98,7 @@ fn effect(
     )
 }
 
-/// The choice of how many selected paths are guides.
+/// Returns the choice of the number of selected paths that are guides.
 fn guides(guides: Guides) -> String {
     let names: Vec<String> = guides.params.iter().map(|p| format!("“{}”", label(p))).collect();
     let help = format!(
@@ -113,7 +113,7 @@ fn guides(guides: Guides) -> String {
     choice(GUIDES, "Guides in the selection", &help, std::iter::once(auto).chain(options), AUTOMATIC)
 }
 
-/// Options for objects that are warped already, and for messages.
+/// Returns the options for warped objects and for messages.
 fn again() -> String {
     let options = [
         (AUTOMATIC, "change a warp of this kind, warp other results"),
@@ -150,7 +150,7 @@ fn help(info: &Info) -> String {
     out
 }
 
-/// File name and content of each of the other calls.
+/// Returns the name and the content of the descriptions of other calls.
 fn others(program: &Program) -> impl Iterator<Item = (String, String)> {
     let all = [
         ("bend-by-hand", by_hand(program)),
@@ -229,7 +229,7 @@ fn dxf(program: &Program) -> String {
     file_type("DXF with true arcs", "dxf", &body, kind, program)
 }
 
-/// A type of files to open or save.
+/// Describes a type of files to open or save.
 fn file_type(name: &str, id: &str, body: &str, kind: &str, program: &Program) -> String {
     let Program { location, name: file } = program;
     let file = escaped(file);
@@ -241,17 +241,17 @@ fn file_type(name: &str, id: &str, body: &str, kind: &str, program: &Program) ->
     )
 }
 
-/// Limits of numbers that have none: Inkscape's own default is 0 to 10.
+/// Limits for unlimited numbers, since Inkscape's default limits are 0 and 10.
 const FAR: f64 = 1e6;
 
-/// The range of a parameter's slider that its declaration leaves open.
+/// The range of a slider that a parameter does not declare.
 const NO_SLIDER: (f64, f64) = (0.0, 1.0);
 
-/// One `<param>`.
+/// The attributes and content of a `<param>`.
 struct Widget<'a> {
     name: &'a str,
     kind: &'a str,
-    /// More attributes, each with a space before it.
+    /// Further attributes, each preceded by a space.
     more: String,
     label: &'a str,
     help: &'a str,
@@ -269,7 +269,7 @@ impl Widget<'_> {
     }
 }
 
-/// A choice: pairs of value and label. The default comes first: Inkscape 1.2 takes the first option whatever is marked.
+/// Formats a choice of values with labels. The default comes first, since Inkscape 1.2 selects the first one regardless of marks.
 fn choice<'a>(
     name: &str,
     title: &str,
@@ -289,7 +289,7 @@ fn choice<'a>(
     out
 }
 
-/// The elements for a parameter of a deformation; none for files that it saves, which a preview would write again and again.
+/// Returns the elements for a parameter of a deformation; none for files that it saves, which previews would write repeatedly.
 fn of_param(p: &Param) -> String {
     let mut out = String::new();
     let default = p.default.unwrap_or_default();
@@ -346,7 +346,7 @@ fn of_param(p: &Param) -> String {
     out
 }
 
-/// A number with its unit beside it.
+/// Appends a number and its unit.
 fn length(p: &Param, title: &str, number: &str, out: &mut String) {
     let least = if p.range.0 >= 0.0 { 0.0 } else { -FAR };
     let more = format!(" precision=\"3\" min=\"{least}\" max=\"{FAR}\"");
@@ -359,7 +359,7 @@ fn length(p: &Param, title: &str, number: &str, out: &mut String) {
     out.push_str("      </hbox>\n");
 }
 
-/// Attributes of a float: with a slider where the declaration has one.
+/// Returns the attributes of a float, with a slider if the parameter declares one.
 fn float(ui: (f64, f64), range: (f64, f64), times: f64, precision: u8) -> String {
     let (least, most) = if ui == NO_SLIDER && range != NO_SLIDER { range } else { ui };
     let (least, most) = ((least * times).max(-FAR), (most * times).min(FAR));
@@ -371,7 +371,7 @@ fn file(types: &str) -> String {
     format!(" mode=\"file\" filetypes=\"{types}\"")
 }
 
-/// The element for a common option; `default` is the word that is chosen at first.
+/// Returns the element for a common option; `default` is the word selected initially.
 fn of_option(o: &CommonOption, default: &str) -> String {
     let title = label(o.name);
     match &o.value {
@@ -400,14 +400,14 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The label of a name in kebab case: `reverse-shaper` becomes “Reverse shaper”.
+/// Converts a name in kebab case to a label: `reverse-shaper` to “Reverse shaper”.
 fn label(name: &str) -> String {
     let text = name.replace('-', " ");
     let mut chars = text.chars();
     chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// Text for people, with options as the dialogs label them: `--reverse-shaper` becomes “Reverse shaper”.
+/// Replaces options in a text by the dialogs' labels: `--reverse-shaper` becomes “Reverse shaper”.
 pub(crate) fn labelled(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -430,7 +430,7 @@ pub(crate) fn labelled(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Every description is well-formed, has its own id, and passes only parameters that are understood.
+    /// Every description is well-formed, has a unique id, and passes only known parameters.
     #[test]
     fn descriptions_are_sound() {
         let registry = Registry::builtin();
@@ -453,7 +453,7 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count, "{name}: a name occurs twice");
         }
-        // Inkscape 1.2 takes the first option of a choice.
+        // Inkscape 1.2 selects the first option of a choice.
         let bend = &all.iter().find(|(name, _)| name == "pathwarp-bend.inx").unwrap().1;
         for (choice, first) in [("align", "middle"), ("clones", "follow"), ("fit", "none"), ("offset_unit", "user")] {
             let options = bend.split(&format!("name=\"{choice}\"")).nth(1).unwrap();

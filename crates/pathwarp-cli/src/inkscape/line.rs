@@ -1,4 +1,4 @@
-//! A recipe as the words of a command line: what it refers to, and the frame that makes it independent of the selection.
+//! Recipes as words of a command line: their references, and the frame that makes them independent of the selection.
 
 use super::names::{CHAIN, FILE, NONE, PERCENT, UNIT, UNITS};
 use super::stage::{Call, Outcome, Stage};
@@ -12,13 +12,13 @@ use pathwarp_engine::references::{self, HERE};
 use pathwarp_engine::steps::INVERSE;
 use pathwarp_svg::objects::Object;
 
-/// Words that leave out what is locked.
+/// Returns the words that exclude locked objects.
 pub(super) fn exclusions(all: &[Object]) -> impl Iterator<Item = String> {
     let outer = |o: &&Object| o.is_locked && !all.iter().any(|p| p.is_locked && o.inside.first() == Some(&p.id));
     all.iter().filter(outer).map(|o| format!("--exclude=[id={}]", o.id))
 }
 
-/// The recipe with the frame as it came out, so that it means the same for each object alone.
+/// Adds the resulting frame to a recipe, so that the recipe has the same effect on each object alone.
 pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
     let Some([x, y, w, h]) = outcome.frame else { return line };
     line.retain(|word| !word.starts_with("--frame="));
@@ -34,8 +34,8 @@ pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcom
     line
 }
 
-/// Checks a recipe, which may come from a drawing that somebody sent: it names deformations, sets parameters and options that shape the
-/// result, and neither writes files nor reads other than regular ones.
+/// Checks a recipe, which may come from somebody else's drawing: it names deformations, sets parameters and options that shape the result,
+/// writes no files, and reads only regular ones.
 pub(super) fn allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
     line.split(|word| word == CHAIN).try_for_each(|step| step_allowed(stage, step))
 }
@@ -63,13 +63,13 @@ fn step_allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Ids that a recipe refers to as `--name=#id`.
+/// Returns the ids that a recipe refers to as `--name=#id`.
 pub(super) fn referred(line: &[String]) -> Vec<String> {
     let target = |w: &String| w.split_once("=#").map(|(_, id)| id.to_owned());
     line.iter().filter_map(target).collect()
 }
 
-/// A recipe with labels of paths replaced by their ids, which are unique.
+/// Replaces labels of paths in a recipe by their ids, which are unique.
 pub(super) fn by_id(line: Vec<String>, all: &[Object]) -> Vec<String> {
     let one = |w: String| {
         let Some((name, label)) = w.split_once("=#").filter(|(_, l)| !all.iter().any(|o| o.id == *l)) else { return w };
@@ -79,7 +79,7 @@ pub(super) fn by_id(line: Vec<String>, all: &[Object]) -> Vec<String> {
     line.into_iter().map(one).collect()
 }
 
-/// A recipe without exclusions of what is not in the drawing any more.
+/// Removes exclusions of objects that the drawing lacks from a recipe.
 pub(super) fn existing(mut line: Vec<String>, all: &[Object]) -> Vec<String> {
     line.retain(|w| {
         let id = w.strip_prefix("--exclude=[id=").and_then(|w| w.strip_suffix(']'));
@@ -88,26 +88,26 @@ pub(super) fn existing(mut line: Vec<String>, all: &[Object]) -> Vec<String> {
     line
 }
 
-/// The words for the deformation's own parameters: `--bend=40%`.
+/// Returns the words for the deformation's parameters: `--bend=40%`.
 pub(super) fn words_of_deformation(info: &Info, call: &Call) -> Vec<String> {
     info.params.iter().flat_map(|p| values(p, call).into_iter().map(|v| word(p.name, &v))).collect()
 }
 
-/// The words for the common options.
+/// Returns the words for the common options.
 pub(super) fn words_of_options(call: &Call) -> Vec<String> {
     let given = |name: &str| call.value(name).filter(|v| *v != NONE);
     let set = OPTIONS.iter().filter_map(|o| Some((o, given(o.name)?)));
-    // Pages stay in Inkscape unless a dialog says otherwise.
+    // In Inkscape, pages stay unless a dialog chooses otherwise.
     let default = |o: &CommonOption| if o.name == "fit" { Some("none") } else { o.default };
     set.filter(|(o, v)| default(o) != Some(*v)).map(|(o, v)| word(o.name, v)).collect()
 }
 
-/// One word for an option with its value.
+/// Returns the word for an option with its value.
 pub(super) fn word(name: &str, value: &str) -> String {
     if value == "true" { format!("--{name}") } else { format!("--{name}={value}") }
 }
 
-/// The values of a parameter as a user would type them.
+/// Returns the values of a parameter as typed by a user.
 fn values(p: &Param, call: &Call) -> Vec<String> {
     let plain = || call.value(p.name).filter(|v| *v != NONE);
     let value = match p.kind {
@@ -126,7 +126,7 @@ fn values(p: &Param, call: &Call) -> Vec<String> {
             let file = call.value(&format!("{}{FILE}", p.name));
             file.or_else(plain).map(ToOwned::to_owned)
         }
-        // A path is named by its label or id, with or without the mark.
+        // A path is named by its label or id, with or without `#`.
         Kind::Path => plain().map(reference),
         _ if p.repeat => return lines(plain().unwrap_or_default()),
         _ => plain().map(ToOwned::to_owned),
@@ -134,7 +134,7 @@ fn values(p: &Param, call: &Call) -> Vec<String> {
     value.filter(|v| !p.default.is_some_and(|d| is_same(d, v))).into_iter().collect()
 }
 
-/// A number without the zeros behind it that Inkscape writes; other text as it is.
+/// Removes trailing zeros, which Inkscape writes, from a number; other text stays.
 fn number(text: &str) -> String {
     match text.parse::<f64>() {
         Ok(v) if v.is_finite() => v.to_string(),
@@ -142,7 +142,7 @@ fn number(text: &str) -> String {
     }
 }
 
-/// Returns `true` if two values are the same text or number.
+/// Returns `true` for equal texts or numbers.
 fn is_same(default: &str, value: &str) -> bool {
     let split = |t: &str| {
         let end = t.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%').len();
@@ -151,24 +151,23 @@ fn is_same(default: &str, value: &str) -> bool {
     default == value || split(default).is_some() && split(default) == split(value)
 }
 
-/// A path reference as typed into a dialog: a name alone is a path of the drawing.
+/// Completes a path reference from a dialog: a name alone refers to a path of the drawing.
 fn reference(text: &str) -> String {
     let is_name =
         !text.contains('#') && references::names_file(text, HERE.as_ref()) && !std::path::Path::new(text).is_file();
     if is_name { format!("#{text}") } else { text.to_owned() }
 }
 
-/// The lines of a text field. Inkscape passes line ends as they are, or as `\n`.
+/// Splits the content of a text field into lines. Inkscape passes line ends literally or as `\n`.
 fn lines(text: &str) -> Vec<String> {
     let text = text.replace("\\n", "\n");
     text.lines().map(str::trim).filter(|l| !l.is_empty()).map(ToOwned::to_owned).collect()
 }
 
-/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it. Of several steps, the first that has the setting is changed, or else
-/// the first.
+/// Changes a recipe: `bend=30%` sets a value, `bend=` removes it, in the first step that has the setting, or else in the first step.
 ///
 /// # Errors
-/// A line that is not of this form.
+/// A message that quotes the first line of another form.
 pub(super) fn changed(words: &mut Vec<String>, changes: &str) -> Result<(), String> {
     for line in lines(changes) {
         let (name, value) = line.split_once('=').ok_or_else(|| format!("`{line}` is not of the form name=value"))?;

@@ -1,8 +1,8 @@
 //! Calls by Inkscape, which starts the program for every effect with ids, parameters and the drawing's file: `--id=path1
-//! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; anything on
-//! standard error opens a window.
+//! --inkscape-deformation=warp --bend_percent=40 … /tmp/ink_ext_XXXXXX.svg`. The result goes to standard output; text on standard error
+//! opens a window.
 //!
-//! A call is turned into the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
+//! A call is converted to the words of an ordinary command line (`line.rs`), which are applied to the drawing in memory (`stage.rs`).
 
 mod by_hand;
 mod guides;
@@ -32,12 +32,12 @@ pub(crate) fn is_call(args: &[OsString]) -> bool {
     args.iter().skip(1).any(|a| is_job(&a.to_string_lossy()))
 }
 
-/// Does what Inkscape asks for.
+/// Executes a call by Inkscape.
 pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> Result<Status, Failure> {
     let call = Call::read(args)?;
     let word = match &call.job {
         Job::Deformation(name) => name,
-        // Any may be in a recipe.
+        // A recipe may name any deformation, so all plug-ins are loaded.
         Job::Edit | Job::Hand => "list",
         Job::Release | Job::Convert(_) => "convert",
     };
@@ -55,7 +55,7 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> R
     Ok(Status::Complete)
 }
 
-/// A message for the window that Inkscape opens: parameters as the dialog labels them, and without the temporary file.
+/// Prepares a message for Inkscape's window: with the dialog's labels of parameters, and without the temporary file.
 fn in_a_window(stage: &Stage<'_>, failure: &Failure) -> Failure {
     let plain = stage.without_file(failure);
     Failure::Input(inx::labelled(&plain.message(&Flags::of(stage.registry))))
@@ -86,7 +86,7 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
     line = by_id(line, &all);
     line.extend(words_of_options(call));
-    // Of the whole page, what is locked stays.
+    // On the whole page, locked objects are excluded.
     let whole = call.ids.is_empty();
     if whole {
         line.extend(exclusions(&all));
@@ -100,15 +100,14 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     as_by_hand(stage, &drawing, result, &returned)
 }
 
-/// Gives the sources of the selected objects back. Returns the drawing.
+/// Replaces the selected objects by their sources. Returns the drawing.
 fn release(stage: &Stage<'_>) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let ids = targets(stage, &objects(&drawing, &stage.limits())?)?;
     Ok(objects::restore(&drawing, &ids, &stage.limits())?.svg)
 }
 
-/// Warps the sources of the selected objects by their recipes, with changes. Returns the drawing, or nothing if the settings are only
-/// to be shown.
+/// Warps the sources of the selected objects by their recipes, with changes. Returns the drawing, or nothing to only show settings.
 fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
     let call = stage.call;
     let drawing = stage.drawing()?;
@@ -131,7 +130,7 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
         let ids: Vec<String> = members.iter().map(|r| r.object.id.clone()).collect();
         let referred = referred(&line);
         let is_there = |id: &String| all.iter().any(|o| o.id == *id);
-        // A guide that is gone is replaced by the copy that the object carries.
+        // A missing guide is replaced by the copy that the object stores.
         let gone = !referred.iter().all(is_there);
         let guides = match members.first() {
             Some(m) if gone => m.object.guides.clone(),
@@ -146,13 +145,13 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
     as_by_hand(stage, &drawing, svg, &returned)
 }
 
-/// The warped objects that a selection means: those selected, else those inside, else those around.
+/// Returns the warped objects that a selection concerns: those selected, or else inside it, or else around it.
 fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     let mut out: Vec<String> = Vec::new();
     let warped = || all.iter().filter(|o| o.recipe.is_some());
     for id in &stage.call.ids {
         let itself = warped().find(|o| o.id == *id).map(|o| vec![o.id.clone()]);
-        // Of nested ones, the outer holds the inner in its source.
+        // The source of an outer warped object includes the inner ones.
         let inside = || {
             let outer = warped().filter(|o| o.inside.contains(id));
             let ids: Vec<String> =
@@ -168,7 +167,7 @@ fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     }
     let mut seen = HashSet::new();
     out.retain(|id| seen.insert(id.clone()));
-    // Objects inside another one come back with it.
+    // The source of an outer object restores the objects inside of it.
     let chosen = out.clone();
     out.retain(|id| !all.iter().any(|o| o.id == *id && o.inside.iter().any(|i| chosen.contains(i))));
     if out.is_empty() {
@@ -179,7 +178,7 @@ fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     Ok(out)
 }
 
-/// The settings of warped objects, for people.
+/// Returns the settings of warped objects, for display.
 fn settings(all: &[Object], ids: &[String]) -> String {
     let one = |o: &Object| {
         let line = split(o.recipe.as_deref().unwrap_or_default());

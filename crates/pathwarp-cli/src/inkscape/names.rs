@@ -1,41 +1,41 @@
-//! Names of parameters in the dialogs, beside those of deformations and common options. Those are in kebab case, so an underscore
-//! is free to mark what belongs to one of them.
+//! Names of parameters in the dialogs, besides those of deformations and common options. The latter are in kebab case, so an underscore can
+//! mark additional parameters that belong to one of them.
 
 /// The word between two steps.
 pub(super) const CHAIN: &str = "+";
 
-/// The deformation to apply.
+/// Parameter: the deformation to apply.
 pub(super) const DEFORMATION: &str = "inkscape-deformation";
-/// Another thing to do.
+/// Parameter: another action.
 pub(super) const ACTION: &str = "inkscape-action";
-/// The number of selected paths that are guides, or [`AUTOMATIC`].
+/// Parameter: the number of selected paths that are guides, or [`AUTOMATIC`].
 pub(super) const GUIDES: &str = "inkscape-guides";
-/// The treatment of objects that are warped already.
+/// Parameter: the treatment of objects that are warped already.
 pub(super) const AGAIN: &str = "inkscape-again";
-/// Show warnings in a window.
+/// Parameter: show warnings in a window.
 pub(super) const WARNINGS: &str = "inkscape-warnings";
-/// New values for a warp.
+/// Parameter: new values for a warp.
 pub(super) const CHANGES: &str = "inkscape-changes";
-/// Show the settings of a warp, and change nothing.
+/// Parameter: show the settings of a warp, and change nothing.
 pub(super) const SHOW: &str = "inkscape-show";
-/// Give up changes made by hand.
+/// Parameter: discard changes made by hand.
 pub(super) const DISCARD: &str = "inkscape-discard";
 
-/// The word for the usual choice.
+/// Value: the usual choice.
 pub(super) const AUTOMATIC: &str = "auto";
-/// Change the warp instead of warping its result.
+/// Value: change the warp instead of warping its result.
 pub(super) const REPLACE: &str = "replace";
-/// Warp the result.
+/// Value: warp the result.
 pub(super) const ADD: &str = "add";
 
-/// The value of an option without a choice, as Inkscape has no empty ones.
+/// Value: no choice, since Inkscape has no empty values.
 pub(super) const NONE: &str = "-";
 
-/// A number in percent.
+/// Suffix: a number in percent.
 pub(super) const PERCENT: &str = "_percent";
-/// The unit of a length.
+/// Suffix: the unit of a length.
 pub(super) const UNIT: &str = "_unit";
-/// A file of the user's instead of a name.
+/// Suffix: a file that replaces a name.
 pub(super) const FILE: &str = "_file";
 
 /// Units of lengths as Inkscape passes them, and as the command line takes them.
@@ -48,7 +48,7 @@ pub(super) const UNITS: [(&str, &str, &str); 6] = [
     ("pt", "pt", "pt"),
 ];
 
-/// Returns `true` for the argument that says what to do.
+/// Returns `true` for an argument that names the action.
 pub(super) fn is_job(arg: &str) -> bool {
     let name = arg.strip_prefix("--").and_then(|a| a.split_once('=')).map(|(name, _)| name);
     name.is_some_and(|n| n == DEFORMATION || n == ACTION)
@@ -63,7 +63,7 @@ pub(super) fn joined(words: &[String]) -> String {
     words.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
-/// Splits a line into words. A quote that is not closed ends with the line.
+/// Splits a line into words. An unclosed quote ends with the line.
 pub(super) fn split(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;

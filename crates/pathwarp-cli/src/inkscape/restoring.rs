@@ -1,4 +1,4 @@
-//! Sources in place of warped objects, with what was done to the objects by hand.
+//! Restores the sources of warped objects, together with the changes that were made to the objects by hand.
 
 use super::line::{allowed, existing, referred};
 use super::names::split;
@@ -11,31 +11,31 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Areas that change by less than this share keep their size: coordinates are rounded to eight digits.
+/// Relative change of areas that counts as rounding: coordinates have eight digits.
 const UNSCALED: f64 = 1e-3;
 
-/// Distance below which two nodes are one, as a share of the object's size.
+/// Distance below which two nodes are equal, as a share of the object's size.
 const SAME_NODE: f64 = 1e-6;
 
-/// A drawing with sources in place of warped objects.
+/// A drawing whose warped objects are replaced by their sources.
 pub(super) struct Restoration {
     pub(super) svg: String,
     pub(super) objects: Vec<Returned>,
 }
 
-/// An object that is its source again.
+/// An object that was replaced by its source.
 pub(super) struct Returned {
     pub(super) object: RestoredObject,
-    /// The transform, of root user space, that the object was given by hand since it was warped.
+    /// The transform, in root user space, that the object has been given by hand since its warp.
     by_hand: Affine,
-    /// The drawing as the warp left it.
+    /// The drawing that the warp produced.
     then: Rc<str>,
 }
 
-/// Puts the sources of objects in place, and finds out how each was moved by hand since it was warped.
+/// Restores the sources of objects, and finds how each has been moved by hand since its warp.
 ///
 /// # Errors
-/// An object was changed by hand otherwise, unless such changes are to be given up.
+/// [`Failure::Usage`] if an object was changed by hand in another way, unless such changes are discarded.
 pub(super) fn restored(
     stage: &Stage<'_>,
     drawing: &str,
@@ -51,7 +51,7 @@ pub(super) fn restored(
     let now = if runs.is_empty() { None } else { Some(stage.read(drawing)?) };
     let all = objects::objects(&back.svg, &stage.limits())?;
     for (recipe, members) in runs {
-        // The warp as it was: by the guides of that time.
+        // Repeat the warp with the guides that it had.
         let guides = members.first().map(|m| GuidePaths { guides: &m.guides, has: &|_| true });
         let line = split(recipe);
         allowed(stage, &line)?;
@@ -66,7 +66,7 @@ pub(super) fn restored(
                 Move::Otherwise if discard => Affine::IDENTITY,
                 Move::Otherwise => return Err(changed_by_hand(&m.id)),
             };
-            // Artwork follows guides that are still there.
+            // If the guide still exists, the artwork follows it instead.
             let guided = referred(&split(recipe)).iter().any(|id| all.iter().any(|o| o.id == *id));
             let by_hand = if guided { Affine::IDENTITY } else { by_hand };
             objects.push(Returned { object: m.clone(), by_hand, then: Rc::clone(&text) });
@@ -82,8 +82,7 @@ fn changed_by_hand(id: &str) -> Failure {
     ))
 }
 
-/// Does to objects again what had been done to them by hand since they were warped: colours, labels, places. `now` is the drawing
-/// as it was before their sources came back.
+/// Repeats the changes made to objects by hand since their warp: colours, labels, positions. `now` is the drawing with the changes.
 pub(super) fn as_by_hand(
     stage: &Stage<'_>,
     now: &str,
@@ -91,7 +90,7 @@ pub(super) fn as_by_hand(
     objects: &[Returned],
 ) -> Result<String, Failure> {
     for r in objects {
-        // An editor that scales an object scales its stroke width, too; the transform below does so again.
+        // Editors that scale an object scale its stroke width, too, and the transform below includes that.
         let is_scaled = (r.by_hand.determinant().abs() - 1.0).abs() > UNSCALED;
         let except: &[&str] = if is_scaled { &["stroke-width", "stroke-dasharray", "stroke-dashoffset"] } else { &[] };
         svg = objects::restyled([&r.then, now, &svg], &r.object.id, except, &stage.limits())?;
@@ -112,7 +111,7 @@ pub(super) fn nodes(doc: &Document, id: &str) -> Nodes {
     Nodes::of(&subpaths.flat_map(|p| apart(p.anchors(), SAME_NODE * size)).collect::<Vec<Point>>())
 }
 
-/// Nodes of a contour without those at the place of the one before: relative coordinates leave a gap before the end.
+/// Removes nodes of a contour that coincide with the preceding one: relative coordinates leave a gap before the end.
 fn apart(mut nodes: Vec<Point>, near: f64) -> Vec<Point> {
     nodes.dedup_by(|b, a| a.distance(*b) <= near);
     while nodes.len() > 1 && nodes.first().zip(nodes.last()).is_some_and(|(a, b)| a.distance(*b) <= near) {
@@ -121,7 +120,7 @@ fn apart(mut nodes: Vec<Point>, near: f64) -> Vec<Point> {
     nodes
 }
 
-/// Makes objects of a result remember their sources, in `before`.
+/// Stores the sources of a result's objects, which are in `before`.
 pub(super) fn remembering(
     stage: &Stage<'_>,
     before: &str,
@@ -139,13 +138,13 @@ pub(super) fn remembering(
     Ok(objects::remember(before, result, &memories, &stage.limits())?)
 }
 
-/// The largest error as a share of the object's size: Inkscape rounds coordinates to eight digits.
+/// Largest error relative to the object's size: Inkscape rounds coordinates to eight digits.
 const LARGEST: f64 = 1e-5;
 
-/// The number of means.
+/// Most means in a summary.
 const MEANS: usize = 12;
 
-/// Nodes in short.
+/// A summary of nodes: their number, and means of consecutive groups, which affine maps take to means.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Nodes {
     count: usize,
@@ -163,13 +162,13 @@ impl Nodes {
         Self { count: nodes.len(), means: nodes.chunks(size).map(mean).collect() }
     }
 
-    /// As text.
+    /// Formats the summary.
     pub(super) fn text(&self) -> String {
         let means = self.means.iter().map(|p| format!(" {},{}", p.x, p.y));
         std::iter::once(self.count.to_string()).chain(means).collect()
     }
 
-    /// Reads the text. Returns `None` for other text.
+    /// Parses a summary. Returns `None` for other text.
     pub(super) fn read(text: &str) -> Option<Self> {
         let mut words = text.split_whitespace();
         let count = words.next()?.parse().ok()?;
@@ -191,11 +190,11 @@ impl Nodes {
 pub(super) enum Move {
     /// An affine map; the identity if nothing moved.
     By(Affine),
-    /// No affine map takes one to the other.
+    /// No affine map transforms one list into the other.
     Otherwise,
 }
 
-/// Finds the affine map that takes every point of `from` to that of `to`.
+/// Finds the affine map that takes each point of `from` to its counterpart in `to`.
 fn found(from: &[Point], to: &[Point]) -> Move {
     let (Some(&p0), Some(&q0)) = (from.first(), to.first()) else {
         return if from.len() == to.len() { Move::By(Affine::IDENTITY) } else { Move::Otherwise };
@@ -215,9 +214,9 @@ fn found(from: &[Point], to: &[Point]) -> Move {
     near.into_iter().find(|a| fits(*a)).map_or(Move::Otherwise, Move::By)
 }
 
-/// A map with as many digits as coordinates are written with, for points of a size of ten to the power of `unit`.
+/// Rounds a map to the digits of coordinates, for points whose size is ten to the power of `unit`.
 fn rounded(a: Affine, unit: f64) -> Affine {
-    /// Digits after those that Inkscape writes are noise.
+    /// Inkscape writes fewer digits, so further ones are noise.
     const DIGITS: f64 = 9.0;
     let round = |v: f64, digits: f64| {
         let k = 10_f64.powf(digits.clamp(0.0, 2.0 * DIGITS));
@@ -229,7 +228,7 @@ fn rounded(a: Affine, unit: f64) -> Affine {
     Affine::new([a, b, c, d, e, f])
 }
 
-/// The affine map that takes three points far apart to their images.
+/// Returns the affine map that takes three points far apart to their images.
 fn by_three(from: &[Point], to: &[Point]) -> Option<Affine> {
     let p0 = *from.first()?;
     let most = |value: &dyn Fn(&Point) -> f64| {

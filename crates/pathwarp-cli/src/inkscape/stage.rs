@@ -1,4 +1,4 @@
-//! A call of Inkscape, and the words of a command line applied to its drawing.
+//! The context of a call by Inkscape, which applies words of a command line to its drawing.
 
 use super::inx::labelled;
 use super::names::{ACTION, CHAIN, DEFORMATION, WARNINGS};
@@ -23,17 +23,17 @@ use std::cell::LazyCell;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Converts a file with these options; without a target to standard output.
+/// Converts a file with these options; without a target, to standard output.
 pub(super) type Convert = fn(&Path, Option<&Path>, &CommonOptions, bool, bool) -> Result<Status, Failure>;
 
-/// What a call needs.
+/// The context of a call.
 pub(super) struct Stage<'a> {
     pub(super) registry: &'a Registry,
     pub(super) convert: Convert,
     pub(super) call: &'a Call,
 }
 
-/// The elements that a command line is to warp.
+/// The elements that a command line warps.
 pub(super) struct Scope<'a> {
     /// Ids; empty for the whole page.
     pub(super) ids: &'a [String],
@@ -42,29 +42,29 @@ pub(super) struct Scope<'a> {
 /// The result of a command line.
 pub(super) struct Outcome {
     pub(super) svg: String,
-    /// x, y, width and height of the frame.
+    /// The frame's x, y, width and height.
     pub(super) frame: Option<[f64; 4]>,
     /// The height of the lettering's baseline, if the frame has one.
     pub(super) baseline: Option<f64>,
-    /// Warnings, and what was not warped.
+    /// Warnings, and objects that were not warped.
     pub(super) remarks: Vec<String>,
-    /// Something was left out.
+    /// `true` if something was left out.
     pub(super) partial: bool,
 }
 
 impl Stage<'_> {
-    /// The drawing as Inkscape passes it.
+    /// Reads the drawing that Inkscape passes.
     pub(super) fn drawing(&self) -> Result<String, Failure> {
         let bytes = input::bytes(&self.call.file)?;
         String::from_utf8(bytes).map_err(|_| Failure::file(&self.call.file, "is not UTF-8 text"))
     }
 
-    /// The limits on work; Inkscape has read the drawing already.
+    /// Returns the limits on work: the default ones, since Inkscape has already read the drawing.
     pub(super) fn limits(&self) -> Limits {
         Limits::default()
     }
 
-    /// Warps a part of a drawing by a recipe, given as words. References to paths that `guides` holds are looked up there.
+    /// Warps a part of a drawing by a recipe, given as words. Paths that `guides` contains are taken from there.
     pub(super) fn warp(
         &self,
         svg: &str,
@@ -77,7 +77,7 @@ impl Stage<'_> {
         let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())
             .map_err(Ending::into_failure)?;
         let (mut recipe, mut own) = steps::chained(parts)?;
-        // What the recipe selects, it selects in this scope.
+        // The recipe's selection applies within this scope.
         let selected = own.take("select");
         recipe.steps.iter_mut().for_each(|step| step.select.extend(selected.iter().cloned()));
         let mut given = Given::default();
@@ -95,7 +95,7 @@ impl Stage<'_> {
             guides.look_up(self, &mut recipe)?;
         }
         references::resolve_files(self.registry, &mut recipe, &reading)?;
-        // The drawing is open on the page that it has.
+        // The drawing is open with its page, which stays.
         let place = (&*self.call.file, Destination::Back);
         let (bytes, warped) =
             pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, place, svg.as_bytes())?;
@@ -110,7 +110,7 @@ impl Stage<'_> {
         })
     }
 
-    /// Reports what was left out: as an error if nothing else happened, else if the user wants to see it.
+    /// Reports objects that were left out: as an error if nothing else happened, else on request.
     pub(super) fn check(&self, before: &str, outcome: &Outcome) -> Result<(), Failure> {
         if outcome.partial && outcome.svg == before {
             return Err(Failure::Geometry(outcome.remarks.join("\n")));
@@ -121,7 +121,7 @@ impl Stage<'_> {
         Ok(())
     }
 
-    /// The failure without the name of the temporary file that Inkscape passes.
+    /// Removes the name of Inkscape's temporary file from a failure.
     pub(super) fn without_file(&self, failure: &Failure) -> Failure {
         let file = self.call.file.display().to_string();
         let message = failure.message(&Flags::of(self.registry));
@@ -149,7 +149,7 @@ impl Stage<'_> {
     }
 }
 
-/// Copies of guides that an object carries, and which of them take the place of the drawing's own.
+/// Copies of guides that an object stores, with a test for those that replace the drawing's guides.
 pub(super) struct GuidePaths<'a> {
     pub(super) guides: &'a Guides,
     pub(super) has: &'a dyn Fn(&str) -> bool,
@@ -173,7 +173,7 @@ impl GuidePaths<'_> {
     }
 }
 
-/// The folder of the drawing on the screen, which linked pictures are relative to.
+/// Returns the folder of the drawing on the screen; links to pictures are relative to it.
 pub(super) fn folder() -> Option<PathBuf> {
     let path = PathBuf::from(std::env::var_os("DOCUMENT_PATH").filter(|p| !p.is_empty())?);
     path.parent().filter(|p| p.is_dir()).map(Path::to_path_buf)
@@ -190,19 +190,19 @@ pub(super) struct Call {
     pub(super) file: PathBuf,
 }
 
-/// What Inkscape asks for.
+/// An action that Inkscape requests.
 pub(super) enum Job {
     Deformation(String),
     Edit,
     Release,
-    /// Opens the editor's page.
+    /// Open the editor's page.
     Hand,
-    /// Converts the file to this format, or opens it if that is `svg`.
+    /// Convert the file to this format, or open it if that is `svg`.
     Convert(String),
 }
 
 impl Call {
-    /// Reads the arguments. The first is the program.
+    /// Parses the arguments, the first of which is the program.
     pub(super) fn read(args: &[OsString]) -> Result<Self, Failure> {
         let mut job = None;
         let (mut ids, mut values, mut file) = (Vec::new(), Vec::new(), None);
@@ -214,7 +214,7 @@ impl Call {
             };
             match name {
                 "id" => ids.push(value.to_owned()),
-                // Of the whole dialog and of the node tool.
+                // Parameters of the dialog as a whole and of the node tool.
                 "tab" | "selected-nodes" => {}
                 DEFORMATION => job = Some(Job::Deformation(value.to_owned())),
                 ACTION => job = Some(action(value)?),
@@ -226,7 +226,7 @@ impl Call {
         Ok(Self { job: job.ok_or_else(|| missing("an effect"))?, ids, values, file })
     }
 
-    /// The value of a parameter; `None` if it is empty.
+    /// Returns the value of a parameter; `None` if it is empty.
     pub(super) fn value(&self, name: &str) -> Option<&str> {
         let value = self.values.iter().find(|(n, _)| n == name).map(|(_, v)| v.trim());
         value.filter(|v| !v.is_empty())

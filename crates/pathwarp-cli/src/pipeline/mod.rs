@@ -1,5 +1,5 @@
-//! The one run of every deformation: the outputs are planned, each input is opened, built, warped and reported
-//! ([`Session`]), and its files are put in place, all or none. Of several inputs, each is finished on its own.
+//! The pipeline of every command that warps: it plans the outputs, opens, builds, warps and reports each input ([`Session`]), and commits
+//! its files, all or none. Several inputs are finished independently.
 
 mod plan;
 
@@ -30,11 +30,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::Instant;
 
-/// Number of inputs per thread that are warped before their reports are written: enough to keep all threads busy, few enough to
-/// hold in memory.
+/// Number of inputs per thread that are warped before their reports are written: enough to keep all threads busy, and few for the memory.
 const CHUNK_PER_THREAD: usize = 64;
 
-/// More threads than this per core only take memory.
+/// Most threads per core; more would only take memory.
 const MOST_THREADS_PER_CORE: usize = 4;
 
 /// Warps all inputs by a recipe, which was read from the file `from` if there is one.
@@ -47,7 +46,7 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     let kind = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
     let jobs = kind.plan(registry, recipe, &options, from)?;
     drop(inputs);
-    // The files of a batch belong together and keep their pages.
+    // The files of a batch belong together, so their pages stay.
     let is_batch = jobs.len() > 1 || options.out_dir.is_some() || options.in_place || options.recursive;
     if options.page == PageFit::Auto && is_batch {
         options.page = PageFit::None;
@@ -76,12 +75,12 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     collected.finish()
 }
 
-/// Runs every job, in parallel; the session gets the results in order.
+/// Runs all jobs in parallel, and passes the results to `collected` in order.
 ///
 /// # Errors
-/// The only input fails, any fails and the options say to stop, or the recipe is at fault.
+/// A failure of the only input, of any input if the options demand to stop then, or of the recipe.
 fn run_jobs(session: &Session<'_>, jobs: &[Job], collected: &mut Collected<'_>) -> Result<(), Failure> {
-    // A single input starts threads only when it has work for them.
+    // A single input starts threads only if its work is large enough.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = (jobs.len() > 1 || session.options.jobs.is_some())
         .then(|| session.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE)));
@@ -94,7 +93,7 @@ fn run_jobs(session: &Session<'_>, jobs: &[Job], collected: &mut Collected<'_>) 
     let stops = jobs.len() == 1 || session.options.on_failure == OnFailure::Stop;
     let (mut rest, flags) = (jobs, collected.flags);
     while !rest.is_empty() {
-        // An error in the recipe must show before any file is written, so the first inputs go alone until one succeeds.
+        // An error in the recipe must appear before any file is written, so inputs are run singly until one succeeds.
         let size = if collected.is_untried() { 1 } else { at_once };
         let (chunk, later) = rest.split_at(size.min(rest.len()));
         rest = later;
@@ -115,7 +114,7 @@ fn run_jobs(session: &Session<'_>, jobs: &[Job], collected: &mut Collected<'_>) 
     Ok(())
 }
 
-/// One input, warped. No file is in place yet.
+/// A warped input, whose files are not yet committed.
 struct Finished {
     report: FileReport,
     files: Vec<PendingFile>,
@@ -124,7 +123,7 @@ struct Finished {
     partial: bool,
 }
 
-/// Warps one input; without a target the result goes to standard output.
+/// Warps one input; without a target, the result goes to standard output.
 fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, Failure> {
     let target = job.target.as_deref();
     let mut input = Input::open(&job.input, session.options, target)?;
@@ -146,7 +145,7 @@ fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, 
     Ok(Finished { report, files, page, notes, partial })
 }
 
-/// Runs one job, and puts its files in place unless they have to wait for the others.
+/// Runs one job, and commits its files unless they must wait for the others.
 fn one(
     session: &Session<'_>,
     flags: &Flags,
@@ -172,7 +171,7 @@ fn one(
     Ok(run)
 }
 
-/// Most failures that are listed on the terminal; the report holds the rest.
+/// Most failures that are printed; the report contains all.
 const LISTED: usize = 50;
 
 /// The results of the inputs so far.
@@ -182,9 +181,9 @@ struct Collected<'a> {
     report: Option<ReportFile>,
     /// Number of inputs of the whole run.
     inputs: usize,
-    /// Outputs that appear at the end.
+    /// Outputs to commit at the end.
     pending: Vec<PendingFile>,
-    /// The inputs of which something was left out.
+    /// The inputs with parts left out.
     partial: Vec<String>,
     done: usize,
     failed: usize,
@@ -213,7 +212,7 @@ impl<'a> Collected<'a> {
         self.done == 0
     }
 
-    /// Adds an input that was warped: prints its notes and warnings.
+    /// Adds a warped input: prints its notes and warnings.
     fn done(&mut self, run: Finished) -> Result<(), Failure> {
         let several = self.inputs > 1;
         for note in &run.notes {
@@ -221,7 +220,7 @@ impl<'a> Collected<'a> {
         }
         if !self.options.quiet {
             run.page.note().iter().for_each(|note| terminal::note(note));
-            // The warnings about pages come last.
+            // The warnings about pages are the last ones.
             let counted = if several { run.page.warnings().len() } else { 0 };
             warn(&run.report, run.report.warnings.len() - counted);
         }
@@ -234,7 +233,7 @@ impl<'a> Collected<'a> {
         self.report.as_mut().map_or(Ok(()), |r| r.add(&run.report))
     }
 
-    /// Adds an input that was not warped. The message is printed at the end.
+    /// Adds a failed input. Its message is printed at the end.
     fn failed(&mut self, input: &Path, failure: &Failure) -> Result<(), Failure> {
         let message = failure.message(self.flags);
         self.failed += 1;
@@ -244,7 +243,7 @@ impl<'a> Collected<'a> {
         self.report.as_mut().map_or(Ok(()), |r| r.add(&FileReport::failed(display(input), message)))
     }
 
-    /// Puts the last outputs in place, and prints the summary.
+    /// Commits the remaining outputs, and prints the summary.
     fn finish(mut self) -> Result<Status, Failure> {
         if let Some(report) = self.report.take() {
             self.pending.push(report.finish()?);
@@ -257,7 +256,7 @@ impl<'a> Collected<'a> {
         Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0 || self.pages.are_blank()))
     }
 
-    /// Names the inputs of which something was left out, as the exit code tells of them.
+    /// Names the inputs with parts left out, which explain the exit code.
     fn tell_partial(&self) {
         const NAMED: usize = 5;
         if self.partial.is_empty() || self.inputs < 2 || self.options.quiet {
@@ -269,7 +268,7 @@ impl<'a> Collected<'a> {
         ));
     }
 
-    /// Lists the failures and counts them.
+    /// Prints the failures and their number.
     fn summarise(&self) {
         self.tell_partial();
         if self.failed == 0 {
@@ -290,7 +289,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// Most messages of a kind; the report holds the rest.
+/// Most messages of each kind that are printed; the report contains all.
 const SHOWN: usize = 8;
 
 /// Prints the first `count` warnings, skipped shapes and missed tolerances.
@@ -316,8 +315,7 @@ fn warn(r: &FileReport, count: usize) {
     }
 }
 
-/// A bar over `files` files, with rate and time left; hidden for a single one, on request, and if standard error is not a
-/// terminal.
+/// A progress bar over `files` files, with rate and remaining time; hidden for one file, on request, and unless on a terminal.
 fn progress_bar(files: usize, quiet: bool) -> ProgressBar {
     if quiet || files < 2 || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! The plan of a run: which output each input gets, checked before anything is read or written.
+//! The plan of a run: the output of each input, checked before anything is read or written.
 
 use crate::sources::Files;
 use pathwarp::recipe::{Recipe, Step};
@@ -16,10 +16,10 @@ use std::io::IsTerminal as _;
 use std::path::{Component, Path, PathBuf};
 use walkdir::{DirEntry, WalkDir};
 
-/// One input with the files it gives.
+/// An input with its output files.
 pub(crate) struct Job {
     pub(crate) input: PathBuf,
-    /// `None`: standard output, or the copy that `--into` names.
+    /// `None` for standard output, or for the copy that `--into` names.
     pub(crate) target: Option<PathBuf>,
     pub(crate) preview: Option<PathBuf>,
     /// The reason why the input is not read.
@@ -31,15 +31,14 @@ pub(crate) struct Inputs<'a> {
     pub(crate) files: &'a [InputFile],
     /// The kind's name in messages.
     pub(crate) kind: &'static str,
-    /// `--in-place` can be given.
+    /// `true` if `--in-place` is possible.
     pub(crate) replaceable: bool,
     /// Corrects the name of a result in a folder.
     pub(crate) result: fn(PathBuf) -> PathBuf,
 }
 
 impl Inputs<'_> {
-    /// Plans the jobs of a recipe, which was read from the file `from` if there is one, and checks that no source and no output is
-    /// overwritten.
+    /// Plans the jobs of a recipe (from the file `from`, if there is one), and checks that no source and no output is overwritten.
     pub(crate) fn plan(
         &self,
         catalogue: &dyn Catalogue,
@@ -87,7 +86,7 @@ impl Inputs<'_> {
         Ok(jobs)
     }
 
-    /// Checks that the options give every one of several inputs its own output.
+    /// Checks that the options give each of several inputs a separate output.
     fn check_several(
         &self,
         catalogue: &dyn Catalogue,
@@ -150,7 +149,7 @@ impl Inputs<'_> {
     }
 }
 
-/// The list that `--dry-run` prints: what each step holds for, if that differs, and every input with its output.
+/// Returns the list of `--dry-run`: each step's selection, if they differ, and each input with its output.
 pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) -> String {
     let mut out = String::new();
     let selective = recipe.steps.iter().any(Step::is_selective);
@@ -189,20 +188,20 @@ pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) ->
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct InputFile {
     pub(crate) path: PathBuf,
-    /// The folder of a file found in a folder, relative to it; else empty.
+    /// The folder of a file that was found in a folder, relative to that; else empty.
     pub(crate) below: PathBuf,
     /// The reason why a file found in a folder is not read.
     pub(crate) refused: Option<&'static str>,
 }
 
 impl InputFile {
-    /// A file that is named itself.
+    /// A file named by the user.
     pub(crate) fn named(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into(), below: PathBuf::new(), refused: None }
     }
 }
 
-/// The inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
+/// Returns the inputs that the options name, in order; folders are replaced by the files in them, sorted by name.
 pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
     if options.inputs.is_empty() {
         if std::io::stdin().is_terminal() {
@@ -251,7 +250,7 @@ fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>)
     Ok(())
 }
 
-/// The reason why a file in `folder` is not read, nor written with `--in-place`. Only the folder was named.
+/// Returns the reason to skip a file that was found in `folder`, since the user has named only the folder.
 fn refused(entry: &DirEntry, folder: &Path, external: bool) -> Option<&'static str> {
     let path = entry.path();
     if !path.is_file() {
@@ -265,15 +264,15 @@ fn refused(entry: &DirEntry, folder: &Path, external: bool) -> Option<&'static s
     is_elsewhere.then_some("is a symbolic link that leads out of the folder; --allow-external follows it")
 }
 
-/// The part of a name that stands for the input's file name without extension.
+/// The placeholder in an output's name for the input's file name without extension.
 const STEM: &str = "{stem}";
 
-/// Returns `true` if `name` gives every input an output of its own.
+/// Returns `true` if `name` contains the placeholder, and so gives every input a separate output.
 pub(super) fn is_pattern(name: &Path) -> bool {
     name.to_string_lossy().contains(STEM)
 }
 
-/// The first `{word}` in a name that stands for nothing.
+/// Finds the first unknown `{word}` in a name.
 pub(super) fn unknown_placeholder(name: &Path) -> Option<String> {
     let name = name.to_string_lossy();
     let inner = name.split('{').skip(1).filter_map(|rest| Some(rest.split_once('}')?.0));
@@ -281,13 +280,13 @@ pub(super) fn unknown_placeholder(name: &Path) -> Option<String> {
     inner.filter(is_word).find(|w| format!("{{{w}}}") != STEM).map(|w| format!("{{{w}}}"))
 }
 
-/// The folders of a pattern before the first with `{stem}`: the same for every input.
+/// Returns the folders of a pattern before the first `{stem}`, which all outputs share.
 pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
     let is_fixed = |c: &Component<'_>| !is_pattern(Path::new(c.as_os_str()));
     pattern.components().take_while(is_fixed).collect()
 }
 
-/// The output of `input` by the file name `pattern`. `below` is the input's folder below one given with `--recursive`; it is
+/// Returns the output of `input` by the file name `pattern`. `below` is the input's folder within one given with `--recursive`, which is
 /// repeated. `None` if the input has no name.
 pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
     let named = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
@@ -295,7 +294,7 @@ pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<P
     Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
 }
 
-/// The output of `input` in the folder `dir`, which may be a pattern: of a folder, or of a file with an extension. In a folder it
+/// Returns the output of `input` in the folder `dir`, or by the pattern `dir` of folders or of a file with an extension. In a folder, it
 /// has the input's name, with `extension` if given. `None` if the input has no name.
 pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Option<&str>) -> Option<PathBuf> {
     let last = dir.file_name().unwrap_or_default();
@@ -308,7 +307,7 @@ pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Optio
     Some(dir.join(below).join(name))
 }
 
-/// The file name of an input's result: its own, or that of the SVG made from a GIMP file.
+/// Returns the file name of an input's result: the input's, or for a GIMP file the name of its SVG.
 fn own_name(input: &Path) -> Option<PathBuf> {
     if let Some(name) = svg_name(input) {
         return Some(name.into());
@@ -320,9 +319,9 @@ fn stem(input: &Path) -> Option<String> {
     Some(own_name(input)?.file_stem()?.to_string_lossy().into_owned())
 }
 
-/// Folders that were created for the outputs. Those that stay empty are removed when this is dropped.
+/// Folders created for the outputs. When this is dropped, empty ones are removed.
 pub(crate) struct Folders {
-    /// A folder stands before those in it.
+    /// Each folder comes before those in it.
     made: Vec<PathBuf>,
 }
 
@@ -360,7 +359,7 @@ impl Folders {
 
 impl Drop for Folders {
     fn drop(&mut self) {
-        // Only an empty folder can be removed.
+        // Removing a folder that is not empty fails.
         for folder in self.made.iter().rev() {
             let _ = std::fs::remove_dir(folder);
         }

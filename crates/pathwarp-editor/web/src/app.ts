@@ -1,4 +1,4 @@
-// The state of the page: the steps, which of them is being changed, and the pictures that the server makes of them.
+// The state of the page: the steps, the one that is being edited, and the pictures that the server makes of them.
 
 import { Connection, Gone } from "./connection";
 import { isTyping } from "./dom";
@@ -8,27 +8,27 @@ import { Handles } from "./handles";
 import { isCaption } from "./names";
 import type { Answer, Deformation, Grip, State, Step, StepGrips, Summary, XY } from "./types";
 
-/** While something is dragged, curves may be off by this share of a px of the screen. */
+/** Tolerance of curves while something is dragged, in px of the screen. */
 const DRAFT = 0.35;
-/** The event that says when a quick picture was asked for, answered and in the page. */
+/** The event with the times at which a draft was requested, answered and shown. */
 const DRAFTED = "pathwarp-drafted";
-/** The pause after which keys count as one change, in ms. */
+/** The pause after which keys become one change, in ms. */
 const KEYS = 500;
 
-/** A distance that is seen, in mm. */
+/** The least visible distance, in mm. */
 const SEEN = 0.05;
 
-/** Parameters that say how many control points a net has. */
+/** Parameters that determine the number of control points of a net. */
 const NET = new Set(["degree", "cells", "spline"]);
 
 export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
 
-/** Where a picture goes. */
+/** The view that shows pictures. */
 export interface Screen {
   show(answer: Answer): void;
   /** The length of a px, in user units. */
   readonly pixel: number;
-  /** Shows the whole page, unless the user looks at a detail. */
+  /** Shows the whole page, unless the user views a detail. */
   reveal(): void;
 }
 
@@ -38,29 +38,29 @@ export class App {
   steps: Step[] = [];
   /** The step whose handles and settings are shown. */
   selected = 0;
-  /** The steps are a first proposal that nothing has been done with. */
+  /** `true` while the steps are a proposal that has not been used. */
   isProposal = false;
-  /** The step being changed is more than a shape that has just been chosen. */
+  /** `true` once the edited step has been changed since its shape was chosen. */
   isWorkedOn = false;
-  /** The next shape that is chosen becomes a step after the others. */
+  /** `true` if the next chosen shape is appended as a step. */
   appends = false;
   /** Selectors of the parts that no step bends. */
   locks: string[] = [];
   grips: StepGrips[] = [];
-  /** The places of steps for parts that the drawing lacks. */
+  /** The indices of steps for parts that the drawing lacks. */
   gone: number[] = [];
   handles: Handles | null = null;
-  /** A path of the drawing that was a guide until its line was dragged just now. */
+  /** A path of the drawing that was a guide until its line was dragged. */
   released: string | null = null;
   summary: Summary | null = null;
   warnings: string[] = [];
   problem: string | null = null;
   isConnected = false;
-  /** The steps have been given to the program that waited for them. */
+  /** `true` once the steps have been handed to the program that waited for them. */
   isDone = false;
-  /** A handle is being dragged, so the handles stay as they are. */
+  /** `true` while a handle is dragged; the handles then stay as they are. */
   isDragging = false;
-  /** Takes back what a pointer that is down has done. */
+  /** Cancels the drag in progress. */
   hold: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
@@ -68,13 +68,13 @@ export class App {
   private isBusy = false;
   private isWanted = false;
   private since = 0;
-  /** Changes of the steps, one after another. */
+  /** The queue of changes to the steps. */
   private turns: Promise<unknown> = Promise.resolve();
-  /** The last commit, which the server answers after those before it. */
+  /** The last commit; the server answers commits in order. */
   private lastCommit: Promise<void> = Promise.resolve();
   /** The number of commits that the server has refused. */
   private refusals = 0;
-  /** Runs while keys move a handle, until the steps are committed. */
+  /** The timer that commits the steps after keys have moved a handle; 0 if none runs. */
   private pause = 0;
   readonly connection: Connection;
 
@@ -90,7 +90,7 @@ export class App {
     );
   }
 
-  /** What is changed is kept. */
+  /** `true` if changes are stored. */
   get isLive(): boolean {
     return this.isConnected && !this.isDone;
   }
@@ -111,12 +111,12 @@ export class App {
     return this.catalogue.find((d) => d.name === name);
   }
 
-  /** A step changes the drawing before it is bent. */
+  /** Returns `true` for an edit, which changes the drawing before it is bent. */
   isFirst(step: Step | undefined): boolean {
     return this.deformation(step?.deformation)?.first ?? false;
   }
 
-  /** The steps up to the one being changed. */
+  /** The steps up to the edited one. */
   get visible(): Step[] {
     return this.steps.slice(0, this.selected + 1);
   }
@@ -129,14 +129,14 @@ export class App {
     await this.load(answer.state!);
   }
 
-  /** Nothing is left to do here. */
+  /** Ends the page after the steps have been handed over. */
   finish(): void {
     this.isDone = true;
     this.connection.stop();
     this.tell("link");
   }
 
-  /** Takes over a state of the server, with a proposal if nothing has been done yet. */
+  /** Adopts a state of the server, with a proposal if nothing has been done yet. */
   async load(state: State): Promise<void> {
     this.state = state;
     this.steps = structuredClone(state.steps);
@@ -157,7 +157,7 @@ export class App {
     }
     this.tell("steps");
     if (await this.refresh()) return;
-    // The drawing is seen all the same: flat artwork fits into no cage, and steps may name a file that has gone.
+    // Show the drawing regardless: flat artwork fits into no cage, and steps may name a file that is gone.
     const { problem } = this;
     this.dropHandles();
     if (this.isProposal) this.steps = [];
@@ -167,7 +167,7 @@ export class App {
     else this.fail(problem);
   }
 
-  /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
+  /** Replaces the drawing after all pending changes; later changes, such as an undo, wait for it. */
   enter(answer: () => Promise<{ state?: State | null } | null>): Promise<void> {
     return this.inTurn(async () => {
       const state = (await answer())?.state;
@@ -175,7 +175,7 @@ export class App {
     });
   }
 
-  /** The first values of a deformation after these steps. */
+  /** Requests the first values of a deformation that follows these steps. */
   async opening(deformation: string, steps: Step[], variant: string | null = null, select: string[] = []): Promise<Step | null> {
     return this.attempt(async () => {
       const { step } = await this.connection.ask({ do: "opening", deformation, variant, steps, select });
@@ -183,12 +183,12 @@ export class App {
     });
   }
 
-  /** The parts of the drawing that the step being changed holds for; none for all. */
+  /** The selectors of the edited step; empty for the whole drawing. */
   get chosen(): string[] {
     return this.step?.select ?? [];
   }
 
-  /** Lets the step being changed hold for these parts alone; its paths are laid onto their box. */
+  /** Applies the edited step only to these parts, with its paths mapped onto their box. */
   scope(select: string[]): Promise<void> {
     return this.inTurn(async () => {
       const { step, selected } = this;
@@ -202,13 +202,13 @@ export class App {
     });
   }
 
-  /** Lets no step bend these parts. */
+  /** Excludes these parts from all steps. */
   lock(locks: string[]): Promise<void> {
     this.locks = locks;
     return this.arrange(this.steps.map((step) => ({ ...step, exclude: locks })), this.selected);
   }
 
-  /** Shows the picture of the present steps, exactly. Returns `false` if there is none. */
+  /** Shows the exact picture of the present steps. Returns `false` if there is none. */
   async refresh(): Promise<boolean> {
     const shown = await this.attempt(async () => {
       this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null }));
@@ -217,7 +217,7 @@ export class App {
     return shown ?? !this.isConnected;
   }
 
-  /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
+  /** Shows a draft of the present steps. While one is being made, only the newest request is kept. */
   draft(since: number): void {
     this.since = since;
     if (this.isBusy) {
@@ -244,7 +244,7 @@ export class App {
     this.isBusy = false;
   }
 
-  /** Makes the present steps the ones to undo from and to save. */
+  /** Stores the present steps, with a state to undo. */
   commit(): Promise<void> {
     this.lastCommit = this.committed();
     return this.lastCommit;
@@ -262,25 +262,25 @@ export class App {
     });
     if (done || !this.state || !this.isConnected) return;
     this.refusals += 1;
-    // Back to what can be bent, with the reason on show.
+    // Return to the steps that work, and show the reason.
     const { problem } = this;
     await this.load(this.state);
     this.fail(problem);
   }
 
-  /** Commits when no other key follows for a while. */
+  /** Commits if no other key follows for a while. */
   commitSoon(): void {
     this.isDragging = true;
     clearTimeout(this.pause);
     this.pause = window.setTimeout(() => void this.flush(), KEYS);
   }
 
-  /** Commits what keys have done so far, if anything. */
+  /** Commits changes made by keys so far, if any. */
   async flush(): Promise<void> {
     if (this.endPause()) await this.commit();
   }
 
-  /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
+  /** Waits until the server has stored all changes. Returns `false` if it refuses some. */
   async settle(): Promise<boolean> {
     const { refusals } = this;
     this.takeTyped();
@@ -290,7 +290,7 @@ export class App {
     return !showWrong() && this.refusals === refusals;
   }
 
-  /** Takes the value that is being typed, as if its field were left. */
+  /** Accepts the value that is being typed, as if its field had lost the focus. */
   private takeTyped(): void {
     const field = document.activeElement;
     if (!isTyping(field)) return;
@@ -306,7 +306,7 @@ export class App {
     return true;
   }
 
-  /** Takes back what has been dragged since the last commit: the step is as it was before. */
+  /** Cancels a drag: restores the step as it was before. */
   cancel(step: Step, before: Step): void {
     this.hold = null;
     this.isDragging = false;
@@ -316,7 +316,7 @@ export class App {
     this.tell("values");
   }
 
-  /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
+  /** Changes the steps after all pending changes, so that a late answer does not replace a newer choice. */
   private inTurn<T>(work: () => Promise<T>): Promise<T> {
     hush();
     const done = this.turns.then(() => this.flush()).then(work);
@@ -324,7 +324,7 @@ export class App {
     return done;
   }
 
-  /** Undoes or redoes; while something is dragged, that is taken back alone. */
+  /** Undoes or redoes; during a drag, undoing only cancels the drag. */
   async turn(direction: "undo" | "redo"): Promise<void> {
     if (this.hold) return direction === "undo" ? this.hold() : undefined;
     this.takeTyped();
@@ -342,13 +342,13 @@ export class App {
     });
   }
 
-  /** Starts or ends the choice of a shape for a further step. */
+  /** Starts or ends the choice of a shape for another step. */
   append(appends: boolean): void {
     this.appends = appends;
     this.tell("steps");
   }
 
-  /** Replaces the step being changed, or appends one if that is wanted. */
+  /** Replaces the edited step, or appends one if requested. */
   choose(deformation: string, args: Record<string, string[]>, variant: string | null = null): Promise<void> {
     const { appends } = this;
     this.appends = false;
@@ -357,7 +357,7 @@ export class App {
 
   private async replaced(deformation: string, args: Record<string, string[]>, appends: boolean, variant: string | null): Promise<void> {
     if (this.deformation(deformation)?.first) return this.prepared(deformation);
-    // What comes before bending is not replaced by it.
+    // An edit is not replaced by a deformation.
     appends ||= this.isFirst(this.step);
     const at = appends ? this.steps.length : this.selected;
     const before = this.steps.slice(0, at);
@@ -376,11 +376,11 @@ export class App {
     await this.commit();
     this.isWorkedOn = false;
     this.tell("steps");
-    // A shape may need more room than the last one.
+    // The shape may need more room than the last one.
     this.screen.reveal();
   }
 
-  /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
+  /** Inserts an edit before all deformations, in the order of the catalogue; there is one of each kind. */
   private async prepared(deformation: string): Promise<void> {
     const others = this.isProposal ? [] : this.steps;
     const known = others.findIndex((s) => s.deformation === deformation && !isCaption(s));
@@ -396,7 +396,7 @@ export class App {
     await this.proposed();
   }
 
-  /** Puts words after those that there are, before all else. Returns their step, which is kept as soon as it is committed. */
+  /** Inserts words after existing ones, before all other steps. Returns their step, which is stored when it is committed. */
   caption(args: Record<string, string[]>): Promise<Step | null> {
     return this.inTurn(async () => {
       const step = await this.opening("caption", []);
@@ -413,7 +413,7 @@ export class App {
     });
   }
 
-  /** Changes the list of steps. */
+  /** Replaces the list of steps. */
   arrange(steps: Step[], selected: number): Promise<void> {
     return this.inTurn(() => this.arranged(steps, selected));
   }
@@ -439,12 +439,12 @@ export class App {
     await this.refresh();
   }
 
-  /** Sets a parameter of the step being changed. */
+  /** Sets a parameter of the edited step. */
   set(name: string, values: string[], isDone: boolean): void {
     const { step } = this;
     if (!step) return;
     if (isDone && NET.has(name) && this.handles?.net) return void this.inTurn(() => this.renet({ [name]: values }));
-    // The adjust values of a shape are not those of another.
+    // Each shape has different adjust values.
     const { presets } = this.deformation(step.deformation)?.gallery ?? {};
     if (name === presets) for (const [other, { adjust }] of Object.entries(this.grips[this.selected]?.params ?? {})) if (adjust) delete step.args[other];
     if (values.length === 0) delete step.args[name];
@@ -458,16 +458,16 @@ export class App {
     else this.draft(performance.now());
   }
 
-  /** Sets a parameter by a key; those that follow are one change with it. */
+  /** Sets a parameter by a key; keys that follow belong to the same change. */
   setSoon(name: string, values: string[]): void {
-    // The points of a net are counted anew at once.
+    // A net's points are recomputed at once.
     if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
     this.set(name, values, false);
     this.commitSoon();
     this.tell("values");
   }
 
-  /** Sets a parameter to what was typed. Returns what is wrong with it. */
+  /** Sets a parameter to a typed value. Returns the problem, if any. */
   async setTyped(name: string, values: string[]): Promise<string | null> {
     const { refusals } = this;
     this.set(name, values, true);
@@ -482,7 +482,7 @@ export class App {
     return inWords(problem, true);
   }
 
-  /** Gives the net of the step more or fewer control points; it bends as before. */
+  /** Changes the number of control points of the step's net, which bends as before. */
   private async renet(values: Record<string, string[]>): Promise<void> {
     const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
     if (!answer?.step) return this.tell("steps");
@@ -499,7 +499,7 @@ export class App {
     return this.grips[this.selected]?.params[name];
   }
 
-  /** The radius that a circle would need for the artwork not to be longer than it; `null` if it is long enough, or the artwork stretched. */
+  /** Returns the radius of a circle around which the artwork would fit; `null` if it fits, or is stretched. */
   tooSmall(name: string): number | null {
     const [circle, frame, step] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
     if (!circle || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step?.args[other])) return null;
@@ -522,7 +522,7 @@ export class App {
     this.tell("report");
   }
 
-  /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
+  /** Removes the handles of a step that is being replaced, so that they cannot be dragged meanwhile. */
   private dropHandles(): void {
     this.hold?.();
     this.handles = null;
@@ -538,11 +538,11 @@ export class App {
     this.tell("handles");
   }
 
-  /** Another page has changed the steps. */
+  /** Adopts changes of the steps by another page. */
   private async hear(news: Answer): Promise<void> {
     if (news.event !== "changed" || !news.state) return;
     if (this.isDragging) {
-      // What is dragged wins, unless it is of another drawing now.
+      // A drag in the same drawing takes precedence.
       if (news.state.drawing === this.state?.drawing) return;
       this.hold?.();
       this.endPause();
@@ -552,7 +552,7 @@ export class App {
     if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
   }
 
-  /** Does something that the server may refuse; then the message is shown. */
+  /** Does something that the server may refuse, and shows the message then. */
   async attempt<T>(work: () => Promise<T>): Promise<T | null> {
     try {
       return await work();
@@ -567,7 +567,7 @@ export class App {
     this.tell("report");
   }
 
-  /** Adds a point at a place, where the step takes any number, and at others that mirror it. Returns the key of its handle. */
+  /** Adds a point where the step takes any number of them, and at the mirrored points. Returns the key of its handle. */
   addPoint(at: XY, others: XY[], reach: number): Promise<string | null> {
     return this.inTurn(async () => {
       const { handles } = this;
@@ -581,7 +581,7 @@ export class App {
 
   private async added(handles: Handles, at: XY, others: XY[], reach: number): Promise<boolean> {
     const places = handles.isFree(at, reach) ? [at, ...others] : [at];
-    // A pin takes hold of what is under the pointer.
+    // A pin holds the artwork under the pointer.
     const sources = handles.pairs ? await Promise.all(places.map((p) => this.preimage(p))) : places;
     if (this.handles !== handles || !sources[0]) return false;
     const isAdded = places.map((p, i) => sources[i] != null && handles.add(p, sources[i]!, reach));
@@ -591,7 +591,7 @@ export class App {
     return true;
   }
 
-  /** The place in the drawing that the visible steps take to this one, or this one if there is none. */
+  /** Returns the point of the drawing that the visible steps map to `at`, or `at` if there is none. */
   async source(at: XY): Promise<XY> {
     for (let k = this.visible.length; k > 0; k--) {
       const steps = this.visible.slice(0, k);
@@ -601,7 +601,7 @@ export class App {
     return at;
   }
 
-  /** The place in the artwork that the step takes to this one. */
+  /** Returns the point of the artwork that the step maps to `at`. */
   private async preimage(at: XY): Promise<XY | null> {
     const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
     if (answer?.at === null) this.fail("No place of the artwork comes to lie there");

@@ -1,4 +1,4 @@
-// The background: another drawing or a picture behind the artwork, to fit to. It is seen here alone, and never saved.
+// The background: another drawing or a picture behind the artwork, as a template. Only this page shows it, and it is never saved.
 
 import type { App } from "./app";
 import { byId, s } from "./dom";
@@ -10,16 +10,16 @@ import type { XY } from "./types";
 import { short } from "./values";
 
 const MM = 96 / 25.4;
-/** The usual opacity, in per cent. */
+/** The usual opacity, in percent. */
 const OPACITY = 50;
-/** Turns with Shift are multiples of this, in degrees. */
+/** With Shift, rotations are multiples of this angle, in degrees. */
 const NOTCH = 15;
-/** Space between the upper edge and the handle that turns, in px. */
+/** Distance between the upper edge and the rotation handle, in px. */
 const ABOVE = 26;
-/** Places on a path at which its distance is measured. */
+/** Number of points on a path whose distances are measured. */
 const PLACES = 100;
 
-/** Left, top and width in px of the drawing before it is turned, and the turn about its middle in degrees. */
+/** Position and width in px of the drawing before the rotation, and the rotation about its centre in degrees. */
 interface Lie {
   x: number;
   y: number;
@@ -27,17 +27,17 @@ interface Lie {
   turn: number;
 }
 
-/** What is typed about it: the unit, its size in that of `Lie`, and the least value. */
+/** The typed values: their units, the sizes of these in the units of `Lie`, and the least values. */
 const TYPED: Record<keyof Lie, [string, number, number?]> = { x: ["mm", MM], y: ["mm", MM], width: ["mm", MM, 0.01], turn: ["°", 1] };
 
 export class Background {
   private image = s("image", { class: "background" });
-  /** The paths of a drawing, which are clicked and not seen. */
+  /** The paths of the drawing, invisible but clickable. */
   private outlines = s("g", { class: "outlines", opacity: 0 });
   private layer = s("g", { visibility: "hidden" }, this.image, this.outlines);
   private edge = s("path", { class: "line arm" });
   private ground = s("path", { class: "ground", tabindex: 0, role: "button", "aria-label": "Background; arrow keys move it" });
-  /** The corners clockwise from the upper left, and what turns it. */
+  /** The corners, clockwise from the upper left, and the rotation handle. */
   private knobs = ["nw", "ne", "se", "sw", "turn"].map((part) => s("g", { class: `part ${part}` },
     s("title", {}, part === "turn" ? "Turn the background" : "Scale the background"), s("circle", { r: 16, class: "reach" }),
     part === "turn" ? s("circle", { r: 6, class: "body" }) : s("rect", { x: -5, y: -5, width: 10, height: 10, class: "body" })));
@@ -49,13 +49,13 @@ export class Background {
   private file: File | null = null;
   private isDrawing = false;
   private lie: Lie = { x: 0, y: 0, width: 1, turn: 0 };
-  /** Height over width. */
+  /** Ratio of height to width. */
   private ratio = 1;
   private fields: Field[] = [];
   private opacity = byId<HTMLInputElement>("background-opacity");
-  /** The program has been asked for the background, or told of it. */
+  /** `true` once the server has been asked for the background, or has stored it. */
   private isKept = false;
-  /** Asks for points around what a photograph shows. */
+  /** Requests points around the object in a photograph. */
   onRound: (take: (value: string) => void) => void = () => {};
 
   constructor(private app: App, private stage: Stage) {
@@ -105,7 +105,7 @@ export class Background {
     });
   }
 
-  /** Lets the program keep the background for the next time the page is loaded. */
+  /** Stores the background in the server, until the page is loaded again. */
   private async keep(): Promise<void> {
     const { file, lie, opacity } = this;
     const background = file && { name: file.name, type: file.type, bytes: await base64(file), lie, opacity: opacity.value };
@@ -124,7 +124,7 @@ export class Background {
     this.app.screen.reveal();
   }
 
-  /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
+  /** Shows a file behind the drawing: a drawing at its original size and position, a picture as wide as the page. */
   private async take(file: File): Promise<boolean> {
     const url = URL.createObjectURL(file);
     const probe = new Image();
@@ -163,7 +163,7 @@ export class Background {
     ]);
   }
 
-  /** Moves, scales and turns it. */
+  /** Moves, scales or rotates it. */
   private lay(change: Partial<Lie>): void {
     Object.assign(this.lie, change);
     const { x, y, width, turn } = this.lie;
@@ -174,7 +174,7 @@ export class Background {
     this.place();
   }
 
-  /** Puts its frame around it on the screen. */
+  /** Updates the frame around it on the screen. */
   private place(): void {
     const { scale, shift } = this.stage.camera;
     const corners = this.corners.map(([x, y]): XY => [scale * x + shift[0], scale * y + shift[1]]);
@@ -186,7 +186,7 @@ export class Background {
     [...corners, turn].forEach((p, i) => this.knobs[i]!.setAttribute("transform", `translate(${p})`));
   }
 
-  /** A scaling about the corner opposite. */
+  /** Returns a scaling about the opposite corner. */
   private scaled(corner: number, from: XY): (to: XY) => Partial<Lie> {
     const [[ox, oy], [cx, cy], { width }] = [this.corners[(corner + 2) % 4]!, this.middle, this.lie];
     const [ax, ay] = [from[0] - ox, from[1] - oy];
@@ -205,7 +205,7 @@ export class Background {
     };
   }
 
-  /** Follows a pointer, which begins at a place in px of the drawing, until it is lifted, or Escape gives it up. */
+  /** Follows a pointer from a point in px of the drawing until it is lifted, or Escape cancels the drag. */
   private grab(e: PointerEvent, begin: (from: XY) => (to: XY, e: PointerEvent) => Partial<Lie>): void {
     if (e.button !== 0) return;
     e.stopPropagation();
@@ -263,7 +263,7 @@ export class Background {
     this.show(false);
   }
 
-  /** Puts the artwork into an outline of the background: a path that is clicked, or points around what a photograph shows. */
+  /** Bends the artwork into an outline of the background: a clicked path, or points around the object in a photograph. */
   private async shape(): Promise<void> {
     const { app, file, stage, outlines } = this;
     const closed = app.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
@@ -288,7 +288,7 @@ export class Background {
   }
 }
 
-/** The closed line of a path of the page that passes nearest to a place in px of the drawing, as path data in the drawing's units. */
+/** Returns the closed line of a path of the page that is nearest to a point in px of the drawing, as path data in the drawing's units. */
 function ring(path: SVGGraphicsElement, stage: Stage, [x, y]: XY): string {
   const [box, m] = [stage.svg.getBoundingClientRect(), path.getScreenCTM()!];
   const place = (px: number, py: number) => stage.camera.toUser([m.a * px + m.c * py + m.e - box.x, m.b * px + m.d * py + m.f - box.y]);

@@ -1,21 +1,21 @@
-// The camera: from user units of the drawing over its px to px of the screen.
+// The camera: maps user units of the drawing to px of the drawing, and these to px of the screen.
 
 import type { XY } from "./types";
 
 type Affine = [number, number, number, number, number, number];
 
-/** The smallest and largest magnification that may be chosen; a drawing that fits the view may need others. */
+/** The smallest and largest magnification that users can choose; fitting a drawing may exceed it. */
 const RANGE: XY = [0.01, 64];
 const FITTED: XY = [1e-4, 1e5];
 
 export class Camera {
-  /** Screen = scale · px + shift. */
+  /** The scale in screen = scale · px + shift. */
   scale = 1;
   shift: XY = [0, 0];
-  /** From user units to px of the drawing. */
+  /** The map from user units to px of the drawing. */
   toPx: Affine = [1, 0, 0, 1, 0, 0];
 
-  /** A point of the drawing, in px of it. */
+  /** Converts a point from user units to px of the drawing. */
   inPx([x, y]: XY): XY {
     const [a, b, c, d, e, f] = this.toPx;
     return [a * x + c * y + e, b * x + d * y + f];
@@ -39,12 +39,12 @@ export class Camera {
     return 1 / (this.scale * Math.sqrt(Math.abs(a * d - b * c)));
   }
 
-  /** The transform of the drawing, which is in px. */
+  /** The transform of the drawing, whose unit is px. */
   get transform(): string {
     return `matrix(${this.scale} 0 0 ${this.scale} ${this.shift[0]} ${this.shift[1]})`;
   }
 
-  /** Magnifies by a factor about a point of the screen. */
+  /** Magnifies by a factor around a point of the screen. */
   zoom(factor: number, [x, y]: XY): void {
     const scale = Math.min(Math.max(this.scale * factor, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
     const by = scale / this.scale;
@@ -52,7 +52,7 @@ export class Camera {
     this.scale = scale;
   }
 
-  /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
+  /** Centres a box of the drawing, two corners in px, in a view of this size. */
   fit([x0, y0, x1, y1]: [number, number, number, number], [width, height]: XY): void {
     const scale = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
     this.scale = Math.min(Math.max(scale, FITTED[0]), FITTED[1]);

@@ -1,4 +1,4 @@
-// Words on the drawing: placed by a click, and typed there while they are drawn.
+// Words on the drawing: a click places them, and they are typed while the drawing shows them.
 
 import type { App } from "./app";
 import { byId } from "./dom";
@@ -8,7 +8,7 @@ import type { Stage } from "./stage";
 import type { Step } from "./types";
 import { short } from "./values";
 
-/** The distance of the field from the words, in px. */
+/** Distance between the words and the field, in px. */
 const BELOW = 14;
 
 export class Caption {
@@ -28,7 +28,7 @@ export class Caption {
     });
   }
 
-  /** Asks for the place of words with these values. */
+  /** Asks for the position of words with these values. */
   begin(args: Record<string, string[]>): void {
     this.sketching.begin("point", async (value) => {
       const [x, y] = await this.app.source(value.split(",").map(Number) as [number, number]);
@@ -45,7 +45,7 @@ export class Caption {
     this.text.select();
   }
 
-  /** Puts the field below the words. */
+  /** Positions the field below the words. */
   place(): void {
     const at = this.stage.handle("at")?.get();
     if (this.box.hidden || !at) return;
@@ -64,10 +64,10 @@ export class Caption {
     this.app.tell("values");
   }
 
-  /** Keeps what was typed; where nothing was, the words go. */
+  /** Stores the typed words, or removes them if there are none. */
   private done(): void {
     const { app, step, text, before } = this;
-    // Another picture may have brought the steps anew.
+    // Another picture may have replaced the steps.
     const at = step ? app.steps.indexOf(step) : -1;
     this.step = null;
     this.box.hidden = true;

@@ -1,16 +1,16 @@
-// The socket: requests with their answers, and news from the server.
+// The socket: requests with their answers, and messages from the server.
 
 import type { Answer } from "./types";
 
 type Waiting = { resolve: (answer: Answer) => void; reject: (problem: Error) => void };
 
-/** The pause before the page looks for the program again, and the longest time for its answer, in ms. */
+/** The pause before the page looks for the program again, and the longest wait for its answer, in ms. */
 const RETRY = 700;
 const PATIENCE = 5000;
-/** Who knows it may connect. */
+/** The token that permits the connection. */
 const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
-/** The server cannot do what it was asked. The message is for the user. */
+/** The server refuses a request. The message is for the user. */
 export class Refused extends Error {}
 /** The server does not answer. */
 export class Gone extends Error {}
@@ -20,7 +20,7 @@ export class Connection {
   private waiting = new Map<number, Waiting>();
   private next = 1;
   private isStopped = false;
-  /** The requests that somebody waits for; small pictures come when they come. */
+  /** The requests whose answers are awaited, as opposed to thumbnails. */
   private urgent = new Set<number>();
   onBusy: (isBusy: boolean) => void = () => {};
   /** The length of the last message from the server. */
@@ -51,7 +51,7 @@ export class Connection {
       this.waiting.clear();
       this.urgent.clear();
       this.onBusy(false);
-      // Loading the page anew would tell the token to whoever listens there now.
+      // Reloading the page would send the token to whoever listens there now.
       history.replaceState(null, "", "/");
       this.onGone();
       this.look();
@@ -67,7 +67,7 @@ export class Connection {
     }, RETRY);
   }
 
-  /** Does not connect again. */
+  /** Stops connecting. */
   stop(): void {
     this.isStopped = true;
   }
@@ -81,7 +81,7 @@ export class Connection {
     else waiting?.reject(new Refused(answer.error));
   }
 
-  /** Somebody waits for an answer. */
+  /** `true` while an answer is awaited. */
   get isBusy(): boolean {
     return this.urgent.size > 0;
   }
@@ -102,7 +102,7 @@ export class Connection {
   }
 }
 
-/** Whether the program listens there, and nobody else at its port: it proves that it knows the token, and is not told. */
+/** Returns `true` if the program listens there, and nobody else: it proves that it knows the token, which is not sent. */
 async function isProgram(): Promise<boolean> {
   const question = crypto.randomUUID();
   try {

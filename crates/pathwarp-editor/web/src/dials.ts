@@ -1,4 +1,4 @@
-// Handles of plain numbers, for steps that have no points: dials for angles, arms for lengths, and tracks for the adjust values of text shapes.
+// Handles of numbers, for steps without points: dials for angles, arms for lengths, and tracks for the adjust values of text shapes.
 
 import type { Adjust, Deformation, Grip, Handle, Line, Param, XY } from "./types";
 import { adjustName } from "./values";
@@ -6,11 +6,11 @@ import { words } from "./names";
 
 type Frame = [number, number, number, number];
 
-/** The radius of the first dial, as a share of the frame's longer side, and how much further the next one is out. */
+/** The radius of the first dial, as a share of the frame's longer side, and the distance between dials. */
 const DIAL = 0.3;
 const FURTHER = 1.25;
 
-/** A handle with the line that shows what it moves along. */
+/** A handle, and the line along which it moves. */
 export interface Dial {
   handle: Handle;
   line: () => Line;
@@ -22,7 +22,7 @@ export interface Place {
   frame: Frame;
 }
 
-/** The dials of a step whose own handles are not enough to change it. */
+/** Returns the dials of a step whose other handles are not enough to change it. */
 export function dials(place: Place): Dial[] {
   const out: Dial[] = [];
   let radius = DIAL * Math.max(place.frame[2], place.frame[3]);
@@ -31,7 +31,7 @@ export function dials(place: Place): Dial[] {
     if (!grip) continue;
     grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust!, i, place.frame)));
     if (grip.value === undefined || param.default === undefined) continue;
-    // A skew turns nothing.
+    // A skew is not a rotation.
     if (param.kind === "angle" && !param.name.startsWith("skew")) {
       out.push(turner(param, grip, place, radius));
       radius *= FURTHER;
@@ -42,7 +42,7 @@ export function dials(place: Place): Dial[] {
   return out;
 }
 
-/** A handle of a parameter with the line from a place to it. */
+/** Returns a handle of a parameter, with the line to it from a point. */
 export function dial(param: Param, key: string, label: string, from: () => XY, get: () => XY, set: (to: XY) => void): Dial {
   return {
     handle: { key, param: param.name, shape: "node", label, group: param.name, get, set: (to) => set(to) },
@@ -50,7 +50,7 @@ export function dial(param: Param, key: string, label: string, from: () => XY, g
   };
 }
 
-/** An angle about a centre, from the right and clockwise. */
+/** A dial for an angle about a centre, clockwise from the right. */
 function turner(param: Param, grip: Grip, { grips, frame: [x, y, w, h] }: Place, radius: number): Dial {
   const centre = (): XY => grips.about?.point ?? [x + w / 2, y + h / 2];
   const get = (): XY => {
@@ -61,13 +61,13 @@ function turner(param: Param, grip: Grip, { grips, frame: [x, y, w, h] }: Place,
   const set = (to: XY): void => {
     const [cx, cy] = centre();
     const angle = (Math.atan2(to[1] - cy, to[0] - cx) * 180) / Math.PI;
-    // The turn that is nearest, so that a dial can go round more than once.
+    // Choose the nearest turn, so that a dial can go around more than once.
     grip.value = within(angle + 360 * Math.round((grip.value! - angle) / 360), param.least, param.most);
   };
   return dial(param, param.name, words(param.name), centre, get, set);
 }
 
-/** A length, to the right from the left edge or upwards from the middle. */
+/** An arm for a length, to the right from the left edge or upwards from the middle. */
 function arm(param: Param, grip: Grip, [x, y, w, h]: Frame): Dial {
   const isUp = param.axis === "y";
   const from: XY = isUp ? [x + w / 2, y + h / 2] : [x, y + h];
@@ -78,7 +78,7 @@ function arm(param: Param, grip: Grip, [x, y, w, h]: Frame): Dial {
   return dial(param, param.name, words(param.name), () => from, get, set);
 }
 
-/** An adjust value: the first on the left edge, from below, the second along the lower edge. */
+/** A track for an adjust value: the first goes up the left edge, the second along the lower edge. */
 function track(param: Param, all: Adjust[], i: number, [x, y, w, h]: Frame): Dial {
   const a = all[i]!;
   const share = () => (a.value! - a.least) / (a.most - a.least);

@@ -15,28 +15,28 @@ function fill<E extends Element>(element: E, attributes: Attributes, children: C
   return element;
 }
 
-/** Makes an HTML element; attributes that are functions are listeners, named `onclick` and so on. */
+/** Creates an HTML element; attributes that are functions become listeners, named `onclick` and so on. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K, attributes: Attributes = {}, ...children: Child[]
 ): HTMLElementTagNameMap[K] {
   return fill(document.createElement(tag), attributes, children);
 }
 
-/** Makes an SVG element. */
+/** Creates an SVG element. */
 export function s<K extends keyof SVGElementTagNameMap>(
   tag: K, attributes: Attributes = {}, ...children: Child[]
 ): SVGElementTagNameMap[K] {
   return fill(document.createElementNS(SVG, tag) as SVGElementTagNameMap[K], attributes, children);
 }
 
-/** The element of the page with this id. */
+/** Returns the element of the page with this id. */
 export function byId<E extends Element = HTMLElement>(id: string): E {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no #${id}`);
   return found as unknown as E;
 }
 
-/** Typing goes into this element. */
+/** Returns `true` if text is typed into this element. */
 export function isTyping(target: EventTarget | null): target is HTMLElement {
   return target instanceof HTMLElement && target.matches("input:not([type=range], [type=checkbox], [type=radio]), textarea, select");
 }
@@ -51,7 +51,7 @@ const ICONS = {
   lock: "M6 11h12v8.5H6zM8.5 11V8a3.5 3.5 0 0 1 7 0v3",
 };
 
-/** A line icon. */
+/** Returns a line icon. */
 export function icon(name: keyof typeof ICONS): SVGSVGElement {
   return s("svg", { viewBox: "0 0 24 24", class: "icon", "aria-hidden": "true" }, s("path", { d: ICONS[name] }));
 }

@@ -1,11 +1,11 @@
-// The drawing in the page. The server sends elements that usvg has written; only those of a list are taken over all the same.
+// The drawing in the page. usvg has written the server's elements, but the page still accepts only those of a list.
 
 import type { Picture } from "./types";
 
 const SVG = "http://www.w3.org/2000/svg";
 const XLINK = "http://www.w3.org/1999/xlink";
 
-/** Everything that usvg writes. */
+/** The elements that usvg writes. */
 const ELEMENTS = new Set(
   ("svg g path image defs linearGradient radialGradient stop pattern clipPath mask filter feBlend feColorMatrix feComponentTransfer " +
     "feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow feFlood feFuncA feFuncB feFuncG " +
@@ -13,13 +13,13 @@ const ELEMENTS = new Set(
     "feTurbulence use").split(" "),
 );
 
-/** Links lead into the drawing or hold a picture. */
+/** Links into the drawing, or to an embedded picture. */
 const LINK = /^(#|data:image\/(png|jpeg|gif|webp|svg\+xml);base64,)/;
 
-/** A paint or an effect from elsewhere. */
+/** Paints and effects from elsewhere. */
 const LOADS = /url\(\s*["']?(?!#)/i;
 
-/** Copies an element with what is allowed of it. */
+/** Copies the permitted parts of an element. */
 function copy(from: Element, lines: (Element | null)[] | null): Element | null {
   if (from.namespaceURI !== SVG || !ELEMENTS.has(from.localName)) {
     skip(from, lines);
@@ -32,12 +32,12 @@ function copy(from: Element, lines: (Element | null)[] | null): Element | null {
     const copied = copy(child, lines);
     if (copied) to.append(copied);
   }
-  // The line of the closing tag.
+  // Account for the line of the closing tag.
   if (from.children.length > 0) lines?.push(null);
   return to;
 }
 
-/** Counts the lines of an element that is left out. */
+/** Counts the lines of an omitted element. */
 function skip(element: Element, lines: (Element | null)[] | null): void {
   lines?.push(null);
   for (const child of Array.from(element.children)) skip(child, lines);
@@ -52,7 +52,7 @@ function set(element: Element, name: string, value: string): void {
     return;
   }
   if (name === "style") {
-    // The page's policy forbids style attributes; properties can be set one by one.
+    // The page's policy forbids style attributes, but permits setting properties.
     for (const [property, ...rest] of value.split(";").map((part) => part.split(":"))) {
       if (property && !LOADS.test(rest.join(":"))) (element as SVGElement).style.setProperty(property.trim(), rest.join(":").trim());
     }
@@ -68,7 +68,7 @@ function parse(text: string, lines: (Element | null)[] | null = null): Element |
   return copy(root, lines);
 }
 
-/** Parses a drawing that is shown beside the picture, whose ids get another prefix than those of the picture. */
+/** Parses a drawing that is shown beside the picture; its ids get another prefix. */
 export function apart(text: string | undefined, prefix: string): Element | null {
   const root = text ? parse(text) : null;
   for (const element of Array.from(root?.querySelectorAll("*") ?? [])) {

@@ -1,22 +1,22 @@
-// What is typed into fields of numbers: arithmetic with units, arrow keys, and words for what is wrong.
+// Fields for numbers: arithmetic with units, arrow keys, and messages about errors.
 
 import { byId, h } from "./dom";
 import { toast } from "./toast";
 
-/** A number with the unit it was typed in. */
+/** A number with its typed unit. */
 export interface Quantity {
   value: number;
   unit: string;
 }
 
-/** Lengths, in px. */
+/** The units of length, in px. */
 const LENGTHS: Record<string, number> = { px: 1, in: 96, mm: 96 / 25.4, cm: 96 / 2.54, m: 96 / 0.0254, pt: 96 / 72, pc: 16, q: 96 / 101.6 };
 const TOKEN = /\s*(?:(\d+[.,]?\d*|[.,]\d+)\s*(%|°|[a-z]+)?|([-+*/()]))\s*/iy;
 
-/** The figures of a sum that computing leaves right. */
+/** Significant figures of a sum that are not affected by rounding. */
 const EXACT = 12;
 
-/** The value of a sum, difference, product or quotient; numbers without a unit have the field's. `null` if the text is none. */
+/** Evaluates a sum, difference, product or quotient; numbers without a unit get the field's. `null` if the text is not an expression. */
 export function evaluate(text: string, unit: string): Quantity | null {
   const tokens: (Quantity | string)[] = [];
   const normal = text.replaceAll("−", "-").replaceAll("×", "*");
@@ -37,7 +37,7 @@ export function evaluate(text: string, unit: string): Quantity | null {
     while (rest[0] === "+" || rest[0] === "-") {
       const sign = rest.shift() === "+" ? 1 : -1;
       const right = product(rest);
-      // A plain number beside one with a unit has the field's.
+      // A number without a unit beside one with a unit gets the field's.
       const [a, b] = [left.unit || unit, right.unit || unit];
       left = { value: left.value + sign * right.value * factor(b, a), unit: a };
     }
@@ -71,13 +71,13 @@ export function evaluate(text: string, unit: string): Quantity | null {
   }
 }
 
-/** A value in this unit, whatever others are typed. `null` if the text is none. */
+/** Evaluates a text in this unit, whatever units are typed. `null` if it is not an expression. */
 export function inUnits(text: string, unit: string): number | null {
-  // A sum has the unit of its first number.
+  // A sum gets the unit of its first number.
   return evaluate(`0${unit}+(${text})`, unit)?.value ?? null;
 }
 
-/** The number of units `to` in a unit. */
+/** Returns the number of units `to` in a unit. */
 function factor(from: string, to: string): number {
   if (from === to) return 1;
   const [a, b] = [LENGTHS[from], LENGTHS[to]];
@@ -85,10 +85,10 @@ function factor(from: string, to: string): number {
   return a / b;
 }
 
-/** Limits from here on are those of computing, not of the value. */
+/** Limits beyond this are numerical, and not shown. */
 const BOUNDLESS = 1e6;
 
-/** What may be typed. */
+/** Describes the permitted values. */
 export function asked(unit: string, from = -Infinity, to = Infinity, isWhole = false): string {
   const [least, most] = [Number(from.toPrecision(6)), to < BOUNDLESS ? to : Infinity];
   const [what, end] = [isWhole ? "A whole number" : "A number", unit && ` ${unit}`];
@@ -97,28 +97,28 @@ export function asked(unit: string, from = -Infinity, to = Infinity, isWhole = f
   return `${what}, such as ${isWhole ? 3 : 30}${end}`;
 }
 
-/** What is wrong, of whatever was thrown. */
+/** Returns the message of anything thrown. */
 export function reason(e: unknown): string {
   return e instanceof Error ? e.message : String(e);
 }
 
-/** What the program says: a sentence with its quotes. Beside a field, its name in front is left out. */
+/** Turns the program's message into a sentence with typographic quotes. Beside a field, the field's name is omitted. */
 export function inWords(problem: string, isBeside = false): string {
   const text = problem.replace(/^error: /, "").replace(isBeside ? /^“[^”]*”: / : "", "").replace(/`([^`]*)`/g, "“$1”");
-  // Names of files stay as they are.
+  // Names of files keep their case.
   return /^(\S+|[^:;]*\.\w{1,5}): /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
 }
 
 type Editable = HTMLInputElement | HTMLTextAreaElement;
 
-/** A field that keeps what is wrong in it, with a word about it, until it is right or given up. */
+/** A field that keeps a wrong text, with a message, until it is corrected or abandoned. */
 export class Field {
   readonly message = h("p", { class: "wrong", role: "alert", hidden: true });
   /** The value for which the text is wrong. */
   private wrongFor: string | null = null;
   private shown = "";
 
-  /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
+  /** `take` accepts a text and returns its problem, if any; `isWrong` checks texts while they are typed. */
   constructor(
     readonly input: Editable, private read: () => string, private take: (text: string) => string | null | Promise<string | null>,
     private isWrong: (text: string) => string | null = () => null, nudge?: (text: string, by: number) => string | null,
@@ -161,7 +161,7 @@ export class Field {
     else this.input.setAttribute("aria-describedby", this.message.id);
   }
 
-  /** The value that holds is on show again. */
+  /** Shows the valid value again. */
   private reset(): void {
     this.say(null);
     this.input.value = this.shown = this.read();
@@ -172,13 +172,13 @@ export class Field {
     const value = this.read();
     if (this.wrongFor === value) return;
     if (this.wrongFor !== null) this.say(null);
-    // What is being typed stays; a value that is dragged meanwhile is shown.
+    // Keep the text being typed, unless the value is dragged meanwhile.
     if (document.activeElement === this.input && this.input.value !== this.shown && value === this.shown) return;
     this.input.value = this.shown = value;
   }
 }
 
-/** Shows the first value that has been typed wrong. Returns `false` if there is none. */
+/** Focuses the first field with a wrong text. Returns `false` if there is none. */
 export function showWrong(): boolean {
   const field = document.querySelector<Editable>("#settings [aria-invalid=true], #place [aria-invalid=true]");
   if (!field) return false;

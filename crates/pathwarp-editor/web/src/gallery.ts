@@ -1,4 +1,4 @@
-// The choice of shapes: every deformation and every preset, each with a small picture of this very artwork.
+// The choice of shapes: every deformation and preset, each with a small picture of the present artwork.
 
 import type { App } from "./app";
 import { byId, h, icon } from "./dom";
@@ -7,7 +7,7 @@ import { toast } from "./toast";
 import { DRAGGED } from "./values";
 import type { Deformation, Step } from "./types";
 
-/** Words for what is done here by a shape, and elsewhere in the program otherwise. */
+/** Terms for tasks that a shape performs here, and other parts of the program otherwise. */
 const ALSO: Record<string, string> = {
   shaper: "bottle label neck",
   envelope: "lines in a shape text in a shape badge",
@@ -17,7 +17,7 @@ const ALSO: Record<string, string> = {
   offset: "outset outline grow bolder thicker inset shrink thinner",
 };
 
-/** What one may want, in the order of docs/which.md, and the presets and deformations that do it. */
+/** Common tasks, in the order of docs/which.md, with the presets and deformations for them. */
 const WANTED: [string, string][] = [
   ["Arch", "warp/arc warp/arch warp/arc-upper warp/arc-lower wordart/arch-up wordart/arch-down wordart/arch-up-pour wordart/arch-down-pour wordart/can-up wordart/can-down wordart/curve-up wordart/curve-down"],
   ["Wave", "warp/flag warp/wave wave wordart/wave1 wordart/wave2 wordart/double-wave1 wordart/wave4 warp/rise"],
@@ -31,12 +31,12 @@ const WANTED: [string, string][] = [
 interface Card {
   button: HTMLButtonElement;
   image: HTMLImageElement;
-  /** The steps of the picture, or the deformation to show by its example. */
+  /** The steps of the picture; `null` for the example of the deformation. */
   steps: Step[] | null;
   deformation: string;
   args: Record<string, string[]>;
   variant: { label: string; param: string } | null;
-  /** What the search looks at. */
+  /** The text that is searched. */
   words: string;
 }
 
@@ -47,7 +47,7 @@ export class Gallery {
   private queue: Card[] = [];
   private isDrawing = false;
   private own = h("section", { hidden: true });
-  /** Says that nothing was found. */
+  /** The message that nothing was found. */
   private none = h("p", { class: "none", role: "status", hidden: true });
   /** The names of the user's presets. */
   names: string[] = [];
@@ -107,7 +107,7 @@ export class Gallery {
     if (answer?.presets) this.showPresets(answer.presets);
   }
 
-  /** Lists the user's presets. */
+  /** Shows the user's presets. */
   showPresets(names: string[]): void {
     this.names = names;
     const entry = (name: string) => {
@@ -122,7 +122,7 @@ export class Gallery {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
         if (!answer?.presets) return;
         this.showPresets(answer.presets);
-        // The focus stays near.
+        // Keep the focus nearby.
         const left = this.own.querySelectorAll<HTMLElement>(".small");
         (left[Math.min(names.indexOf(name), left.length - 1)] ?? this.search).focus();
       });
@@ -153,7 +153,7 @@ export class Gallery {
   private async choose({ deformation, args, variant }: Card): Promise<void> {
     const { app } = this;
     const { step } = app;
-    // Styles are tried one after another, but nobody should wonder what has become of work by hand.
+    // Styles are tried in turn, but replacing manual work needs a message.
     const isReplaced = app.isWorkedOn && !app.appends && step?.deformation !== deformation && !app.isFirst(step) && !app.deformation(deformation)?.first;
     const name = (step: Step | undefined) => (step ? stepName(step, app.deformation(step.deformation)) : "");
     const old = name(step);
@@ -165,12 +165,12 @@ export class Gallery {
   private whole(d: Deformation, variant: Card["variant"] = null): Card {
     const card = this.card(d.name, {}, null, h("span", { class: "name" }, variant?.label ?? (this.isTaken(called(d)) ? `${called(d)} (effect)` : called(d))), variant);
     card.button.title = capital(d.title);
-    // What it does is looked for, too.
+    // The search covers the description, too.
     card.words += ` ${called(d)} ${d.name} ${d.title}`;
     return card;
   }
 
-  /** Of two shapes with one name, the later one says what it is. */
+  /** Returns `true` if an earlier shape has this name; the later one then needs a description. */
   private isTaken(name: string): boolean {
     return this.cards.some(({ button }) => button.textContent === name);
   }
@@ -184,7 +184,7 @@ export class Gallery {
     });
   }
 
-  /** Draws what is in view, one after another, so that neither dragging nor the drawing itself waits. */
+  /** Draws the visible cards one by one, so that neither dragging nor the picture of the drawing is delayed. */
   private async draw(): Promise<void> {
     if (this.isDrawing) return;
     this.isDrawing = true;
@@ -195,19 +195,19 @@ export class Gallery {
         const { svg } = await this.app.connection.ask(request);
         card.image.src = URL.createObjectURL(new Blob([svg ?? ""], { type: "image/svg+xml" }));
       } catch {
-        // Without a picture, the name is left.
+        // Without a picture, only the name remains.
         card.button.classList.add("bare");
       }
     }
     this.isDrawing = false;
   }
 
-  /** Marks the shape of the step being changed. */
+  /** Marks the shape of the edited step. */
   private mark(): void {
     const { step } = this.app;
     for (const { button, deformation, args, variant } of this.cards) {
       const others = this.app.deformation(deformation)?.variants ?? [];
-      // A shape is a beginning: what has come of it is the variant that any path is.
+      // A shape is only a start: when edited, it counts as the variant of arbitrary paths.
       const isVariant = variant ? step?.args[variant.param] !== undefined && others.find((o) => o.param === variant.param) === variant : !others.some((o) => step?.args[o.param]);
       const isChosen = step?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step.args[k]?.[0] === v[0]);
       button.setAttribute("aria-pressed", String(isChosen));
@@ -216,7 +216,7 @@ export class Gallery {
 
   private filter(): void {
     const wanted = this.search.value.trim().toLowerCase();
-    // Names may be typed without the menus before them, with other signs between the words.
+    // Names may be typed without their menus, and with other characters between the words.
     const plain = (text: string) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
     const all = plain(wanted).split(" ");
     const fits = (words: string) => all.every((word) => plain(words).includes(word));
@@ -228,7 +228,7 @@ export class Gallery {
     this.none.hidden = !this.own.hidden || this.cards.some(({ button }) => !button.hidden);
     for (const section of Array.from(this.box.children) as HTMLElement[]) {
       if (section === this.own || section === this.none) continue;
-      // One card of those in view can be reached with Tab.
+      // Tab reaches one visible card of the section.
       const shown = Array.from(section.querySelectorAll<HTMLElement>(".card")).filter((card) => !card.hidden);
       if (shown.length > 0 && !shown.some((card) => card.tabIndex === 0)) shown[0]!.tabIndex = 0;
       section.hidden = !Array.from(section.querySelectorAll<HTMLElement>(".card")).some((c) => !c.hidden);
@@ -236,7 +236,7 @@ export class Gallery {
   }
 }
 
-/** Arrow keys go from card to card, so that Tab passes a section in one step. */
+/** Arrow keys move between cards, so that Tab skips a section in one step. */
 function walk(e: KeyboardEvent, items: HTMLElement): void {
   const all = (Array.from(items.children) as HTMLElement[]).filter((card) => !card.hidden);
   const at = all.indexOf(document.activeElement as HTMLElement);

@@ -1,18 +1,18 @@
-// The sheet under the drawing: white, black, or a pattern where the drawing is transparent.
+// The sheet under the drawing: white, black, or a checked pattern where the drawing is transparent.
 
 import type { App } from "./app";
 import { byId } from "./dom";
 
 const GROUNDS = ["white", "black", "checks"] as const;
 type Name = (typeof GROUNDS)[number];
-/** Where the choice is remembered. */
+/** The key under which the browser stores the choice. */
 const CHOSEN = "pathwarp-ground";
-/** Colours with no part below this are not seen on white. */
+/** Colours whose components all reach this value are invisible on white. */
 const PALE = 235;
 
 export class Ground {
   private shown: Name = "white";
-  /** The drawing that the sheet was last chosen for. */
+  /** The drawing for which the sheet was last chosen. */
   private drawing = "";
 
   constructor(app: App) {
@@ -36,7 +36,7 @@ export class Ground {
     byId("ground-name").textContent = name === "checks" ? "transparent" : name;
   }
 
-  /** Shows a drawing of white alone on black, where the user has chosen white. */
+  /** Shows an all-white drawing on black if the user has chosen white. */
   private suit(drawing: string): void {
     const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
     if (drawing === this.drawing || art.length === 0) return;

@@ -1,4 +1,4 @@
-// The handles of a step, from the geometry of its parameters.
+// The handles of a step, computed from the geometry of its parameters.
 
 import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
@@ -7,7 +7,7 @@ import { called, words } from "./names";
 import { inSpace } from "./space";
 import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
 
-/** A place on a path of a parameter. */
+/** A point on a path of a parameter. */
 interface Near {
   name: string;
   id: string;
@@ -15,40 +15,40 @@ interface Near {
   spot: Spot;
 }
 
-/** A line that is held. */
+/** A line that is being dragged. */
 export interface Pull {
   param: string;
   handles: Handle[];
-  /** The keys of the points that it joins. */
+  /** The keys of the points that it connects. */
   ends: string[];
-  /** The places of the handles when the line is pulled to a place. */
+  /** Returns the positions of the handles when the line is dragged to a point. */
   targets: (to: XY) => XY[];
 }
 
-/** A bend by hand ends here: styles of circular arcs do. */
+/** The largest bend by dragging, as styles of circular arcs allow no more. */
 const FARTHEST_BEND = 1.9;
 
-/** Near its ends, a curve would need control points far away to follow a pointer. */
+/** Least parameter from the ends of a curve: nearer to them, control points would have to move far to follow a pointer. */
 const MARGIN = 0.15;
 
 /** The notation of a point and its image. */
 const PAIR = "X,Y:X,Y";
-/** Fewest points of a closed path that artwork can be put into. */
+/** Fewest points of a closed path into which artwork is bent. */
 const FEWEST_CLOSED = 3;
 
-/** Lines that a circle is drawn with. */
+/** Number of segments that draw a circle. */
 const ROUND = 90;
 
-/** Lines that the artwork follows; their ends keep the directions of their handles. */
+/** Parameters whose lines the artwork follows; their ends keep the directions of their handles. */
 const SKELETONS = new Set(["along"]);
 
-/** The handles of a step while they are moved. */
+/** The handles of a step, which change as they are moved. */
 export class Handles {
   handles: Handle[] = [];
   private grips: Record<string, Grip>;
-  /** Handles of plain numbers. */
+  /** Handles of numbers. */
   private dials: Dial[] = [];
-  /** A path of the drawing that a parameter named before its line was dragged. */
+  /** A path of the drawing that a parameter referred to before its line was dragged. */
   released: string | null = null;
   /** Control points of nets that have been moved. */
   private moved: Record<string, Set<number>> = {};
@@ -67,7 +67,7 @@ export class Handles {
     for (const { name } of this.deformation.params) {
       const grip = this.grips[name];
       if (!grip) continue;
-      // An eye with a height of its own is at the middle.
+      // An eye with a separate height is at the middle.
       if (grip.point && !(name === "eye" && this.step.args["eye-height"])) this.addPoint(name, grip);
       grip.points?.forEach((_, i) => this.addOneOf(name, grip.points!, i));
       grip.pairs?.forEach((_, i) => this.addPair(name, grip.pairs!, i));
@@ -77,7 +77,7 @@ export class Handles {
       if (grip.circle) this.addCircle(name, grip);
       grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
     }
-    // A point that turns and scales are about changes nothing by itself.
+    // The fixed point of a rotation or scaling has no effect alone, so dials are added.
     const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };
     this.dials = this.handles.every(({ param }) => param === "about") ? dials(place) : this.grips.eye || this.grips["eye-height"] ? inSpace(place) : [];
     this.handles.push(...this.dials.map(({ handle }) => handle));
@@ -88,29 +88,29 @@ export class Handles {
     return Object.values(this.grips).find((grip) => grip.net)?.net;
   }
 
-  /** A pin is added with the place in the artwork that it takes hold of. */
+  /** `true` if points are added as pins, at the artwork's points under the pointer. */
   get pairs(): boolean {
     return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
   }
 
-  /** The handle of a point nearest to a place. */
+  /** Returns the handle of the point that is nearest to `at`. */
   nearest(at: XY): Handle | null {
     const far = (h: Handle) => Math.hypot(h.get()[0] - at[0], h.get()[1] - at[1]);
     return this.handles.filter(({ shape }) => shape === "node").reduce<Handle | null>((best, h) => (best && far(best) <= far(h) ? best : h), null);
   }
 
-  /** Points are added to and taken from all rows at once. */
+  /** Returns `true` if points are added to all rows, or removed from all, at once. */
   isRows(param: string): boolean {
     return this.points(param) === "rows";
   }
 
-  /** A point that is added at a place adds none elsewhere. */
+  /** Returns `true` if a point added at `at` adds no others. */
   isFree(at: XY, reach: number): boolean {
     const found = this.near(at, reach, (param) => param.points !== undefined);
     return !found || this.points(found.name) === "any";
   }
 
-  /** The values with which a net has one more row or column through a place on one of its lines. */
+  /** Returns values for which the net has another row or column through a point on one of its lines. */
   denser(at: XY, reach: number): Record<string, string[]> | null {
     const { net } = this;
     const sides = net?.lines.flatMap((line) => line.slice(1).map((b, i) => [line[i]!, b] as const)) ?? [];
@@ -125,7 +125,7 @@ export class Handles {
       return [Number(x), Number(y ?? x)];
     };
     const cells = numbers("cells", this.step.args.spline ? "4x4" : "1x1");
-    // Halves of uniform cells are uniform; one more would not be.
+    // Halving uniform cells keeps them uniform; adding one would not.
     const name = cells[axis]! > 1 ? "cells" : "degree";
     const counts = name === "cells" ? cells : numbers("degree", "3x3");
     counts[axis] = name === "cells" ? 2 * counts[axis]! : counts[axis]! + 1;
@@ -136,12 +136,12 @@ export class Handles {
     return this.deformation.params.find((p) => p.name === name)?.points;
   }
 
-  /** The path may have any number of points. */
+  /** Returns `true` if the path may have any number of points. */
   private isAny(name: string): boolean {
     return this.points(name) === "any";
   }
 
-  /** The rows of points, which have equally many. */
+  /** The rows of points, all of equal length. */
   private get rows(): [string, Subpath][] {
     const all = this.deformation.params.filter((p) => p.points === "rows");
     return all.flatMap(({ name }) => (this.grips[name]?.paths ?? []).flat().map((sub): [string, Subpath] => [name, sub]));
@@ -154,7 +154,7 @@ export class Handles {
     });
   }
 
-  /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
+  /** Adds the handle for the bend of a preset: half a height up or down from the middle is the full bend. */
   private addBend(param: string, grip: Grip): void {
     const [x, y, w, h] = this.frame;
     const middle: XY = [x + w / 2, y + h / 2];
@@ -165,7 +165,7 @@ export class Handles {
     });
   }
 
-  /** A radius about a centre: a handle on the circle. */
+  /** Adds the handle for a radius about a centre, on the circle. */
   private addRadius(param: string, grip: Grip): void {
     const centre = () => this.grips.center!.point!;
     this.handles.push({
@@ -175,7 +175,7 @@ export class Handles {
     });
   }
 
-  /** A circle or an arc: its centre moves it, the handle opposite its start makes it larger, its ends turn about the centre. */
+  /** Adds the handles for a circle or arc: the centre moves it, a handle opposite to its start changes the radius, its ends rotate. */
   private addCircle(param: string, grip: Grip): void {
     const c = grip.circle!;
     const name = words(param);
@@ -185,7 +185,7 @@ export class Handles {
     handle("centre", "node", "centre", () => [c[0], c[1]], (to) => void ([c[0], c[1]] = to));
     handle("radius", "control", "radius", () => at((c[3] + c[4]) / 2), (to) => void (c[2] = Math.max(Math.hypot(to[0] - c[0], to[1] - c[1]), 1e-6)));
     const isWhole = Math.abs(Math.abs(c[4] - c[3]) - 360) < 1e-6;
-    /** The turn that takes an angle to that of a place, the short way. */
+    /** Returns the shortest rotation, in degrees, from an angle to the direction of a point. */
     const turn = (from: number, to: XY) => ((((Math.atan2(to[1] - c[1], to[0] - c[0]) * 180) / Math.PI - from) % 360) + 540) % 360 - 180;
     handle("start", "node", "start", () => at(c[3]), (to) => {
       const by = turn(c[3], to);
@@ -224,8 +224,8 @@ export class Handles {
     });
   }
 
-  /** The nodes and control points of a path. Smooth nodes carry their control points along; at a corner, the pieces beside it keep their
-   * shape: straight ones stay straight. The ends of a closed path are one node. */
+  /** Adds the nodes and control points of a path. A smooth node moves its control points; at a corner, adjacent pieces keep their shape,
+   * and straight ones stay straight. The ends of a closed path are one node. */
   private addSubpath(param: string, path: Subpath[], sub: Subpath, id: string): void {
     const { segments } = sub;
     const last = segments.length - 1;
@@ -251,7 +251,7 @@ export class Handles {
           const arrive = before(n);
           const ends: [number[] | undefined, 0 | 2, number][] = [[arrive, 2, n > 0 ? n - 1 : nodes - 1], [after(n), 0, (n + 1) % nodes]];
           const turns = isCorner(n);
-          // The control points at the other ends go along where those are corners, too.
+          // The control points at the other ends move along if those ends are corners, too.
           const isFollowed = ends.map(([, , other]) => turns && isCorner(other));
           ends.forEach(([seg, own, other], i) => {
             if (seg?.length !== 6) return;
@@ -272,7 +272,7 @@ export class Handles {
           set: (to, smooth) => {
             const other = side === "in" ? after(n) : before(n);
             const m = side === "in" ? 0 : 2;
-            // A corner stays one.
+            // A corner stays a corner.
             const turns = smooth && other?.length === 6 && isSmooth(at(n), [seg[k]!, seg[k + 1]!], [other[m]!, other[m + 1]!]);
             seg[k] = to[0];
             seg[k + 1] = to[1];
@@ -285,7 +285,7 @@ export class Handles {
     }
   }
 
-  /** Takes a node of a path away, if enough are left. */
+  /** Returns a function that removes a node of a path, if enough remain. */
   private removal(param: string, sub: Subpath, n: number, nodes: number): (() => void) | undefined {
     if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
       return () => {
@@ -303,7 +303,7 @@ export class Handles {
     };
   }
 
-  /** The path that passes nearest to a place, among those of which something is true. */
+  /** Returns the nearest path of parameters for which `is` holds. */
   private near(at: XY, reach: number, is: (param: Param) => boolean): Near | null {
     let best: Near | null = null;
     for (const param of this.deformation.params.filter(is)) {
@@ -315,7 +315,7 @@ export class Handles {
     return best;
   }
 
-  /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+  /** Starts to drag the line near a point: a curve bends with the pointer, a straight line moves. */
   pull(at: XY, reach: number): Pull | null {
     const found = this.near(at, reach, () => true);
     if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
@@ -326,7 +326,7 @@ export class Handles {
     const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
     const [first, second] = ends;
     if (!first || !second) return null;
-    // The point of the curve follows the pointer, by the control point that is nearer more than by the other.
+    // The point of the curve follows the pointer; the nearer control point moves more than the other.
     const t = Math.min(Math.max(spot.t, MARGIN), 1 - MARGIN);
     const whole = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
     const shares = isCurve ? [(1 - t) / whole, t / whole] : [1, 1];
@@ -359,7 +359,7 @@ export class Handles {
     return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
   }
 
-  /** Adds a point to the path that passes near a place. */
+  /** Adds a point to the path near `at`. */
   private divide(at: XY, reach: number): boolean {
     const found = this.near(at, reach, (param) => param.points !== undefined);
     if (!found) return false;
@@ -379,7 +379,7 @@ export class Handles {
     return true;
   }
 
-  /** The lines to draw under the handles. */
+  /** Returns the lines to draw under the handles. */
   lines(): Line[] {
     const out: Line[] = this.dials.map(({ line }) => line());
     for (const grip of Object.values(this.grips)) {
@@ -423,7 +423,7 @@ export class Handles {
       }
       at = to;
     }
-    // Four points without curves are corners.
+    // Four points without curves form a quadrangle.
     const isQuadrangle = sub.segments.length === 3 && sub.segments.every((seg) => seg.length === 2);
     out.unshift({ kind: "path", points: pieces, cubic: true, closed: sub.closed || isQuadrangle });
   }
@@ -445,7 +445,7 @@ export class Handles {
     }
   }
 
-  /** A net's moved control points each have a value, which replaces an earlier one and a shift. */
+  /** Writes a value for each moved control point of a net; it replaces earlier values and shifts. */
   private writeNet(name: string, net: Net): void {
     for (const i of this.moved[name] ?? []) {
       const index = `${net.names[i]}:`;
@@ -456,7 +456,7 @@ export class Handles {
     }
   }
 
-  /** The middle of the piece of a line that follows a node. */
+  /** Returns the midpoint of the piece that follows a node. */
   after(handle: Handle): XY | null {
     const [param, id = "", n] = handle.key.split("/");
     const [i, j] = id.split(".").map(Number);
@@ -465,11 +465,11 @@ export class Handles {
     return middle(sub, Math.min(Number(n), sub.segments.length - 1));
   }
 
-  /** Adds a point where the step takes any number of them, to paths within `reach`; a pin takes `from` there. */
+  /** Adds a point where the step takes any number of them, to paths within `reach`; a pin moves `from` to it. */
   add(at: XY, from: XY, reach: number): boolean {
     if (this.divide(at, reach)) return true;
     if (!this.grows) return false;
-    // A pair can be moved at once; a pin only stays.
+    // Prefer a pair, which can be moved at once, to a pin.
     const params = [...this.deformation.params].sort((a, b) => Number(b.notation === PAIR) - Number(a.notation === PAIR));
     for (const { name, repeat, notation } of params) {
       const grip = this.grips[name];
@@ -490,19 +490,19 @@ export class Handles {
     return false;
   }
 
-  /** Returns `true` if points can be added. */
+  /** `true` if points can be added. */
   get grows(): boolean {
-    // A net's own points are its handles.
+    // The handles of a net are its control points.
     if (Object.values(this.grips).some((grip) => grip.net)) return false;
     return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
   }
 
-  /** Returns `true` if there are paths that points can be added to. */
+  /** `true` if there are paths to which points can be added. */
   get divides(): boolean {
     return this.deformation.params.some(({ name, points }) => points && this.grips[name]?.paths);
   }
 
-  /** The handle on the other side of the frame's middle, if one is there. */
+  /** Returns the handle at the mirror image about the frame's middle, if one is there. */
   partner(of: Handle): Handle | null {
     const [x, , w, h] = this.frame;
     const [px, py] = of.get();
@@ -513,7 +513,7 @@ export class Handles {
   }
 }
 
-/** A circle as cubics. */
+/** Returns a circle as cubics. */
 function circle([x, y]: XY, r: number): Line {
   const k = 0.5522848 * r;
   const points: XY[] = [
@@ -523,14 +523,14 @@ function circle([x, y]: XY, r: number): Line {
   return { kind: "path", points, cubic: true, closed: true };
 }
 
-/** The distance from a point to a line between two others. */
+/** Returns the distance from a point to a line segment. */
 function distance(p: XY, a: XY, b: XY): number {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const t = Math.min(Math.max(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
   return Math.hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
 }
 
-/** The turn and scaling about a point that takes one place to another; without a point, the shift. */
+/** Returns the similarity that fixes `about` and maps one point to another; without `about`, the translation. */
 function similarity(about: XY | null, from: XY, to: XY): (p: XY) => XY {
   if (!about || same(about, from)) return ([x, y]) => [x + to[0] - from[0], y + to[1] - from[1]];
   const [ax, ay, bx, by] = [from[0] - about[0], from[1] - about[1], to[0] - about[0], to[1] - about[1]];
@@ -543,7 +543,7 @@ function same(a: XY, b: XY): boolean {
   return Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-9 * (1 + Math.hypot(...a));
 }
 
-/** The cosine of the angle at which two handles count as opposite each other: within about two degrees. */
+/** The cosine of the angle from which two handles count as opposite: within about two degrees. */
 const OPPOSITE = -0.9995;
 
 function isSmooth(node: XY, a: XY, b: XY): boolean {
@@ -551,7 +551,7 @@ function isSmooth(node: XY, a: XY, b: XY): boolean {
   return ax * bx + ay * by < OPPOSITE * Math.hypot(ax, ay) * Math.hypot(bx, by);
 }
 
-/** Turns the control point at `k` of a segment about a node so that it lies opposite of `to`, at its own distance. */
+/** Rotates the control point at `k` of a segment about a node, at constant distance, to lie opposite to `to`. */
 function align(segment: number[], k: number, node: XY, to: XY): void {
   const [dx, dy] = [node[0] - to[0], node[1] - to[1]];
   const length = Math.hypot(dx, dy);

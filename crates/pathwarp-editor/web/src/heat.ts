@@ -1,12 +1,12 @@
-// The stretch of the map as a heat map over the drawing: blue where it shrinks, orange where it grows, red where it folds over.
+// The stretch of the map as a heat map over the drawing: blue where it shrinks, orange where it grows, red where it folds.
 
 import { s } from "./dom";
 import type { Stretch, XY } from "./types";
 
-/** The factor at which a colour is full: half or double. */
+/** The logarithm of the factor at which a colour is full: half or double. */
 const FULL = Math.log2(2);
 
-/** The cells of a grid as shapes; `place` takes user units to px of the drawing. */
+/** Returns the cells of a grid as shapes; `place` maps user units to px of the drawing. */
 export function cells({ columns, points, factors }: Stretch, place: (p: XY) => XY): SVGPathElement[] {
   const byColour = new Map<string, string[]>();
   factors.forEach((factor, k) => {
@@ -24,13 +24,13 @@ export function cells({ columns, points, factors }: Stretch, place: (p: XY) => X
   });
 }
 
-/** The opacity of a full colour; the drawing shows through. */
+/** The opacity of a full colour, through which the drawing stays visible. */
 const STRONGEST = 0.8;
 
-/** Steps from no colour to a full one. */
+/** Number of steps to a full colour. */
 const STEPS = 16;
 
-/** The colour and opacity of a factor, in few steps, so that equal cells are one shape. */
+/** Returns the colour and opacity of a factor, in few steps, so that cells of equal colour become one shape. */
 function shade(factor: number): string {
   if (factor < 0) return "#e11d2e/0.85";
   const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor, 1e-6)) / FULL));

@@ -1,4 +1,4 @@
-// The list of keys, which `?` shows.
+// The list of keys, shown by `?`.
 
 import { byId, h } from "./dom";
 

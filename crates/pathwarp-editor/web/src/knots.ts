@@ -1,14 +1,14 @@
-// Points of paths, added and taken away without changing the rest of the path.
+// Adds and removes points of paths without changing the rest.
 
 import type { Subpath, XY } from "./types";
 
-/** Samples of a piece when the place nearest to a point is looked for. */
+/** Samples of a piece for the search of its nearest point. */
 const SAMPLES = 32;
 
-/** The precision of a parameter. */
+/** The precision of the parameter found. */
 const FINE = 1e-9;
 
-/** A place on a path: its piece and the parameter there. */
+/** A point on a path: its piece, parameter and position, and its distance from a given point. */
 export interface Spot {
   piece: number;
   t: number;
@@ -16,7 +16,7 @@ export interface Spot {
   distance: number;
 }
 
-/** The points of a piece, from the end of the one before: two of a line, four of a cubic. */
+/** Returns the points of a piece, from the end of the preceding one: two for a line, four for a cubic. */
 function piece(sub: Subpath, k: number): XY[] {
   const before = k === 0 ? sub.start : end(sub.segments[k - 1]!);
   const seg = sub.segments[k]!;
@@ -33,14 +33,14 @@ function mix([ax, ay]: XY, [bx, by]: XY, t: number): XY {
   return [ax + (bx - ax) * t, ay + (by - ay) * t];
 }
 
-/** The rows of de Casteljau's scheme at a parameter, the given points first. */
+/** Returns the rows of de Casteljau's scheme at a parameter, the first with the given points. */
 function scheme(points: XY[], t: number): XY[][] {
   const rows = [points];
   for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i]!, p, t));
   return rows;
 }
 
-/** A closed path ends with a line to its start, which may be left unsaid. */
+/** Adds the line to the start of a closed path, if the path omits it. */
 export function closed(sub: Subpath): Subpath {
   const last = sub.segments[sub.segments.length - 1];
   const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
@@ -48,7 +48,7 @@ export function closed(sub: Subpath): Subpath {
   return sub;
 }
 
-/** The place of a path that is nearest to a point. */
+/** Returns the point of a path that is nearest to `to`. */
 export function nearest(sub: Subpath, to: XY): Spot | null {
   let best: Spot | null = null;
   const look = (k: number, points: XY[], t: number) => {
@@ -62,7 +62,7 @@ export function nearest(sub: Subpath, to: XY): Spot | null {
   });
   const found = best as Spot | null;
   if (!found) return null;
-  // Between the samples beside it, by halves.
+  // Search between the neighbouring samples, halving the step.
   const points = piece(sub, found.piece);
   for (let step = 0.5 / SAMPLES; step > FINE; step /= 2) {
     const { t } = best as unknown as Spot;
@@ -71,7 +71,7 @@ export function nearest(sub: Subpath, to: XY): Spot | null {
   return best;
 }
 
-/** The middle of a piece. */
+/** Returns the midpoint of a piece. */
 export function middle(sub: Subpath, k: number): XY {
   return scheme(piece(sub, k), 0.5).pop()![0]!;
 }
@@ -85,7 +85,7 @@ export function split(sub: Subpath, { piece: k, t }: Spot): number {
   return k + 1;
 }
 
-/** Takes a node away; the pieces beside it become one, with their outer control points. */
+/** Removes a node; the adjacent pieces are joined, and keep their outer control points. */
 export function drop(sub: Subpath, node: number): void {
   const { segments } = sub;
   if (!sub.closed && node === 0) {
@@ -96,7 +96,7 @@ export function drop(sub: Subpath, node: number): void {
     segments.pop();
     return;
   }
-  // Of a closed path, the start is the end of the last piece.
+  // The start of a closed path is the end of its last piece.
   const [a, b] = node === 0 ? [segments.length - 1, 0] : [node - 1, node];
   const [from, to] = [piece(sub, a), piece(sub, b)];
   const [first, last] = [from[0]!, to[to.length - 1]!];
@@ -107,7 +107,7 @@ export function drop(sub: Subpath, node: number): void {
   if (node === 0) sub.start = [...last];
 }
 
-/** The control points of a curve with one more of them: the curve stays the same. */
+/** Raises the degree of a curve without changing it. */
 export function raised(points: XY[]): XY[] {
   const n = points.length;
   const inner = points.slice(1).map((p, i) => mix(p, points[i]!, (i + 1) / n));

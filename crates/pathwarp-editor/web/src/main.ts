@@ -1,4 +1,4 @@
-// The page: puts the parts together, with the buttons and keys that belong to none of them.
+// The page: combines its parts, and handles the remaining buttons and keys.
 
 import { App } from "./app";
 import { Background } from "./background";
@@ -21,7 +21,7 @@ import { partOf, Stage } from "./stage";
 import { Steps } from "./steps";
 import { WordsDialog } from "./words";
 
-/** The factor of one step of magnification. */
+/** The factor for one step of magnification. */
 const ZOOM = 1.25;
 
 const app = new App();
@@ -68,7 +68,7 @@ on("zoom-in", () => stage.zoom(ZOOM));
 on("zoom-out", () => stage.zoom(1 / ZOOM));
 on("fit", () => stage.fit());
 on("keys", showKeys);
-// A phone's header has no room for what stands well below the steps.
+// A phone's header has no room for this button, which moves below the steps.
 const phone = matchMedia("(max-width: 520px)");
 const arrange = () => byId(phone.matches ? "keep-preset" : "history").after(byId("start-over"));
 phone.addEventListener("change", arrange);
@@ -78,7 +78,7 @@ on("start-over", async () => {
   byId("undo").focus();
 });
 
-/** A button that stays pressed. */
+/** Makes a button that stays pressed. */
 function toggle(id: string, get: () => boolean, set: (value: boolean) => void): () => void {
   const button = byId(id);
   const show = () => button.setAttribute("aria-pressed", String(get()));
@@ -117,7 +117,7 @@ toggle("stretch", () => stage.showsStretch, (v) => {
   void stage.drawStretch();
 });
 
-// The panels of a narrow window are sheets, of which one is open at most.
+// In a narrow window, the panels are sheets, of which at most one is open.
 const SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" } as const;
 const { classList } = document.body;
 const closeSheets = () => classList.remove(...Object.keys(SHEETS));
@@ -131,7 +131,7 @@ for (const [sheet, button] of Object.entries(SHEETS)) {
 byId("stage").addEventListener("pointerdown", (e) => {
   if (!(e.target as Element).closest(".knob")) closeSheets();
 });
-// Sheets are opened and closed by other parts, too; the drawing moves into the room that is left.
+// Other parts open and close sheets, too; the drawing moves into the remaining space.
 let opened = "";
 new MutationObserver(() => {
   const now = Object.keys(SHEETS).find((sheet) => classList.contains(sheet)) ?? "";
@@ -141,7 +141,7 @@ new MutationObserver(() => {
   stage.fit();
 }).observe(document.body, { attributeFilter: ["class"] });
 
-// Before and after: the key and the button show the original while they are held.
+// The key and the button show the original while they are held.
 const before = byId("before");
 const hide = () => void stage.before(false);
 before.addEventListener("pointerdown", () => void stage.before(true));
@@ -150,7 +150,7 @@ before.addEventListener("keydown", (e) => {
   if (e.key === " " || e.key === "Enter") void stage.before(true);
 });
 
-/** Takes back what a pointer that is down has done, and ends what waits for a click elsewhere. */
+/** Cancels the drag in progress, and any request for a click. */
 function escape(): void {
   app.hold?.();
   stage.pick(null);
@@ -176,7 +176,7 @@ const COMMANDS: Record<string, (shift: boolean) => void> = {
 window.addEventListener("keydown", (e) => {
   const key = e.key.toLowerCase();
   if (key === "escape") return escape();
-  // Text has its own undo.
+  // Text fields have their undo.
   if (e.altKey || (isTyping(e.target) && key !== "s")) return;
   const isCommand = e.ctrlKey || e.metaKey;
   const action = isCommand ? COMMANDS[key] : isTyping(e.target) ? undefined : KEYS[key];
@@ -189,7 +189,7 @@ window.addEventListener("keyup", (e) => {
 });
 window.addEventListener("blur", hide);
 
-// Drafts keep everything, where they can be written; a program that waits gets nothing from a page that is closed.
+// Drafts store everything, if they can be written; a waiting program gets nothing from a closed page.
 window.addEventListener("beforeunload", (e) => {
   if (!app.isLive) return;
   void app.settle();

@@ -1,4 +1,4 @@
-// The ways of moving a handle: snapping, symmetry, smooth nodes.
+// The modes of moving a handle: snapping, symmetry, smooth nodes.
 
 import { byId, s } from "./dom";
 import type { Handles, Pull } from "./handles";
@@ -6,28 +6,28 @@ import type { Handle, XY } from "./types";
 
 export class Modes {
   snaps = true;
-  /** Dragging the ground selects the points in a frame. */
+  /** `true` if dragging the background selects the points in a frame. */
   selects = false;
-  /** A click on the drawing chooses a part of it. */
+  /** `true` if a click on the drawing selects a part of it. */
   picksParts = false;
   mirrors = false;
   smooths = true;
   private marks: XY[] = [];
-  /** Shows where the handle has snapped to; the points are in user units. */
+  /** Shows the lines to which the handle has snapped, in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
 
-  /** The reflection that symmetry is about. */
+  /** Returns the reflection for symmetry. */
   reflection(handles: Handles): (p: XY) => XY {
     return reflection(handles);
   }
 
-  /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
+  /** Returns the other points to add with a point: its reflection, if symmetry is on. */
   reflections(handles: Handles, at: XY, reach: number): XY[] {
     const other = reflection(handles)(at);
     return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
   }
 
-  /** A function that pulls a line, and its reflection if symmetry is on. */
+  /** Returns a function that drags a line, and its reflection if symmetry is on. */
   puller(handles: Handles, { handles: own, targets }: Pull): (to: XY) => void {
     const partners = own.map((handle) => (this.mirrors ? handles.partner(handle) : null));
     const mirrored = reflection(handles);
@@ -36,7 +36,7 @@ export class Modes {
       own.forEach((handle, i) => {
         const partner = partners[i] ?? null;
         const at = wanted[i]!;
-        // Of a line that is its own reflection, each end takes half of what both are to do.
+        // Each end of a line that is its reflection moves by the mean of both motions.
         const k = partner ? own.indexOf(partner) : -1;
         const other = k < 0 ? at : mirrored(wanted[k]!);
         const target: XY = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
@@ -46,15 +46,15 @@ export class Modes {
     };
   }
 
-  /** A function that moves a handle, and its partner if symmetry is on. */
+  /** Returns a function that moves a handle, and its partner if symmetry is on. */
   mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
-    // Others keep still while one is moved, so what it snaps to is looked up once.
+    // The other handles do not move, so the lines to snap to are collected once.
     this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
     return (to, e) => {
-      // Shift keeps the direction, as drawing programs have it.
+      // Shift restricts the direction, as in drawing programs.
       const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
       const target: XY = e?.shiftKey ? (Math.abs(dx) > Math.abs(dy) ? [to[0], start[1]] : [start[0], to[1]]) : to;
       handle.set(target, this.smooths);
@@ -62,7 +62,7 @@ export class Modes {
     };
   }
 
-  /** The place near `to` that lines up with the frame or another handle; Alt turns that off. */
+  /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
   snapped(to: XY, handle: Handle, handles: Handles, reach: number, e: PointerEvent): XY {
     if (!this.snaps || e.altKey || handle.shape === "control") {
       this.onSnap(null, null);
@@ -81,7 +81,7 @@ export class Modes {
   }
 }
 
-/** The reflection in the vertical through the middle of the frame. */
+/** Returns the reflection about the vertical line through the frame's centre. */
 function reflection({ frame: [left, , width] }: Handles): (p: XY) => XY {
   return ([x, y]) => [2 * left + width - x, y];
 }
@@ -95,7 +95,7 @@ function nearest(value: number, among: number[], reach: number): number | null {
   return best;
 }
 
-/** Draws the lines that a handle snaps to. */
+/** Returns a function that draws the lines to which a handle snaps. */
 export function snapLines(toScreen: (p: XY) => XY): (x: number | null, y: number | null) => void {
   const layer = byId<SVGSVGElement>("stage");
   const vertical = s("line", { class: "snap", y1: -10000, y2: 10000, visibility: "hidden" });

@@ -1,11 +1,11 @@
-// The nodes and control points of the drawing, as one path of dots and arms.
+// The nodes and control points of the drawing, drawn as one path of dots and arms.
 
-/** Most characters of path data that are looked at: beyond, dots would only cover the drawing. */
+/** Most characters of path data that are read: more dots would only cover the drawing. */
 const MOST = 4_000_000;
 
 type Point = [number, number];
 
-/** Path data that marks every node by a point, and joins it with its control points by lines, in px of the drawing. */
+/** Returns path data that marks every node by a point, and connects it to its control points, in px of the drawing. */
 export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string } {
   const [nodes, arms]: [string[], string[]] = [[], []];
   let length = 0;
@@ -24,7 +24,7 @@ export function nodesOf(paths: SVGPathElement[]): { nodes: string; arms: string 
   return { nodes: nodes.join(""), arms: arms.join("") };
 }
 
-/** From a path's coordinates to px of the drawing: the transforms of the groups around it. */
+/** Returns the map from a path's coordinates to px of the drawing: the transforms of the groups around it. */
 function place(path: SVGPathElement): (p: Point) => Point {
   let matrix = new DOMMatrix();
   for (let e: Element | null = path; e && !e.classList.contains("art"); e = e.parentElement) {
@@ -38,17 +38,17 @@ function place(path: SVGPathElement): (p: Point) => Point {
 const COMMANDS: Record<string, number> = { M: 2, L: 2, H: 1, V: 1, C: 6, S: 4, Q: 4, T: 2, A: 7, Z: 0 };
 const WORD = /[a-zA-Z]|[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/g;
 
-/** A node with the one before it and the control points in between. */
+/** A node, the preceding one, and the control points between them. */
 interface Anchor {
   from: Point;
   to: Point;
   control: Point[];
 }
 
-/** The nodes of path data, with the flags of arcs apart from other numbers. */
+/** Returns the nodes of path data in which the flags of arcs are separated from other numbers. */
 export function anchors(d: string): Anchor[] {
   const out: Anchor[] = [];
-  // The last control point, which smooth commands mirror.
+  // The last control point, which smooth commands reflect.
   let mirrored: Point | null = null;
   const words = d.match(WORD) ?? [];
   let command = "";

@@ -1,10 +1,10 @@
-// Other drawings: chosen, dropped anywhere on the page, or pasted.
+// Opens other drawings: chosen, dropped anywhere on the page, or pasted.
 
 import type { App } from "./app";
 import { byId, isTyping } from "./dom";
 import { toast } from "./toast";
 
-/** The name of a drawing that comes as text. */
+/** The name of a drawing that is pasted as text. */
 const PASTED = "pasted.svg";
 
 export class Opening {
@@ -34,7 +34,7 @@ export class Opening {
     });
   }
 
-  /** Opens what was dropped or pasted: a file, or the text of a drawing. */
+  /** Opens a dropped or pasted file, or the text of a drawing. */
   private take(data: DataTransfer | null): void {
     const file = data?.files[0];
     const text = data?.getData("text/plain") ?? "";
@@ -55,7 +55,7 @@ export class Opening {
   }
 }
 
-/** Puts a copy of a file beside the drawing, where steps can read it. Returns the text that names it in a step. */
+/** Copies a file to the drawing's folder, where steps can read it. Returns the text that names it in a step. */
 export async function bring(app: App, file: File): Promise<string | null> {
   const bytes = await base64(file);
   const answer = await app.attempt(() => app.connection.ask({ do: "bring", name: file.name, bytes }));
@@ -64,10 +64,10 @@ export async function bring(app: App, file: File): Promise<string | null> {
   return answer.written;
 }
 
-/** Characters that are made of bytes at a time: more are too many arguments. */
+/** Number of bytes converted to characters at a time; more would be too many arguments. */
 const PIECE = 0x8000;
 
-/** The content of a file in base64. */
+/** Returns the content of a file in base64. */
 export async function base64(file: File): Promise<string> {
   const bytes = new Uint8Array(await file.arrayBuffer());
   let binary = "";

@@ -1,5 +1,5 @@
-// The parts of the drawing: a list of its groups and shapes. A step holds for all of them or for those that are chosen, here or by clicks
-// on the drawing; those that are locked stay as they are.
+// The parts of the drawing: a list of its groups and shapes. A step applies to all of them or to those selected, here or by clicks on the
+// drawing; locked parts stay unchanged.
 
 import type { App } from "./app";
 import { byId, h, icon } from "./dom";
@@ -8,7 +8,7 @@ import { capital, isCaption } from "./names";
 import type { Stage } from "./stage";
 import type { Part } from "./types";
 
-/** Names for elements. */
+/** Terms for elements. */
 const ELEMENTS: Record<string, string> = { g: "group", a: "link", svg: "drawing", use: "copy", image: "picture", rect: "rectangle" };
 
 export class Parts {
@@ -17,7 +17,7 @@ export class Parts {
   private scope = byId("parts-scope");
   private all: Part[] = [];
   private rows: HTMLLIElement[] = [];
-  /** The names of what is not shown; the file has it all the same. */
+  /** The names of parts hidden on the page; the file contains them regardless. */
   private hidden = new Set<string>();
   private shown = "";
   private file = "";
@@ -36,7 +36,7 @@ export class Parts {
     const shown = JSON.stringify([drawing, ...steps.filter(isCaption)]);
     if (shown === this.shown) return;
     this.shown = shown;
-    // Other words have the same letters in the same places.
+    // Other words have letters of the same names, which stay hidden.
     if (file !== this.file) this.hidden.clear();
     this.file = file;
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
@@ -68,7 +68,7 @@ export class Parts {
     return row;
   }
 
-  /** What a group holds. */
+  /** Returns the contents of a group. */
   private inside(part: Part): Part[] {
     const after = this.all.slice(this.all.indexOf(part) + 1);
     const end = after.findIndex(({ depth }) => depth <= part.depth);
@@ -81,13 +81,13 @@ export class Parts {
     else if (!adds) void this.app.scope([]);
   }
 
-  /** A part is locked or hidden, by itself or with a group around it. */
+  /** Returns `true` if a part is locked or hidden, or belongs to a group that is. */
   private isOut(part: Part): boolean {
     const isOut = ({ name, selector }: Part) => this.hidden.has(name) || this.app.locks.includes(selector);
     return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
   }
 
-  /** Chooses a part alone, or adds it to the others, or takes it from them. */
+  /** Selects a part alone, or adds it to the selection, or removes it. */
   private toggle(part: Part, adds: boolean): void {
     const { chosen } = this.app;
     const { selector } = part;
@@ -104,7 +104,7 @@ export class Parts {
     this.shade();
   }
 
-  /** What is locked is bent by no step. */
+  /** Locks or unlocks a part. No step bends locked parts. */
   private lock({ selector }: Part): Promise<void> {
     const { locks } = this.app;
     return this.app.lock(locks.includes(selector) ? locks.filter((s) => s !== selector) : [...locks, selector]);
@@ -114,7 +114,7 @@ export class Parts {
     const { chosen, locks } = this.app;
     const hides = this.all.length < 2 || this.app.isFirst(this.app.step);
     byId("parts-box").hidden = hides;
-    // A mode whose button is not seen could not be left.
+    // End the mode if its button is hidden, since users could not.
     if (hides && this.modes.picksParts) byId("pick-parts").click();
     this.all.forEach((part, i) => {
       const pressed = [chosen.includes(part.selector), this.hidden.has(part.name), locks.includes(part.selector)];
@@ -128,7 +128,7 @@ export class Parts {
     this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
   }
 
-  /** Hides what is not to be seen. */
+  /** Hides the hidden parts on the canvas. */
   private shade(): void {
     const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
     this.stage.hideParts(away);

@@ -1,4 +1,4 @@
-// The place of the selected handle, to read and to type.
+// The position of the selected handle, to read and to type.
 
 import type { App } from "./app";
 import { byId } from "./dom";
@@ -7,7 +7,7 @@ import type { Stage } from "./stage";
 import type { Handle } from "./types";
 import { short } from "./values";
 
-/** Decimals of the places on show. */
+/** Decimals of the positions shown. */
 const DECIMALS = 3;
 
 export class Place {
@@ -21,7 +21,7 @@ export class Place {
     stage.onFocus = (handle) => this.show(handle);
     stage.onKeys = (handle) => this.say(handle);
     this.fields = this.inputs.map((input, i) => {
-      // A share of the box is a place in it.
+      // A percentage is a position in the box.
       const place = (typed: string): number | null => {
         const q = evaluate(typed, "");
         const [x, y, w, h] = app.handles?.frame ?? [0, 0, 1, 1];
@@ -68,7 +68,7 @@ export class Place {
     for (const field of this.fields) field.refresh();
   }
 
-  /** Tells screen readers where keys have moved a handle. */
+  /** Tells screen readers the position to which keys have moved a handle. */
   private say(handle: Handle): void {
     byId("spoken").textContent = `${handle.label}: ${shown(handle).join(", ")}`;
   }

@@ -1,4 +1,4 @@
-// Mouse, pen and fingers on the canvas: they drag handles and lines, move the view, and magnify it.
+// Mouse, pen and touch on the canvas: they drag handles and lines, move the view, and magnify it.
 
 import type { App } from "./app";
 import type { Modes } from "./modes";
@@ -7,38 +7,38 @@ import { together, type Part } from "./selection";
 import { hush } from "./toast";
 import type { XY } from "./types";
 
-/** Moves of a pointer, at once where the browser can. `pointermove` waits for the next picture, so the answer would miss it. */
+/** The event for moves of a pointer, immediate if possible: `pointermove` waits for the next frame, which the answer would miss. */
 const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
-/** The distance from which a handle jumps to a line, in px. */
+/** The distance within which a handle snaps to a line, in px. */
 const SNAP = 7;
-/** The distance up to which a press is a click, in px. */
+/** The distance within which a press counts as a click, in px. */
 const SHAKES = 3;
-/** A wheel turns in notches of at least this many px; a trackpad reports less at a time. */
+/** The least distance of a wheel's notch, in px; a trackpad reports less at a time. */
 const NOTCH = 50;
-/** Magnification for each px of a trackpad's pinch and of a wheel, as exponents. */
+/** Exponents of the magnification per px, for a trackpad's pinch and for a wheel. */
 const PINCH_RATE = 0.01;
 const WHEEL_RATE = 0.002;
 
-/** What happens while a pointer is down. */
+/** Reactions to a pointer that is down. */
 interface Way {
   move: (to: XY, e: PointerEvent) => void;
   end: () => void;
-  /** Escape was pressed, or the work undone. */
+  /** Reacts to Escape, or to an undo. */
   cancel?: () => void;
 }
 
 export class Pointing {
-  /** The pointers that are down, with their places. */
+  /** The pointers that are down, with their positions. */
   private down = new Map<number, XY>();
-  /** Ends what the first pointer does. */
+  /** Ends the action of the first pointer. */
   private finish: (() => void) | null = null;
-  /** The view was moved by somebody who took hold of the artwork. */
+  /** Called if the view was moved by a drag that began on the artwork. */
   onPan: () => void = () => {};
 
   constructor(private app: App, private stage: Stage, private modes: Modes) {
     stage.svg.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
     stage.svg.addEventListener("pointerdown", (e) => this.press(e));
-    // A browser may hold the last raw move of a finger back until it is lifted.
+    // Browsers may delay a finger's last raw move until it is lifted.
     for (const moves of new Set([MOVES, "pointermove"])) {
       window.addEventListener(moves, (e) => {
         const { pointerId } = e as PointerEvent;
@@ -54,7 +54,7 @@ export class Pointing {
   private wheel(e: WheelEvent): void {
     e.preventDefault();
     const { stage } = this;
-    // A trackpad's pinch arrives with Ctrl.
+    // A trackpad reports a pinch as a wheel with Ctrl.
     const isPinch = e.ctrlKey && Math.abs(e.deltaY) < NOTCH;
     if (e.ctrlKey || e.metaKey || (e.deltaX === 0 && Math.abs(e.deltaY) >= NOTCH)) {
       return stage.zoom(Math.exp(-e.deltaY * (isPinch ? PINCH_RATE : WHEEL_RATE)), stage.point(e));
@@ -83,7 +83,7 @@ export class Pointing {
     else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage.select([]));
   }
 
-  /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
+  /** Follows a pointer until it is lifted, Escape is pressed, or a second finger touches. Returns a function that cancels the action. */
   private follow(e: PointerEvent, { move, end, cancel = end }: Way): () => void {
     const stop = new AbortController();
     const { signal } = stop;
@@ -104,7 +104,7 @@ export class Pointing {
     return () => finish(cancel);
   }
 
-  /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
+  /** Follows a pointer that changes the step by `move`; `done` cleans up. */
   private bend(e: PointerEvent, move: (to: XY, e: PointerEvent) => void, done: () => void, clicked: () => void = () => {}): void {
     const { app } = this;
     const start = this.stage.point(e);
@@ -122,7 +122,7 @@ export class Pointing {
     };
     const abandon = this.follow(e, {
       move: (to, event) => {
-        // A click may shake.
+        // Small moves still count as a click.
         hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= SHAKES;
         if (hasMoved) move(to, event);
       },
@@ -170,7 +170,7 @@ export class Pointing {
     }, clicked);
   }
 
-  /** Moves, turns or scales the selected points with the pointer. */
+  /** Moves, rotates or scales the selected points with the pointer. */
   private transform(e: PointerEvent, image: (to: XY) => (p: XY) => XY, clicked: () => void = () => {}): void {
     const { stage, modes } = this;
     const { handles } = this.app;
@@ -184,7 +184,7 @@ export class Pointing {
     }, () => stage.placeHandles(), clicked);
   }
 
-  /** Draws a frame, and selects the points in it. */
+  /** Draws a frame, and selects the points within. */
   private frame(e: PointerEvent): void {
     const { stage } = this;
     const start = stage.point(e);
@@ -206,14 +206,14 @@ export class Pointing {
     });
   }
 
-  /** Follows a line that is pulled. Returns `false` if there is none. */
+  /** Follows a line that is dragged. Returns `false` if there is none. */
   private pull(e: PointerEvent): boolean {
     const { stage, modes } = this;
     const { handles } = this.app;
     const pull = handles?.pull(stage.camera.toUser(stage.point(e)), REACH * stage.camera.pixel);
     if (!handles || !pull) return false;
     const [x, y] = stage.point(e);
-    // A line that is selected moves as a whole.
+    // A line whose points are selected moves with the selection.
     if (pull.ends.length > 1 && pull.ends.every((key) => stage.selection.keys.has(key))) {
       this.transform(e, moved([x, y]));
       return true;
@@ -244,7 +244,7 @@ export class Pointing {
       end: () => {
         stage.svg.classList.remove("panning");
         const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
-        // A finger that is the first of two does not click.
+        // The first of two fingers does not click.
         if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
         const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
         if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
@@ -252,7 +252,7 @@ export class Pointing {
     });
   }
 
-  /** Two fingers move and magnify the view. */
+  /** Moves and magnifies the view by two fingers. */
   private pinch(): void {
     const [one, two] = Array.from(this.down.keys());
     const stop = new AbortController();
@@ -272,5 +272,5 @@ export class Pointing {
   }
 }
 
-/** Moves places as the pointer moves. */
+/** Returns the translation of points by the move of the pointer. */
 const moved = ([x, y]: XY) => (to: XY) => ([px, py]: XY): XY => [px + to[0] - x, py + to[1] - y];

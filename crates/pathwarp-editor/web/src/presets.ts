@@ -1,4 +1,4 @@
-// The dialog that keeps the present steps as a preset.
+// The dialog that stores the present steps as a preset.
 
 import type { App } from "./app";
 import { byId } from "./dom";
@@ -43,7 +43,7 @@ export class Presets {
       this.dialog.close();
       toast(`${name} is kept among the shapes`);
     } catch (e) {
-      // The dialog covers the line of problems.
+      // The dialog covers the line for problems.
       this.say(reason(e));
     }
   }

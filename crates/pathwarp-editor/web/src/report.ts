@@ -1,4 +1,4 @@
-// The state of things in words: hints over the canvas, figures and problems at the foot, and the end of the program.
+// Texts about the state: hints over the canvas, figures and problems below it, and the end of the program.
 
 import { isCaption } from "./names";
 import type { App } from "./app";
@@ -6,11 +6,11 @@ import { byId } from "./dom";
 import { toast } from "./toast";
 import type { State } from "./types";
 
-/** An answer that takes longer than this shows a line along the upper edge, in ms. */
+/** The delay after which a line along the upper edge shows that an answer is awaited, in ms. */
 const SLOW = 250;
 
 export class Report {
-  /** The drawing whose draft has been announced. */
+  /** The drawing whose draft has been reported. */
   private announced: string | null = null;
   private slow = 0;
 
@@ -36,7 +36,7 @@ export class Report {
   private figures(): void {
     const { app } = this;
     const { state, summary, warnings } = app;
-    // Before anything is done, and where nothing moves, there is nothing to count.
+    // Without changes, or without movement, there is nothing to count.
     const isBent = !app.isProposal && summary !== null && summary.segmentsIn > 0;
     show("counts", isBent ? `${summary.segmentsIn} → ${summary.segmentsOut} segments` : "");
     show("error", isBent && summary.error > 0 ? `largest error ${Number(summary.error.toPrecision(2))}` : "");
@@ -60,7 +60,7 @@ export class Report {
     this.announced = restored;
   }
 
-  /** What can be done with the handles on show. */
+  /** Shows a hint about the visible handles. */
   private hint(): void {
     const { app } = this;
     const { handles } = app;
@@ -75,7 +75,7 @@ export class Report {
     if (app.steps.length === 0) return show("note", "Choose a shape");
     if (app.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
     if (app.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
-    // Handles are on the way.
+    // The handles have not arrived yet.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
     const adds = handles.net ? "Double-click a line to add another" : handles.grows ? "Double-click adds one, Delete removes it" : "Double-click the line to add a point, Delete removes it";
@@ -83,7 +83,7 @@ export class Report {
     show("note", app.isProposal && has ? `${note}, or choose a shape` : note);
   }
 
-  /** Somebody has moved the view, and may have meant to bend the artwork. */
+  /** Reacts to a moved view: the user may have meant to bend the artwork. */
   panned(): void {
     if (this.app.isProposal && this.app.handles?.handles.length) show("note", "This moves the view. Pull a blue point or line to bend the artwork");
   }
@@ -92,7 +92,7 @@ export class Report {
     const { isDone, isLive, state } = this.app;
     const gone = byId("gone");
     gone.hidden = isLive;
-    // Nobody keeps what is changed now.
+    // Disable the page while changes cannot be stored.
     for (const part of Array.from(document.querySelectorAll<HTMLElement>("header, main, footer"))) part.inert = !isLive;
     if (!isLive) for (const dialog of Array.from(document.querySelectorAll("dialog"))) dialog.close();
     gone.classList.toggle("done", isDone);
@@ -103,14 +103,14 @@ export class Report {
   }
 }
 
-/** What has become of the steps when the program has ended. */
+/** Reports the fate of the steps when the program has ended. */
 function kept(state: State | null): string {
   if (!state || state.steps.length === 0) return "";
   if (state.saved) return "Everything is saved.";
   return state.problem ? `What was not saved is lost (${state.problem}).` : `The steps of ${state.file} are kept.`;
 }
 
-/** Shows a text, or hides its element if there is none. */
+/** Shows a text, or hides its element if it is empty. */
 function show(id: string, text: string): void {
   const element = byId(id);
   element.hidden = text === "";

@@ -1,4 +1,4 @@
-// Saving: the result beside the drawing, other formats, the recipe, the command line.
+// Saves the result beside the drawing, in other formats, as a recipe, or as a command line.
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
@@ -20,10 +20,10 @@ const PICTURES = ["png", "jpg", "webp"];
 /** Usual and largest width of a picture, in px. */
 const WIDTH = 2000;
 const WIDEST = 20_000;
-/** Where the choices for pictures and the folder are remembered. */
+/** The key under which the browser stores the choices for pictures and the folder. */
 const REMEMBERED = "pathwarp-export";
 
-/** What was chosen last. */
+/** The choices made last. */
 interface Choices {
   unit: "px" | "%";
   size: number;
@@ -32,7 +32,7 @@ interface Choices {
 
 const NOTHING = "There is nothing to save yet: pull a blue point or choose a shape first";
 
-/** The browser has taken a download by then, in ms. */
+/** The time within which the browser starts a download, in ms. */
 const FETCHED = 60_000;
 
 export class Saving {
@@ -47,9 +47,9 @@ export class Saving {
   private unit = byId<HTMLSelectElement>("save-unit");
   private background = byId<HTMLSelectElement>("save-background");
   private colour = byId<HTMLInputElement>("save-colour");
-  /** The photograph whose own size was offered. */
+  /** The photograph whose size was offered. */
   private offered = "";
-  /** The steps that were downloaded last. */
+  /** The steps downloaded last. */
   private downloaded = "";
 
   constructor(private app: App) {
@@ -85,7 +85,7 @@ export class Saving {
     const isEmpty = state.steps.length === 0;
     byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? (state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}`) : isEmpty ? "No changes yet" : this.isDownloaded ? "Downloaded" : "Not saved yet";
     const save = byId<HTMLButtonElement>("save");
-    // For a program, having removed all steps is a result, too.
+    // For a program, removing all steps is a result, too.
     save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
     if (state.program) {
       save.textContent = `Keep in ${state.program}`;
@@ -99,23 +99,23 @@ export class Saving {
     return this.downloaded === JSON.stringify(this.app.state?.steps);
   }
 
-  /** Something would be lost without saving. */
+  /** `true` if leaving the page would lose changes. */
   get isUnsaved(): boolean {
     const { state } = this.app;
     if (!state) return false;
     return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved && !this.isDownloaded;
   }
 
-  /** Gives the steps to the program that waits for them. */
+  /** Hands the steps to the program that waits for them. */
   private async handOver(): Promise<void> {
     const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
     if (!answer?.done) return;
     this.app.finish();
-    // Browsers close only pages that a script has opened.
+    // Browsers only close pages that a script has opened.
     window.close();
   }
 
-  /** Saves where it was saved last; the first time, under the usual name. */
+  /** Saves to the file saved last or, the first time, to the usual one. */
   async quick(): Promise<void> {
     if (this.dialog.open) return this.write(false);
     if (!(await this.app.settle())) return;
@@ -128,7 +128,7 @@ export class Saving {
     if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
   }
 
-  /** Asks for a name, and says why if nothing could be written. */
+  /** Opens the dialog for a name, with the reason if nothing could be written. */
   async open(unwritable = ""): Promise<void> {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
@@ -145,7 +145,7 @@ export class Saving {
     this.name.select();
   }
 
-  /** The choices of last time. */
+  /** Restores the choices made last. */
   private recall(): void {
     const { unit = "px", size = WIDTH, background = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}") as Partial<Choices>;
     const isColour = background.startsWith("#");
@@ -154,7 +154,7 @@ export class Saving {
     this.colour.hidden = !isColour;
   }
 
-  /** The file that is asked for. Returns `null` for a picture without a size. */
+  /** Returns the file in the dialog; `null` for a picture without a size. */
   private target(): Record<string, unknown> | null {
     const [name, folder] = [this.name.value, this.folder.value];
     if (!PICTURES.includes(this.extension)) return { name, folder };
@@ -165,7 +165,7 @@ export class Saving {
       return null;
     }
     const background = this.background.value === "colour" ? this.colour.value : this.background.value;
-    // Photographs are offered in their own size.
+    // The offered size of a photograph is not stored.
     if (!this.offered) localStorage.setItem(REMEMBERED, JSON.stringify({ unit, size, background } satisfies Choices));
     const picture = { ...(unit === "%" ? { scale: size / 100 } : { width: size }), background: background === "none" ? null : background };
     return { name, folder, picture };
@@ -181,7 +181,7 @@ export class Saving {
     this.say("");
   }
 
-  /** Shows a message, with the button that helps. */
+  /** Shows a message, with a button if it asks for something. */
   private say(text: string, asks = false): void {
     this.message.textContent = text;
     this.replace.hidden = !asks;
@@ -205,7 +205,7 @@ export class Saving {
     }
   }
 
-  /** Hands the file to the browser, which knows a folder that can be written. */
+  /** Downloads the file, since the browser knows a writable folder. */
   private async fetch(): Promise<void> {
     const target = this.target();
     if (!target) return;

@@ -1,17 +1,17 @@
-// Several points at once: which they are, the box around them, and how they are moved, turned and scaled together.
+// Several selected points, the box around them, and their movement, rotation and scaling together.
 
 import { byId, s } from "./dom";
 import type { Handles } from "./handles";
 import type { Modes } from "./modes";
 import type { Handle, XY } from "./types";
 
-/** Space between the points and the box around them, and between the box and the handle that turns, in px. */
+/** Distances between the points and the box around them, and between the box and the rotation handle, in px. */
 const AROUND = 16;
 const ABOVE = 26;
-/** The distance from which the edge of the box is taken, in px. */
+/** The distance within which the edge of the box counts as hit, in px. */
 const EDGE = 6;
 
-/** What the box is taken by: its corners, or the handle above it. */
+/** The parts by which the box is dragged: its corners, or the rotation handle above it. */
 export type Part = "nw" | "ne" | "se" | "sw" | "turn";
 
 export class Selection {
@@ -33,29 +33,29 @@ export class Selection {
     }
   }
 
-  /** More than one point is selected. */
+  /** `true` if more than one point is selected. */
   get isMany(): boolean {
     return this.keys.size > 1;
   }
 
-  /** Selects these alone. */
+  /** Selects only these points. */
   take(keys: string[]): void {
     this.keys = new Set(keys);
     byId("spoken").textContent = keys.length > 1 ? `${keys.length} points are selected` : "";
   }
 
-  /** Adds a point, or takes it out. */
+  /** Adds a point to the selection, or removes it. */
   toggle(key: string): void {
     if (!this.keys.delete(key)) this.keys.add(key);
     this.take(Array.from(this.keys));
   }
 
-  /** The selected handles. */
+  /** Returns the selected handles. */
   of(handles: Handles): Handle[] {
     return handles.handles.filter(({ key }) => this.keys.has(key));
   }
 
-  /** Puts the box around the selected points. */
+  /** Fits the box around the selected points. */
   place(handles: Handles | null, toScreen: (p: XY) => XY): void {
     const points = handles ? this.of(handles).map((h) => toScreen(h.get())) : [];
     this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
@@ -69,13 +69,13 @@ export class Selection {
     for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
   }
 
-  /** A place is in the box or on its edge. */
+  /** Returns `true` for a point in the box or on its edge. */
   holds([x, y]: XY): boolean {
     const [[x0, y0], [x1, y1]] = this.box;
     return this.isMany && x > x0 - EDGE && x < x1 + EDGE && y > y0 - EDGE && y < y1 + EDGE;
   }
 
-  /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */
+  /** Returns the map of the points when a part of the box is dragged: a rotation about its centre, or a scaling about a corner. */
   transform(part: Part, from: XY): (to: XY) => (p: XY) => XY {
     const [[x0, y0], [x1, y1]] = this.box;
     const about: XY = part === "turn" ? [(x0 + x1) / 2, (y0 + y1) / 2] : [part.endsWith("w") ? x1 : x0, part.startsWith("n") ? y1 : y0];
@@ -85,19 +85,19 @@ export class Selection {
       const [bx, by] = [to[0] - about[0], to[1] - about[1]];
       const [dot, cross] = [(ax * bx + ay * by) / square, (ax * by - ay * bx) / square];
       const size = Math.hypot(dot, cross) || 1;
-      // The pointer need not stay on the circle, or on the diagonal.
+      // The pointer may leave the circle or the diagonal.
       const [re, im] = part === "turn" ? [dot / size, cross / size] : [dot, 0];
       return ([x, y]) => [about[0] + re * (x - about[0]) - im * (y - about[1]), about[1] + im * (x - about[0]) + re * (y - about[1])];
     };
   }
 }
 
-/** A function that takes handles from where they are now to their images, with the handles of their nodes, and with partners that are not
- * among them if symmetry is on. Returns the parameters that are changed. */
+/** Returns a function that maps handles by an image, along with the handles of their nodes and, if symmetry is on, with unselected
+ * partners. It returns the names of the changed parameters. */
 export function together(handles: Handles, chosen: Handle[], modes: Modes): (image: (p: XY) => XY) => Set<string> {
   const keys = new Set(chosen.map(({ key }) => key));
   const arms = handles.handles.filter(({ key }) => !keys.has(key) && /\/(in|out)$/.test(key) && keys.has(key.replace(/\/(in|out)$/, "")));
-  // Nodes first: they carry their handles along.
+  // Nodes come first, since they move their handles.
   const all = [...chosen.filter((h) => h.shape !== "control"), ...chosen.filter((h) => h.shape === "control"), ...arms];
   const starts = all.map((h): XY => [...h.get()]);
   const partners = all.map((h) => (modes.mirrors ? handles.partner(h) : null)).map((p) => (p && !all.includes(p) ? p : null));

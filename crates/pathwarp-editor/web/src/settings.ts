@@ -1,4 +1,4 @@
-// The settings of a step: one control for every parameter, made from the registry's table.
+// The settings of a step: a control for each parameter, made from the registry's table.
 
 import type { App } from "./app";
 import { byId, h, s } from "./dom";
@@ -10,19 +10,19 @@ import type { Adjust, Param } from "./types";
 import { BUNDLED } from "./words";
 import { adjustName, adjustUnit, arc, DRAGGED, readAdjust, short, writeAdjust } from "./values";
 
-/** The sliders of lengths, in percentages of the artwork; shifts go both ways. */
+/** The range of sliders for lengths, in percent of the artwork; shifts may be negative, too. */
 const OF_ARTWORK: [number, number] = [0, 100];
 const BOTH_WAYS: [number, number] = [-100, 100];
-/** Arrow keys change values of this range by 1. */
+/** Ranges from which arrow keys change values by 1. */
 const COARSE = 20;
-/** What surprises about some deformations. */
+/** Hints on unexpected behaviour of some deformations. */
 const NOTES: Record<string, string> = { mls: " Pins pull everything around them, also across gaps; pick a part to move it alone." };
 
 const MM = 96 / 25.4;
-/** Choices of up to this many words are shown side by side. */
+/** Most words of a choice that are shown side by side. */
 const SIDE_BY_SIDE = 3;
 
-/** What is done to draw a line. */
+/** Descriptions of how to draw a line. */
 const SKETCHES = {
   line: "Drag from its start to its end on the drawing",
   path: "Click its points on the drawing; a double click, Enter or the first point ends it",
@@ -34,11 +34,11 @@ export class Settings {
   private shown = "";
   private refreshers: (() => void)[] = [];
 
-  /** Asks for the id of a path that is clicked on the canvas. */
+  /** Asks for a path on the canvas; a click returns its id. */
   onPick: (take: (id: string) => void) => void = () => {};
-  /** Asks for a line that is drawn on the canvas. */
+  /** Asks for a line drawn on the canvas. */
   onDraw: (kind: Sketch, take: (value: string) => void) => void = () => {};
-  /** The settings are those of another step. */
+  /** Called when the settings of another step are shown. */
   onOther: () => void = () => {};
 
   constructor(private app: App) {
@@ -122,7 +122,7 @@ export class Settings {
     return input;
   }
 
-  /** The fonts that are installed. */
+  /** Returns the choice of installed fonts. */
   private family(p: Param, id: string): HTMLElement {
     const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
     select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
@@ -139,7 +139,7 @@ export class Settings {
     return select;
   }
 
-  /** The radius of a circle, in mm, and a word where the artwork is longer than it. */
+  /** Returns a field for the radius of a circle in mm, with a warning if the artwork is longer than the circle. */
   private radius(p: Param, id: string): HTMLElement[] {
     const { app } = this;
     const [a, b] = app.state?.toPx ?? [1, 0];
@@ -161,7 +161,7 @@ export class Settings {
       const least = app.tooSmall(p.name);
       long.hidden = least === null;
       if (least === null) return;
-      // With a gap between its end and its beginning.
+      // Leave a gap between the end and the beginning.
       grow.dataset.mm = String(Math.ceil((10.6 * least) / unit) / 10);
       note.textContent = "The artwork is longer than this circle, and overlaps itself.";
       grow.textContent = `Let the circle grow to ${grow.dataset.mm} mm`;
@@ -190,7 +190,7 @@ export class Settings {
     return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
   }
 
-  /** A row with a field for a number in the unit of its value, and the line for what is wrong. */
+  /** Returns a row with a field for a number in the unit of its value, and the line for its message. */
   private number(p: Param, id: string, label: HTMLElement, usual: string, by: number): [HTMLElement, HTMLElement] {
     const isWhole = p.kind === "count";
     const measure = h("span", { class: "unit" });
@@ -231,13 +231,13 @@ export class Settings {
     return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
   }
 
-  /** The value that a parameter has without being given. */
+  /** Returns the value of a parameter that is not given. */
   private derived(p: Param, unit: string): Quantity | null {
     const value = this.inUnit(p, unit, this.current(p));
     return value === null ? null : { value, unit };
   }
 
-  /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
+  /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
   private chooseFile(p: Param): HTMLElement {
     const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
     input.addEventListener("change", async () => {
@@ -257,7 +257,7 @@ export class Settings {
     select.addEventListener("change", () => this.app.set(p.name, [select.value], true));
     this.refreshers.push(() => {
       const value = this.current(p);
-      // A file stands before the names.
+      // A file is listed before the names.
       if (!(p.words ?? []).includes(value) && select.options[0]?.value !== value) {
         select.prepend(h("option", { value }, value || "—"));
       }
@@ -280,12 +280,12 @@ export class Settings {
     return h("div", {}, input, field.message);
   }
 
-  /** The names of the adjust values on show. */
+  /** Returns the names of the adjust values shown. */
   private adjusts(params: Param[]): string[] {
     return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
   }
 
-  /** The slider of an adjust value. */
+  /** Returns the slider of an adjust value. */
   private adjust(p: Param, all: Adjust[], i: number, title: string): HTMLElement {
     const { least, most, name } = all[i]!;
     const [unit, size] = adjustUnit(all[i]!);
@@ -326,7 +326,7 @@ export class Settings {
     return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
   }
 
-  /** What a slider does: what the pointer drags is one change, and so are keys that follow each other. */
+  /** Connects a slider: a drag is one change, and so is a sequence of keys. */
   private slide(slider: HTMLInputElement, values: (value: number) => [string, string[]], reset: () => string[]): void {
     const { app } = this;
     let [isDragged, isGivenUp] = [false, false];
@@ -361,7 +361,7 @@ export class Settings {
     this.refreshers.push(() => {
       if (slider.matches(":active")) return;
       const value = this.inUnit(p, unit, this.current(p));
-      // A typed value may lie beyond; the slider then reaches as far.
+      // A typed value may exceed the range, which the slider then includes.
       slider.min = String(Math.min(range[0], value ?? range[0]));
       slider.max = String(Math.max(range[1], value ?? range[1]));
       slider.value = String(value ?? range[0]);
@@ -372,7 +372,7 @@ export class Settings {
     return h("div", { class: "field slider", title }, row, wrong, slider);
   }
 
-  /** The value of a parameter in the unit of its slider. */
+  /** Returns the value of a parameter in the unit of its slider. */
   private inUnit(p: Param, unit: string, typed: string): number | null {
     const plainNumber = Number(typed.replace(unit, ""));
     if (typed !== "" && Number.isFinite(plainNumber) && (unit === "" || typed.endsWith(unit))) return plainNumber;
@@ -385,7 +385,7 @@ export class Settings {
   }
 }
 
-/** Three letters on an arc, as a way of setting them has them. */
+/** Draws three letters on an arc, as placed by an option of `glyphs`. */
 function glyphs(word: string): SVGSVGElement {
   const [radius, height, half] = [22, 13, 4.5];
   const letters = [-0.85, 0, 0.85].map((turn) => {
@@ -403,7 +403,7 @@ function glyphs(word: string): SVGSVGElement {
   return s("svg", { viewBox: "-34 -38 68 36", class: "glyphs", "aria-hidden": "true" }, s("path", { d: `M-20,-10A22,22 0 0 1 20,-10${letters.join("")}` }));
 }
 
-/** The settings that are looked at first: those that do something. Paths and points are dragged, and the rest has its place below. */
+/** Returns `true` for settings that are shown first, since they have an effect. Paths and points are dragged; the others are below. */
 function isMain(p: Param, isGiven: boolean): boolean {
   switch (p.kind) {
     case "number": case "angle": case "choice": case "count": return p.default !== undefined || isGiven;
@@ -416,7 +416,7 @@ function isMain(p: Param, isGiven: boolean): boolean {
   }
 }
 
-/** The unit and range of a slider. */
+/** Returns the unit and the range of a slider. */
 function scale(p: Param): [string, [number, number]] {
   const [from, to] = p.slider;
   if (p.kind === "length") return ["%", p.least === undefined && Number.parseFloat(p.default ?? "1") === 0 ? BOTH_WAYS : OF_ARTWORK];
@@ -424,7 +424,7 @@ function scale(p: Param): [string, [number, number]] {
   return ["", [from, to]];
 }
 
-/** A step of a slider: about a thousandth of its range, a round number. */
+/** Returns the step of a slider: a power of ten, about a thousandth of its range. */
 function step([from, to]: [number, number]): number {
   const raw = (to - from) / 400;
   return 10 ** Math.floor(Math.log10(Math.max(raw, 1e-9)));
@@ -434,7 +434,7 @@ function short2(value: number): number {
   return Number(value.toFixed(2));
 }
 
-/** A title as a sentence. */
+/** Converts a title to a sentence. */
 function sentence(title: string): string {
   return `${capital(plain(title))}${/[.…]$/.test(title) ? "" : "."}`;
 }

@@ -1,4 +1,4 @@
-// Lines that are drawn on the canvas: by a drag from end to end, by a drag from centre to edge, or by clicks.
+// Lines drawn on the canvas: by a drag from end to end, by a drag from centre to edge, or by clicks.
 
 import type { App } from "./app";
 import { s } from "./dom";
@@ -7,10 +7,10 @@ import { toast } from "./toast";
 import type { XY } from "./types";
 import { arc, short } from "./values";
 
-/** The shapes that can be drawn; *round* is a closed line around something, smooth where it turns little. */
+/** The shapes that can be drawn; *round* is a closed line around an object, with corners only at sharp turns. */
 export type Sketch = "line" | "path" | "circle" | "round" | "point";
 
-/** What is to be done, in words. */
+/** Instructions for each shape. */
 const HINTS: Record<Sketch, string> = {
   line: "Drag from the start of the line to its end",
   path: "Click the points of the path; a double click or Enter ends it, a click on the first point closes it",
@@ -19,11 +19,11 @@ const HINTS: Record<Sketch, string> = {
   round: "Click points around the outline, many where it is round; a click on the first one or Enter ends it",
 };
 
-/** Presses that are nearer are clicks on the same point, in px. */
+/** Distance within which clicks count as one point, in px. */
 const NEAR = 8;
-/** A line around something has a corner where it turns more than this, in degrees. */
+/** Turn from which a line around an object has a corner, in degrees. */
 const CORNER = 50;
-/** A circle begins at the bottom and goes over the top, where the middle of words lies then. */
+/** A circle begins at the bottom and passes the top, where words are centred. */
 const [FROM, TO] = [90, 450];
 
 export class Sketching {
@@ -34,7 +34,7 @@ export class Sketching {
     stage.overlay.append(this.line);
   }
 
-  /** Draws until the line is done; Escape and Undo give it up. */
+  /** Draws until the line is complete; Escape and undo cancel. */
   begin(kind: Sketch, take: (value: string) => void): void {
     this.end();
     const { app, stage } = this;
@@ -77,7 +77,7 @@ export class Sketching {
     window.addEventListener("pointerup", (e) => {
       if (isClicked || points.length === 0) return;
       const [from, to] = [points[0]!, place(e)];
-      // A click alone is no line.
+      // A mere click draws nothing.
       if (isNear(from, to)) return void (points.length = 0);
       done(kind === "line" ? `M${text(from)} L${text(to)}` : arc([...from, Math.hypot(to[0] - from[0], to[1] - from[1]), FROM, TO]));
     }, listen);
@@ -88,7 +88,7 @@ export class Sketching {
     window.addEventListener("keydown", (e) => {
       if (e.key !== "Escape" && e.key !== "Enter") return;
       e.stopPropagation();
-      // The button that began it still has the focus, and would begin anew.
+      // The focused button would begin another line.
       e.preventDefault();
       done(e.key === "Enter" && isClicked ? path(false) : null);
     }, listen);
@@ -112,7 +112,7 @@ export class Sketching {
   }
 }
 
-/** A closed line through points as path data: smooth, with tangents parallel to the line between the neighbours, unless it turns a corner. */
+/** Returns a closed line through points as path data: smooth, with tangents parallel to the line between neighbours, except at corners. */
 function around(points: XY[], text: (p: XY) => string): string {
   const at = (i: number) => points[(i + points.length) % points.length]!;
   const minus = ([ax, ay]: XY, [bx, by]: XY): XY => [ax - bx, ay - by];

@@ -1,14 +1,14 @@
-// Handles of an anamorphosis: the eye's height, the picture's width, and the sizes of the surface or mirror, in the plane of the drawing.
+// The handles of an anamorphosis: the eye's height, the picture's width, and the sizes of the surface or mirror, in the drawing's plane.
 
 import { dial, type Dial, type Place } from "./dials";
 import { words } from "./names";
 import type { Grip, Param, XY } from "./types";
 import { short } from "./values";
 
-/** Lines that a circle is drawn with. */
+/** Number of segments that draw a circle. */
 const ROUND = 60;
 
-/** The handles of the parameters of an anamorphosis that have no place of their own. */
+/** Returns the handles for parameters of an anamorphosis that are not points. */
 export function inSpace({ deformation, grips, frame: [x, y, w, h] }: Place): Dial[] {
   const out: Dial[] = [];
   const foot: XY = [x + w / 2, y + h];
@@ -28,7 +28,7 @@ export function inSpace({ deformation, grips, frame: [x, y, w, h] }: Place): Dia
   return out;
 }
 
-/** The handles of a surface whose axis passes behind a place: one for every radius, to the right of it or, where the surface lies, below. */
+/** Returns the handles of a surface whose axis passes behind `middle`: one for each radius, to the right or, for a level surface, below. */
 function surface(param: Param, shape: NonNullable<Grip["surface"]>, middle: () => XY, tall: () => number): Dial[] {
   const isLevel = /,\s*level\b/.test(shape.text);
   return shape.sizes.filter(([name]) => /(radius|diameter)$/.test(name)).map((own) => {
@@ -41,7 +41,7 @@ function surface(param: Param, shape: NonNullable<Grip["surface"]>, middle: () =
       shape.text = shape.text.replace(new RegExp(`(^|[:,])(\\s*${own[0]}\\s*=)[^,]*`), `$1$2${short(own[1])}`);
     };
     const made = dial(param, `${param.name}/${own[0]}`, `${words(param.name)}, ${own[0].replace("-", " ")}`, centre, get, set);
-    // A ball, and a mirror's foot, from the front; other surfaces by how far they reach to both sides.
+    // A sphere and a mirror's foot are drawn as circles, other surfaces by their extent to both sides.
     const isRound = shape.text.startsWith("sphere") || param.name === "mirror";
     const round = (): XY[] => Array.from({ length: ROUND + 1 }, (_, i) => [centre()[0] + (own[1] / k) * Math.cos((2 * Math.PI * i) / ROUND), centre()[1] + (own[1] / k) * Math.sin((2 * Math.PI * i) / ROUND)]);
     const across = (): XY[] => [[2 * centre()[0] - get()[0], 2 * centre()[1] - get()[1]], get()];

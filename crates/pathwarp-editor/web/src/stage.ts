@@ -1,4 +1,4 @@
-// The canvas: the drawing, the handles over it, and everything done with pointer and keys there.
+// The canvas: the drawing, the handles over it, and their reactions to pointers and keys.
 
 import type { App } from "./app";
 import { Camera } from "./camera";
@@ -12,98 +12,98 @@ import { paramName } from "./names";
 import { toast } from "./toast";
 import type { Answer, Handle, XY } from "./types";
 
-/** Space around the drawing when it fits the view, in px. */
+/** Margin around the drawing when it fits the view, in px. */
 const MARGIN = 56;
 const SHEET_MARGIN = 20;
-/** Space around hints and tools, for handles beside them. */
+/** Distance from hints and tools to handles, in px. */
 const BESIDE = 28;
-/** The radius in which a finger finds a handle, in px. */
+/** Distance within which a finger hits a handle, in px. */
 export const REACH = 18;
 
-/** The distance from which a path is picked, in px. */
+/** Distance within which a path is picked, in px. */
 const PICKED = 8;
-/** Where the deformations are remembered whose handles have been pointed out. */
+/** The key under which the browser stores the deformations whose handles have been highlighted. */
 const GREETED = "pathwarp-greeted";
-/** While something is dragged, the faint result may be off by this share of a px of the screen, and takes at most this long, in ms. */
+/** While something is dragged: tolerance of the faint result in px of the screen, and the longest time for it, in ms. */
 const DRAFT_OF_END = 1;
 const MOST_OF_END = 60;
 
-/** Two corners. */
+/** A box as two corners. */
 type Box = [number, number, number, number];
 
 export class Stage {
   readonly camera = new Camera();
   readonly svg = byId<SVGSVGElement>("stage");
-  /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
+  /** The shadow consists of lines, because a filter would be redrawn with every picture. */
   private shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
   private sheet = s("rect", { class: "sheet" });
-  /** The pattern of a transparent sheet: squares of the same size at any magnification. */
+  /** The pattern of a transparent sheet: squares whose size does not depend on the magnification. */
   private checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
-  /** What is seen behind the drawing. */
+  /** The layer behind the drawing. */
   readonly behind = s("g", {});
   private art = s("g", { class: "art" });
   private beforeArt = s("g", { class: "art", visibility: "hidden" });
-  /** The result of all steps, behind that of an earlier one. */
+  /** The result of all steps, behind the picture of fewer steps. */
   private aheadArt = s("g", { class: "ahead" });
   private heat = s("g", { class: "heat" });
   private nodes = s("path", { class: "nodes" });
   private arms = s("path", { class: "arms" });
-  /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+  /** Receives pointer events, so that the browser need not search the shapes of a large drawing. */
   private shield = s("rect", { class: "shield", width: "100%", height: "100%" });
   readonly selection = new Selection();
-  /** The frame that points are selected with. */
+  /** The frame that selects points. */
   readonly marquee = s("rect", { class: "marquee", visibility: "hidden" });
   private lit = s("path", { class: "lit" });
-  /** Outlines of the parts that are chosen or pointed at in their list. */
+  /** Outlines of the parts that are selected, or pointed at in the list. */
   private chosen = s("g", { class: "chosen-parts" });
   private litParts: string[] = [];
-  /** The names of parts that are not shown. */
+  /** The names of hidden parts. */
   private away = new Set<string>();
-  /** Lines that are being drawn. */
+  /** The layer for lines that are being drawn. */
   readonly overlay = s("g", {});
   private guides = s("g", { class: "guides" });
   private marks = s("g", { class: "marks" });
   private knobs = s("g", { class: "knobs" });
-  /** The value of the handle that is dragged. */
+  /** The value of the dragged handle. */
   private value = s("text", { class: "value-of-drag" });
   private drawing = new Drawing(this.art);
   private elements = new Map<string, SVGGElement>();
   private lines: SVGPathElement[] = [];
-  /** Wide, invisible lines over those that can be pulled, by their index. */
+  /** Wide, invisible lines over draggable ones, by index. */
   private reaches: (SVGPathElement | null)[] = [];
   private focused: string | null = null;
-  /** Nobody has moved the view since it showed the whole page. */
+  /** `true` while the view shows the whole page, unmoved by the user. */
   private isFitted = false;
-  /** The first picture of a drawing has not arrived yet. */
+  /** `true` until the first picture of a drawing arrives. */
   private isFresh = true;
   /** The name of the drawing on show. */
   private shown = "";
-  /** The handles of the first picture are on their way. */
+  /** `true` until the handles of the first picture arrive. */
   private isToFit = false;
-  /** The page of the last picture, as saving would have it; null for the drawing's own. */
+  /** The page of the last picture when saved; null for the drawing's page. */
   private grown: Answer["page"] = null;
-  /** Set while the page shows the drawing as it was. */
+  /** `true` while the page shows the drawing without steps. */
   isBefore = false;
   showsNodes = false;
   showsStretch = false;
   showsEnd = false;
-  /** The deformation whose handles are pointed out. */
+  /** The deformation whose handles are highlighted. */
   private greeted = "";
-  /** The time that the last result of all steps took, in ms. */
+  /** The time that the last faint result took, in ms. */
   private endTook = 0;
-  /** Takes the path that is clicked next, of those that a selector matches, and the place, instead of anything else. */
+  /** If set, receives the next clicked path that a selector matches, and the clicked point; other reactions are disabled. */
   picks: ((path: SVGGraphicsElement, at: XY) => void) | null = null;
   private pickable = "";
-  /** Takes the question for a path away. */
+  /** Removes the request for a path. */
   private answered: () => void = () => {};
-  /** Places in px of the drawing that Fit shows, too. */
+  /** Returns further points that Fit shows, in px of the drawing. */
   around: () => XY[] = () => [];
   /** The names of the drawing's parts. */
   parts = new Set<string>();
-  /** A part was clicked, or none. */
+  /** Called when a part is clicked; the name is null elsewhere. */
   onPart: (name: string | null, adds: boolean) => void = () => {};
   onFocus: (handle: Handle | null) => void = () => {};
-  /** A handle has been moved by keys. */
+  /** Called when keys have moved a handle. */
   onKeys: (handle: Handle) => void = () => {};
   readonly onLayout: (() => void)[] = [];
 
@@ -150,7 +150,7 @@ export class Stage {
       const [side, up, down] = [Math.min(MARGIN, width / 10), byId("note").offsetHeight, byId("tools").offsetHeight];
       return [side, Math.max(MARGIN, up + BESIDE), width - side, Math.max(height - Math.max(MARGIN, down + BESIDE), height / 2)];
     }
-    // Hints and tools are hidden meanwhile.
+    // Hints and tools are hidden then.
     const { left, width: over } = panel.getBoundingClientRect();
     if (over >= width) return [SHEET_MARGIN, SHEET_MARGIN, width - SHEET_MARGIN, Math.max(height - panel.clientHeight, height / 4) - SHEET_MARGIN];
     return [(left > 0 ? 0 : over) + SHEET_MARGIN, SHEET_MARGIN, (left > 0 ? width - over : width) - SHEET_MARGIN, height - SHEET_MARGIN];
@@ -171,7 +171,7 @@ export class Stage {
     this.layout();
   }
 
-  /** Moves the view as little as shows a handle. */
+  /** Moves the view as little as necessary to show a handle. */
   private panTo(handle: Handle): void {
     const [x0, y0, x1, y1] = this.view;
     const [x, y] = this.camera.toScreen(handle.get());
@@ -187,12 +187,12 @@ export class Stage {
     this.layout();
   }
 
-  /** Shows the whole page and all handles, unless the user looks at a detail. */
+  /** Shows the whole page and all handles, unless the user has moved the view. */
   private reveal(): void {
     if (this.isFitted) this.fit();
   }
 
-  /** Magnifies about a point of the screen, or about the middle of the view. */
+  /** Magnifies about a point of the screen, or about the centre of the view. */
   zoom(factor: number, at?: XY): void {
     const [x0, y0, x1, y1] = this.view;
     this.camera.zoom(factor, at ?? [(x0 + x1) / 2, (y0 + y1) / 2]);
@@ -208,7 +208,7 @@ export class Stage {
     const isNew = this.camera.toPx.some((v, i) => v !== state.toPx[i]);
     this.camera.toPx = state.toPx;
     if (isNew || this.isFresh) {
-      // The picture that is still there may be of another drawing.
+      // The present picture may belong to another drawing.
       this.isFresh = true;
       this.fit();
     }
@@ -219,7 +219,7 @@ export class Stage {
     if (answer.picture) {
       this.drawing.show(answer.picture);
       if ("whole" in answer.picture && this.away.size > 0) this.hideParts(this.away);
-      // While something is dragged, the sheet grows under the view as it is.
+      // While something is dragged, the sheet grows, but the view stays.
       this.grown = answer.page;
       this.grow();
     }
@@ -232,7 +232,7 @@ export class Stage {
     this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
   }
 
-  /** The page as saving makes it, as two corners in px of the drawing. */
+  /** The page when saved, as two corners in px of the drawing. */
   get pageBox(): Box {
     const { state } = this.app;
     if (!state) return [0, 0, 0, 0];
@@ -241,7 +241,7 @@ export class Stage {
     return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
   }
 
-  /** Draws the sheet as large as the page. */
+  /** Resizes the sheet to the page. */
   private grow(): void {
     const [x0, y0, x1, y1] = this.pageBox;
     for (const sheet of [...this.shadows, this.sheet]) {
@@ -259,7 +259,7 @@ export class Stage {
     return mark;
   }
 
-  /** Shows the drawing as it was, or as it is. */
+  /** Shows the drawing without steps, or with them. */
   async before(on: boolean): Promise<void> {
     if (on === this.isBefore) return;
     this.isBefore = on;
@@ -272,7 +272,7 @@ export class Stage {
     this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
   }
 
-  /** Another drawing is on show. */
+  /** Prepares for another drawing. */
   private forget(): void {
     this.beforeArt.replaceChildren();
     this.isFresh = true;
@@ -285,7 +285,7 @@ export class Stage {
     this.arms.setAttribute("d", arms);
   }
 
-  /** Shows the stretch of the visible steps, or hides it. */
+  /** Shows or hides the stretch of the visible steps. */
   readonly drawStretch = latest(async () => {
     const { app } = this;
     const answer = this.showsStretch ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
@@ -293,11 +293,11 @@ export class Stage {
     this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
   });
 
-  /** Shows the result of all steps behind that of an earlier one, or hides it. */
+  /** Shows or hides the result of all steps behind the picture of fewer steps. */
   readonly drawEnd = latest(async () => {
     const { app } = this;
     const isEarlier = () => this.showsEnd && app.selected < app.steps.length - 1;
-    // A drag of a large drawing waits for nothing else.
+    // In a large drawing, skip this so that dragging stays fast.
     const draft = app.isDragging ? DRAFT_OF_END * this.camera.pixel : null;
     if (draft !== null && this.endTook > MOST_OF_END) return;
     const start = performance.now();
@@ -306,7 +306,7 @@ export class Stage {
     this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : undefined, "ahead")?.children ?? []));
   });
 
-  /** Puts everything in its place on the screen. */
+  /** Positions everything on the screen. */
   layout(): void {
     const { camera } = this;
     const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
@@ -321,7 +321,7 @@ export class Stage {
     for (const follow of this.onLayout) follow();
   }
 
-  /** Puts handles and their lines where they are now. */
+  /** Positions handles and their lines. */
   placeHandles(): void {
     const { handles } = this.app;
     if (!handles) return;
@@ -342,7 +342,7 @@ export class Stage {
     this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
   }
 
-  /** A drag on the ground selects points. */
+  /** `true` if dragging the background selects points. */
   get selects(): boolean {
     return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
   }
@@ -387,7 +387,7 @@ export class Stage {
     }
   }
 
-  /** The first time that a deformation has handles here, they are pointed out. */
+  /** Highlights handles the first time that a deformation has some here. */
   private greet(): void {
     const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
     this.knobs.classList.toggle("greeting", name !== undefined && (name === this.greeted || !known.has(name)));
@@ -413,13 +413,13 @@ export class Stage {
     if (last) this.elements.get(last)?.focus({ preventScroll: true });
   }
 
-  /** The selected points, if a handle is one of several. */
+  /** Returns the selected points if a handle is one of several. */
   several(handle: Handle): Handle[] | null {
     const { handles } = this.app;
     return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
   }
 
-  /** The points in a frame between two places of the screen: those that curves pass through, if there are any. */
+  /** Returns the points in a frame between two points of the screen: nodes, or else control points. */
   within([ax, ay]: XY, [bx, by]: XY): string[] {
     const inside = (this.app.handles?.handles ?? []).filter((h) => {
       const [x, y] = this.camera.toScreen(h.get());
@@ -437,13 +437,13 @@ export class Stage {
     return this.app.handles?.handles.find((h) => h.key === key) ?? null;
   }
 
-  /** The place of a pointer on the canvas. */
+  /** Returns the position of a pointer on the canvas. */
   point(e: MouseEvent): XY {
     const box = this.svg.getBoundingClientRect();
     return [e.clientX - box.left, e.clientY - box.top];
   }
 
-  /** The next click takes a path, of those that a selector matches; what is asked for is shown until then. */
+  /** Lets the next click pick a path among those that a selector matches; the request is shown until then. */
   pick(take: typeof this.picks, among = ".art [id]", wish = ""): void {
     [this.picks, this.pickable] = [take, among];
     this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
@@ -453,7 +453,7 @@ export class Stage {
     this.answered = take && wish ? toast(wish, true) : () => {};
   }
 
-  /** Names the path that was clicked; elsewhere, the question stays. */
+  /** Picks the clicked path; elsewhere, the request stays. */
   picked(e: PointerEvent): void {
     const named = this.named(e, this.pickable);
     if (!named) return void toast("No path is there. Click one, or press Escape");
@@ -462,19 +462,19 @@ export class Stage {
     take?.(named, this.camera.toUser(this.point(e)));
   }
 
-  /** Names the part that was clicked. */
+  /** Reports the clicked part. */
   pickedPart(e: PointerEvent): void {
     let name: string | null = null;
     for (let at: Element | null = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
       const own = partOf(at.id);
-      // A copy is one part, whatever it shows.
+      // A copy is one part, whatever its content.
       if (this.parts.has(own) && (name === null || own.startsWith("use at") || at.localName === "use")) name = own;
     }
     this.light(null);
     if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
   }
 
-  /** A part that is not shown has this place. */
+  /** Returns `true` if a hidden part is at the pointer. */
   private isHiddenAt(e: PointerEvent): boolean {
     const { away } = this;
     this.hideParts(new Set());
@@ -483,7 +483,7 @@ export class Stage {
     return isThere;
   }
 
-  /** The elements of parts in the picture. */
+  /** Returns the elements of parts in the picture. */
   private ofParts(names: Set<string>): SVGGraphicsElement[] {
     const all = names.size > 0 ? Array.from(this.art.querySelectorAll<SVGGraphicsElement>("[id]")) : [];
     return all.filter(({ id }) => names.has(partOf(id)));
@@ -496,14 +496,14 @@ export class Stage {
     this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
   }
 
-  /** Leaves parts out of the picture. */
+  /** Hides parts in the picture. */
   hideParts(names: Set<string>): void {
     this.away = names;
     for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
     for (const e of this.ofParts(names)) e.classList.add("away");
   }
 
-  /** The path, of those that the selector matches, that is nearest to the pointer. */
+  /** Returns the path nearest to the pointer among those that the selector matches. */
   private named(e: PointerEvent, which: string): SVGGraphicsElement | null {
     for (let r = 0; r <= PICKED; r += 2) {
       for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
@@ -515,13 +515,13 @@ export class Stage {
     return null;
   }
 
-  /** Lights up a path. */
+  /** Highlights a path. */
   private light(path: SVGGraphicsElement | null): void {
     if (path) outlineOf(path, this.svg, this.lit);
     else this.lit.setAttribute("d", "");
   }
 
-  /** Shows the value of a handle beside it while it is dragged, or no longer does. */
+  /** Shows the value of the dragged handle beside it; null hides it. */
   tell(handle: Handle | null): void {
     const { step } = this.app;
     const param = this.app.deformation(step?.deformation)?.params.find(({ name }) => name === handle?.param);
@@ -535,7 +535,7 @@ export class Stage {
     this.value.setAttribute("y", String(sy - REACH));
   }
 
-  /** Writes the values of a handle that has been moved, and asks for the picture. */
+  /** Writes the values of a moved handle, and requests a draft. */
   changed(handle: Handle, since: number): void {
     this.app.handles!.write(handle.param);
     this.placeHandles();
@@ -559,7 +559,7 @@ export class Stage {
     if (key) this.select([key]);
   }
 
-  /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
+  /** Arrow keys move a handle by a px of the screen; with Shift, by ten. */
   private key(e: KeyboardEvent): void {
     const handle = this.handle((e.target as Element).closest<SVGGElement>(".knob")?.dataset.key ?? null);
     if (!handle || !this.app.handles) return;
@@ -580,7 +580,7 @@ export class Stage {
     } else if (e.key === "Insert") {
       e.preventDefault();
       const [x, y] = handle.get();
-      // Beside the point, where there is no line to divide.
+      // Without a line to divide, add a point beside the handle.
       const at = this.app.handles.after(handle) ?? [x + 2 * REACH * this.camera.pixel, y] as XY;
       void this.add(at);
     } else if ((e.key === "Delete" || e.key === "Backspace") && handle.remove) {
@@ -591,12 +591,12 @@ export class Stage {
     }
   }
 
-  /** Takes several points away, as far as enough are left. */
+  /** Removes several points, as long as enough remain. */
   private removeAll(several: Handle[]): void {
     const { handles } = this.app;
     if (!handles) return;
     const places = several.map(({ param, shape, get }) => ({ param, shape, at: [...get()] }));
-    // Taking one away has numbered the others anew.
+    // Removing one renumbers the others.
     for (const { param, shape, at } of places) {
       handles.handles.find((h) => h.param === param && h.shape === shape && h.get()[0] === at[0] && h.get()[1] === at[1])?.remove?.();
       handles.write(param);
@@ -607,7 +607,7 @@ export class Stage {
     void this.app.commit();
   }
 
-  /** Writes the values of parameters whose handles have been moved together. */
+  /** Writes the values of parameters whose handles have moved together, and requests a draft. */
   changedAll(params: Set<string>, since: number): void {
     for (const param of params) this.app.handles!.write(param);
     this.placeHandles();
@@ -616,7 +616,7 @@ export class Stage {
     this.app.draft(since);
   }
 
-  /** Takes a point away. */
+  /** Removes a point. */
   remove(handle: Handle): void {
     const { handles } = this.app;
     if (!handle.remove || !handles) return;
@@ -624,7 +624,7 @@ export class Stage {
     const partner = this.modes.mirrors && !handles.isRows(param) ? handles.partner(handle) : null;
     const mirrored = partner?.param === param ? partner.get() : null;
     handle.remove();
-    // Taking one away has numbered the others anew.
+    // Removing one renumbers the others.
     if (mirrored) handles.handles.find((h) => h.param === param && h.shape === handle.shape && h.get()[0] === mirrored[0] && h.get()[1] === mirrored[1])?.remove?.();
     handles.write(param);
     this.focused = handles.nearest(at)?.key ?? null;
@@ -632,7 +632,7 @@ export class Stage {
     void this.app.commit();
   }
 
-  /** Moves a handle by keys or by typed numbers. */
+  /** Moves a handle by keys or typed numbers. */
   moveTo(handle: Handle, to: XY): void {
     const { handles } = this.app;
     if (!handles) return;
@@ -642,7 +642,7 @@ export class Stage {
   }
 }
 
-/** Work that is asked for again and again: it is done once at a time, and once more if it was asked for meanwhile. */
+/** Serializes repeated work: requests during a run lead to one more run. */
 function latest(work: () => Promise<void>): () => Promise<void> {
   let [isAsked, isWanted] = [false, false];
   return async () => {
@@ -657,19 +657,19 @@ function latest(work: () => Promise<void>): () => Promise<void> {
   };
 }
 
-/** The id in the drawing of an element of the picture, whose ids stand behind a prefix. */
+/** Returns the id in the drawing of an element of the picture, without its prefix. */
 export function partOf(id: string): string {
   return id.replace(/^art-/, "");
 }
 
-/** The largest path whose outline lights up, in px. */
+/** The largest path whose outline is highlighted, in px. */
 const FARTHEST = 1e6;
 
-/** Gives a path the outline of another one of the picture. */
+/** Gives a path the outline of another path in the picture. */
 function outlineOf(path: SVGGraphicsElement, svg: SVGSVGElement, to: SVGPathElement): SVGPathElement {
   const [from, m] = [svg.getBoundingClientRect(), path.getScreenCTM()];
   const { width, height } = path.getBBox();
-  // Browsers take forever to draw the stroke of a path that reaches far.
+  // Browsers take extremely long to draw the stroke of a very large path.
   const isFar = m !== null && Math.hypot(width, height) * Math.hypot(m.a, m.b) > FARTHEST;
   to.setAttribute("d", isFar ? "" : path.getAttribute("d") ?? "");
   if (m) to.setAttribute("transform", `matrix(${m.a} ${m.b} ${m.c} ${m.d} ${m.e - from.x} ${m.f - from.y})`);

@@ -1,20 +1,20 @@
-// The list of steps: which is being changed, their order, and adding and removing them.
+// The list of steps: the selection of the edited one, their order, and adding and removing them.
 
 import type { App } from "./app";
 import { byId, h, icon } from "./dom";
 import { stepName } from "./names";
 import type { Step } from "./types";
 
-/** The distance up to which a press is a click, in px. */
+/** Distance within which a press counts as a click, in px. */
 const SHAKES = 5;
 
 export class Steps {
   private list = byId("steps");
-  /** Where a row has been moved to. */
+  /** The index to which a row has been moved. */
   private moved: number | null = null;
-  /** The steps on show whose letters are gone. */
+  /** The steps shown as lacking their letters. */
   private gone = "";
-  /** A row is being dragged, so its button is not clicked. */
+  /** `true` while a row is dragged, which is not a click on its button. */
   private isDragged = false;
   private note = byId("steps-note");
   private add = byId<HTMLButtonElement>("add-step");
@@ -22,18 +22,18 @@ export class Steps {
   constructor(private app: App) {
     app.listen((change) => {
       if (change === "steps" || change === "state") this.build();
-      // Which steps wait for their letters is known with the picture.
+      // The picture tells which steps wait for their letters.
       if (change === "report" && app.gone.join() !== this.gone) this.build();
     });
     this.add.addEventListener("click", () => this.append());
-    // The first click may have made the row anew.
+    // The first click may have replaced the row.
     this.list.addEventListener("dblclick", (e) => {
       const button = (e.target as Element).closest("button.step");
       if (button) this.rename(Array.from(this.list.children).indexOf(button.parentElement!));
     });
   }
 
-  /** Asks for the shape of a further step, or no longer does. */
+  /** Starts or ends the choice of a shape for another step. */
   private append(): void {
     this.app.append(!this.app.appends);
     document.body.classList.toggle("shapes-open", this.app.appends);
@@ -50,7 +50,7 @@ export class Steps {
     const kind = focused?.dataset.kind ?? "";
     const row = Array.from(this.list.children).indexOf(focused?.closest("li") as Element);
     this.list.replaceChildren(...steps.map((step, i) => this.row(step, i)));
-    // The focus stays near.
+    // Keep the focus nearby.
     const near = focused ? this.list.children[Math.min(this.moved ?? row, steps.length - 1)] : null;
     (near?.querySelector<HTMLElement>(`[data-kind="${kind}"]:enabled`) ?? near?.querySelector<HTMLElement>(".step"))?.focus();
     this.moved = null;
@@ -99,7 +99,7 @@ export class Steps {
     );
   }
 
-  /** Asks for a name in the place of the present one. */
+  /** Replaces a step's name by a field for another one. */
   private rename(i: number): void {
     const { app } = this;
     const [row, step] = [this.list.children[i], app.steps[i]];
@@ -123,7 +123,7 @@ export class Steps {
     input.select();
   }
 
-  /** Follows a pointer that moves a row among those that may change places. */
+  /** Follows a pointer that moves a row among those that may be exchanged. */
   private drag(e: PointerEvent, i: number, first: number, moved: (to: number) => void): void {
     // Fingers scroll the list.
     if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;

@@ -2,16 +2,16 @@
 
 import { byId } from "./dom";
 
-/** The shortest time for which a message is shown, and the time for reading a character, in ms. */
+/** The shortest time for which a message is shown, and the time for each character, in ms. */
 const SHORTEST = 5000;
 const CHARACTER = 60;
-/** Space between the tools and a message, in px. */
+/** Distance between the tools and a message, in px. */
 const ABOVE = 10;
 
 let fading = 0;
 let shown = 0;
 
-/** Shows a message for a while, or until what is returned is called. */
+/** Shows a message for a while. Returns a function that removes it. */
 export function toast(text: string, stays = false): () => void {
   const box = byId("toast");
   const [view, tools] = [byId("view").getBoundingClientRect(), byId("tools").getBoundingClientRect()];
@@ -27,7 +27,7 @@ export function toast(text: string, stays = false): () => void {
   };
 }
 
-/** Takes the message away: somebody has gone on to something else. */
+/** Removes the message when the user continues with something else. */
 export function hush(): void {
   byId("toast").classList.remove("on");
 }

@@ -1,4 +1,4 @@
-// The messages of the server, and geometry.
+// The server's messages, and geometry.
 
 export type XY = [number, number];
 
@@ -6,19 +6,19 @@ export interface Step {
   deformation: string;
   inverse: boolean;
   args: Record<string, string[]>;
-  /** Selectors of the parts of the drawing that it holds for, and of what it leaves out. */
+  /** Selectors of the parts of the drawing that it applies to, and of those that it leaves out. */
   select?: string[];
   exclude?: string[];
-  /** The user's name for it, in the draft alone. */
+  /** The user's name for it; only drafts store it. */
   name?: string;
-  /** It bends nothing for the time being, and is in no result. */
+  /** `true` if it is switched off, and in no result. */
   hidden?: boolean;
 }
 
 /** A group or shape of the drawing. */
 export interface Part {
   name: string;
-  /** What names it in a step. */
+  /** The selector that names it in a step. */
   selector: string;
   label: string | null;
   element: string;
@@ -30,7 +30,7 @@ export type Kind =
 
 export interface Param {
   name: string;
-  /** A name for people, if the registry's own is not one. */
+  /** A name for display, if the registry's is not suitable. */
   label?: string;
   kind: Kind;
   needed: boolean;
@@ -39,10 +39,10 @@ export interface Param {
   slider: [number, number];
   words?: string[];
   notation?: string;
-  /** Parameters that cannot go with this one, and a value of another that does. */
+  /** Parameters that exclude this one, and a value of another parameter that it requires. */
   instead?: { others: string[]; with: [string, string] | null };
   axis?: "x" | "y" | "diagonal";
-  /** Paths that may have any number of points, or rows with equally many. */
+  /** Set for paths with any number of points, or rows of equal length. */
   points?: "any" | "rows";
   default?: string;
   least?: number;
@@ -51,17 +51,17 @@ export interface Param {
 
 export interface Deformation {
   name: string;
-  /** A name for people, if the registry's own is not one. */
+  /** A name for display, if the registry's is not suitable. */
   label: string | null;
   title: string;
   group: string;
   about: string;
-  /** It changes the drawing before it is bent, so it comes before all that bends. */
+  /** `true` for an edit, which changes the drawing before it is bent and comes first. */
   first: boolean;
   /** Its names in other programs. */
   knownAs: string[];
   params: Param[];
-  /** Other ways to begin, each by one parameter. */
+  /** Alternative starts, each by one parameter. */
   variants: { label: string; param: string }[];
   gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
 }
@@ -72,7 +72,7 @@ export interface Subpath {
   closed: boolean;
 }
 
-/** Control points with their indices as typed, and the lines that join them. */
+/** Control points with their indices as typed, and the lines that connect them. */
 export interface Net {
   names: string[];
   points: XY[];
@@ -85,7 +85,7 @@ export interface Stretch {
   factors: (number | null)[];
 }
 
-/** An adjust value of a text shape, in 1/100000 of the box or, if it goes beyond a million, 1/60000 of a degree. */
+/** An adjust value of a text shape, in 1/100000 of the box or, beyond a million, in 1/60000 of a degree. */
 export interface Adjust {
   name: string;
   least: number;
@@ -101,7 +101,7 @@ export interface Grip {
   pairs?: [XY, XY][];
   net?: Net;
   paths?: Subpath[][];
-  /** Centre, radius, and the angles in degrees at which a circle or an arc begins and ends. */
+  /** A circle or arc: its centre, radius, and start and end angles in degrees. */
   circle?: [number, number, number, number, number];
   value?: number;
   /** A surface as typed, with its lengths in units of the drawing. */
@@ -116,32 +116,32 @@ export interface StepGrips {
 export interface State {
   file: string;
   folder: string;
-  /** A name for what is on show; the same drawing in other words has another. */
+  /** A name for the drawing on show, which depends on its words. */
   drawing: string;
   steps: Step[];
   undo: boolean;
   redo: boolean;
   saved: boolean;
   savedTo: string | null;
-  /** The folder that the result was saved in last, unless that of the drawing. */
+  /** The folder of the saved result, if it is not the drawing's. */
   savedIn: string | null;
   target: string;
-  /** The command that goes on with the steps. */
+  /** The command that continues with the steps. */
   again: string;
-  /** The program that waits for the steps, if one does. */
+  /** The program that waits for the steps, if any. */
   program: string | null;
   restored: boolean;
   problem: string | null;
   toPx: [number, number, number, number, number, number];
   page: [number, number, number, number];
   missing: string[];
-  /** The words that the drawing was set from, if it was. */
+  /** The words that the drawing was set from, if any. */
   words: Words | null;
-  /** The drawing is a photograph alone, a px for each of its pixels. */
+  /** `true` if the drawing consists of a photograph, with one px for each pixel. */
   photograph: boolean;
 }
 
-/** Words, their family, the size in mm, and the space between letters in per cent of it. */
+/** Words, their family, their size in mm, and the space between letters in percent of it. */
 export interface Words {
   text: string;
   font: string | null;
@@ -164,30 +164,30 @@ export interface Answer {
   error?: string;
   picture?: Picture;
   grips?: StepGrips[];
-  /** The places of steps for parts that the drawing lacks. */
+  /** The indices of steps for parts that the drawing lacks. */
   gone?: number[];
   guides?: string[];
   warnings?: string[];
   /** Characters that no font has. */
   lacking?: string[];
-  /** The page that saving gives the result, if that is not the drawing's. */
+  /** The page of the saved result, if it is not the drawing's. */
   page?: [number, number, number, number] | null;
   summary?: Summary;
   state?: State;
   catalogue?: Deformation[];
   svg?: string;
   step?: Step;
-  /** How far a net with other points bends from where it did, in user units. */
+  /** The largest distance by which a new net moves points, in user units. */
   moved?: number;
   at?: XY | null;
   text?: string;
-  /** The background as it was kept, with its content as base64. */
+  /** The stored background, with its content as base64. */
   background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
   written?: string;
   exists?: string;
   /** The reason why nothing could be written. */
   unwritable?: string;
-  /** A file, as base64. */
+  /** The content of a file as base64. */
   bytes?: string;
   copied?: boolean;
   presets?: string[];
@@ -202,24 +202,24 @@ export interface Answer {
 export type Shape = "node" | "control" | "source";
 
 export interface Handle {
-  /** The same for the same handle of another picture. */
+  /** A key that is equal for this handle in other pictures. */
   key: string;
   param: string;
   shape: Shape;
   label: string;
-  /** The row or path it belongs to: symmetry looks for partners there. */
+  /** The row or path that it belongs to, in which symmetry looks for partners. */
   group: string;
   get: () => XY;
-  /** Moves it, and what is tied to it. */
+  /** Moves it, and the points that depend on it. */
   set: (to: XY, smooth: boolean) => void;
-  /** Takes it away; only handles of which there may be any number can. */
+  /** Removes it, if there may be any number of its kind. */
   remove?: () => void;
 }
 
 export interface Line {
   kind: "path" | "arm" | "net";
   points: XY[];
-  /** Control points of cubics, as in path data. */
+  /** `true` if the points are control points of cubics, as in path data. */
   cubic?: boolean;
   closed?: boolean;
 }

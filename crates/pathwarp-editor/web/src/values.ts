@@ -1,16 +1,16 @@
-// Values of parameters as text, from geometry.
+// Formats geometry as values of parameters.
 
 import type { Adjust, Grip, Param, Subpath, XY } from "./types";
 
 type Frame = [number, number, number, number];
 
-/** Values in these notations are dragged on the canvas. */
+/** Notations whose values are dragged on the canvas. */
 export const DRAGGED = new Set(["X,Y:X,Y", "I,J:X,Y", "I,J,K:X,Y"]);
 
-/** Figures of numbers in values: far more than a hand can place. */
+/** Significant figures of numbers, far finer than a hand can place points. */
 const FIGURES = 7;
 
-/** A number in few figures. */
+/** Formats a number in few figures. */
 export function short(value: number): string {
   return String(Number(value.toPrecision(FIGURES)));
 }
@@ -19,19 +19,19 @@ function percent(value: number): string {
   return `${Number(value.toFixed(4))}%`;
 }
 
-/** A point as `x,y` in % of the frame, so that a recipe fits other drawings. */
+/** Formats a point as `x,y` in percent of the frame, so that a recipe fits other drawings. */
 function point([x, y]: XY, [left, top, width, height]: Frame): string {
   if (width <= 0 || height <= 0) return `${short(x)},${short(y)}`;
   return `${percent((100 * (x - left)) / width)},${percent((100 * (y - top)) / height)}`;
 }
 
-/** A length in % of the frame's width, height or diagonal. */
+/** Formats a length in percent of the frame's width, height or diagonal. */
 export function length(value: number, axis: Param["axis"], [, , width, height]: Frame): string {
   const whole = axis === "x" ? width : axis === "y" ? height : Math.hypot(width, height);
   return whole > 0 ? percent((100 * value) / whole) : short(value);
 }
 
-/** Path data of subpaths. */
+/** Formats subpaths as path data. */
 export function pathData(subpaths: Subpath[]): string {
   return subpaths.map(({ start, segments, closed }) => {
     const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
@@ -45,7 +45,7 @@ function pairs(numbers: number[]): string {
   return out.join(" ");
 }
 
-/** The values of a parameter whose handles are at these places. */
+/** Returns the values of a parameter for the positions of its handles. */
 export function valuesOf(param: Param, grip: Grip, frame: Frame, before: string[]): string[] {
   if (grip.point) return [point(grip.point, frame)];
   if (grip.points) return grip.points.map((p) => point(p, frame));
@@ -55,12 +55,12 @@ export function valuesOf(param: Param, grip: Grip, frame: Frame, before: string[
   return param.repeat || before.length > 0 ? before : [];
 }
 
-/** A circle or an arc of one as a value, in units of the drawing. */
+/** Formats a circle or arc as a value, in units of the drawing. */
 export function arc([cx, cy, r, from, to]: [number, number, number, number, number]): string {
   return `arc:r=${short(r)},from=${short(from)},to=${short(to)},cx=${short(cx)},cy=${short(cy)}`;
 }
 
-/** Open lines through points can be written as points. */
+/** Returns `true` for an open polyline, which can be written as points. */
 function isPolygon(path: Subpath[]): boolean {
   return path.length === 1 && !path[0]!.closed && path[0]!.segments.every((seg) => seg.length === 2);
 }
@@ -69,23 +69,23 @@ function corners({ start, segments }: Subpath, frame: Frame): string {
   return [start, ...segments].map((p) => point([p[0]!, p[1]!], frame)).join(" ");
 }
 
-/** The largest adjust value that is a share of the box; others are angles. */
+/** The largest adjust value of a share of the box; others are angles. */
 const SHARES = 1e6;
-/** One per cent of the box, and one degree, as adjust values. */
+/** One percent of the box, and one degree, as adjust values. */
 const PER_CENT = 1e3;
 const DEGREE = 6e4;
 
-/** The unit in which an adjust value is shown, and its size. */
+/** Returns the unit in which an adjust value is shown, and its size. */
 export function adjustUnit(a: Adjust): [string, number] {
   return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
 }
 
-/** The name of an adjust value for people. */
+/** Returns the name of an adjust value for display. */
 export function adjustName(all: Adjust[], i: number): string {
   return all.length === 1 ? "Shape" : `Shape ${i + 1}`;
 }
 
-/** Reads adjust values as typed, `[NAME=]VALUE`; those not given have their defaults. */
+/** Parses adjust values, `[NAME=]VALUE`; omitted ones get their defaults. */
 export function readAdjust(all: Adjust[], typed: string[]): void {
   for (const a of all) a.value = a.default;
   typed.forEach((text, n) => {
@@ -97,17 +97,17 @@ export function readAdjust(all: Adjust[], typed: string[]): void {
   });
 }
 
-/** Adjust values as typed, without those that are the defaults. */
+/** Formats adjust values, omitting defaults. */
 export function writeAdjust(all: Adjust[]): string[] {
   return all.filter((a) => a.value !== a.default).map((a) => {
     const [unit, size] = adjustUnit(a);
-    // Rounded towards the inside of the range.
+    // Round towards the inside of the range.
     const round = a.value! > (a.least + a.most) / 2 ? Math.floor : Math.ceil;
     return `${a.name}=${short(round((100 * a.value!) / size) / 100)}${unit}`;
   });
 }
 
-/** The value of a control point of a net, `I,J:X,Y`. */
+/** Formats the value of a control point of a net, `I,J:X,Y`. */
 export function node(name: string, at: XY, frame: Frame): string {
   return `${name}:${point(at, frame)}`;
 }

@@ -1,4 +1,4 @@
-// Words as the drawing: typed, set in a font that is installed, and changed later under the same steps.
+// Words as the drawing: typed, set in an installed font, and edited later under the same steps.
 
 import type { App } from "./app";
 import { byId, h } from "./dom";
@@ -18,7 +18,7 @@ export class WordsDialog {
   private message = byId("words-message");
   private families: string[] | null = null;
   private font: string | null = null;
-  /** Words are to be put on the drawing, with these values. */
+  /** Called to place words on the drawing, with these values. */
   onPlace: (args: Record<string, string[]>) => void = () => {};
 
   constructor(private app: App) {
@@ -63,7 +63,7 @@ export class WordsDialog {
     this.text.focus();
   }
 
-  /** The families that fit what was typed, each in its own letters. */
+  /** Lists the families that match the typed text, each in its letters. */
   private list(): void {
     const wanted = this.search.value.trim().toLowerCase();
     const all = [BUNDLED, ...(this.families ?? [])].filter((name) => name.toLowerCase().includes(wanted));

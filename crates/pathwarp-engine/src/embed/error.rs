@@ -1,4 +1,4 @@
-//! Errors for callers that are programs: a kind to branch on, a message without dashes before names, and its parts.
+//! Errors for programs: a kind to branch on, a message without dashes before names, and the parts of the message.
 
 use super::without_dashes;
 use crate::advice::Flags;
@@ -10,11 +10,11 @@ use pathwarp::{Error as LibraryError, GeometryError};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The kind of an error: who can mend it.
+/// The kind of an error, which tells who can mend it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// A name or value is wrong: the caller.
+    /// A name or value that the caller gave is wrong.
     Usage,
     /// A file or drawing cannot be read.
     Input,
@@ -22,22 +22,22 @@ pub enum ErrorKind {
     Geometry,
     /// The work exceeds a limit.
     Limit,
-    /// The library failed. Please report it.
+    /// A defect of the library. Please report it.
     Internal,
 }
 
-/// An error, with a message that says what is wrong, where, and what to do.
+/// An error. Its message tells what is wrong, where, and what to do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Error {
     /// The kind.
     pub kind: ErrorKind,
-    /// The message. Parameters and options have the names they have on the command line, without dashes.
+    /// The message. Parameters and options have their names on the command line, without dashes.
     pub message: String,
-    /// The parts of the message, as far as there are.
+    /// The parts of the message that are known.
     pub details: Box<Details>,
 }
 
-/// What an error is about.
+/// The parts of an error's message.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Details {
@@ -45,13 +45,13 @@ pub struct Details {
     pub with_dashes: String,
     /// The parameter or option.
     pub parameter: Option<String>,
-    /// Its value as it was given.
+    /// The value as given.
     pub value: Option<String>,
-    /// The file and the place in it.
+    /// The file, with a position in it if that is known.
     pub file: Option<String>,
-    /// The point of the drawing.
+    /// The point of the drawing at fault.
     pub at: Option<Point>,
-    /// The limit that is exceeded, its value, and what is needed.
+    /// The exceeded limit, its value, and the amount needed.
     pub limit: Option<Exceeded>,
 }
 
@@ -64,7 +64,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 impl Error {
-    /// An error about a name or value.
+    /// Creates an error of the kind [`ErrorKind::Usage`].
     pub(super) fn usage(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Usage, message.into())
     }
@@ -73,7 +73,7 @@ impl Error {
         Self { kind, details: Box::new(Details { with_dashes: message.clone(), ..Details::default() }), message }
     }
 
-    /// The same about a parameter or option.
+    /// Adds the parameter or option concerned, and its value.
     pub(super) fn about(mut self, parameter: &str, value: &str) -> Self {
         self.details.parameter.get_or_insert_with(|| parameter.to_owned());
         self.details.value.get_or_insert_with(|| value.to_owned());
@@ -99,7 +99,7 @@ impl Error {
     }
 }
 
-/// The parts of a failure.
+/// Extracts the parts of a failure's message.
 fn details(failure: &Failure) -> Details {
     let mut details = Details::default();
     let error = match failure {

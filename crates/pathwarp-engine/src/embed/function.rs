@@ -1,4 +1,4 @@
-//! A function of the program around as a deformation.
+//! Functions of the host program as deformations.
 
 use pathwarp::Error;
 use pathwarp::deform::{Built, Deformation, Info};
@@ -6,17 +6,17 @@ use pathwarp::engine::{Abilities, Called, Callee};
 use pathwarp::param::{Axis, Settings};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A function as an entry of a registry. It has no parameters, and its name is one that nobody can type.
+/// A function, registered as a deformation without parameters. Its name cannot be typed.
 pub(super) struct Function {
     info: Info,
     callee: Arc<dyn Callee>,
     abilities: Abilities,
 }
 
-/// The names that no function has at present. Descriptions hold static texts, so names are used again.
+/// The count of names made so far, and those free for reuse. Names are leaked, since descriptions hold static texts.
 static UNUSED: Mutex<(usize, Vec<&'static str>)> = Mutex::new((0, Vec::new()));
 
-/// The beginning of the names of functions.
+/// Prefix of the names of functions.
 const PREFIX: &str = "function #";
 
 impl Function {
@@ -48,7 +48,7 @@ impl Deformation for Function {
     }
 }
 
-/// Returns `true` if the name is that of a function, which no file can describe.
+/// Returns `true` for the name of a function, which no file can describe.
 pub(super) fn is_function(name: &str) -> bool {
     name.starts_with(PREFIX)
 }

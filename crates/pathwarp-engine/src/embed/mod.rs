@@ -1,7 +1,7 @@
 //! pathwarp inside other programs and languages: everything is given as text, as on the command line, and drawings stay in memory.
 //!
-//! A [`Warper`] is a recipe with its options. It maps points, bends paths and warps drawings, with the same numbers as the command
-//! line: both take the same road. Nothing is printed, and no file is written. Panics become errors.
+//! A [`Warper`] is a recipe with its options. It maps points, bends paths and warps drawings by the code that the command line runs, so the
+//! numbers are equal. Nothing is printed, and no file is written. Panics become errors.
 
 mod error;
 mod function;
@@ -26,8 +26,8 @@ use pathwarp_text::TextStyle;
 /// A parameter with the value that a preset's name gives it.
 type Setting = (&'static str, &'static str);
 
-/// The deformation that a name means, with the parameter and value if the name is that of a preset: `arc` is `warp` with the
-/// style `arc`. Deformations come first, then the presets in the order of the registry.
+/// Returns the deformation that a name means, with the parameter and value if the name is a preset's: `arc` is `warp` with the style `arc`.
+/// Deformations come first, then the presets in the order of the registry.
 pub(super) fn meaning<'a>(registry: &'a Registry, name: &str) -> Result<(&'a Info, Option<Setting>), String> {
     let lower = name.to_ascii_lowercase();
     if let Some(e) = registry.get(&lower) {
@@ -41,7 +41,7 @@ pub(super) fn meaning<'a>(registry: &'a Registry, name: &str) -> Result<(&'a Inf
     Err(advice::unknown("deformation", &lower, known))
 }
 
-/// The preset called `name`: its deformation, and the parameter that takes the preset's name.
+/// Returns the deformation that has a preset called `name`, the parameter that takes it, and the preset's name.
 #[must_use]
 pub fn preset<'a>(catalogue: &'a dyn Catalogue, name: &str) -> Option<(&'a Info, &'static str, &'static str)> {
     catalogue.infos().into_iter().find_map(|info| {
@@ -50,7 +50,7 @@ pub fn preset<'a>(catalogue: &'a dyn Catalogue, name: &str) -> Option<(&'a Info,
     })
 }
 
-/// The names of a deformation's presets, and the parameter that takes them.
+/// Returns the parameter of a deformation that takes presets, and their names.
 fn presets(info: &Info) -> (&'static str, Vec<&'static str>) {
     let param = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets));
     match param.map(|p| (p.name, p.kind)) {
@@ -75,19 +75,19 @@ const OF_THE_PROGRAM: [&str; 12] = [
     "quiet",
 ];
 
-/// The common options that work in memory, with their help.
+/// Returns the common options that work in memory, with their help.
 pub fn option_names() -> impl Iterator<Item = (&'static str, String)> {
     OPTIONS.iter().filter(|o| !OF_THE_PROGRAM.contains(&o.name)).map(|o| (o.name, o.help()))
 }
 
-/// Names that a parameter of a plug-in cannot have, since options and arguments of the program, of Python or of C have them.
+/// Returns names that a parameter of a plug-in cannot have: options and arguments of the program, of Python or of C use them.
 pub fn reserved_names() -> impl Iterator<Item = &'static str> {
     const ARGUMENTS: [&str; 9] =
         [INVERSE, "plugin", "plugins", "help", "version", "points", "jacobian", "INPUT", "size"];
     OPTIONS.iter().map(|o| o.name).chain(ARGUMENTS)
 }
 
-/// The words that an option's value can be; none if it is no choice.
+/// Returns the words that an option may have as its value; none if it is no choice.
 #[must_use]
 pub fn option_words(name: &str) -> Vec<&'static str> {
     OPTIONS.iter().find(|o| o.name == name).map(CommonOption::words).unwrap_or_default()
@@ -104,7 +104,7 @@ pub(super) fn check_option(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// A message with `--name` as `name`, where it is an option or a parameter.
+/// Removes the dashes of options and parameters in a message.
 pub(super) fn without_dashes(message: &str, registry: &Registry) -> String {
     let params = || registry.entries().iter().flat_map(|e| e.info().params);
     let is_known =
@@ -125,17 +125,16 @@ pub(super) fn without_dashes(message: &str, registry: &Registry) -> String {
     out + rest
 }
 
-/// Sets words as a drawing in mm whose letters are outlines: in `font`, a family or a file, or in the bundled Noto Sans; `size` is that of
-/// the em in mm.
+/// Sets words as a drawing in mm of outlined letters, in `font` (a family or a file) or the bundled Noto Sans, with an em of `size` mm.
 ///
 /// # Errors
-/// There is no such font, the size is out of range, or the words take more work than the limits allow.
+/// [`ErrorKind::Usage`] if there is no such font or the size is out of range, [`ErrorKind::Input`] if the words exceed the limits.
 pub fn lettering_drawing(words: &str, font: Option<&str>, size: f64) -> Result<String, Error> {
     let style = TextStyle { size, ..TextStyle::default() };
     guarded(&Registry::builtin(), || set_plainly(words, font, &style, &Reading::default()).map(|(drawing, _)| drawing))
 }
 
-/// A recipe built for some points: the map, and where it is defined.
+/// A recipe built for points: the map and its domain.
 #[derive(Debug, Clone)]
 pub struct PointMap {
     built: BuiltRecipe,
@@ -160,12 +159,12 @@ impl PointMap {
     /// Checks the points mapped so far.
     ///
     /// # Errors
-    /// A plug-in or function failed, and points are NaN for it.
+    /// An error if a plug-in or function has failed, so that points became NaN.
     pub fn check(&self) -> Result<(), Error> {
         guarded(&self.registry, || self.built.failure().map_or(Ok(()), |e| Err(e.into())))
     }
 
-    /// Maps `from` to `to`, of the same length. Points outside of the map's domain become NaN.
+    /// Maps `from` to `to`, which has the same length. Points outside of the map's domain become NaN.
     pub fn points(&self, from: &[Point], to: &mut [Point]) {
         self.map.points(from, to);
         if self.creases.items().is_empty() {
@@ -178,7 +177,7 @@ impl PointMap {
         }
     }
 
-    /// The two columns of the Jacobian at each of `at`: the derivatives by x and by y.
+    /// Computes the two columns of the Jacobian at each of `at`: the derivatives by x and by y.
     pub fn jacobians(&self, at: &[Point], out: &mut [[Vec2; 2]]) {
         let mut jets = vec![Jet::default(); at.len()];
         self.map.jets(at, &mut jets);

@@ -29,24 +29,24 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Options of a warp that a path without a drawing can have.
+/// Options that apply to a path without a drawing.
 const PATH_OPTIONS: [&str; 6] = ["frame", "tolerance", "certify", "nodes", "precision", "limit"];
 
-/// What lacks where there is no box.
+/// The part of an error about a missing box.
 const NEEDS_FRAME: &str = "which percentages and defaults refer to: give it (--frame X,Y,W,H)";
 
 /// Deformations one after another, with the options of a warp.
 #[derive(Clone)]
 pub struct Warper {
     registry: Registry,
-    /// The values as given.
+    /// The steps with their values as given.
     typed: Recipe,
-    /// The same with the contents of files.
+    /// The steps with the contents of the files that values name.
     resolved: Recipe,
     given: Given,
-    /// It was inverted: its frame is the source's, which nothing else tells.
+    /// `true` for an inverse, which does not know the source's frame.
     inverted: bool,
-    /// Ends the work once it is `true`.
+    /// Ends the work when it becomes `true`.
     stop: Option<&'static AtomicBool>,
 }
 
@@ -62,7 +62,7 @@ impl fmt::Debug for Warper {
 pub struct Path {
     /// The path and its statistics.
     pub path: WarpedPath,
-    /// Number of orientation changes along the path if it folds, at least 1; else 0.
+    /// Number of orientation changes along the path, at least 1 if it folds; else 0.
     pub folds: usize,
     /// Warnings of the deformations.
     pub warnings: Vec<String>,
@@ -76,19 +76,20 @@ pub struct Path {
 pub struct Drawing {
     /// The file.
     pub bytes: Vec<u8>,
-    /// What was done, shape by shape: the entry of this input in the JSON that `--report` writes.
+    /// The changes of every shape: the entry of this input in the JSON that `--report` writes.
     pub report: String,
     /// The warnings of the report.
     pub warnings: Vec<String>,
-    /// The decisions that the option `explain` asks for.
+    /// The decisions that the option `explain` reports.
     pub notes: Vec<String>,
 }
 
 impl Warper {
-    /// One deformation, or a preset such as `arc`, with values as a user would type them. Files that the values name are read.
+    /// Creates a warper from a deformation, or a preset such as `arc`, with values as typed by users. Files that the values name are read.
     ///
     /// # Errors
-    /// There is no such deformation or parameter, or a file cannot be read.
+    /// [`Usage`](super::ErrorKind::Usage) for an unknown deformation or parameter, [`Input`](super::ErrorKind::Input) for an unreadable
+    /// file.
     pub fn new(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
         let (info, preset) = meaning(registry, name).map_err(Error::usage)?;
         let mut args = Args::new();
@@ -105,7 +106,7 @@ impl Warper {
         Ok(made)
     }
 
-    /// Checks the names of presets, which only the deformation itself knows in all their spellings.
+    /// Checks the names of presets by building the deformation, which knows all their spellings.
     fn check_names(&self) -> Result<(), Error> {
         let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
         for step in &self.resolved.steps {
@@ -123,7 +124,7 @@ impl Warper {
         Ok(())
     }
 
-    /// A function of the program around, given by its values at batches of points.
+    /// Creates a warper from a function of the host program, which maps batches of points.
     #[must_use]
     pub fn from_function(registry: &Registry, callee: Arc<dyn Callee>, abilities: Abilities) -> Self {
         let function = Function::new(callee, abilities);
@@ -133,10 +134,10 @@ impl Warper {
         Self { registry, typed, resolved: recipe, given, inverted: false, stop: None }
     }
 
-    /// An edit of shapes, as by the command of this name: `simplify`, `offset`, `unite`, `contour` or `outline`, with values as a user would type them.
+    /// Creates a warper from an edit of shapes, `simplify`, `offset`, `unite`, `contour` or `outline`, with values as typed by users.
     ///
     /// # Errors
-    /// There is no such edit or parameter.
+    /// [`Usage`](super::ErrorKind::Usage) for an unknown edit or parameter.
     pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
         let missing = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
         let info = edits::info(name).ok_or_else(missing)?;
@@ -146,10 +147,10 @@ impl Warper {
         Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
     }
 
-    /// The recipe in the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
+    /// Creates a warper from the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
     ///
     /// # Errors
-    /// The text is not a recipe, or a file cannot be read.
+    /// [`Input`](super::ErrorKind::Input) if the text is not a recipe, or a file cannot be read.
     pub fn from_recipe(registry: &Registry, text: &str, folder: &FilePath, external: bool) -> Result<Self, Error> {
         let saved = guarded(registry, || {
             let parsed = recipe_file::from_text(registry, text, folder, external);
@@ -164,11 +165,10 @@ impl Warper {
         Ok(Self { registry: registry.clone(), typed, resolved, given, inverted: false, stop: None })
     }
 
-    /// Sets an option of the command line, without its dashes; a switch has the value `true`. An option that may be given several
-    /// times gets one more value.
+    /// Sets an option of the command line, without its dashes; a switch has the value `true`. An option that repeats gets one more value.
     ///
     /// # Errors
-    /// There is no such option, it is one of the program, or the value is wrong.
+    /// [`Usage`](super::ErrorKind::Usage) if the option is unknown or only for the program, or if the value is wrong.
     pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Error> {
         let about = |e: Error| e.about(name, value);
         check_option(name).map_err(|e| about(Error::usage(e)))?;
@@ -179,7 +179,7 @@ impl Warper {
         Ok(())
     }
 
-    /// This recipe and then another. Options of both are kept; the later one's win. If both select, each holds for its own.
+    /// Returns the chain of this recipe and a later one. Later options take precedence; if both recipes select, each keeps its selection.
     #[must_use]
     pub fn then(&self, later: &Self) -> Self {
         let joined = |a: &Recipe, b: &Recipe| {
@@ -195,38 +195,38 @@ impl Warper {
         Self { registry, typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
     }
 
-    /// The recipe that undoes this one. It needs the option `frame`, the box of the source, before it is used.
+    /// Returns the recipe that undoes this one. It needs the option `frame`, the box of the source, before it is used.
     #[must_use]
     pub fn inverted(&self) -> Self {
         Self { typed: self.typed.inverted(), resolved: self.resolved.inverted(), inverted: true, ..self.clone() }
     }
 
-    /// The same, ended by a switch: once it is `true`, work stops with an error of the kind [`ErrorKind::Limit`](super::ErrorKind::Limit).
+    /// Adds a switch: once it is `true`, work stops with an error of the kind [`Limit`](super::ErrorKind::Limit).
     #[must_use]
     pub fn stopped_by(&self, switch: &'static AtomicBool) -> Self {
         Self { stop: Some(switch), ..self.clone() }
     }
 
-    /// The names of the deformations.
+    /// Returns the names of the deformations.
     pub fn steps(&self) -> impl Iterator<Item = &str> {
         self.typed.steps.iter().map(|s| s.deformation.as_str())
     }
 
-    /// The deformations with their values as they were typed.
+    /// Returns the steps with their values as typed.
     pub fn typed_steps(&self) -> impl Iterator<Item = &Step> {
         self.typed.steps.iter()
     }
 
-    /// The value of the option `frame`, if it is given.
+    /// Returns the value of the option `frame`, if it is given.
     #[must_use]
     pub fn frame(&self) -> Option<String> {
         self.given.stored().find(|(name, _)| *name == "frame").and_then(|(_, mut values)| values.pop())
     }
 
-    /// The text of a recipe file for `folder`.
+    /// Returns the text of a recipe file for `folder`.
     ///
     /// # Errors
-    /// A step is a function of this program, which no file can describe, or the current folder cannot be read.
+    /// [`Usage`](super::ErrorKind::Usage) if a step is a function of this program; an error if the current folder cannot be read.
     pub fn to_recipe(&self, folder: &FilePath) -> Result<String, Error> {
         if self.steps().any(is_function) {
             return Err(Error::usage("a recipe file cannot hold a function of this program; write it as a plug-in"));
@@ -234,11 +234,11 @@ impl Warper {
         guarded(&self.registry, || recipe_file::write(&self.registry, &self.typed, &self.given, folder))
     }
 
-    /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given.
-    /// Later steps of a chain, and inverses, look at artwork in that box: [`hatching`](crate::input::hatching), unless there is a drawing.
+    /// Builds the recipe for points. `bounds` returns their box, to which percentages refer unless the option `frame` is given. Later steps
+    /// of a chain, and inverses, examine artwork in that box: [`hatching`](crate::input::hatching), unless there is a drawing.
     ///
     /// # Errors
-    /// A value is wrong, or the geometry does not allow the deformation.
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if no map results.
     pub fn point_map(
         &self,
         bounds: impl FnOnce() -> Option<Rect>,
@@ -247,7 +247,7 @@ impl Warper {
         guarded(&self.registry, || {
             let options = self.options()?;
             let bounds = match options.frame {
-                // Without a point nothing depends on the box.
+                // Without points, nothing depends on the box.
                 FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::new(0.0, 0.0, 1.0, 1.0)),
                 _ => Rect::ZERO,
             };
@@ -257,7 +257,7 @@ impl Warper {
             let built_in =
                 |frame: &Frame| self.build(&options, frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
             let built = built_in(&frame).map_err(|failure| {
-                // If a box with a size mends it, that is what lacks.
+                // If the recipe builds in a larger box, the size is what is missing.
                 let roomy = Frame::new(bounds.inflate(1.0, 1.0));
                 let flat = frame.rect.is_zero_area();
                 let lacks = flat && !matches!(options.frame, FrameChoice::Rect(_)) && built_in(&roomy).is_ok();
@@ -267,15 +267,15 @@ impl Warper {
                     failure
                 }
             })?;
-            // Points are mapped as often as the program around this likes.
+            // The budget does not limit the number of points.
             Ok(PointMap::new(built, &self.registry))
         })
     }
 
-    /// Checks the map over the option `frame`, or over the box 0,0,100,100, as authors of deformations do: [`pathwarp::check::map`].
+    /// Checks the map over the option `frame`, or else over the box 0,0,100,100, by [`pathwarp::check::map`].
     ///
     /// # Errors
-    /// A value is wrong, the geometry does not allow the deformation, or a plug-in or function failed.
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value; an error if the map cannot be built, or a plug-in or function fails.
     pub fn check(&self) -> Result<Vec<Check>, Error> {
         guarded(&self.registry, || {
             let options = self.options()?;
@@ -288,10 +288,11 @@ impl Warper {
         })
     }
 
-    /// Bends a path: SVG path data.
+    /// Bends a path, given as SVG path data.
     ///
     /// # Errors
-    /// The data is malformed, a value is wrong, or the geometry does not allow the deformation.
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path;
+    /// an error for malformed data.
     pub fn warp_path(&self, data: &str) -> Result<Path, Error> {
         let outline = guarded(&self.registry, || Ok(Outline::from_svg(data).map_err(pathwarp::Error::from)?))?;
         self.warp_outline(&outline)
@@ -300,23 +301,23 @@ impl Warper {
     /// Bends an outline.
     ///
     /// # Errors
-    /// As [`Warper::warp_path`].
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_outline(&self, outline: &Outline) -> Result<Path, Error> {
         self.bent(outline, 1.0)
     }
 
-    /// Bends an outline to lines and quadratics, as TrueType has them: half of the tolerance is for the cubics, half for theirs.
+    /// Bends an outline to lines and quadratics, as in TrueType. Half of the tolerance is for fitting cubics, half for replacing them.
     ///
     /// # Errors
-    /// As [`Warper::warp_path`].
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_outline_to_quadratics(&self, outline: &Outline) -> Result<Path, Error> {
         let mut bent = self.bent(outline, 0.5)?;
         let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
         if bent.path.path.elements().iter().any(cubic) {
-            // Extremes that the cubics have at nodes stay points on the curve.
+            // Nodes at extremes of the cubics stay points of the curve.
             let placed = self.options().is_ok_and(|o| o.nodes.are_placed());
             let nodes = if placed { fit::Nodes::Auto } else { fit::Nodes::Fewest };
-            // Joints of the cubics are smooth or corners: there is no noise to look through.
+            // The joints of the cubics are either smooth or corners: there is no noise to smooth.
             let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic).with_nodes(nodes);
             let options = options.with_corner(fit::parts::SMOOTH_JOINT);
             let fitted = fit::simplify(&bent.path.path, &options).map_err(|e| Error::usage(e.to_string()))?;
@@ -330,7 +331,7 @@ impl Warper {
         Ok(bent)
     }
 
-    /// Bends an outline within a share of the tolerance.
+    /// Bends an outline, using a share of the tolerance.
     fn bent(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
         guarded(&self.registry, || {
             if let Some(other) = self.given.names().find(|name| !PATH_OPTIONS.contains(name)) {
@@ -359,7 +360,7 @@ impl Warper {
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
                 Some(edit) => pathwarp_svg::engine::edit_path(outline, edit, &refit, digits),
             };
-            // A map that has failed gives no numbers, which is not the geometry's fault.
+            // Numbers of a map that has failed are meaningless, so its failure is reported first.
             built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
             let path = path.map_err(pathwarp::Error::from)?;
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
@@ -371,11 +372,12 @@ impl Warper {
         })
     }
 
-    /// Warps a drawing (SVG, also compressed) or a picture (PNG, JPEG, WebP). `name` is its name in messages; linked pictures are
-    /// looked up beside it and put into the result. Without a name there are none. The page stays unless the option `fit` is given.
+    /// Warps a drawing (SVG, also compressed) or a picture (PNG, JPEG, WebP). `name` is its name in messages; linked pictures are looked up
+    /// beside it and embedded in the result. Without a name, there are none. The page stays unless the option `fit` is given.
     ///
     /// # Errors
-    /// The drawing cannot be read, a value is wrong, or the geometry does not allow the deformation.
+    /// [`Input`](super::ErrorKind::Input) for an unreadable drawing, [`Usage`](super::ErrorKind::Usage) for a wrong value,
+    /// [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the drawing.
     pub fn warp_drawing(&self, bytes: &[u8], name: Option<&FilePath>) -> Result<Drawing, Error> {
         guarded(&self.registry, || {
             self.options()?;
@@ -387,7 +389,7 @@ impl Warper {
         })
     }
 
-    /// The options as read, with the switch. An inverse needs a frame.
+    /// Returns the parsed options with the switch. An inverse needs a frame.
     fn options(&self) -> Result<CommonOptions, Failure> {
         let mut options = self.given.read()?;
         if self.inverted && matches!(options.frame, FrameChoice::Default) {
@@ -434,13 +436,13 @@ fn typed(
     Ok(())
 }
 
-/// Checks values as far as they can be read without the artwork.
+/// Checks values as far as possible without the artwork.
 fn check_values(registry: &Registry, info: &Info, args: &Args) -> Result<(), Error> {
     let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
     guarded(registry, || Ok(Settings::new(info.params, args, &frame)?.check_values()?))
 }
 
-/// Describes a parameter that there is not. Options are often given beside parameters, so theirs may be meant.
+/// Describes an unknown parameter. The name may be that of an option.
 fn unknown(params: &[Param], param: &str) -> String {
     if check_option(param).is_ok() {
         return format!("`{param}` is an option, not a parameter; give it as an option");
@@ -451,7 +453,7 @@ fn unknown(params: &[Param], param: &str) -> String {
     if unknown.ends_with('?') { unknown } else { format!("{unknown}; there are {}", names.join(", ")) }
 }
 
-/// The frame for artwork that is not a drawing.
+/// Returns the frame for artwork that is not a drawing.
 fn plain_frame(options: &CommonOptions, bounds: impl FnOnce() -> Option<Rect>) -> Result<Frame, Failure> {
     let rect = match options.frame {
         FrameChoice::Default | FrameChoice::Artwork => bounds().unwrap_or(Rect::ZERO),

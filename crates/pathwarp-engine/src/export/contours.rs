@@ -1,4 +1,4 @@
-//! The lines that a machine follows: chained where their ends meet, and each of them once.
+//! Paths for a machine that cuts or draws: lines are chained where their ends meet, and repeated ones are left out.
 
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::kurbo::{Line, Point, Rect};
@@ -10,12 +10,12 @@ use std::hash::Hash;
 /// A contour or an open line, in mm.
 #[derive(Debug, Clone)]
 pub(super) struct Contour {
-    /// The index of the shape that it belongs to.
+    /// The index of its shape.
     pub(super) of: usize,
     pub(super) path: Subpath,
 }
 
-/// Places by cells as wide as what counts as near.
+/// An index of points by square cells, whose side is the distance `near`.
 struct Cells {
     near: f64,
     cells: HashMap<[i64; 2], Vec<usize>>,
@@ -30,7 +30,7 @@ impl Cells {
         self.cells.entry([p.x, p.y].map(|v| (v / self.near).floor() as i64)).or_default().push(item);
     }
 
-    /// The items in the cell of a place and in the eight around it, which all that are near are among.
+    /// Returns the items in the cell of a point and in the eight around it; these include all within `near`.
     fn around(&self, p: Point) -> impl Iterator<Item = usize> {
         let [x, y] = [p.x, p.y].map(|v| (v / self.near).floor() as i64);
         let keys = (-1..=1).flat_map(move |i| (-1..=1).map(move |k| [x.saturating_add(i), y.saturating_add(k)]));
@@ -38,7 +38,7 @@ impl Cells {
     }
 }
 
-/// For each closed contour, the first one that is the same within `near`, if there is one before it. `among` tells which are compared.
+/// For each closed contour, the first earlier one equal to it within `near`, if any. Their shapes must agree in `among`.
 pub(super) fn same<K: PartialEq>(
     all: &[Contour],
     among: impl Fn(usize) -> K,
@@ -68,9 +68,9 @@ pub(super) fn same<K: PartialEq>(
     Ok(out)
 }
 
-/// Leaves out the segments of open lines that are drawn before, within `near`, also as parts of contours. Returns their number.
+/// Removes segments of open lines that repeat earlier lines or parts of contours within `near`. Returns their number.
 pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl Fn(usize) -> K, near: f64) -> usize {
-    /// A place of a segment, and the same of its reverse.
+    /// Parameters at which a segment is compared; the set is its own mirror image, so it serves for the reversed segment, too.
     const OF_BOTH: [f64; 2] = [0.25, 0.75];
     let (mut seen, mut segs): (_, Vec<(usize, Seg)>) = (Cells::new(near), Vec::new());
     for c in all.iter().filter(|c| c.path.closed) {
@@ -104,21 +104,21 @@ pub(super) fn leave_out_lines<K: PartialEq>(all: &mut Vec<Contour>, among: impl 
     left_out
 }
 
-/// Returns `true` if two segments are the same within about `near`, in either direction.
+/// Returns `true` if two segments are about equal within `near`, in either direction.
 fn alike(a: &Seg, b: &Seg, near: f64) -> bool {
     const AT: [f64; 5] = [0.5, 0.0, 1.0, 0.25, 0.75];
     let same = |b: &dyn Fn(f64) -> Point| AT.iter().all(|t| a.eval(*t).distance(b(*t)) <= near);
     same(&|t| b.eval(t)) || same(&|t| b.eval(1.0 - t))
 }
 
-/// An end of an open line: its place among all lines, and `true` for the last point.
+/// An end of an open line: the line's index, and `true` for its last point.
 type End = (usize, bool);
 
 /// The end that each end is joined to.
 type Links = HashMap<End, End>;
 
-/// Joins open lines whose ends meet within `near`: two at one place, and several in pairs, those of one kind (`among`) first and in the
-/// order in which they are drawn. Where an odd number meets, they stay apart.
+/// Joins open lines whose ends meet within `near`. Several ends at one point are joined in pairs: first those of one kind (`among`), in
+/// drawing order. If their number is odd, they stay apart.
 pub(super) fn chained<K: Eq + Hash>(all: &[Contour], among: impl Fn(usize) -> K, near: f64) -> Vec<Contour> {
     let mut links = Links::new();
     for ends in meetings(all, near) {
@@ -137,7 +137,7 @@ pub(super) fn chained<K: Eq + Hash>(all: &[Contour], among: impl Fn(usize) -> K,
     joined(all, &links).into_iter().map(|c| c.contour).collect()
 }
 
-/// Open lines as contours, to find what they may be meant to enclose: joined where ends are some millimetres apart, and closed by lines.
+/// Joins open lines to contours that they may be meant as: ends up to some millimetres apart are joined, and gaps closed by lines.
 pub(super) fn closed_roughly(open: &[Contour], near: f64) -> Vec<Chain> {
     /// Ends farther apart than this, in mm, are not meant to meet.
     const REACH: f64 = 2.0;
@@ -157,7 +157,7 @@ pub(super) fn closed_roughly(open: &[Contour], near: f64) -> Vec<Chain> {
     out
 }
 
-/// The ends of open lines by the places where they are, within `near`.
+/// Groups the ends of open lines that meet within `near`.
 fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     let (mut cells, mut places): (_, Vec<(Point, Vec<End>)>) = (Cells::new(near), Vec::new());
     for (i, c) in all.iter().enumerate().filter(|(_, c)| !c.path.closed && !c.path.segs.is_empty()) {
@@ -174,11 +174,10 @@ fn meetings(all: &[Contour], near: f64) -> impl Iterator<Item = Vec<End>> {
     places.into_iter().map(|(_, ends)| ends)
 }
 
-/// Where more lines end, they are no contours.
+/// Ends at one point, above which the lines are not meant as contours.
 const MOST_ENDS: usize = 100;
 
-/// Joins ends at one place in pairs, unless (without `forced`) an odd number of different lines ends there. Returns the ends of a line that
-/// is alone there.
+/// Joins ends that meet in pairs, unless (without `forced`) an odd number of different lines meets. Returns the ends of a lone line.
 fn paired(all: &[Contour], ends: Vec<End>, near: f64, forced: bool, links: &mut Links) -> Vec<End> {
     let last = |(i, at_end): End| {
         let segs = &all[i].path.segs;
@@ -202,16 +201,16 @@ fn paired(all: &[Contour], ends: Vec<End>, near: f64, forced: bool, links: &mut 
     Vec::new()
 }
 
-/// Lines that follow each other.
+/// Lines joined end to end.
 pub(super) struct Chain {
-    /// The lines, by their place among all.
+    /// The indices of the lines.
     pub(super) members: Vec<usize>,
     pub(super) contour: Contour,
     /// The largest distance between ends that were joined.
     pub(super) gap: f64,
 }
 
-/// The lines along the links, in the order of their first members; those that come round are closed.
+/// Returns the chains of linked lines, in the order of their first members. A chain that returns to its start is closed.
 fn joined(all: &[Contour], links: &Links) -> Vec<Chain> {
     let mut done = vec![false; all.len()];
     let mut out = Vec::with_capacity(all.len());
@@ -219,7 +218,7 @@ fn joined(all: &[Contour], links: &Links) -> Vec<Chain> {
         if done[i] {
             continue;
         }
-        // Back to where the line begins, or once around.
+        // Follow the links backwards to the beginning of the chain, or once around it.
         let mut first = (i, false);
         while let Some((k, at_end)) = links.get(&first) {
             first = (*k, !at_end);
@@ -253,12 +252,12 @@ fn joined(all: &[Contour], links: &Links) -> Vec<Chain> {
     out
 }
 
-/// A line from one of its ends.
+/// Returns a line that starts at one of its ends.
 fn from_end(path: &Subpath, at_end: bool) -> Subpath {
     if at_end { path.reversed() } else { path.clone() }
 }
 
-/// Moves the first point of a segment by a hair.
+/// Moves the start of a segment to `p`, which is close to it.
 fn begin_at(s: &mut Seg, p: Point) {
     let by = p - s.start();
     match s {

@@ -1,4 +1,4 @@
-//! Drawings as DXF, in millimetres.
+//! Drawings as DXF, in millimetres: lines are chained, rid of repetitions, and moved to make room for the cut.
 
 use super::contours::{self, Contour};
 use super::exported::{Exported, counted};
@@ -15,13 +15,13 @@ use pathwarp_dxf::{Curves, Shape};
 use pathwarp_svg::{Document, Plot, PlotShape, Selection};
 use std::str::FromStr as _;
 
-/// Strokes that are wider than this many mm are hardly meant as lines to cut.
+/// Strokes wider than this, in mm, are hardly meant as lines to cut.
 const WIDE_STROKE: f64 = 0.5;
 
-/// Ends of lines that are so near meet, and lines so near are the same, in mm.
+/// Distance in mm within which ends of lines meet, and lines are equal.
 const MEETING: f64 = 0.01;
 
-/// The drawing as DXF. The lines follow curves within `tolerance` (user units), or within that of the options.
+/// Writes the drawing as DXF. The lines follow curves within `tolerance` (user units), or by default within the options' tolerance.
 pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f64>) -> Result<Exported, Failure> {
     let plot = doc.plot()?;
     let page = [doc.size_px().width, doc.size_px().height].map(|v| v * MM_PER_PX);
@@ -73,17 +73,17 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     Ok(Exported { bytes: text.into_bytes(), warnings, kerf })
 }
 
-/// How a machine follows lines.
+/// Settings for the machine that follows the lines.
 struct Machine<'a> {
-    /// Half the width of its cut in mm, if lines make room for it.
+    /// Half the width of its cut in mm, if lines move to make room for it.
     kerf: Option<f64>,
-    /// For each shape, whether it is not cut.
+    /// For each shape, `true` if it is engraved instead of cut.
     engraved: &'a [bool],
     keep_duplicates: bool,
     refit: &'a refit::Options,
 }
 
-/// The lines in mm as a machine follows them: each once, and with room for the width of its cut.
+/// Returns the lines in mm that the machine follows: without repetitions, and moved to make room for the cut.
 fn followed(
     doc: &Document,
     plot: &Plot,
@@ -94,7 +94,7 @@ fn followed(
     let near = machine.refit.tolerance.max(MEETING);
     let limit = |e| pathwarp::Error::limit(doc.name(), "comparing what a machine follows takes", e);
     let pen = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
-    // With a kerf, lines are compared whatever their layers and colours, cut ones and engraved ones apart.
+    // With a kerf, lines are compared across layers and colours, but cut ones never with engraved ones.
     let among = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
     let mut lines = lines;
     if machine.kerf.is_some() {
@@ -126,7 +126,7 @@ fn followed(
     Ok((lines, Some(report)))
 }
 
-/// For each shape, whether one of the selectors or colours says that it is not cut.
+/// For each shape, `true` if a selector or a colour exempts it from cutting.
 fn engraved(doc: &Document, plot: &Plot, named: &[String]) -> Result<Vec<bool>, Failure> {
     let mut out = vec![false; plot.shapes.len()];
     for name in named {

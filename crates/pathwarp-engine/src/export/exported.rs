@@ -1,14 +1,14 @@
-//! What an export gives.
+//! The result of an export.
 
 use super::kerf::KerfReport;
 
-/// A drawing in some format.
+/// A drawing in a file format.
 pub struct Exported {
     /// The file.
     pub bytes: Vec<u8>,
     /// Messages about content that the format cannot express.
     pub warnings: Vec<String>,
-    /// What `--kerf` did.
+    /// The changes made by `--kerf`.
     pub kerf: Option<KerfReport>,
 }
 
@@ -18,7 +18,7 @@ impl From<Vec<u8>> for Exported {
     }
 }
 
-/// A number with the noun in the singular or plural.
+/// Formats a number with its noun, singular or plural.
 pub(super) fn counted(n: usize, one: &str, more: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { more })
 }

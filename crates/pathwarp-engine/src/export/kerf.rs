@@ -1,4 +1,4 @@
-//! Room for the width of the cut: parts grow by half of it and their holes shrink, so that what is cut has the size drawn.
+//! Compensation for the width of the cut (kerf): outer contours grow by half of it and holes shrink, so that cut parts have the size drawn.
 
 use super::contours::{self, Contour};
 use super::exported::counted;
@@ -10,26 +10,26 @@ use pathwarp::{Outline, refit};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// What became of the contours of a drawing that `--kerf` makes room around; each is named by its shape.
+/// The changes that `--kerf` made to the contours of a drawing; each contour is named by its shape.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct KerfReport {
     /// Outer contours, which grew.
     pub grew: Vec<String>,
     /// Holes, which shrank.
     pub shrank: Vec<String>,
-    /// Open lines that enclose something: they stay where they are.
+    /// Open lines that enclose something and therefore stay where they are.
     pub undecided: Vec<String>,
-    /// Contours that cross another, which count as outer ones.
+    /// Contours that cross another one; they count as outer ones.
     pub crossing: Vec<String>,
-    /// Contours that closed, or that met another of their shape.
+    /// Contours that vanished, or that merged with another of their shape.
     pub lost: Vec<String>,
 }
 
-/// Most names in a message; the report has them all.
+/// Most names in a message; the report lists all.
 const NAMED: usize = 6;
 
 impl KerfReport {
-    /// What grew and what shrank, in a sentence.
+    /// Returns a sentence about the contours that grew and those that shrank.
     pub fn note(&self) -> String {
         let said = |names: &[String], done: &str| {
             let contours = counted(names.len(), "contour", "contours");
@@ -38,12 +38,12 @@ impl KerfReport {
         format!("--kerf: {}; {}", said(&self.grew, "grew"), said(&self.shrank, "shrank"))
     }
 
-    /// Whether something could not be decided.
+    /// Returns `true` if open lines were left as they are, because their inside is unknown.
     pub fn is_partial(&self) -> bool {
         !self.undecided.is_empty()
     }
 
-    /// What a cutter should know.
+    /// Returns warnings for whoever cuts the drawing.
     pub(super) fn warnings(&self) -> Vec<String> {
         let mut out = Vec::new();
         if !self.undecided.is_empty() {
@@ -72,19 +72,19 @@ fn named(names: &[String]) -> String {
     listed(&different, NAMED)
 }
 
-/// How contours move.
+/// Settings for moving contours.
 pub(super) struct Kerf<'a> {
     /// Half the width of the cut.
     pub(super) by: f64,
-    /// Ends that are so near meet, and contours are the same.
+    /// Distance within which ends meet, and contours are equal.
     pub(super) near: f64,
     pub(super) refit: &'a refit::Options,
-    /// Charges so many comparisons.
+    /// Charges the budget for this number of comparisons.
     pub(super) spend: &'a dyn Fn(f64) -> Result<(), pathwarp::Error>,
 }
 
-/// Moves closed contours by half the kerf to the outside of what they enclose; open lines stay. A contour is a hole if an odd number of
-/// the others is around it, of which equal ones (`same`) count once.
+/// Moves closed contours by half the kerf, away from the material they enclose; open lines stay. A contour is a hole if an odd number of
+/// other contours is around it; equal ones (`same`) count once.
 pub(super) fn widen(
     all: Vec<Contour>,
     same: &[Option<usize>],
@@ -132,7 +132,7 @@ pub(super) fn widen(
     Ok((out, report))
 }
 
-/// For each contour, the number of the others (`among`) around it; `crosses` is told of those that cross another.
+/// For each contour, the number of others (`among`) around it. Calls `crosses` for those that cross another.
 fn depths(
     loops: &[Loop],
     mut among: Vec<usize>,
@@ -142,7 +142,7 @@ fn depths(
     let mut depths = vec![0; loops.len()];
     let mut crossing = BTreeSet::new();
     among.sort_by(|a, b| loops[*a].bounds.x0.total_cmp(&loops[*b].bounds.x0));
-    // Those that reach as far to the right as the next begins.
+    // Contours that extend as far to the right as the next one's left side.
     let mut beside: Vec<usize> = Vec::new();
     for i in among {
         beside.retain(|k| loops[*k].bounds.x1 >= loops[i].bounds.x0);
@@ -160,20 +160,20 @@ fn depths(
     Ok(depths)
 }
 
-/// A contour, to be looked up.
+/// A contour, prepared for tests of points.
 struct Loop {
     path: BezPath,
     bounds: Rect,
-    /// Points a little inside of it.
+    /// Points just inside of it.
     points: Vec<Point>,
 }
 
 impl Loop {
     fn new(c: &Contour) -> Self {
-        /// Most segments looked at, and where.
+        /// Most segments that get points, and the parameters of the points.
         const MOST: usize = 8;
         const AT: [f64; 3] = [0.2, 0.5, 0.8];
-        /// How far from edges that contours may share, and arcs as cubics, against the contour's size.
+        /// Distance of the points from the contour, as a share of its size; larger than the error of arcs as cubics.
         const BESIDE: f64 = 1e-4;
         let size = c.path.diagonal();
         let path = Outline { subpaths: vec![c.path.clone()] }.to_bez_path(BESIDE * size);
@@ -187,7 +187,7 @@ impl Loop {
         Self { path, bounds: c.path.bounding_box(), points }
     }
 
-    /// How many points of another contour lie inside of this one, and how many outside.
+    /// Returns the numbers of points of another contour that lie inside of this one and outside.
     fn places(&self, other: &Self) -> [usize; 2] {
         if self.bounds.intersect(other.bounds).is_zero_area() {
             return [0, other.points.len()];

@@ -1,4 +1,4 @@
-//! Drawings in the formats besides SVG, and GIMP's paths in every format.
+//! Drawings in formats other than SVG, and GIMP's paths in every format.
 
 mod contours;
 mod dxf;
@@ -24,7 +24,7 @@ use std::path::Path;
 /// Writes a document in another format.
 type Writer = fn(&Document, &CommonOptions, Option<f64>) -> Result<Exported, Failure>;
 
-/// A drawing with the page that the options ask for.
+/// Returns a drawing with the page size that the options ask for.
 fn resized(doc: &Document, options: &CommonOptions) -> String {
     let Some(scale) = options.page_scale(doc.size_px()) else { return doc.text().to_owned() };
     // SVG knows neither metres nor plain numbers that are not px.
@@ -39,8 +39,8 @@ fn resized(doc: &Document, options: &CommonOptions) -> String {
     doc.resized(scale.by, name, unit.px().unwrap_or(1.0))
 }
 
-/// The drawing `svg` in a format, with links that hold at its destination. `read` says how to read it, `tolerance` (user units) how close
-/// the lines of a DXF follow curves; by default it is that of the options.
+/// Writes the drawing `svg` in a format, with links that hold at its destination. `read` has the options to read it, and `tolerance` (user
+/// units) is the distance within which the lines of a DXF follow curves; by default, the options decide.
 pub fn drawing(
     svg: String,
     (format, destination): (Format, &Destination),
@@ -74,15 +74,15 @@ pub fn drawing(
         }
         return Ok(svg.into_bytes().into());
     };
-    // PDF and its reader know single precision only.
+    // PDF and its readers use single precision.
     let there = parsed(&svg)?;
     let there = there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?;
-    // A DXF is made from the outlines of the document, a PDF from usvg's tree.
+    // A DXF is made from the document's outlines, a PDF from usvg's tree.
     let resolved = if format == Format::Dxf { None } else { there.resolved()? };
     write(&resolved.map_or(Ok(there), |plain| parsed(&plain))?, options, tolerance)
 }
 
-/// GIMP's paths in a format. Sizes are in px. `tolerance` as for [`drawing`].
+/// Writes GIMP's paths in a format. Sizes are in px. The lines of a DXF follow curves within `tolerance`.
 pub fn paths(
     canvas: [f64; 2],
     paths: &[GimpPath],

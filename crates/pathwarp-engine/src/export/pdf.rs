@@ -6,7 +6,7 @@ use crate::options::CommonOptions;
 use pathwarp_svg::Document;
 use pathwarp_svg::usvg_tree::{self, ExactOutlines};
 
-/// The drawing as PDF.
+/// Writes the drawing as PDF.
 pub(super) fn write(doc: &Document, options: &CommonOptions, _: Option<f64>) -> Result<Exported, Failure> {
     let (exact, spots) = (ExactOutlines::of(doc), doc.spots());
     let written = usvg_tree::with_stack(doc, || {

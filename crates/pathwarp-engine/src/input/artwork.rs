@@ -1,4 +1,4 @@
-//! [`Artwork`]: what the pipeline asks of every kind of input.
+//! [`Artwork`]: the interface between the pipeline and every kind of input.
 
 use super::files::no_document;
 use super::proportions::Proportions;
@@ -22,54 +22,54 @@ use pathwarp_svg::engine::CutLine;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Which of the artwork is meant.
+/// A selection of the artwork.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Which {
-    /// All that is warped.
+    /// All that the recipe warps.
     All,
-    /// What this step of the recipe holds for.
+    /// The selection of this step of the recipe.
     Step(usize),
-    /// What the same steps hold for, in the order of [`Artwork::divide`].
+    /// A part to which the same steps apply, in the order of [`Artwork::divide`].
     Part(usize),
 }
 
 /// Artwork of one kind, read and ready to be warped.
 pub trait Artwork {
-    /// The path that the reference `#NAME` means.
+    /// Returns the path that the reference `#NAME` means.
     fn path_named(&self, name: &str) -> Result<Outline, Error>;
 
-    /// Removes the paths that serve as guides from the artwork. Called once, before anything below.
+    /// Removes the paths that serve as guides. Called once, before all methods below.
     fn remove_guides(&mut self, guides: Vec<String>);
 
-    /// Edits what these steps hold for before they do anything. Called once the guides are removed.
+    /// Edits the artwork before the first of these steps, which bend it. Called once the guides are removed.
     ///
     /// # Errors
-    /// The artwork cannot be edited.
+    /// [`Failure::Usage`] if the artwork cannot be edited, [`Failure::Library`] if an edit fails.
     fn edit_first(&mut self, edits: &[Step], _steps: &[Step], _options: &CommonOptions) -> Result<(), Failure> {
         if edits.is_empty() { Ok(()) } else { Err(Failure::usage(advice::NO_PATHS_TO_EDIT)) }
     }
 
-    /// Divides the artwork by what the steps hold for; returns the indices of each part's steps. Called once, after the guides are
-    /// removed, and only if a step has a selection of its own.
+    /// Divides the artwork into parts to which the same steps apply. Returns the indices of each part's steps. Called once, after the
+    /// guides are removed, and only if a step has a selection.
     ///
     /// # Errors
-    /// A selector matches nothing, or the artwork has no parts.
+    /// [`Failure::Library`] if a selector matches nothing, [`Failure::Usage`] if the artwork has no parts.
     fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure>;
 
-    /// The bounding box of the artwork; `None` if there is none.
+    /// Returns the bounding box; `None` if there is no artwork.
     fn bounding_box(&self, which: Which) -> Option<Rect>;
 
-    /// The bounding box of all of the artwork, with strokes.
+    /// Returns the bounding box of all artwork, with strokes.
     fn painted_box(&self) -> Option<Rect> {
         self.bounding_box(Which::All)
     }
 
-    /// The bounding box, `bounds`, with what the page cuts off the artwork. `None` if it cuts nothing.
+    /// Enlarges the bounding box, `bounds`, by the artwork that the page cuts off; `None` if it cuts nothing.
     fn uncut_box(&self, _which: Which, _bounds: Rect) -> Option<Rect> {
         None
     }
 
-    /// The frame for building a step that no other comes before. `bounds` is the artwork's bounding box.
+    /// Returns the frame for a step that no other precedes. `bounds` is the artwork's bounding box.
     fn frame(
         &self,
         which: Which,
@@ -78,39 +78,39 @@ pub trait Artwork {
         baseline: Baseline,
     ) -> Result<Frame, Failure>;
 
-    /// User units per px along x and y.
+    /// Returns the user units per px along x and y.
     fn units_per_px(&self) -> [f64; 2] {
         [1.0; 2]
     }
 
-    /// The page that it is on.
+    /// Returns the page that the artwork is on.
     fn page(&self) -> Option<Rect> {
         None
     }
 
-    /// The outlines of the artwork.
+    /// Returns the outlines of the artwork.
     fn outlines(&self, which: Which) -> Vec<&Outline>;
 
-    /// The limits on the work that the artwork causes, and what is used of them.
+    /// The limits on the work that the artwork causes, and the work spent.
     fn budget(&self) -> &Arc<Budget>;
 }
 
-/// Artwork from a file, which gives another one.
+/// Artwork from a file, warped to another file.
 pub trait FileArtwork: Artwork {
-    /// The name of the file in reports.
+    /// Returns the name of the file in reports.
     fn file_name(&self) -> String;
 
     /// Warps the artwork.
     fn warp(&self, request: &WarpRequest<'_>) -> Result<WarpedArtwork, Failure>;
 }
 
-/// Outlines that come from no file.
+/// Outlines without a file.
 pub struct PlainArtwork<'a> {
     /// The outlines, in user units.
     pub outlines: Vec<&'a Outline>,
-    /// The frame of every step that no other comes before.
+    /// The frame of every step that no other precedes.
     pub frame: Frame,
-    /// The limits on the work, and what is used of them.
+    /// The limits on the work, and the work spent.
     pub budget: Arc<Budget>,
 }
 
@@ -146,7 +146,7 @@ impl Artwork for PlainArtwork<'_> {
     }
 }
 
-/// Lines all over a box: artwork for deformations that look at it, so that the map depends on the frame alone, and no point on another.
+/// Returns lines all over a box, for deformations that examine artwork: the map then depends on the frame, not on the points mapped.
 pub fn hatching(frame: Rect) -> Outline {
     const LINES: u32 = 24;
     let line = |i: u32| {
@@ -159,11 +159,11 @@ pub fn hatching(frame: Rect) -> Outline {
 /// The baseline of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {
-    /// The deformation has none; it has no use for lettering.
+    /// The deformation has no baseline and does not use lettering.
     None,
-    /// The recipe gives it, or the deformation has none and only asks for the letters.
+    /// The recipe gives it, or the deformation has none and only needs the letters.
     Given,
-    /// The recipe leaves it at its default, which follows the lettering.
+    /// The recipe omits it; the default follows the lettering.
     Open,
 }
 
@@ -171,21 +171,21 @@ pub enum Baseline {
 pub struct WarpRequest<'a> {
     /// The steps as given.
     pub recipe: &'a Recipe,
-    /// One for each part of the artwork.
+    /// The built steps of each part of the artwork.
     pub built: &'a BuiltParts,
     /// The options as read.
     pub options: &'a CommonOptions,
-    /// User units.
+    /// In user units.
     pub tolerance: f64,
-    /// Small contours are held to less; see [`suited`](pathwarp::refit::suited).
+    /// Use smaller tolerances for small contours; see [`suited`](pathwarp::refit::suited).
     pub suited: bool,
-    /// What is done to the artwork instead of bending it.
+    /// The edit to do instead of bending.
     pub edit: Option<Edit>,
-    /// How the line of a contour is written.
+    /// The line of a contour in the result.
     pub line: CutLine,
     /// The recipe file's text, to be embedded in the result.
     pub embedded_recipe: Option<String>,
-    /// Show the result on the page of the source.
+    /// Show the result on the source's page.
     pub same_view: bool,
 }
 
@@ -196,36 +196,36 @@ pub struct WarpedArtwork {
     pub skipped: Vec<SkippedShape>,
     pub warnings: Vec<String>,
     pub page: PageNews,
-    /// Elements whose filters became pictures, and those whose filters look right under their fit.
+    /// Elements whose filters became pictures, and those whose filters kept their affine fits.
     pub(crate) filters: [Vec<String>; 2],
-    /// The tolerance, if it is not that of the request.
+    /// The tolerance, if it differs from the request's.
     pub(crate) tolerance: Option<f64>,
     /// Files besides the result.
     pub(crate) files: Vec<PendingFile>,
     /// The picture of `--preview`.
     pub(crate) preview: Option<Vec<u8>>,
-    /// What `--kerf` did.
+    /// The changes made by `--kerf`.
     pub(crate) kerf: Option<KerfReport>,
     /// The proportions that `--crop` found in a photograph.
     pub(crate) proportions: Option<Proportions>,
-    /// Something was left out besides the skipped shapes.
+    /// `true` if something besides the skipped shapes was left out.
     pub(crate) partial: bool,
 }
 
 /// The warped file.
 pub enum WarpedResult {
-    /// To be written to the target or to standard output.
+    /// Bytes for the target or for standard output.
     Bytes(Vec<u8>),
-    /// Written to its own place.
+    /// A file with a destination.
     File(PendingFile),
 }
 
-/// The warning that the shape `id` folds at `at`, with its letters that fold.
+/// Returns the warning that the shape `id` folds at `at`, with the letters in it that fold.
 pub(super) fn fold_warning(id: &str, letters: &[String], at: Point) -> String {
     const NAMED: usize = 8;
     let place = format!("near {:.4},{:.4}: the map reverses orientation there", at.x, at.y);
     match letters {
-        // An outlined letter has its name in its id.
+        // The id of an outlined letter contains its name.
         [] => format!("{id} folds over {place}"),
         [one] if id.contains(one.as_str()) => format!("{id} folds over {place}"),
         [one] => format!("{id}: the letter “{one}” folds over {place}"),
@@ -236,13 +236,13 @@ pub(super) fn fold_warning(id: &str, letters: &[String], at: Point) -> String {
     }
 }
 
-/// The letters of every shape, by its id.
+/// Groups the letters by the ids of their shapes.
 pub(super) fn letters_by_shape<'a>(
     shapes: impl Iterator<Item = (&'a str, &'a Outline)>,
     letters: &'a [Letter],
 ) -> HashMap<&'a str, Vec<&'a Letter>> {
     let bits = |p: Point| [p.x.to_bits(), p.y.to_bits()];
-    // The outline of a letter is a run of the subpaths of its shape.
+    // The outline of a letter is a range of the subpaths of its shape.
     let starting = letters.iter().filter_map(|l| Some((bits(l.outline.subpaths.first()?.start), l)));
     let starting: HashMap<[u64; 2], &Letter> = starting.collect();
     let mut out: HashMap<&str, Vec<&Letter>> = HashMap::new();
@@ -253,7 +253,7 @@ pub(super) fn letters_by_shape<'a>(
     out
 }
 
-/// The names of the letters that fold against the artwork as a whole.
+/// Returns the names of the letters that fold, relative to the artwork as a whole.
 pub(super) fn folded(
     letters: Option<&Vec<&Letter>>,
     all: &Orientation,

@@ -1,4 +1,4 @@
-//! Edits of a drawing before it is bent.
+//! Edits of a drawing before it is bent. They shift positions in the document; if selectors use these, elements get ids meanwhile.
 
 use crate::advice;
 use crate::bitmap::Bender;
@@ -19,23 +19,23 @@ use pathwarp_svg::{Document, Edit, PageFit, Painter, ReadOptions, Selection, War
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Distance of `simplify` as a fraction of the artwork's diagonal, if none is given: half a pixel of a thousand.
+/// Default distance of `simplify`, as a fraction of the artwork's diagonal: half a pixel on a screen with a diagonal of a thousand.
 const SIMPLIFY_DISTANCE: f64 = 5e-4;
 
-/// An edit of some artwork.
+/// An edit with its parameters read.
 #[derive(Debug, Clone)]
 pub(crate) struct Planned {
     pub(crate) edit: Edit,
-    /// How the line of a contour is written.
+    /// The line of a contour in the result.
     pub(crate) line: CutLine,
-    /// User units.
+    /// In user units.
     pub(crate) tolerance: f64,
-    /// Small contours are held to less.
+    /// Use smaller tolerances for small contours.
     pub(crate) suited: bool,
 }
 
-/// Reads the parameters of an edit for artwork in this frame. Only in the last one of a recipe without further steps does the option `tolerance` say how
-/// closely paths are simplified.
+/// Reads the parameters of an edit for artwork in this frame. If it is the last one of a recipe without further steps, the option
+/// `tolerance` is the distance of `simplify`.
 pub(crate) fn planned(
     step: &Step,
     options: &CommonOptions,
@@ -93,7 +93,7 @@ pub(crate) fn planned(
     Ok(Planned { edit, line, tolerance, suited })
 }
 
-/// How the line of a contour is written.
+/// Reads the settings for the line of a contour.
 fn cut_line(s: &Settings<'_>) -> Result<CutLine, Failure> {
     let spot = s.texts("spot").first().map(|name| spot_name(name)).transpose()?;
     let (knockout, only, marks) = (s.flag("knockout")?, s.flag("only")?, s.flag("marks")?);
@@ -107,9 +107,9 @@ fn cut_line(s: &Settings<'_>) -> Result<CutLine, Failure> {
     Ok(CutLine { spot, knockout, only, bleed, marks })
 }
 
-/// The name of an ink, if PDF can hold it (ISO 32000-1, annex C.2, 7.3.5 and 8.6.6.4).
+/// Returns the name of an ink if PDF can hold it (ISO 32000-1, annex C.2, 7.3.5 and 8.6.6.4).
 fn spot_name(name: &str) -> Result<String, Failure> {
-    /// Bytes of a name.
+    /// Most bytes of a name.
     const LONGEST: usize = 127;
     let why = match name.trim() {
         "" => "a name of at least one letter",
@@ -123,26 +123,26 @@ fn spot_name(name: &str) -> Result<String, Failure> {
     Err(Failure::usage(format!("--spot `{name}`: a PDF needs {why}")))
 }
 
-/// What reads the opacity of pictures, and continues their edges.
+/// Returns the painter that reads the opacity of pictures and continues their edges.
 fn painter(budget: &Arc<Budget>) -> Painter {
     Painter::new(Arc::new(Bender::new(Arc::new(AffineMap(Affine::IDENTITY)), None).with_budget(budget.clone())))
 }
 
-/// What is done to a drawing, and to what of it.
+/// The edits of a drawing, and the selections that they depend on.
 #[derive(Debug, PartialEq)]
 pub(super) struct Wanted {
     edits: Vec<Step>,
-    /// What is bent at all.
+    /// The selection of everything that is bent.
     whole: Selection,
-    /// What each step bends; empty if all bend everything.
+    /// The selection of each step; empty if all steps bend everything.
     steps: Vec<Selection>,
 }
 
-/// A drawing as it was read, while an edited one stands in for it.
+/// A drawing as it was read, kept while an edited one replaces it.
 pub(super) struct Original {
     pub(super) document: Document,
     pub(super) wanted: Wanted,
-    /// The page that the edits need, if that is larger.
+    /// The page that the edits need, if it is larger.
     pub(super) grown: Option<Rect>,
     pub(super) warnings: Vec<String>,
 }
@@ -150,7 +150,7 @@ pub(super) struct Original {
 /// An edited drawing on the page of its source.
 pub(super) struct Edited {
     pub(super) document: Document,
-    /// The page that it needs, if that is larger.
+    /// The page that it needs, if it is larger.
     pub(super) grown: Option<Rect>,
     pub(super) warnings: Vec<String>,
 }
@@ -160,12 +160,12 @@ impl Wanted {
         Self { edits: edits.to_vec(), whole, steps }
     }
 
-    /// What is bent at all.
+    /// Returns the selection of everything that is bent.
     pub(super) fn whole(&self) -> &Selection {
         &self.whole
     }
 
-    /// The selection of shapes that an edit changes: its own, or else that of all steps that bend.
+    /// Returns the selection of shapes that an edit changes: the edit's, or else the union of the bending steps'.
     fn concerned(&self, document: &Document, edit: &Step) -> Selection {
         let exclude = [&self.whole.exclude[..], &edit.exclude].concat();
         let all = Selection { exclude, ..self.whole.clone() };
@@ -181,14 +181,14 @@ impl Wanted {
         document.united(parts.iter().map(|p| &p.selection))
     }
 
-    /// A selector names an element without an id by its place.
+    /// Returns `true` if a selector names an element without an id by its position.
     fn names_places(&self) -> bool {
         let selectors = |s: &Selection| s.select.iter().chain(&s.exclude).any(|name| is_place(name));
         let of_edits = self.edits.iter().flat_map(|s| s.select.iter().chain(&s.exclude)).any(|name| is_place(name));
         of_edits || self.steps.iter().chain([&self.whole]).any(selectors)
     }
 
-    /// The drawing with its edits, in which all selectors find the same as in the source.
+    /// Returns the drawing with its edits. All selectors match the same elements as in the source.
     pub(super) fn done(
         &self,
         source: &Document,
@@ -197,7 +197,7 @@ impl Wanted {
         options: &CommonOptions,
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
-        // Places shift.
+        // Edits shift the positions of elements.
         let named =
             self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
         let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
@@ -243,7 +243,7 @@ impl Wanted {
 }
 
 impl Original {
-    /// A result without the ids that the edited drawing has and the source has not.
+    /// Removes the ids from a result that the edits have added.
     pub(super) fn without_ids(&self, svg: &str) -> String {
         let own: HashSet<&str> = ids(self.document.text()).map(|(_, id)| id).collect();
         let (mut out, mut done) = (String::with_capacity(svg.len()), 0);
@@ -258,12 +258,12 @@ impl Original {
 
 const ID: &str = " id=\"";
 
-/// The ids in a text, and where their attributes begin.
+/// Finds the ids in a text, with the offsets of their attributes.
 fn ids(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.match_indices(ID).filter_map(|(at, _)| Some((at, text[at + ID.len()..].split_once('"')?.0)))
 }
 
-/// Returns `true` for the name of an element without an id: its place.
+/// Returns `true` for the name of an element without an id, which is its position.
 fn is_place(id: &str) -> bool {
     let numbers = id.rsplit_once(" at ").and_then(|(_, place)| place.split_once(':'));
     numbers.is_some_and(|(line, column)| [line, column].iter().all(|n| n.parse::<usize>().is_ok()))

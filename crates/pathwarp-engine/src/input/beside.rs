@@ -1,5 +1,4 @@
-//! Files beside the result: the picture of `--preview`, and the artwork on a surface in space as OBJ, a mesh of the filled shapes or
-//! curves.
+//! Additional files: the picture of `--preview`, and the artwork on a surface in space as OBJ (a mesh of the filled shapes, or curves).
 
 use crate::advice;
 use crate::bitmap::encode;
@@ -18,13 +17,13 @@ use pathwarp_solid::artwork::{self, NamedShape};
 use pathwarp_svg::{Document, ReadOptions, Selection, WarpOptions, usvg_tree};
 use std::path::{Path, PathBuf};
 
-/// Longer side of a panel on which nodes are told apart, in pixels.
+/// Longer side of a panel that shows nodes, in pixels.
 const NODES_PANEL: u32 = 1400;
 
 /// The formats of previews.
 pub const PREVIEW: Choice<'_> = Choice { what: "a preview is", among: PICTURES };
 
-/// Draws the picture for a file, with a quality if it is a JPEG. Bases are drawn over the source; targets and cages over the
+/// Draws the preview for a file, with the given quality if it is a JPEG. Bases are drawn over the source; targets and cages over the
 /// result, which `back` has moved as a whole after all steps.
 pub(super) fn preview(
     doc: &Document,
@@ -43,7 +42,7 @@ pub(super) fn preview(
     let mut left = Panel::new(&trees[0], doc.user_to_px(), doc.view_box());
     let mut right = Panel::new(&trees[1], after.user_to_px(), after.view_box());
     let everything = Selection::default();
-    // All artwork is shown, including what the warp moved off the page.
+    // Include artwork that the warp moved off the page.
     for (panel, doc) in [(&mut left, doc), (&mut right, &after)] {
         *panel = doc.artwork_box(&everything).into_iter().fold(panel.clone(), Panel::showing);
     }
@@ -54,8 +53,7 @@ pub(super) fn preview(
         let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
         let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
         for o in &step.explanation.overlays {
-            // The guides of a middle step lie in a plane that neither panel shows. A cage whose result goes to a target is
-            // only a pattern, so it is drawn over the source.
+            // Neither panel shows the plane of a middle step's guides. A cage whose result goes to a target belongs to the source.
             let (panel, kind, to) = match o.role {
                 Role::Base if is_first => (&mut left, OverlayKind::Base, Affine::IDENTITY),
                 Role::Cage if is_first && has_target => (&mut left, OverlayKind::Cage, Affine::IDENTITY),
@@ -75,7 +73,7 @@ pub(super) fn preview(
     encode(preview.render_within(&doc.budget().limits())?, format, options.quality)
 }
 
-/// The control polygons of the exact images of some paths.
+/// Returns the control polygons of the exact images of the selected paths.
 fn polygons(doc: &Document, selectors: &[String], map: &dyn Map) -> Result<BezPath, Failure> {
     let mut path = BezPath::new();
     let selection = Selection { select: selectors.to_vec(), ..Selection::default() };
@@ -98,7 +96,7 @@ fn polygons(doc: &Document, selectors: &[String], map: &dyn Map) -> Result<BezPa
     Ok(path)
 }
 
-/// Refuses steps that write such a file for artwork which other steps have bent in several ways.
+/// Refuses a file of one surface if other steps have bent parts of the artwork in different ways.
 pub(super) fn check_surface(built: &BuiltParts) -> Result<(), Failure> {
     let asks = |(i, step): (usize, &Built)| {
         let file = step.space.as_ref()?.files.first()?;
@@ -114,7 +112,7 @@ pub(super) fn check_surface(built: &BuiltParts) -> Result<(), Failure> {
     }
 }
 
-/// The files that the recipe's steps ask for, with their text.
+/// Returns the files that the recipe's steps ask for, with their texts.
 pub(super) fn surface_files(
     doc: &Document,
     built: &BuiltRecipe,

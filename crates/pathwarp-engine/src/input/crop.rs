@@ -1,4 +1,4 @@
-//! What `--crop` keeps of a photograph: the image of the frame, at the size that the frame has in the photograph.
+//! The area that `--crop` keeps of a photograph: the image of the frame, at the frame's size in the photograph.
 
 use super::proportions::Proportions;
 use crate::failure::Failure;
@@ -8,33 +8,33 @@ use pathwarp::kurbo::{BezPath, PathEl, Point, Rect, Shape as _};
 use pathwarp::map::Map;
 use pathwarp::recipe::{BuiltRecipe, Recipe};
 
-/// Samples of a side.
+/// Number of samples on a side.
 const SAMPLES: usize = 64;
 
-/// The image of the frame.
+/// The image of the frame under the map.
 pub(super) struct Crop {
     pub(super) bounds: Rect,
-    /// It is a rectangle along the axes.
+    /// `true` if the image is a rectangle along the axes.
     is_straight: bool,
 }
 
-/// A straightened frame as it is in the photograph.
+/// The frame in the photograph, before it is straightened.
 pub(super) struct Source {
     pub(super) outline: Outline,
-    /// Its mean width and height along its sides.
+    /// Its mean width and height.
     size: (f64, f64),
-    /// Its corners from the lower left over the lower right, if it is seen as a camera sees a rectangle.
+    /// Its corners, counterclockwise from the lower left, if a camera would see a rectangle like that.
     corners: Option<[Point; 4]>,
 }
 
 impl Source {
-    /// The proportions of the frame in space, where its corners and the middle of the picture tell them for certain.
+    /// Returns the proportions of the frame in space, if its corners and the picture's centre determine them reliably.
     pub(super) fn proportions(&self, picture: Rect) -> Option<Proportions> {
         let corners = self.corners?;
         Proportions::seen(corners, picture).filter(|p| p.is_sound(corners, picture))
     }
 
-    /// The size in pixels at this ratio of width to height, without loss of detail; of the mean sides, if there is none.
+    /// Returns a size in pixels with this ratio of width to height that keeps all detail; without a ratio, the mean size.
     pub(super) fn size_at(&self, ratio: Option<f64>) -> (f64, f64) {
         let (width, height) = self.size;
         let Some(ratio) = ratio else { return self.size };
@@ -42,7 +42,7 @@ impl Source {
         (width, width / ratio)
     }
 
-    /// A ratio of sides as width to height: upright or lying, as the frame is in space, or else in the photograph.
+    /// Turns a ratio of sides into width to height: upright or lying like the frame in space, or else like the frame in the photograph.
     pub(super) fn oriented(&self, sides: f64, picture: Rect) -> f64 {
         let seen = self.corners.and_then(|corners| Proportions::seen(corners, picture));
         let seen = seen.map_or(self.size.0 / self.size.1, |p| p.ratio);
@@ -51,8 +51,8 @@ impl Source {
 }
 
 impl Crop {
-    /// Finds the image of the frame of the first step that straightens something: one with corners of its own, or an inverse one, which
-    /// takes what it holds for into the frame. If none does, it is that of the first step's frame.
+    /// Finds the image of the frame of the first step that straightens something: one with corners that differ from its frame's, or an
+    /// inverse one, which maps its selection onto the frame. If there is none, the first step's frame is taken.
     pub(super) fn of(built: &BuiltRecipe, recipe: &Recipe) -> Result<Self, Failure> {
         let is_inverse = |i: usize| recipe.steps.get(built.indices[i]).is_some_and(|s| s.inverse);
         let frame = |i: usize| corners(built.frames[i].rect);
@@ -71,7 +71,7 @@ impl Crop {
         Ok(Self { bounds, is_straight: is_box(&image, bounds) })
     }
 
-    /// The frame in the photograph, if its image is a rectangle along the axes.
+    /// Returns the frame in the photograph, if its image is a rectangle along the axes.
     pub(super) fn source(&self, inverse: &dyn Map) -> Option<Source> {
         let points: Vec<Point> = ring(corners(self.bounds)).map(|p| inverse.point(p)).collect();
         let length = |side: usize| {
@@ -88,27 +88,27 @@ impl Crop {
     }
 }
 
-/// The corners among points along the sides of the image of `bounds`, if a projective map takes the box there.
+/// Selects the corners from points along the sides of the preimage of `bounds`, if a projective map takes the box there.
 fn perspective(bounds: Rect, points: &[Point]) -> Option<[Point; 4]> {
-    /// The largest distance in pixels that counts as none.
+    /// The largest distance in pixels that counts as zero.
     const SAME: f64 = 0.05;
     let quad = [0, 1, 2, 3].map(|side| points[side * SAMPLES]);
     let map = Projective::new(corners(bounds), quad).build().ok()?.map;
     ring(corners(bounds)).zip(points).all(|(p, q)| map.point(p).distance(*q) < SAME).then_some(quad)
 }
 
-/// The corners of a box, in the order of anchors: from its bottom left over the right.
+/// Returns the corners of a box, counterclockwise from the lower left, the order of anchors.
 fn corners(r: Rect) -> [Point; 4] {
     [(r.x0, r.y1), (r.x1, r.y1), (r.x1, r.y0), (r.x0, r.y0)].map(Point::from)
 }
 
-/// Points along the sides of a quadrilateral.
+/// Returns points along the sides of a quadrilateral.
 fn ring(quad: [Point; 4]) -> impl Iterator<Item = Point> {
     let side = move |i: usize| (0..SAMPLES).map(move |k| quad[i].lerp(quad[(i + 1) % 4], k as f64 / SAMPLES as f64));
     (0..4).flat_map(side)
 }
 
-/// The guide of a step that is a quadrilateral.
+/// Returns the guide of a step, if it is a quadrilateral.
 fn quad(step: &Built, role: Role) -> Option<[Point; 4]> {
     let path: &BezPath = &step.explanation.overlays.iter().find(|o| o.role == role)?.path;
     let mut points: Vec<Point> = Vec::new();
@@ -126,9 +126,9 @@ fn quad(step: &Built, role: Role) -> Option<[Point; 4]> {
     <[Point; 4]>::try_from(points).ok().filter(|_| path.area() != 0.0)
 }
 
-/// Returns `true` if the image of the sides of a quadrilateral is a box, corners at its corners.
+/// Returns `true` if the image of a quadrilateral's sides is a box, and corners map to corners.
 fn is_box(image: &[Point], bounds: Rect) -> bool {
-    /// The largest distance that counts as none, as a share of the box's size.
+    /// The largest distance that counts as zero, as a share of the box's diagonal.
     const SAME: f64 = 2e-3;
     let near = SAME * bounds.width().hypot(bounds.height());
     let off = |p: Point| {

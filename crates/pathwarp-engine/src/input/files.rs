@@ -1,4 +1,4 @@
-//! Input files: read, and named in references; what is said of those that are no drawings.
+//! Input files: reading them, splitting references to parts of them, and describing files that are not drawings.
 
 use super::gimp;
 use crate::failure::Failure;
@@ -19,7 +19,7 @@ fn is_stdin(input: &Path) -> bool {
     input.as_os_str() == "-"
 }
 
-/// The name of an input in messages and reports. A drawing in memory may have none.
+/// Returns the name of an input in messages and reports. A drawing in memory may have none.
 pub fn display(input: &Path) -> String {
     match input.to_str() {
         Some("-") => "standard input".into(),
@@ -44,10 +44,10 @@ pub fn bytes(input: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// The bytes of a file that begins unlike any of GIMP's, as nearly all drawings and pictures do; opened and read once. `None`: of
-/// a file that needs a closer look, of standard input, and of a name that is no file.
+/// Reads a file once, if it begins unlike GIMP's files, as nearly all drawings and pictures do. `None` stands for a file that needs a
+/// closer look, for standard input, and for a name that is no file.
 pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
-    /// Room to find the end without another allocation.
+    /// Spare capacity, so that the end is found without another allocation.
     const ROOM: usize = 64;
     if is_stdin(input) || is_named_xcf(input) {
         return Ok(None);
@@ -58,14 +58,14 @@ pub(crate) fn ordinary_bytes(input: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let room = usize::try_from(size.unwrap_or_default()).unwrap_or(usize::MAX).saturating_add(ROOM);
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(room).map_err(|e| unreadable(&e))?;
-    // A pipe is not probed: it can be read only once.
+    // A pipe can be read only once, so it is not probed.
     if size.is_some() {
         let head = file.by_ref().take(gimp::HEAD as u64).read_to_end(&mut bytes);
         if head.is_err() || gimp::may_begin(&bytes) {
             return Ok(None);
         }
     }
-    // Without a limit, the size would be asked for again.
+    // Without `take`, `read_to_end` would ask for the size again.
     file.take(u64::MAX).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
     meter::count_input(bytes.len());
     Ok(Some(bytes))
@@ -76,7 +76,7 @@ pub fn document(input: &Path, reading: &Reading) -> Result<Document, Failure> {
     document_of(&bytes(input)?, input, reading)
 }
 
-/// Reads an SVG document with this content. `input` is its name.
+/// Parses an SVG document. `input` is its name.
 pub fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Result<Document, Failure> {
     if bytes.starts_with(XCF_MAGIC) {
         let advice =
@@ -87,12 +87,12 @@ pub fn document_of(bytes: &[u8], input: &Path, reading: &Reading) -> Result<Docu
     read.map_err(|e| not_a_drawing(bytes, input, e.into()))
 }
 
-/// The failure to read a drawing: what the file is instead, if that is known.
+/// Replaces the failure to read a drawing by the file's actual kind, if that is known.
 pub fn not_a_drawing(bytes: &[u8], input: &Path, failure: Failure) -> Failure {
     described(bytes, input).map_or(failure, |what| Failure::Input(format!("{}: {what}", display(input))))
 }
 
-/// Options for reading `input` as SVG: linked images are looked up relative to its folder.
+/// Returns options for reading `input` as SVG: linked images are looked up relative to its folder.
 pub fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
     let own = || match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
@@ -102,7 +102,7 @@ pub fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
     reading.read_options().with_base_dir(folder)
 }
 
-/// Advice for pictures that are not warped as they are.
+/// Advice for pictures that cannot be warped in their format.
 const AS_PICTURE: &str = "save it as PNG, JPEG or WebP, whose pixels are warped; for curves, trace it (Inkscape: Path › Trace Bitmap) and \
                           save that as SVG";
 const AS_DRAWING: &str = "export it as SVG from the program that made it";
@@ -111,7 +111,7 @@ const PDF: &str = "export SVG instead, from Illustrator (File › Export › SVG
 const POSTSCRIPT: &str = "export SVG instead, or open it in Inkscape and save it as SVG";
 const FONT: &str = "set words in it: pathwarp text 'Words' --font FILE -o words.svg";
 
-/// Kinds of files by bytes at a place: what such a file is, and what to do instead.
+/// Kinds of files by bytes at an offset: a description, and advice.
 const MAGIC: [(usize, &[u8], &str, &str); 39] = [
     (0, b"%PDF", "a PDF", PDF),
     (0, b"%!PS", "PostScript (EPS)", POSTSCRIPT),
@@ -159,12 +159,12 @@ const MAGIC: [(usize, &[u8], &str, &str); 39] = [
     (0, b"BM", "a BMP picture", AS_PICTURE),
 ];
 
-/// What a file is that cannot be read as SVG, and what to do about it; `None` if it is text that might be meant as SVG.
+/// Describes a file that cannot be read as SVG, with advice; `None` for text that might be meant as SVG.
 pub fn described(bytes: &[u8], name: &Path) -> Option<String> {
     let extension = name.extension().map(|e| e.to_ascii_lowercase().to_string_lossy().into_owned());
     let extension = extension.as_deref().unwrap_or_default();
     let starts = |at: usize, magic: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
-    // Documents of drawing programs are PDF or archives inside.
+    // Documents of drawing programs contain PDF or archives.
     let known =
         MAGIC.iter().find(|(at, magic, ..)| starts(*at, magic)).map(|(_, magic, what, advice)| match extension {
             "ai" if magic.starts_with(b"%") => ("an Illustrator document", PDF),
@@ -212,10 +212,10 @@ pub fn described(bytes: &[u8], name: &Path) -> Option<String> {
     Some(format!("is plain text, not an SVG drawing; {advice}"))
 }
 
-/// Bytes at the beginning of a text that show what it is.
+/// Number of bytes at the beginning of a text that show its kind.
 const HEAD: usize = 200;
 
-/// The problem with a name that cannot be opened as a file.
+/// Describes why a name cannot be opened as a file.
 pub fn unreadable(name: &Path, e: &io::Error) -> String {
     if e.kind() != ErrorKind::NotFound {
         return format!("cannot be read: {e}");
@@ -223,7 +223,7 @@ pub fn unreadable(name: &Path, e: &io::Error) -> String {
     "there is no such file".to_owned() + &absent(name).map(|advice| format!("; {advice}")).unwrap_or_default()
 }
 
-/// What may be meant by a name that is no file.
+/// Guesses what a name that is no file was meant to be.
 fn absent(name: &Path) -> Option<String> {
     let text = name.to_str()?;
     let lower = text.to_lowercase();
@@ -255,16 +255,16 @@ fn absent(name: &Path) -> Option<String> {
     near(name)
 }
 
-/// The address with its scheme, as MSYS and shells may have squeezed it.
+/// Restores the scheme of an address that MSYS or a shell has squeezed.
 fn address(text: &str) -> String {
     if text.contains("://") || !text.contains(':') { text.to_owned() } else { text.replacen(":/", "://", 1) }
 }
 
-/// A file beside `name` that differs in case, extension or a letter.
+/// Finds a file beside `name` that differs in case, extension or a letter.
 fn near(name: &Path) -> Option<String> {
-    /// Entries of a folder that are looked at.
+    /// Most entries of a folder that are compared.
     const MOST: usize = 2000;
-    /// Least likeness of names.
+    /// Least similarity of names.
     const LIKELY: f64 = 0.9;
     let wanted = name.file_name()?.to_string_lossy().to_lowercase();
     let folder = name.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -283,8 +283,8 @@ fn near(name: &Path) -> Option<String> {
     Some(format!("did you mean {}?", name.with_file_name(best).display()))
 }
 
-/// The text of a file for a parameter of kind `File` or `NameOrFile`: TOML as JSON, a Photoshop file as its warps in JSON,
-/// any other text unchanged.
+/// Reads the text of a file for a parameter of kind `File` or `NameOrFile`: TOML becomes JSON, a Photoshop file becomes its warps in JSON,
+/// and any other text stays.
 pub fn read_data_file(file: &str) -> Result<String, Error> {
     let wrong = |what: String| Error::input(file, what);
     let bytes = std::fs::read(file).map_err(|e| wrong(unreadable(Path::new(file), &e)))?;
@@ -302,8 +302,8 @@ pub fn read_data_file(file: &str) -> Result<String, Error> {
     Ok(text)
 }
 
-/// Splits `FILE#NAME`. Both may contain a `#`: the name starts after the first one that is preceded by an existing file, else
-/// after the last.
+/// Splits `FILE#NAME`, both of which may contain a `#`. The name starts after the first `#` that an existing file precedes, else after the
+/// last one.
 pub fn split_reference(reference: &str) -> (PathBuf, Option<&str>) {
     if Path::new(reference).is_file() {
         return (reference.into(), None);
@@ -316,12 +316,12 @@ pub fn split_reference(reference: &str) -> (PathBuf, Option<&str>) {
     }
 }
 
-/// The error for `#NAME` where no input document can hold it.
+/// Returns the error for `#NAME` where no input document can hold it.
 pub fn no_document(name: &str) -> Error {
     Error::input(format!("#{name}"), "there is no input document to find the path in")
 }
 
-/// Returns `true` if `path` is named like an XCF, packed or not.
+/// Returns `true` if `path` has the name of an XCF, packed or not.
 pub(super) fn is_named_xcf(path: &Path) -> bool {
     let name = path.to_string_lossy().to_ascii_lowercase();
     [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz"].iter().any(|e| name.ends_with(e))

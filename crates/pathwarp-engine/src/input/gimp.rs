@@ -1,4 +1,4 @@
-//! GIMP's paths: read into a drawing, bent like every other, and written from one in a format that GIMP reads.
+//! GIMP's paths as artwork: read into a drawing, bent like any other, and written in a format that GIMP reads.
 
 use super::artwork::WarpedResult;
 use super::files::{display, split_reference};
@@ -17,7 +17,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Warnings, and what `--kerf` did.
+/// Warnings, and the changes made by `--kerf`.
 type Told = (Vec<String>, Option<KerfReport>);
 
 pub(super) use pathwarp_gimp::{HEAD, may_begin};
@@ -33,13 +33,13 @@ pub(super) fn open(
     Ok(Some(SvgArtwork::of_paths(GimpPaths::new(file, options)?, format, options)?))
 }
 
-/// The path called `name`, or the only one, of a file; `None` if it is no GIMP file.
+/// Returns the path called `name`, or the only one, of a file; `None` if the file is not GIMP's.
 pub fn outline(file: &Path, name: Option<&str>, limits: &Limits) -> Result<Option<Outline>, Error> {
     let Some(file) = GimpFile::read(file, false, limits)? else { return Ok(None) };
     Ok(Some(name.map_or_else(|| file.only_path(), |name| file.path_named(name))?.outline()))
 }
 
-/// The paths of a GIMP file that a drawing is made of.
+/// The paths of a GIMP file, as the source of a drawing.
 pub(super) struct GimpPaths {
     pub(super) file: GimpFile,
     /// The indices of the paths in the drawing, in its order.
@@ -47,7 +47,7 @@ pub(super) struct GimpPaths {
 }
 
 impl GimpPaths {
-    /// The paths that the options select.
+    /// Selects paths by the options.
     fn new(file: GimpFile, options: &CommonOptions) -> Result<Self, Failure> {
         let (select, exclude) = (&options.select, &options.exclude);
         let name = |selector: &String| selector.strip_prefix('#').unwrap_or(selector).to_owned();
@@ -68,15 +68,15 @@ impl GimpPaths {
         display(&self.file.path)
     }
 
-    /// The drawing, whose user space is the canvas.
+    /// Returns the drawing. Its user space is the canvas.
     pub(super) fn drawing(&self) -> String {
-        /// Decimals that tell all numbers from each other.
+        /// Enough decimals to tell all numbers apart.
         const ALL: u8 = 17;
         let paths: Vec<GimpPath> = self.chosen.iter().map(|&i| self.file.file.paths[i].clone()).collect();
         to_svg(self.file.canvas(), &paths, Some(ALL))
     }
 
-    /// The paths of a result. Those that have not changed keep what a drawing has no place for.
+    /// Reads the paths of a result. Unchanged paths keep data that SVG cannot hold.
     fn warped(&self, svg: &str) -> Result<Vec<GimpPath>, Failure> {
         if self.chosen.is_empty() {
             return Ok(Vec::new());
@@ -93,7 +93,7 @@ impl GimpPaths {
         Ok(all.map(path).collect())
     }
 
-    /// Writes the paths of a result, without `guides`: in a format, or into a copy of the XCF. Returns what the format could not take, too.
+    /// Writes the paths of a result, without `guides`, in a format or into a copy of the XCF. Also returns warnings about losses.
     pub(super) fn written(
         &self,
         svg: &str,
@@ -128,7 +128,7 @@ fn copy_with_paths(from: &Path, copy: &Path, strokes: &[(usize, Vec<Stroke>)]) -
     })
 }
 
-/// Largest distance by which single precision, in which an XCF stores coordinates, moves a point of the stroke.
+/// Returns the largest distance by which rounding to single precision, which an XCF uses, moves a point of the stroke.
 fn single_precision_error(s: &Stroke) -> f64 {
     let off = |v: f64| f64::from(v as f32) - v;
     s.points.iter().map(|&[x, y]| off(x).hypot(off(y))).fold(0.0, f64::max)
@@ -137,10 +137,10 @@ fn single_precision_error(s: &Stroke) -> f64 {
 /// The formats of GIMP paths.
 pub(crate) const PATHS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Format::Dxf, Format::PointList];
 
-/// The format for the options and the target, `None` being standard output.
+/// Chooses the format by the options and the target, `None` being standard output.
 ///
 /// # Errors
-/// The options ask for something that this file cannot be written as.
+/// [`Failure::Usage`] if this file cannot be written as the options ask.
 fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> Result<Format, Failure> {
     if options.embed_recipe {
         return Err(Failure::usage(
@@ -177,7 +177,7 @@ fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The name of the SVG made from a GIMP input: `art.xcf.gz#Cage` gives `art-Cage.svg`. `None` for other inputs.
+/// Returns the name of the SVG made from a GIMP input: `art.xcf.gz#Cage` gives `art-Cage.svg`. `None` for other inputs.
 pub fn svg_name(input: &Path) -> Option<String> {
     const ENDINGS: [&str; 6] = [".xcf", ".xcf.gz", ".xcf.bz2", ".xcf.xz", ".json", ".txt"];
     let text = input.to_string_lossy();
@@ -190,7 +190,7 @@ pub fn svg_name(input: &Path) -> Option<String> {
     })
 }
 
-/// A path's name as part of a file name: letters and digits of any script are kept, everything else becomes a hyphen.
+/// Makes a path's name fit for a file's: letters and digits of any script are kept, everything else becomes a hyphen.
 pub fn file_name(name: &str) -> String {
     let plain = name.chars().map(|c| if c.is_alphanumeric() || matches!(c, '_' | '.' | '-') { c } else { '-' });
     plain.collect::<String>().trim_matches(['-', '.']).to_owned()

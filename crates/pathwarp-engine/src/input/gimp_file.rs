@@ -1,4 +1,4 @@
-//! GIMP files: read for their paths, as artwork and as targets of path references.
+//! GIMP files, read for their paths: as artwork, and as targets of path references.
 
 use super::files::{is_named_xcf, split_reference};
 use crate::failure::Failure;
@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 pub struct GimpFile {
     pub(crate) path: PathBuf,
     pub(crate) file: pathwarp_gimp::PathFile,
-    /// The path that `FILE#NAME` names; `None`: all paths.
+    /// The name in `FILE#NAME`; `None` selects all paths.
     pub(crate) only: Option<String>,
-    /// The damage behind the paths that were salvaged.
+    /// The damage that ends the salvaged part.
     pub damage: Option<String>,
 }
 
@@ -35,7 +35,7 @@ impl GimpFile {
         Ok(Some(found))
     }
 
-    /// Reads the paths of the file `path` and little else of it. Returns `None` if it is not a GIMP file.
+    /// Reads the paths of the file `path`, and little else. Returns `None` if it is not a GIMP file.
     pub fn read(path: &Path, salvage: bool, limits: &Limits) -> Result<Option<Self>, Error> {
         // A pipe can be read only once, so it is not probed.
         if !path.is_file() {
@@ -67,7 +67,7 @@ impl GimpFile {
         Ok(Some(Self { path: path.to_owned(), file: found.file, only: None, damage }))
     }
 
-    /// The path called `name`.
+    /// Returns the path called `name`.
     pub(crate) fn path_named(&self, name: &str) -> Result<&GimpPath, Error> {
         let found = self.file.paths.iter().find(|p| p.name == name);
         found.ok_or_else(|| {
@@ -76,7 +76,7 @@ impl GimpFile {
         })
     }
 
-    /// The only path of the file.
+    /// Returns the only path of the file.
     pub(crate) fn only_path(&self) -> Result<&GimpPath, Error> {
         match self.file.paths.as_slice() {
             [only] => Ok(only),
@@ -89,7 +89,7 @@ impl GimpFile {
     }
 
     fn names(&self) -> String {
-        /// Number of names that fit a line or two.
+        /// Number of names that fit in two lines.
         const SHOWN: usize = 12;
         let names: Vec<&str> = self.file.paths.iter().map(|p| p.name.as_str()).take(SHOWN).collect();
         match self.file.paths.len() {
@@ -99,12 +99,12 @@ impl GimpFile {
         }
     }
 
-    /// The path that `FILE#NAME` names, or all paths.
+    /// Returns the path that `FILE#NAME` names, or all paths.
     pub fn paths(&self) -> impl Iterator<Item = &GimpPath> {
         self.file.paths.iter().filter(|p| self.only.as_ref().is_none_or(|name| *name == p.name))
     }
 
-    /// Width and height of the canvas, or of a box from the origin around all paths if the file does not store the canvas.
+    /// Returns width and height of the canvas. If the file does not store them, they are those of a box from the origin around all paths.
     pub fn canvas(&self) -> [f64; 2] {
         self.file.size.unwrap_or_else(|| {
             let boxes = self.file.paths.iter().filter_map(GimpPath::bounds);

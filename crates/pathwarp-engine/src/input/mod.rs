@@ -1,4 +1,4 @@
-//! Input files: the kinds of artwork and what the pipeline asks of each, and the readers of other files.
+//! Input files: the kinds of artwork with their common interface, and the readers of other files.
 
 mod artwork;
 mod before;
@@ -50,7 +50,7 @@ impl Input {
         Self::of_bytes(&bytes(input)?, input, options, (target, Destination::of(target)))
     }
 
-    /// A drawing or picture with this content. `input` is its name; the target says the format.
+    /// Reads a drawing or picture with this content. `input` is its name; the target determines the format.
     pub(crate) fn of_bytes(
         bytes: &[u8],
         input: &Path,
@@ -63,7 +63,7 @@ impl Input {
         Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?.going(destination))))
     }
 
-    /// The artwork in the file, to be warped.
+    /// Returns the artwork in the file.
     pub fn artwork(&mut self) -> &mut dyn FileArtwork {
         &mut *self.0
     }

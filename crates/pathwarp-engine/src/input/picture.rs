@@ -22,7 +22,7 @@ use pathwarp_svg::{OnError, PageFit};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A photograph. Its plane is in pixels, with the origin at its top left corner.
+/// A photograph. Its plane is in pixels, with the origin at the top left corner.
 pub(crate) struct PictureArtwork {
     name: String,
     picture: Picture,
@@ -75,7 +75,7 @@ impl PictureArtwork {
         Rect::new(0.0, 0.0, f64::from(self.picture.pixmap.width()), f64::from(self.picture.pixmap.height()))
     }
 
-    /// The part of the plane that is shown under `--fit`, and a place of the picture where the map is undefined.
+    /// Returns the part of the plane that `--fit` shows, and a point of the picture where the map is undefined, if any.
     fn page(&self, map: &Arc<dyn Map>, options: &CommonOptions) -> Result<(Rect, Option<Point>), Failure> {
         let area = self.area();
         let Extent { bounds, undefined, .. } = extent(area, Affine::IDENTITY, &**map, Affine::IDENTITY)
@@ -91,7 +91,7 @@ impl PictureArtwork {
         Ok((page, undefined))
     }
 
-    /// The size of a straightened frame: at `--ratio`, in true proportions where they are sound, or by its mean sides.
+    /// Returns the size of a straightened frame: at `--ratio`, in its true proportions if they are reliable, or else by its mean sides.
     fn natural_size(&self, frame: Option<&Source>, options: &CommonOptions) -> Result<Natural, Failure> {
         let area = self.area();
         let Some(frame) = frame else {
@@ -115,7 +115,7 @@ impl PictureArtwork {
     }
 }
 
-/// The size of a straightened frame in pixels, and what the photograph tells of its proportions.
+/// The size of a straightened frame in pixels, and its proportions, if the photograph determines them.
 type Natural = (Option<(f64, f64)>, Option<Proportions>);
 
 fn undefined_at(p: Point) -> String {
@@ -228,12 +228,12 @@ impl FileArtwork for PictureArtwork {
     }
 }
 
-/// The message about a picture of this size that takes too much.
+/// Returns the message about a picture of this size that exceeds a limit.
 fn too_much(what: &str, (width, height): (f64, f64), e: &Exceeded, advice: &str) -> String {
     format!("{what} of {width:.0} x {height:.0} pixels takes {e}; {advice}{}", advice::raise(e))
 }
 
-/// The part of the plane that the result shows, and its size in pixels: by default `natural`, or else one pixel per unit of the plane.
+/// Returns the part of the plane that the result shows, and its size in pixels: by default `natural`, or else one pixel per unit.
 fn size(
     bounds: Rect,
     natural: Option<(f64, f64)>,

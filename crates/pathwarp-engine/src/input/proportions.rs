@@ -1,10 +1,10 @@
-//! The proportions of a rectangle in a photograph: its corners as a camera sees them, and the middle of the picture, where the camera
-//! points, tell its width to its height and the camera's focal length.
+//! The proportions of a rectangle in a photograph: its four corners and the picture's centre, at which the camera points, determine the
+//! ratio of width to height and the camera's focal length.
 //!
 //! Method: Z. Zhang and L.-W. He, *Whiteboard scanning and image enhancement*, Digital Signal Processing 17 (2007). With
 //! corners (x, y, 1) from the middle, m₁ upper left, m₂ upper right, m₃ lower left, m₄ lower right:
 //!
-//! - k₂ = (m₁ × m₄)·m₃ / (m₂ × m₄)·m₃ and k₃ = (m₁ × m₄)·m₂ / (m₃ × m₄)·m₂,
+//! - k₂ = (m₁ × m₄)·m₃ / (m₂ × m₄)·m₃ and k₃ = (m₁ × m₄)·m₂ / (m₃ × m₄)·m₂, where (a × b)·c is twice the area of triangle abc,
 //! - n₂ = k₂ m₂ − m₁ and n₃ = k₃ m₃ − m₁ are the directions of width and height, seen by a camera of focal length 1,
 //! - they are at right angles: f² = −(n₂ₓ n₃ₓ + n₂ᵧ n₃ᵧ) / (n₂z n₃z),
 //! - (width / height)² = ((n₂ₓ² + n₂ᵧ²) / f² + n₂z²) / ((n₃ₓ² + n₃ᵧ²) / f² + n₃z²).
@@ -13,25 +13,24 @@ use crate::readable::three_figures;
 use pathwarp::kurbo::{Point, Rect, Vec2};
 use serde::Serialize;
 
-/// The focal lengths of cameras, in diagonals of the picture: from an action camera's to a long telephoto's.
+/// Focal lengths of cameras, in diagonals of the picture, from action cameras to long telephoto lenses.
 const LENSES: std::ops::RangeInclusive<f64> = 0.5..=3.0;
-/// The largest relative change of the proportions that one pixel at one corner may cause.
+/// The largest relative change of the ratio that one pixel at one corner may cause.
 const SENSITIVITY: f64 = 0.03;
-/// The diagonal of 35 mm film, which photographers state focal lengths for, in mm.
+/// The diagonal of 35 mm film in mm, the reference for stated focal lengths.
 const FILM: f64 = 43.27;
 
 /// A rectangle that a camera sees.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct Proportions {
-    /// Width to height.
+    /// Ratio of width to height.
     pub ratio: f64,
     /// The camera's focal length, in diagonals of the picture.
     pub focal_length: f64,
 }
 
 impl Proportions {
-    /// Finds the rectangle with these corners, from the lower left over the lower right, in a picture of this area. It is `None` where no
-    /// camera sees a rectangle like that.
+    /// Finds the rectangle with these corners, counterclockwise from the lower left, in a picture of this area, if a camera may see one so.
     pub(super) fn seen(corners: [Point; 4], picture: Rect) -> Option<Self> {
         let [lower_left, lower_right, upper_right, upper_left] = corners.map(|p| p - picture.center());
         let (m1, m2, m3, m4) = (upper_left, upper_right, lower_left, lower_right);
@@ -47,7 +46,7 @@ impl Proportions {
         (ratio.is_normal() && focal_length.is_normal()).then_some(Self { ratio, focal_length })
     }
 
-    /// Returns `true` if cameras have such a focal length, and one pixel at a corner hardly changes the ratio.
+    /// Returns `true` if the focal length is a camera's, and one pixel at a corner hardly changes the ratio.
     pub(super) fn is_sound(&self, corners: [Point; 4], picture: Rect) -> bool {
         let moved = |corner: usize, by: Vec2| {
             let mut corners = corners;
@@ -61,7 +60,7 @@ impl Proportions {
         LENSES.contains(&self.focal_length) && (0..4).all(|corner| change(corner) < SENSITIVITY)
     }
 
-    /// Says both in a line.
+    /// Reports the ratio and the focal length in a line.
     pub(crate) fn note(&self) -> String {
         let part = |v: f64| three_figures(v.max(1.0));
         format!(

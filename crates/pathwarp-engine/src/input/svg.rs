@@ -37,13 +37,13 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// With fewer segments, starting threads takes longer than looking for folds.
+/// Fewest segments for which threads find folds faster.
 const WORTH_THREADS: usize = 5000;
 
-/// Pages that differ by less have the same scale.
+/// Relative difference of pages below which they have the same scale.
 const SAME_SCALE: f64 = 1e-3;
 
-/// Resolution of bitmaps in a draft.
+/// Resolution of bitmaps in a draft, in pixels per inch.
 const DRAFT_DPI: f64 = 24.0;
 
 /// An SVG drawing. Its plane is root user space.
@@ -52,20 +52,20 @@ pub struct SvgArtwork {
     doc: Document,
     read: ReadOptions,
     selection: Selection,
-    /// What each step holds for, and what each set of steps does; empty if all hold for everything.
+    /// The selections of the steps, and of the parts to which the same steps apply; empty if all steps apply to everything.
     steps: Vec<Selection>,
     parts: Vec<Selection>,
     /// The format of the result, and where it goes.
     format: Format,
     destination: Destination,
-    /// The drawing as it was read, if `doc` is an edited one.
+    /// The drawing as it was read, if `doc` has been edited.
     original: Option<Original>,
-    /// GIMP's paths that the drawing was made of. It has no page and no strokes of its own.
+    /// The GIMP paths that the drawing was made from; such a drawing has neither page nor strokes.
     paths: Option<GimpPaths>,
 }
 
 impl SvgArtwork {
-    /// Reads a drawing; `input` is its name, and `target` that of the result, whose extension says the format.
+    /// Reads a drawing; `input` is its name, and `target` is the result's, whose extension determines the format.
     pub fn read(bytes: &[u8], input: &Path, options: &CommonOptions, target: Option<&Path>) -> Result<Self, Failure> {
         let format = format(options, input, target).map_err(|e| not_a_drawing(bytes, input, e))?;
         let (name, read) = (display(input), read_options(input, &options.reading));
@@ -82,7 +82,7 @@ impl SvgArtwork {
         Ok(Self::of(doc, name, read, selection(options), format, None))
     }
 
-    /// The drawing of GIMP's paths.
+    /// Creates the drawing of GIMP's paths.
     pub(super) fn of_paths(paths: GimpPaths, format: Format, options: &CommonOptions) -> Result<Self, Failure> {
         let (name, read) = (paths.name(), options.reading.read_options());
         let doc = Document::read(paths.drawing().as_bytes(), &name, &read)?;
@@ -101,7 +101,7 @@ impl SvgArtwork {
         Self { name, doc, read, selection, steps, parts, format, destination, original: None, paths }
     }
 
-    /// Counts the work from here on anew, for a drawing that is bent again and again.
+    /// Resets the count of work, for a drawing that is bent again and again.
     pub fn renew_budget(&mut self) {
         self.doc.renew_budget();
         if let Some(original) = &mut self.original {
@@ -114,21 +114,20 @@ impl SvgArtwork {
         (self.selection, self.steps, self.parts) = (selection(options), Vec::new(), Vec::new());
     }
 
-    /// The drawing as it was read.
+    /// Returns the drawing as it was read.
     pub fn document(&self) -> &Document {
         self.original.as_ref().map_or(&self.doc, |o| &o.document)
     }
 
-    /// The segments of the drawing before and after its edits, if it was edited before bending.
+    /// Returns the numbers of segments before and after the edits, if the drawing was edited before bending.
     pub fn edited(&self) -> Option<[usize; 2]> {
         let count = |d: &Document, s: &Selection| d.selected(s).map(|s| s.outline.segs().count()).sum();
         let original = self.original.as_ref()?;
         Some([count(&original.document, original.wanted.whole()), count(&self.doc, &self.selection)])
     }
 
-    /// The result for a look at it while something is dragged: within the tolerance, but not merged into few nodes, and with gradients
-    /// and bitmaps in the coarse.
-    /// Returns it with the page that it would have.
+    /// Returns a preview while something is dragged, and its page if that changes: within the tolerance, but with the source's nodes,
+    /// affine fits of gradients and coarse bitmaps.
     pub fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
         let draft = |k: usize, built: &BuiltRecipe| {
             let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
@@ -145,7 +144,7 @@ impl SvgArtwork {
         Ok((warped.svg, warped.page.map(|[_, after]| after)))
     }
 
-    /// The result in its format, without looking for folds.
+    /// Returns the result in its format, without looking for folds.
     pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
         let (_, warped, tolerance) = self.warped(request)?;
         self.exported(warped.svg, request.options, tolerance)
@@ -155,22 +154,22 @@ impl SvgArtwork {
         export::drawing(svg, (self.format, &self.destination), &self.read, options, Some(tolerance))
     }
 
-    /// Changes the format of the result, and where it goes.
+    /// Changes the format and the destination of the result.
     pub fn send(&mut self, format: Format, destination: Destination) {
         (self.format, self.destination) = (format, destination);
     }
 
-    /// Says where the result goes.
+    /// Sets the destination of the result.
     pub(super) fn going(self, destination: Destination) -> Self {
         Self { destination, ..self }
     }
 
-    /// The options that the drawing was read with.
+    /// Returns the options that the drawing was read with.
     pub fn reading(&self) -> &ReadOptions {
         &self.read
     }
 
-    /// The selection that is meant.
+    /// Returns the selection that `which` means.
     fn selection(&self, which: Which) -> &Selection {
         let own = match which {
             Which::All => None,
@@ -180,7 +179,7 @@ impl SvgArtwork {
         own.unwrap_or(&self.selection)
     }
 
-    /// Bends every part of the drawing. Returns the options for each, too.
+    /// Bends every part of the drawing. Also returns the options for each part.
     fn bent(
         &self,
         parts: &[BuiltRecipe],
@@ -199,7 +198,7 @@ impl SvgArtwork {
         Ok((options, warped))
     }
 
-    /// A result, all of it scaled and moved.
+    /// Scales and moves a whole result.
     fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
         let doc = Document::read(svg.as_bytes(), &self.name, &bending(&self.read))?;
         let refit =
@@ -209,8 +208,8 @@ impl SvgArtwork {
         Ok(doc.warp(&AffineMap(to), &options)?.svg)
     }
 
-    /// The drawing bent within the tolerance, which may be a length of the result's page, with its recipe. Returns the options for each part
-    /// and the tolerance, too.
+    /// Bends the drawing and embeds the recipe. The tolerance may be a length on the result's page. Also returns the options for each part
+    /// and the tolerance in user units.
     fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
         let WarpRequest { built, options: common, mut tolerance, .. } = *request;
         if let Some(first) = advice::unread(&self.doc.unread_images()).first()
@@ -223,7 +222,7 @@ impl SvgArtwork {
         if let Some(boxes) = boxes.filter(|_| common.on_failure == OnFailure::Stop) {
             return Err(Failure::Input(boxes.to_string()));
         }
-        // The scale of the result's page is known once the artwork is on it.
+        // The scale of the result's page is known only after bending.
         if common.has_tolerance_of_result()
             && let Some(scale) = common.page_scale(self.size_px(warped.page))
             && (scale.by - 1.0).abs() > SAME_SCALE
@@ -241,12 +240,12 @@ impl SvgArtwork {
         Ok((options, warped, tolerance))
     }
 
-    /// The options for a part of the drawing.
+    /// Returns the options for a part of the drawing.
     fn warp_options(&self, request: &WarpRequest<'_>, k: usize, built: &BuiltRecipe) -> WarpOptions {
         let WarpRequest { options, tolerance, .. } = request;
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
-        // Of a picture, a cutter would see nothing; cutters and plotters follow the shape alone.
+        // A DXF holds no pictures: cutters and plotters follow only the shapes.
         let (gradients, filters) = match options.gradients {
             _ if self.format != Format::Dxf => (options.gradients, options.filters),
             Gradients::Keep => (Gradients::Keep, Filters::Affine),
@@ -261,7 +260,7 @@ impl SvgArtwork {
         let warp = WarpOptions::new(refit)
             .with_precision(options.precision)
             .with_strokes(match options.strokes {
-                // A cutter follows the middle of a stroke.
+                // A cutter follows the centre line of a stroke.
                 Strokes::Auto if self.format == Format::Dxf => Strokes::Keep,
                 given => given,
             })
@@ -287,12 +286,12 @@ impl SvgArtwork {
         if self.paths.is_none() {
             return warp;
         }
-        // Only what the paths are may change.
+        // The file stores nothing but paths.
         let warp = warp.with_strokes(Strokes::Keep).with_structure(Structure::Auto);
         warp.with_page(PageFit::None).with_overhang(false)
     }
 
-    /// What each step selects.
+    /// Returns the selection of each step.
     fn selections(&self, steps: &[Step]) -> Vec<Selection> {
         let own = |s: &Step| Selection {
             select: s.select.clone(),
@@ -303,7 +302,7 @@ impl SvgArtwork {
         steps.iter().map(own).collect()
     }
 
-    /// The size of the result's page in px, which is the source's, or `after` instead of `before` in its units.
+    /// Returns the size of the result's page in px: the source's, or `after` instead of `before` in its units.
     fn size_px(&self, page: Option<[Rect; 2]>) -> Size {
         let Size { width, height } = self.doc.size_px();
         page.map_or(Size { width, height }, |[before, after]| {
@@ -311,13 +310,13 @@ impl SvgArtwork {
         })
     }
 
-    /// The reason why the page stays although it could grow.
+    /// Returns the reason why the page stays although it could grow.
     fn stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
         let may_grow = request.options.page == PageFit::Auto;
         may_grow.then(|| page::stays(&self.doc, request.options, request.recipe)).flatten()
     }
 
-    /// The orientation under the map of every shape of a part.
+    /// Returns the orientation of every shape of a part under the map.
     fn orientations(
         &self,
         k: usize,
@@ -335,7 +334,7 @@ impl SvgArtwork {
         let survey = Survey::new(&built.map, all_copies, segments * copies.len().max(1));
         let filled = shapes.iter().filter(|s| s.filled).count();
         survey.spend(filled, segments, copies.len(), self.doc.budget())?;
-        // A letter that is placed on its own can fold only in a later step.
+        // A letter placed by itself can fold only in a later step.
         let placed = self.doc.placed(options);
         let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
@@ -349,7 +348,7 @@ impl SvgArtwork {
         Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
     }
 
-    /// The same of every picture.
+    /// Returns the orientation of every picture of a part under the map.
     fn picture_orientations(
         &self,
         k: usize,
@@ -366,7 +365,7 @@ impl SvgArtwork {
         Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
     }
 
-    /// The folds of the shapes and pictures of a part: those of shapes by their ids, and the warnings.
+    /// Finds the folds of the shapes and pictures of a part. Returns those of shapes by id, and the warnings.
     fn folds(
         &self,
         k: usize,
@@ -374,7 +373,7 @@ impl SvgArtwork {
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
-        // Parts of one text or `use` share an id and count as one shape in the report.
+        // Parts of a text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
         for (id, o) in self.orientations(k, built, options)? {
@@ -390,7 +389,7 @@ impl SvgArtwork {
         let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
         let lettering = LazyCell::new(|| self.doc.lettering(&options.selection));
         let letters = LazyCell::new(|| {
-            // Letters that are placed one by one do not follow the map.
+            // Letters placed one by one do not follow the map.
             let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
             artwork::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
         });
@@ -412,7 +411,7 @@ impl SvgArtwork {
         Ok((out, warnings))
     }
 
-    /// The report of every shape, and the fold warnings.
+    /// Returns the report of every shape, and the fold warnings.
     fn shape_reports(
         &self,
         parts: &[BuiltRecipe],
@@ -436,17 +435,17 @@ impl SvgArtwork {
     }
 }
 
-/// The options for a drawing that is bent and not drawn: its pictures are decoded only where they are bent.
+/// Returns options for a drawing that is bent and not rendered: pictures are decoded only where they are bent.
 fn bending(read: &ReadOptions) -> ReadOptions {
     read.clone().with_turned(Some(Picture::sized))
 }
 
-/// The selection that holds for all steps.
+/// Returns the selection common to all steps.
 fn selection(options: &CommonOptions) -> Selection {
     Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() }
 }
 
-/// The format of the result. An extension that says none may be the input's own, which then is SVG, too.
+/// Returns the format of the result. An unknown extension that is also the input's means SVG.
 fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Result<Format, Failure> {
     let is_own = |t: &&Path| Format::of(t).is_none() && t.extension() == input.extension();
     let named = if target.as_ref().is_some_and(is_own) { None } else { target };
@@ -496,7 +495,7 @@ impl Artwork for SvgArtwork {
     fn divide(&mut self, steps: &[Step]) -> Result<Vec<Vec<usize>>, Failure> {
         let mut all = self.selections(steps);
         all.iter().try_for_each(|s| self.doc.check_selection(s))?;
-        // What is selected for the whole recipe restricts every step.
+        // The selection for the whole recipe restricts every step.
         let whole = all.len();
         all.push(self.selection.clone());
         let mut divisions = self.doc.divide(&all);
@@ -537,7 +536,7 @@ impl Artwork for SvgArtwork {
             FrameChoice::Rect(r) => Some(Frame::new(r.rect(self.units_per_px()))),
             FrameChoice::Lettering(_) => None,
         };
-        // Finding the lettering takes longer than reading the drawing.
+        // Skip the lettering if possible: finding it takes longer than reading the drawing.
         let lettering = match (&plain, baseline) {
             (Some(frame), Baseline::None) => return Ok(frame.clone()),
             _ => self.doc.lettering(self.selection(which)),
@@ -572,7 +571,7 @@ impl Artwork for SvgArtwork {
     }
 }
 
-/// The warning about lengths of a contour on a page that has none.
+/// Warns of lengths of a contour if the page has no unit.
 fn unmeasured(doc: &Document, request: &WarpRequest<'_>) -> Option<String> {
     const UNITS: [&str; 6] = ["mm", "cm", "in", "pt", "pc", "q"];
     let Some(Edit::Contour(_)) = request.edit else { return None };
@@ -585,7 +584,7 @@ fn unmeasured(doc: &Document, request: &WarpRequest<'_>) -> Option<String> {
     })
 }
 
-/// The warning about gradients that became pictures.
+/// Warns of gradients that became pictures.
 fn pictured(shapes: &[ReportedShape]) -> Option<String> {
     match shapes.iter().map(|s| s.shape.pictures).sum() {
         0 => None,

@@ -22,7 +22,7 @@ pub(crate) const TOLERANCE_OF_DIAGONAL: f64 = 1e-4;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[expect(missing_docs, reason = "the table of options says what each word means")]
 pub enum FrameChoice {
-    /// Not given: the artwork's box, or for lettering the box a deformation with a baseline asks for.
+    /// Not given: the artwork's box, or, for a deformation with a baseline, the box that it asks for around lettering.
     #[default]
     Default,
     Artwork,
@@ -31,7 +31,7 @@ pub enum FrameChoice {
     Rect(TypedBox),
 }
 
-/// Reaction to an input or a shape that cannot be warped.
+/// The reaction to an input or a shape that cannot be warped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum OnFailure {
     /// Leave the input out and go on with the others.
@@ -44,7 +44,7 @@ pub enum OnFailure {
 }
 
 impl OnFailure {
-    /// The reaction to a shape.
+    /// Returns the reaction to a shape.
     pub(crate) fn of_shapes(self) -> OnError {
         if self == Self::Skip { OnError::Skip } else { OnError::Stop }
     }
@@ -56,7 +56,7 @@ impl OnFailure {
 #[expect(missing_docs, reason = "the table of options has the help of each")]
 pub struct CommonOptions {
     pub inputs: Vec<PathBuf>,
-    /// Edits before all steps, in the order in which they are done.
+    /// Edits to do before all steps, in this order.
     pub edits: Vec<Step>,
     /// `None`: standard output.
     pub out: Option<PathBuf>,
@@ -81,7 +81,7 @@ pub struct CommonOptions {
     pub exclude: Vec<String>,
     pub precision: Option<u8>,
     pub strokes: Strokes,
-    /// Outlines of strokes become simple.
+    /// Simplify the outlines of strokes.
     pub union: bool,
     pub text: TextMode,
     pub gradients: Gradients,
@@ -98,19 +98,19 @@ pub struct CommonOptions {
     pub image_dpi: Option<f64>,
     /// Cut a warped picture to the image of the frame.
     pub crop: bool,
-    /// Longer or shorter side to the other of what is cut out, as typed.
+    /// Ratio of the longer to the shorter side of a cropped picture, or the reverse, as typed.
     pub ratio: Option<f64>,
-    /// Keep the place in the metadata of a picture.
+    /// Keep the location in the metadata of a picture.
     pub keep_location: bool,
     /// Width, and height if given, of a warped picture in pixels.
     pub image_size: Option<(u32, Option<u32>)>,
-    /// Form of Bézier curves in a DXF.
+    /// Write Bézier curves as polylines in a DXF.
     pub dxf_polylines: bool,
-    /// Width of a cut, for which the contours of a DXF make room.
+    /// Width of a cut; the contours of a DXF move to make room for it.
     pub kerf: Option<Length>,
-    /// What is not cut, and stays: selectors and colours.
+    /// Selectors and colours of shapes that are not cut and do not move.
     pub engrave: Vec<String>,
-    /// Lines that are drawn several times stay so in a DXF.
+    /// Keep the repetitions of lines that are drawn several times in a DXF.
     pub keep_duplicates: bool,
     /// Quality of a JPEG, from 1 to 100.
     pub quality: Option<u8>,
@@ -134,13 +134,13 @@ impl CommonOptions {
     /// Returns the tolerance given, or the default for artwork with this bounding box, in user units.
     ///
     /// # Errors
-    /// The tolerance given is finer than numbers of the artwork's size can be.
+    /// [`Failure::Usage`] if the tolerance given is finer than the rounding of the artwork's coordinates.
     pub fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
         distance(self.tolerance, TOLERANCE_OF_DIAGONAL, artwork, frame)
     }
 }
 
-/// A tolerance in user units; if none is given, a share of the diagonal of the artwork with this bounding box.
+/// Returns a tolerance in user units; if none is given, a share of the diagonal of the artwork's bounding box.
 pub(crate) fn distance(
     given: Option<Length>,
     share: f64,
@@ -153,7 +153,7 @@ pub(crate) fn distance(
     Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
 }
 
-/// Refuses a distance that is finer than numbers of the artwork's size can be.
+/// Refuses a distance that is finer than the rounding of the artwork's coordinates.
 pub fn measurable(option: &str, distance: f64, artwork: Option<Rect>) -> Result<(), Failure> {
     let largest = artwork.map_or(0.0, |r| r.x0.abs().max(r.x1.abs()).max(r.y0.abs()).max(r.y1.abs()));
     let finest = RESOLUTION * largest;
@@ -164,17 +164,17 @@ pub fn measurable(option: &str, distance: f64, artwork: Option<Rect>) -> Result<
     Ok(())
 }
 
-/// A page of another size.
+/// The new size of a page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PageScale {
-    /// How many times as large it is.
+    /// The scale of the new page, relative to the old one.
     pub(crate) by: f64,
-    /// The unit that its size was given in.
+    /// The unit of the size given.
     pub(crate) unit: LengthUnit,
 }
 
 impl CommonOptions {
-    /// How much larger a page of this size in px becomes: as `--page-width` and `--page-height` say, inside both if both are given.
+    /// Returns the scale that fits a page of this size in px into `--page-width` and `--page-height`, if any is given.
     pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
         let scale = |given: Option<Length>, side: f64| {
             given.map(|l| PageScale { by: l.value * l.unit.px().unwrap_or(1.0) / side, unit: l.unit })
@@ -183,14 +183,14 @@ impl CommonOptions {
         both.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
     }
 
-    /// Returns `true` if the tolerance is a length of the result, whose page has another scale than the source's.
+    /// Returns `true` if the tolerance is a length on the result's page, which differs in scale from the source's.
     pub(crate) fn has_tolerance_of_result(&self) -> bool {
         let resizes = self.page_width.is_some() || self.page_height.is_some();
         resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
     }
 }
 
-/// The options about reading drawings, which every command that reads one has.
+/// The options of every command that reads drawings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reading {
     /// Limits on the work that an input may cause.
@@ -208,13 +208,13 @@ pub struct Reading {
 pub struct Fonts {
     /// Files, and folders of them.
     pub paths: Vec<PathBuf>,
-    /// Ignore the installed ones.
+    /// Ignore the installed fonts.
     pub(crate) no_system: bool,
     pub(crate) generic: GenericFamilies,
 }
 
 impl Reading {
-    /// Checks that what was named as fonts are fonts.
+    /// Checks that the paths named as fonts are fonts.
     pub fn check(&self) -> Result<(), Failure> {
         Ok(check_fonts(&self.fonts.paths)?)
     }
@@ -224,7 +224,7 @@ impl Reading {
         self.limits = switch.map_or(self.limits, |switch| self.limits.stopped_by(switch));
     }
 
-    /// The same as options of the library.
+    /// Returns the library's options for reading.
     pub fn read_options(&self) -> ReadOptions {
         ReadOptions::default()
             .with_turned(Some(Picture::turned))
@@ -236,7 +236,7 @@ impl Reading {
     }
 }
 
-/// Position and size as typed; none is a percentage.
+/// A position and size as typed, without percentages.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TypedBox([Length; 4]);
 
@@ -282,13 +282,13 @@ pub(super) fn positive_length(text: &str) -> Result<Length, String> {
     if length.value > 0.0 { Ok(length) } else { Err(format!("`{text}` is not positive")) }
 }
 
-/// Parses a length that is no zero; `None` for zero.
+/// Parses a length; `None` if it is zero.
 fn some_length(text: &str) -> Result<Option<Length>, String> {
     let length: Length = text.parse().map_err(|e| format!("`{text}` {e}"))?;
     Ok(Some(length).filter(|l| l.value != 0.0))
 }
 
-/// Parses a distance within which paths get few nodes.
+/// Parses the distance of `--simplify` as an edit; `None` if it is zero.
 pub(super) fn simplifying(text: &str) -> Result<Option<Step>, String> {
     let length = some_length(text)?;
     if length.is_some_and(|l| l.value < 0.0) {
@@ -297,7 +297,7 @@ pub(super) fn simplifying(text: &str) -> Result<Option<Step>, String> {
     Ok(length.map(|_| Step::new("simplify", Args::from_pairs(&[("within", text)]))))
 }
 
-/// Parses a distance by which areas grow, or shrink below zero.
+/// Parses the distance of `--outset` as an edit; areas shrink if it is negative.
 pub(super) fn growing(text: &str) -> Result<Option<Step>, String> {
     let args = match text.trim().strip_prefix('-') {
         Some(by) => Args::from_pairs(&[("by", by), ("side", "inside")]),

@@ -1,4 +1,4 @@
-//! The common options that a command line or a recipe gives, before and after they are read.
+//! The common options as given on a command line or in a recipe, and their conversion to typed values.
 
 use super::common::CommonOptions;
 use super::table::{CommonOption, OPTIONS, OptionValue};
@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
-/// Common options with their values as given.
+/// Common options and their values, as given.
 #[derive(Clone, Default)]
 pub struct Given {
     inputs: Vec<PathBuf>,
@@ -15,7 +15,7 @@ pub struct Given {
 }
 
 impl Given {
-    /// Options with their values, in the order of the table, for these inputs.
+    /// Creates the options for these inputs from values in the order of the table.
     pub fn new(inputs: Vec<PathBuf>, values: Vec<(&'static CommonOption, Vec<OsString>)>) -> Self {
         Self { inputs, values }
     }
@@ -47,10 +47,10 @@ impl Given {
         Ok(())
     }
 
-    /// Leaves pages as they are unless `fit` is given: for programs that have drawings of their own open.
+    /// Sets `fit` to leave pages as they are, unless it is given: for programs with open drawings.
     pub fn keeping_pages(&self) -> Self {
         let mut kept = Self::default();
-        // The option and its value are in the table.
+        // Cannot fail: the option and its value are in the table.
         let _ = kept.set("fit", "none");
         kept.overridden_by(self)
     }
@@ -71,7 +71,7 @@ impl Given {
         taken.map(|v| v.to_string_lossy().into_owned()).collect()
     }
 
-    /// The names of the options given.
+    /// Returns the names of the options given.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.values.iter().map(|(o, _)| o.name)
     }
@@ -79,7 +79,7 @@ impl Given {
     /// Merges the options of two parts of a chain.
     ///
     /// # Errors
-    /// An option that does not repeat is in both parts, or two options conflict.
+    /// [`Failure::Usage`] if both parts have an option that does not repeat, or two options conflict.
     pub fn joined(&self, other: &Self) -> Result<Self, Failure> {
         let has = |option: &CommonOption| self.values.iter().any(|(o, _)| o.name == option.name);
         if let Some((twice, _)) = other.values.iter().find(|(o, _)| !o.repeats() && has(o)) {
@@ -93,7 +93,7 @@ impl Given {
         Ok(merged)
     }
 
-    /// Replaces the options that `other` gives too. Lists are joined.
+    /// Merges two sets of options: lists are concatenated, and other values of `other` take precedence.
     pub fn overridden_by(&self, other: &Self) -> Self {
         let find = |given: &Self, option: &CommonOption| -> Vec<OsString> {
             let all = given.values.iter().filter(|(o, _)| o.name == option.name);
@@ -124,16 +124,16 @@ impl Given {
         Ok(())
     }
 
-    /// The options that recipes store, by name.
+    /// Returns the options that recipes store, by name.
     pub fn stored(&self) -> impl Iterator<Item = (&'static str, Vec<String>)> {
         let stored = self.values.iter().filter(|(o, _)| o.stored);
         stored.map(|(o, values)| (o.name, values.iter().map(|v| v.to_string_lossy().into_owned()).collect()))
     }
 
-    /// The typed values: the defaults of the table, overridden by what is given.
+    /// Returns the typed values: the defaults of the table, overridden by the values given.
     ///
     /// # Errors
-    /// A value with its own syntax cannot be parsed.
+    /// [`Failure::Usage`] if a value cannot be parsed.
     pub fn read(&self) -> Result<CommonOptions, Failure> {
         let mut options = defaults();
         options.inputs.clone_from(&self.inputs);
@@ -147,7 +147,7 @@ impl Given {
     }
 }
 
-/// The values when no option is given.
+/// Returns the values that hold if no option is given.
 fn defaults() -> CommonOptions {
     let mut options = CommonOptions::default();
     for option in OPTIONS {
@@ -160,7 +160,7 @@ fn defaults() -> CommonOptions {
     options
 }
 
-/// Sets one value.
+/// Sets an option from one value.
 fn apply(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> Result<(), String> {
     let text = value.to_string_lossy();
     option.check(&text)?;

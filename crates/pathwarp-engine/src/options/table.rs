@@ -1,4 +1,4 @@
-//! The table of common options: each is declared here, and nowhere else.
+//! The table of common options. It declares all of them.
 
 use super::common::{
     CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
@@ -10,7 +10,7 @@ use pathwarp_svg::{Clones, Filters, Gradients, PageFit, Patterns, Strokes, Struc
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// An option without short name, default and conflicts, stored in recipes.
+/// An option that recipes store, without short name, default and conflicts.
 const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
     CommonOption {
         name,
@@ -25,12 +25,12 @@ const fn stored(name: &'static str, value: OptionValue, help: &'static str) -> C
     }
 }
 
-/// An option that names files or changes what is printed; recipes do not store it.
+/// An option that names files or changes the printed output; recipes do not store it.
 const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) -> CommonOption {
     CommonOption { stored: false, ..stored(name, value, help) }
 }
 
-/// A family for one of CSS's generic names.
+/// An option that names the family for one of CSS's generic names.
 const fn family(
     name: &'static str,
     set: fn(&mut CommonOptions, &str) -> Result<(), String>,
@@ -40,7 +40,7 @@ const fn family(
     CommonOption { reading: true, ..stored(name, value, help) }
 }
 
-/// Fonts besides the installed ones.
+/// An option that names fonts besides the installed ones.
 const fn fonts(name: &'static str, value: &'static str, help: &'static str) -> CommonOption {
     let value = OptionValue::List {
         name: value,
@@ -606,17 +606,17 @@ pub struct CommonOption {
     pub short: Option<char>,
     /// Another long name, on the command line only.
     pub alias: Option<&'static str>,
-    /// The kind of its value, with the way to set it.
+    /// The kind of its value, with the function that sets it.
     pub value: OptionValue,
     /// Default, in words for help. The default of a [`Choice`](OptionValue::Choice) is one of its words.
     pub default: Option<&'static str>,
-    /// Recipes store the option: it shapes the result, rather than naming files or changing what is printed.
+    /// `true` if recipes store the option, because it shapes the result instead of naming files or changing the printed output.
     pub stored: bool,
-    /// Every command that reads drawings has the option.
+    /// `true` if every command that reads drawings has the option.
     pub reading: bool,
     /// Options that cannot be given together with this one.
     pub conflicts: &'static [&'static str],
-    /// Its effect, in a sentence.
+    /// A sentence about its effect.
     pub help: &'static str,
 }
 
@@ -632,7 +632,7 @@ pub enum OptionValue {
     Choice(&'static [(&'static str, Set)]),
     /// A whole number in a range.
     Whole { name: &'static str, range: RangeInclusive<u16>, set: fn(&mut CommonOptions, u16) },
-    /// Text with its own syntax. The error names the fault without the option.
+    /// Text with a syntax. The function's error describes the fault and does not name the option.
     Text { name: &'static str, minus: LeadingMinus, set: fn(&mut CommonOptions, &str) -> Result<(), String> },
     /// Text; may be given several times.
     List { name: &'static str, push: fn(&mut CommonOptions, &str) -> Result<(), String> },
@@ -645,13 +645,13 @@ pub enum OptionValue {
 #[expect(missing_docs, reason = "names, ranges and setters")]
 pub enum LeadingMinus {
     No,
-    /// If it is a number.
+    /// Only if it is a number.
     Number,
     Any,
 }
 
 impl CommonOption {
-    /// The help text with the default.
+    /// Returns the help text with the default.
     pub fn help(&self) -> String {
         match self.default {
             Some(d) => format!("{} [default: {d}]", self.help),
@@ -664,14 +664,14 @@ impl CommonOption {
         matches!(self.value, OptionValue::List { .. })
     }
 
-    /// The words of a choice, without those that are only for its [`alias`](Self::alias).
+    /// Returns the words of a choice, without those that are only for its [`alias`](Self::alias).
     pub fn words(&self) -> Vec<&'static str> {
         let OptionValue::Choice(words) = &self.value else { return Vec::new() };
         let is_old = |word: &str| self.alias.is_some() && ["on", "off"].contains(&word);
         words.iter().map(|(word, _)| *word).filter(|word| !is_old(word)).collect()
     }
 
-    /// Checks a value as far as the kind alone decides: `Ok` if it is one of the words, in the range, or `true` for a switch.
+    /// Checks a value against its kind: one of the words, a number in the range, or `true` for a switch.
     pub(crate) fn check(&self, value: &str) -> Result<(), String> {
         match &self.value {
             OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),

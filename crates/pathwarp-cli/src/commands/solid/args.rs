@@ -10,7 +10,7 @@ use pathwarp_solid::Box3;
 use pathwarp_solid::glam::DVec3;
 use std::path::PathBuf;
 
-/// The common options that make sense for solids.
+/// The common options that apply to solids.
 const SHARED: &[&str] = &[
     "out",
     "out-dir",
@@ -25,12 +25,12 @@ const SHARED: &[&str] = &[
     "quiet",
 ];
 
-/// The common options.
+/// Returns the common options.
 pub(super) fn options() -> Vec<Arg> {
     some_options(SHARED).collect()
 }
 
-/// The models, the common options and the box.
+/// Returns the arguments for models, the common options and the box.
 pub(super) fn model_args() -> Vec<Arg> {
     let model = Arg::new(INPUT)
         .num_args(0..)
@@ -57,18 +57,18 @@ pub(super) fn model_args() -> Vec<Arg> {
     std::iter::once(model).chain(options()).chain([frame_arg(), refine, extrude]).collect()
 }
 
-/// The options that only solids have.
+/// The options only for solids.
 pub(super) struct Own {
-    /// The box that percentages refer to, if it is not the model's.
+    /// The box that percentages refer to, if it differs from the model's.
     pub(super) frame: Option<Box3>,
     /// The largest distance between the deformed surface and the exact one.
     pub(super) refine: Option<Length>,
-    /// Millimetres by which a drawing is extruded.
+    /// Depth in millimetres to which a drawing is extruded.
     pub(super) depth: Option<f64>,
 }
 
 impl Own {
-    /// Reads them from a command line.
+    /// Reads the options from a command line.
     pub(super) fn read(m: &ArgMatches) -> Result<Self, Failure> {
         let depth = length(m, "extrude")?
             .map(|l| l.in_units(Axis::X, &Frame::new(Rect::ZERO).with_units_per_px([MM_PER_PX; 2])));
@@ -76,7 +76,7 @@ impl Own {
     }
 }
 
-/// The positive length given for an option.
+/// Returns the positive length given for an option.
 fn length(m: &ArgMatches, option: &str) -> Result<Option<Length>, Failure> {
     let Some(text) = m.get_one::<String>(option) else { return Ok(None) };
     let wrong = |problem: String| Failure::usage(format!("--{option}: `{text}` {problem}"));
@@ -88,7 +88,7 @@ fn length(m: &ArgMatches, option: &str) -> Result<Option<Length>, Failure> {
     }
 }
 
-/// `--box`.
+/// The option `--box`.
 pub(super) fn frame_arg() -> Arg {
     Arg::new("box")
         .long("box")
@@ -98,7 +98,7 @@ pub(super) fn frame_arg() -> Arg {
         .help("Box that percentages and defaults refer to [default: the model's box]")
 }
 
-/// The box given by `--box`.
+/// Returns the box given by `--box`.
 pub(super) fn given_frame(m: &ArgMatches) -> Result<Option<Box3>, Failure> {
     let Some(text) = m.get_one::<String>("box") else { return Ok(None) };
     let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();

@@ -1,4 +1,4 @@
-//! A model on its way through a run: meshes and curved surfaces, built, deformed, reported and drawn.
+//! Deforms models: meshes and curved surfaces are built, deformed, reported and drawn.
 
 use super::args::Own;
 use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
@@ -29,7 +29,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A run with everything looked up.
+/// A run with all references resolved.
 pub(super) struct Work<'a> {
     pub(super) registry: &'a Registry3,
     pub(super) recipe: &'a Recipe,
@@ -38,14 +38,14 @@ pub(super) struct Work<'a> {
     pub(super) flags: &'a Flags,
 }
 
-/// A model that was deformed.
+/// A deformed model.
 pub(super) struct Done {
     pub(super) files: Vec<PendingFile>,
     pub(super) warnings: Vec<String>,
     pub(super) notes: Vec<String>,
-    /// Omitted unless one is wanted.
+    /// The report, if one is requested.
     pub(super) report: Option<String>,
-    /// Something was left out or missed the tolerance.
+    /// `true` if something was left out or missed the tolerance.
     pub(super) partial: bool,
 }
 
@@ -67,12 +67,12 @@ impl Work<'_> {
         Ok((frame, built))
     }
 
-    /// What reports say of the run for a model.
+    /// Returns the part of a report that describes the run.
     fn run<'a>(&'a self, file: &'a str, job: &'a Job, warnings: &'a [String], started: Instant) -> Run<'a> {
         Run { recipe: self.recipe, file, target: job.target.as_deref(), warnings, started }
     }
 
-    /// Notes on the frame and the steps.
+    /// Returns notes on the frame and the steps.
     pub(super) fn notes(&self, frame: &Frame3, built: &BuiltRecipe3) -> Vec<String> {
         let size = frame.bounds.size();
         let first = format!("box: {:.6} × {:.6} × {:.6}", size.x, size.y, size.z);
@@ -80,29 +80,29 @@ impl Work<'_> {
         std::iter::once(first).chain(steps).collect()
     }
 
-    /// Warnings of the steps.
+    /// Returns the warnings of the steps.
     pub(super) fn warnings(&self, built: &BuiltRecipe3) -> Vec<String> {
         built.steps.iter().flat_map(|s| &s.warnings).map(|w| self.flags.in_text(w)).collect()
     }
 
-    /// Files that parameters ask for, such as a saved lattice.
+    /// Returns the files that parameters ask for, such as a saved lattice.
     pub(super) fn saves(built: &BuiltRecipe3) -> Result<Vec<PendingFile>, Failure> {
         let save = |f: &pathwarp::deform::SavedFile| PendingFile::new(Path::new(&f.name), f.text.as_bytes());
         built.steps.iter().flat_map(|s| &s.saves).map(save).collect()
     }
 }
 
-/// Fails if searches for an inverse have exceeded the limit. Nothing that was computed with it is used, not even another error.
+/// Fails if searches for an inverse have exceeded the limit. This takes precedence over any result or other error of the map.
 pub(super) fn check(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
     built.exceeded().map_or(Ok(()), |e| Err(too_much(name, &e)))
 }
 
-/// The failure of a map that takes too much work.
+/// Returns the failure of a map that takes too much work.
 fn too_much(name: &str, e: &Exceeded) -> Failure {
     Failure::Geometry(format!("{name}: deforming takes {e}; {}", advice::raise(e)))
 }
 
-/// The failure of a point without image.
+/// Returns the failure of a point without image.
 pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
     Failure::Geometry(format!(
         "{name}: {what} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
@@ -110,7 +110,7 @@ pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Fai
     ))
 }
 
-/// A place in a message.
+/// Formats a point for a message.
 pub(super) fn shown(p: DVec3) -> String {
     format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
 }
@@ -120,7 +120,7 @@ pub(super) struct MeshSource {
     pub(super) name: String,
     pub(super) mesh: Mesh,
     pub(super) format: ModelFormat,
-    /// It was a drawing.
+    /// `true` if it is an extruded drawing.
     pub(super) drawn: bool,
 }
 
@@ -130,7 +130,7 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     let options = work.options;
     let MeshSource { name, mut mesh, format, drawn } = source;
     if format.is_curved() {
-        // Says so before the work.
+        // Fail before the work begins.
         mesh_file(&mesh, format, None)?;
     }
     let before = (options.report.is_some() || job.preview.is_some()).then(|| mesh.clone());
@@ -152,7 +152,7 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();
     let mut lost = format.lost(&mesh);
-    // Nobody misses the names of a drawing's shapes in a file for a printer.
+    // The names of a drawing's shapes do not matter to printers.
     lost.retain(|what| !(drawn && *what == NAMES));
     if !lost.is_empty() {
         let others = if format == ModelFormat::Obj { ".glb has" } else { ".obj and .glb have" };
@@ -174,11 +174,11 @@ pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: 
     Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
 }
 
-/// Warns of edges that should be curved, where that can be seen.
+/// Warns of straight edges that should be curved, if that is visible.
 fn coarse(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
-    /// Distances below this share of the result's size are hardly seen.
+    /// Distances below this share of the result's size are hardly visible.
     const SEEN: f64 = 0.02;
-    /// The distance that is proposed instead, as a share of the size.
+    /// The distance that is suggested instead, as a share of the size.
     const FINE: f64 = 1e-3;
     let size = mesh.bounds()?.diagonal();
     let fine = 10f64.powf((FINE * size).log10().floor());
@@ -206,10 +206,10 @@ fn mesh_warnings(deformed: &Deformed) -> Vec<String> {
     fold.into_iter().chain(tear).collect()
 }
 
-/// The largest distance of a refitted surface, as a share of the model's size, unless one is given.
+/// Default distance for refitted surfaces, as a share of the model's size.
 const TOLERANCE: f64 = 1e-4;
 
-/// The distance of polygons in previews, as a share of the model's size: facets are not seen.
+/// Distance for polygons in previews, as a share of the model's size; facets stay invisible.
 const SEEN: f64 = 3e-4;
 
 /// Surfaces as read, and the format to write.
@@ -219,7 +219,7 @@ pub(super) struct SurfaceSource {
     pub(super) format: ModelFormat,
 }
 
-/// Deforms surfaces; written as a mesh, they are cut into polygons after that.
+/// Deforms surfaces. In a mesh format, they are cut into polygons afterwards.
 pub(super) fn bend_surfaces(
     work: &Work<'_>,
     job: &Job,
@@ -244,7 +244,7 @@ pub(super) fn bend_surfaces(
     let mut warnings = work.warnings(&built);
     let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
     warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
-    // Polygons are those of the source, with the images of its points: surfaces that are closed stay closed.
+    // The polygons are the source's with mapped points, so closed surfaces stay closed.
     let image = |within: Option<f64>| -> Result<Mesh, Failure> {
         let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| surfaces_too_much(&name, &e))?;
         check(&name, &built)?;
@@ -284,7 +284,7 @@ pub(super) fn bend_surfaces(
     Ok(Done { files, warnings, notes, report, partial })
 }
 
-/// What became of the surfaces, of which the result has `all`.
+/// Describes the changes of the surfaces; the result has `all` of them.
 fn surface_notes(done: &DeformedPatches, format: ModelFormat, all: usize) -> Vec<String> {
     let mut notes = vec![match done.refitted {
         _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
@@ -308,7 +308,7 @@ fn surfaces_too_much(name: &str, e: &Exceeded) -> Failure {
     Failure::Input(format!("{name}: the surfaces take {e}; allow a larger --refine, or {}", advice::raise(e)))
 }
 
-/// `tolerance` is that of refitted surfaces, if they are written.
+/// Warns of inexact and folded surfaces. `tolerance` is for refitted surfaces, if they are written.
 fn shape_warnings(done: &DeformedPatches, tolerance: Option<f64>) -> Vec<String> {
     let fold = done.folded_at.map(|at| {
         let (count, at) = (done.folded, shown(at));
@@ -336,12 +336,12 @@ const SIDE: usize = 480;
 /// White pixels between panels.
 const GAP: usize = 8;
 
-/// What a preview shows.
+/// The content of a preview.
 struct Preview<'a> {
     before: &'a Mesh,
     after: &'a Mesh,
     guides: &'a [Vec<DVec3>],
-    /// The place from which nothing seems to change: the first camera.
+    /// The eye from which nothing seems to change; the first camera is there.
     eye: Option<DVec3>,
 }
 
@@ -351,7 +351,7 @@ impl<'a> Preview<'a> {
         Self { before, after, guides, eye: built.steps.iter().find_map(|s| s.eye) }
     }
 
-    /// The picture, in the format of the file's extension.
+    /// Draws the preview in the format of the file's extension.
     fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<PendingFile, Failure> {
         let format = PREVIEW.format(Some(file), None)?;
         let whole = 2 * SIDE + GAP;

@@ -1,4 +1,4 @@
-//! `pathwarp solid …`: deforms meshes. One subcommand per deformation of space, and `map`, `run` and `list`.
+//! `pathwarp solid …` deforms models: one subcommand for each deformation of space, and `map`, `run` and `list`.
 
 mod args;
 mod bend;

@@ -1,4 +1,4 @@
-//! Models: read from a file and written to one; their formats; drawings as models, true to size in millimetres.
+//! Models: reading and writing their files, their formats, and drawings as models, true to size in millimetres.
 
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
@@ -22,10 +22,10 @@ pub(super) struct Model {
     /// The name in messages and reports.
     pub(super) name: String,
     pub(super) content: Content,
-    /// Counts the work that the file causes.
+    /// Counts the work for the file.
     pub(super) budget: Arc<Budget>,
     pub(super) format: ModelFormat,
-    /// A drawing, the names of whose objects are those of shapes.
+    /// `true` for a drawing, whose objects are named after shapes.
     pub(super) drawn: bool,
 }
 
@@ -69,7 +69,7 @@ impl Model {
     }
 }
 
-/// The failure of reading or refining a model.
+/// Returns the failure of reading or refining a model.
 pub(super) fn unread(name: &str, e: &MeshError) -> Failure {
     Failure::Input(match &e.problem {
         MeshFault::Limit(exceeded) => format!("{name}: {e}; {}", advice::raise(exceeded)),
@@ -77,7 +77,7 @@ pub(super) fn unread(name: &str, e: &MeshError) -> Failure {
     })
 }
 
-/// A file, not yet in its place; without a target, standard output.
+/// Prepares an output; without a target, it is standard output.
 pub(super) fn pending(target: Option<&Path>, bytes: Vec<u8>) -> Result<PendingFile, Failure> {
     match target {
         Some(target) => PendingFile::new(target, &bytes),
@@ -85,7 +85,7 @@ pub(super) fn pending(target: Option<&Path>, bytes: Vec<u8>) -> Result<PendingFi
     }
 }
 
-/// The file of a mesh.
+/// Writes a mesh in a format.
 pub(super) fn mesh_file(mesh: &Mesh, format: ModelFormat, precision: Option<u8>) -> Result<Vec<u8>, Failure> {
     let failed = |e: MeshError| Failure::Output(format!("the result {e}"));
     match format {
@@ -100,24 +100,24 @@ pub(super) fn mesh_file(mesh: &Mesh, format: ModelFormat, precision: Option<u8>)
     }
 }
 
-/// Returns `true` for an SVG, also a compressed one.
+/// Returns `true` for an SVG, compressed or not.
 fn is_drawing(bytes: &[u8]) -> bool {
-    /// The root element of a drawing comes after a prologue that is rarely longer.
+    /// Length of a prologue before the root element, which is rarely exceeded.
     const PROLOGUE: usize = 4096;
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     let start = &bytes[..bytes.len().min(PROLOGUE)];
     start.starts_with(&GZIP) || start.trim_ascii_start().starts_with(b"<") && start.windows(4).any(|w| w == b"<svg")
 }
 
-/// The decimals for a billionth of the model's size.
+/// Returns the decimals that resolve a billionth of the model's size.
 fn decimals(mesh: &Mesh) -> u8 {
-    /// Figures of the size that are written.
+    /// Significant figures of the size.
     const FIGURES: f64 = 9.0;
-    /// As for the option.
+    /// The option's maximum.
     const MOST: f64 = 15.0;
     let size = mesh.bounds().map_or(1.0, |b| b.diagonal());
     let decimals = FIGURES - size.log10().floor();
-    // A cast of NaN gives 0.
+    // A cast turns NaN into 0.
     decimals.clamp(0.0, MOST) as u8
 }
 
@@ -139,10 +139,10 @@ pub(super) enum ModelFormat {
     Dxf,
 }
 
-/// Names, among the properties that a format has no room for.
+/// The word for names among the properties that a format cannot store.
 pub(super) const NAMES: &str = "names";
 
-/// Extensions and their formats.
+/// The extensions and their formats.
 const EXTENSIONS: [(&str, ModelFormat); 8] = [
     ("obj", ModelFormat::Obj),
     ("stl", ModelFormat::Stl),
@@ -155,13 +155,13 @@ const EXTENSIONS: [(&str, ModelFormat); 8] = [
 ];
 
 impl ModelFormat {
-    /// The format that an extension says.
+    /// Returns the format of a file by its extension.
     pub(super) fn of(file: &Path) -> Option<Self> {
         let extension = file.extension()?;
         EXTENSIONS.into_iter().find(|(e, _)| extension.eq_ignore_ascii_case(e)).map(|(_, f)| f)
     }
 
-    /// The format of a file without such an extension.
+    /// Detects the format of a file without such an extension.
     pub(super) fn sniffed(bytes: &[u8]) -> Self {
         let json = || bytes.trim_ascii_start().starts_with(b"{");
         if gltf::sniff(bytes) {
@@ -177,10 +177,10 @@ impl ModelFormat {
         }
     }
 
-    /// The format of an output; of standard output that of the input.
+    /// Returns the format of an output; for standard output, the input's.
     ///
     /// # Errors
-    /// The extension says another one.
+    /// [`Failure::Usage`] if the extension is not a model's.
     pub(super) fn of_output(target: Option<&Path>, input: Self) -> Result<Self, Failure> {
         let Some(target) = target else { return Ok(input) };
         match (Self::of(target), target.extension()) {
@@ -203,7 +203,7 @@ impl ModelFormat {
         matches!(self, Self::Bpt | Self::Surfaces | Self::Dxf)
     }
 
-    /// The properties of a mesh for which the format has no room.
+    /// Returns the properties of a mesh that the format cannot store.
     pub(super) fn lost(self, mesh: &Mesh) -> Vec<&'static str> {
         let marked = |f: fn(&Mark) -> bool| mesh.marks.iter().any(|(_, m)| f(m));
         let kinds = |k: PolygonKind| mesh.polygons.iter().any(|p| p.kind == k);
@@ -236,10 +236,10 @@ impl ModelFormat {
     }
 }
 
-/// Distance in millimetres within which outlines are followed: finer than printers and cutters work.
+/// Distance in millimetres within which outlines are followed, smaller than the precision of printers and cutters.
 const TOLERANCE: f64 = 0.01;
 
-/// Reads a drawing: x from the left edge of the page, y from its bottom edge.
+/// Reads a drawing: x is measured from the left edge of the page, y from its bottom edge.
 fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Result<Mesh, Failure> {
     let doc = input::document_of(bytes, file, reading)?;
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());

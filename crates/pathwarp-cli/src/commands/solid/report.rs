@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::path::Path;
 use std::time::Instant;
 
-/// The report on a model: measures before and after, and what was counted.
+/// The report on a model: measures before and after, and counts.
 #[derive(Serialize)]
 struct SolidReport<'a, M, C> {
     tool: &'static str,
@@ -30,7 +30,7 @@ struct SolidReport<'a, M, C> {
 pub(super) struct Run<'a> {
     pub(super) recipe: &'a Recipe,
     pub(super) file: &'a str,
-    /// `None`: standard output.
+    /// The output; `None` for standard output.
     pub(super) target: Option<&'a Path>,
     pub(super) warnings: &'a [String],
     pub(super) started: Instant,
@@ -52,7 +52,7 @@ impl Run<'_> {
         })
     }
 
-    /// The report on a mesh.
+    /// Returns the report on a mesh.
     pub(super) fn of_mesh(&self, meshes: [&Mesh; 2], deformed: &Deformed) -> Result<String, Failure> {
         /// Vertices that moved, vertices at which the map turns space inside out, and edges across which it jumps.
         #[derive(Serialize)]
@@ -65,7 +65,7 @@ impl Run<'_> {
         self.json(meshes.map(Measures::of), Counts { moved, folded, torn })
     }
 
-    /// The report on curved surfaces.
+    /// Returns the report on curved surfaces.
     pub(super) fn of_surfaces(&self, all: [&[Surface]; 2], done: &DeformedPatches) -> Result<String, Failure> {
         #[derive(Serialize)]
         struct Counts {
@@ -73,11 +73,11 @@ impl Run<'_> {
             exact: usize,
             /// Surfaces that were refitted.
             refitted: usize,
-            /// Those of them that are replaced by parts, cut along creases.
+            /// Refitted surfaces that parts replace, cut along creases.
             cut: usize,
-            /// The largest distance of those from their images that was measured.
+            /// The largest measured distance of refitted surfaces from their images.
             distance: f64,
-            /// Places of a grid on the surfaces at which the map turns space inside out.
+            /// Points of a grid on the surfaces at which the map turns space inside out.
             folded: usize,
         }
         let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *done;
@@ -85,22 +85,22 @@ impl Run<'_> {
     }
 }
 
-/// A mesh in numbers.
+/// Measures of a mesh.
 #[derive(Serialize)]
 struct Measures {
     vertices: usize,
     faces: usize,
     edges: usize,
-    /// V − E + F.
+    /// The Euler characteristic V − E + F.
     euler: i64,
     open_edges: usize,
     bad_edges: usize,
     closed: bool,
-    /// Omitted unless the surface is closed.
+    /// `None` unless the surface is closed.
     #[serde(skip_serializing_if = "Option::is_none")]
     volume: Option<f64>,
     area: f64,
-    /// Two corners.
+    /// Two corners of the bounding box.
     bounds: Option<[[f64; 3]; 2]>,
 }
 
@@ -126,7 +126,7 @@ fn text(report: &impl Serialize) -> Result<String, Failure> {
     readable::json(report).map_err(|e| Failure::Output(format!("the report: {e}")))
 }
 
-/// The report on a model that could not be deformed.
+/// Returns the report on a model that could not be deformed.
 pub(super) fn failed(file: &str, error: &str) -> Result<String, Failure> {
     #[derive(Serialize)]
     struct Failed<'a> {
@@ -136,7 +136,7 @@ pub(super) fn failed(file: &str, error: &str) -> Result<String, Failure> {
     text(&Failed { file, error })
 }
 
-/// Surfaces in numbers.
+/// Measures of surfaces.
 #[derive(Serialize)]
 struct SurfaceMeasures {
     surfaces: usize,

@@ -1,4 +1,4 @@
-//! `pathwarp solid DEFORMATION MODEL …`: deforms models by one deformation or a chain.
+//! `pathwarp solid DEFORMATION MODEL …`: deforms models by a deformation or a chain.
 
 use super::args::{Own, model_args};
 use super::bend::{Done, MeshSource, SurfaceSource, Work, bend_mesh, bend_surfaces};
@@ -37,7 +37,7 @@ pub(super) fn run(
     watch::begin(options.reading.limits);
     let jobs = plan(registry, recipe, &options, from)?;
     for job in &jobs {
-        // A wrong extension must not cost a long run.
+        // Fail before a long run if the extension is wrong.
         ModelFormat::of_output(job.target.as_deref(), ModelFormat::Obj)?;
     }
     let mut resolved = recipe.clone();
@@ -53,14 +53,14 @@ pub(super) fn run(
     }
 }
 
-/// The outputs of all models, planned before anything is read.
+/// Plans the outputs of all models before anything is read.
 fn plan(
     registry: &Registry3,
     recipe: &Recipe,
     options: &CommonOptions,
     from: Option<&Path>,
 ) -> Result<Vec<Job>, Failure> {
-    /// A drawing gives a model.
+    /// The result of a drawing is a model.
     fn result(target: PathBuf) -> PathBuf {
         let is_drawing =
             target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
@@ -74,7 +74,7 @@ fn plan(
 }
 
 impl Work<'_> {
-    /// Deforms the models one after another, each with all threads, and finishes each on its own.
+    /// Deforms the models one after another, each with all threads, and finishes each before the next.
     fn all(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
         let options = self.options;
         let _empty_ones_removed_at_the_end = Folders::create(options, jobs)?;
@@ -116,7 +116,7 @@ impl Work<'_> {
         Ok(Status::partial_if(partial || !failed.is_empty()))
     }
 
-    /// The recipe and the report: an object for one model, a list for several.
+    /// Prepares the recipe and the report, which is an object for one model, and a list for several.
     fn common(&self, given: &Given, reports: &[String], several: bool) -> Result<Vec<PendingFile>, Failure> {
         let mut files = Vec::new();
         if let Some(file) = &self.options.write_recipe {

@@ -1,8 +1,8 @@
 //! `pathwarp badge`: two lines of text in a ring, with lines, separators and a drawing in the middle.
 //!
-//! Everything is parallel to the outline of the badge. The band between the ring lines holds the text, whose middle height, half of the
-//! capitals', lies on the middle of the band: there lengths are measured, so letters of the upper and of the lower line have equal
-//! distances at half their height, although the ones fan out where the others crowd.
+//! Everything is parallel to the outline of the badge. The text lies in the band between the ring lines, with half the height of its
+//! capitals on the middle of the band. Lengths are measured there, so that letters of both lines have equal distances at half their height,
+//! although the upper ones fan out and the lower ones crowd together.
 
 use super::on_path::{as_letters, drawn, line, on_page};
 use super::style::{Em, style};
@@ -32,36 +32,35 @@ Examples:
   pathwarp badge 'SUMMIT' 'CAMP' --shape shield --stars --ring 3 --font 'DejaVu Serif' -o badge.svg
   pathwarp badge 'Zoë’s' 'bakery' --shape oval --separator heart --fill '#8a1f2b' --width 60mm -o badge.pdf";
 
-/// The option for the size of the badge, which gives the page its unit, and its default in px.
+/// The option for the size of the badge, which determines the page's unit, and its default in px.
 pub(super) const WIDTH: (&str, f64) = ("width", 480.0);
-/// The font without `--font`: regular type is too thin for a badge.
+/// The default font: regular type is too thin for a badge.
 pub(super) const FONT: &str = "display";
 const SEPARATOR: &str = "separator";
 const PARAMS: &[Param] = &[Param::path(SEPARATOR, "")];
 
-/// Width of a ring line as a share of half the badge's width; of the thin one beside it, as a share of that, with the space between.
+/// Width of a ring line as a share of half the badge's width; width of a thin line beside it, and the gap between them, as shares of that.
 const LINE: f64 = 0.026;
 const THIN: f64 = 0.4;
 const APART: f64 = 0.9;
-/// The widest band as a share of half the badge's width, around a circle and around other shapes, and the least share of it that suits
-/// long lines.
+/// The widest band as a share of half the badge's width, around a circle and around other shapes; and the least share of it for long lines.
 const BAND: [f64; 2] = [0.36, 0.31];
 const LEAST: f64 = 0.45;
-/// Height of capitals, and the most that any letter may reach from the middle, as shares of the band.
+/// Height of capitals, and the largest distance of any letter from the middle, as shares of the band.
 const CAPITALS: f64 = 0.54;
 const REACH: f64 = 0.44;
-/// The narrowest that letters are made, and the most space that is added between them, in em; the least of it as for [`BAND`]: their feet
-/// crowd in a ring, and more at its corners.
+/// The narrowest scale of letters, and the largest space added between them, in em; its least value, as for [`BAND`]. Feet of letters crowd
+/// together in a ring, and more so at its corners.
 const NARROWEST: f64 = 0.85;
 const TRACKING: f64 = 0.12;
 const LEAST_TRACKING: [f64; 2] = [0.03, 0.06];
-/// Space between the lines, or on both sides of a separator, and the height of a separator and of a dot, as shares of the capitals.
+/// Space between the lines, or on both sides of a separator, and heights of a separator and of a dot, as shares of the capitals.
 const SPACE: f64 = 0.8;
 const HEIGHT: f64 = 0.75;
 const DOT: f64 = 0.36;
-/// Room around the drawing in the middle, as a share of half the badge's width.
+/// Margin around the drawing in the middle, as a share of half the badge's width.
 const AROUND: f64 = 0.12;
-/// The size at which texts are measured.
+/// The size of the em at which texts are measured.
 const EM: f64 = 100.0;
 
 pub(super) fn args() -> Vec<Arg> {
@@ -115,11 +114,11 @@ pub(super) struct Badge<'a> {
     pub(super) registry: &'a Registry,
     pub(super) m: &'a ArgMatches,
     pub(super) fonts: &'a [Font<'a>],
-    /// Its size is the width of the badge.
+    /// The width of the badge is its size.
     pub(super) em: &'a Em,
     pub(super) options: &'a CommonOptions,
     pub(super) read: &'a ReadOptions,
-    /// Weight, and whether italic, of fonts that are not named.
+    /// Weight and slant (`true` for italic) of fonts that are not named.
     pub(super) look: (u16, bool),
 }
 
@@ -131,26 +130,26 @@ pub(super) struct Made {
     pub(super) missing: BTreeSet<char>,
 }
 
-/// The place of everything.
+/// Measures of all elements.
 struct Layout {
-    /// Distances of the ring lines' middles from the outline, and their widths.
+    /// Distances of the ring lines' centre lines from the outline, and widths.
     lines: Vec<(f64, f64)>,
-    /// The path that the middles of letters lie on, and its length.
+    /// The path of the letters' middles, and its length.
     path: Outline,
     length: f64,
     size: f64,
-    /// Width of letters, and space between them.
+    /// Horizontal scale of letters, and space between them.
     condensed: f64,
     tracking: f64,
     /// Height of the middle above the baseline, and of capitals.
     middle: f64,
     capitals: f64,
-    /// Distance of the free room in the middle from the outline.
+    /// Distance between the free area in the middle and the outline.
     free: f64,
 }
 
 impl Badge<'_> {
-    /// Makes the badge of an upper text, and a lower one.
+    /// Makes a badge from an upper text and a lower one.
     pub(super) fn made(&self, texts: &[Option<String>; 2]) -> Result<Made, Failure> {
         let texts: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
         let natural: Vec<OutlinedText> = texts.iter().map(|t| self.set(t, EM, 0.0)).collect::<Result<_, _>>()?;
@@ -172,7 +171,7 @@ impl Badge<'_> {
             let (frame, width) = self.frame(letters, set.lines.first().map_or(0.0, |l| l.start.y));
             let (group, warnings) = self.line(text, frame, &layout, i == 1, 0.0, glyphs)?;
             out.groups.push(SetGroup { id: Some(["upper", "lower"][i]), ..group });
-            // Bends of a ring are given; letters that touch need space.
+            // The curvature of the ring is fixed, so letters that touch need space.
             let apart =
                 |w: &String| Some(format!("{}; --letter-spacing 6% sets them apart", w.split_once(", first near")?.0));
             out.warnings.extend(warnings.iter().map(|w| apart(w).unwrap_or_else(|| w.clone())));
@@ -186,7 +185,7 @@ impl Badge<'_> {
         Ok(out)
     }
 
-    /// Lays out a line.
+    /// Lays out one line of text.
     fn set(&self, text: &str, size: f64, tracking: f64) -> Result<OutlinedText, Failure> {
         let mut style = style(self.m, &self.em.resized(size))?;
         style.letter_spacing += tracking;
@@ -206,7 +205,7 @@ impl Badge<'_> {
         self.m.get_one::<String>("shape").map_or("circle", String::as_str)
     }
 
-    /// The outline of the badge moved inwards.
+    /// Returns the outline of the badge, moved inwards.
     fn inset(&self, by: f64) -> Result<Outline, Failure> {
         let half = self.half();
         let ellipse = |a: f64, b: f64| {
@@ -220,7 +219,7 @@ impl Badge<'_> {
             _ => return ellipse(half - by, half - by),
         };
         let shape = Outline::from_svg(data).map_err(pathwarp::Error::from)?.transformed(Affine::scale(half));
-        // Corners of all lines are round about the same centres.
+        // The round corners of all lines are concentric.
         let core = self.offset(&shape, half * CORNER, "inside")?;
         let out = half * CORNER - by;
         self.offset(&core, out.abs(), if out > 0.0 { "outside" } else { "inside" })
@@ -236,7 +235,7 @@ impl Badge<'_> {
         Ok(Outline::from(&moved.path.path))
     }
 
-    /// The middle of a band from one distance from the outline to another, and its length.
+    /// Returns the middle line of a band between two distances from the outline, and its length.
     fn middle(&self, from: f64, to: f64) -> Result<(Outline, f64), Failure> {
         let path = self.inset(0.5 * (from + to))?;
         let fine = 1e-5 * self.half();
@@ -245,8 +244,8 @@ impl Badge<'_> {
     }
 }
 
-/// A closed path that is symmetrical about the y axis, once around: clockwise from its lowest place on that, or the other way from its
-/// highest one.
+/// Returns a closed path that is symmetrical about the y axis, once around: clockwise from its lowest point on the axis, or
+/// counterclockwise from the highest.
 fn around(path: &Outline, from_top: bool) -> Outline {
     const HALVINGS: u32 = 60;
     let fine = 1e-7 * path.extent();
@@ -272,7 +271,7 @@ fn around(path: &Outline, from_top: bool) -> Outline {
     let mut area = 0.0;
     boundary(path.to_bez_path(fine), 1e4 * fine, |a, b| area += a.to_vec2().cross(b.to_vec2()));
     let run = Outline { subpaths: vec![Subpath { start, segs, closed: true }] };
-    // Positive areas are clockwise, as y points down.
+    // Positive areas are clockwise, since y points down.
     if (area > 0.0) == from_top {
         Outline { subpaths: run.subpaths.iter().map(Subpath::reversed).collect() }
     } else {
@@ -280,14 +279,14 @@ fn around(path: &Outline, from_top: bool) -> Outline {
     }
 }
 
-/// Outlines about the origin, from -1 to 1 when their corners are round: the height of an oval, a shield with an arched top, and a hexagon.
+/// Outlines about the origin, from -1 to 1 with round corners: the height of an oval, a shield with an arched top, and a hexagon.
 const OVAL: f64 = 0.76;
 const SHIELD: &str = "M-1,-.62 A1.3,1.3 0 0 1 1,-.62 L1,.05 C1,.6 .55,.98 0,1.25 C-.55,.98 -1,.6 -1,.05 Z";
 const HEXAGON: &str = "M-1.0928,0 L-.5464,-.9464 L.5464,-.9464 L1.0928,0 L.5464,.9464 L-.5464,.9464 Z";
 /// Radius of the outermost corners.
 const CORNER: f64 = 0.6;
 
-/// A letter made narrower.
+/// Scales a letter horizontally.
 fn narrowed(letter: &Letter, narrow: Affine) -> Letter {
     Letter {
         name: letter.name.clone(),
@@ -297,7 +296,7 @@ fn narrowed(letter: &Letter, narrow: Affine) -> Letter {
     }
 }
 
-/// The centre of the area within a path; `None` if there is none.
+/// Returns the centroid and the area of a path; `None` without an area.
 fn centroid(path: &BezPath, tolerance: f64) -> Option<(Point, f64)> {
     let (mut area, mut moment) = (0.0, [0.0; 2]);
     boundary(path.elements().iter().copied(), tolerance, |a, b| {
@@ -309,7 +308,7 @@ fn centroid(path: &BezPath, tolerance: f64) -> Option<(Point, f64)> {
 }
 
 impl Badge<'_> {
-    /// Finds the largest type for which there is room.
+    /// Computes the layout with the largest type that fits.
     fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
         let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
         let w = LINE * half;
@@ -378,7 +377,7 @@ impl Badge<'_> {
         Ok(Layout { lines, path, length, size, condensed, tracking, middle, capitals, free })
     }
 
-    /// The frame of letters on a baseline, from the beginning of their ink to its end, and the width of that.
+    /// Returns the frame of letters on a baseline, as wide as their ink, and that width.
     fn frame(&self, letters: Vec<Letter>, baseline: f64) -> (Frame, f64) {
         let ink = letters.iter().filter_map(|l| l.outline.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or_default();
         let rect = Rect::new(ink.x0, baseline - self.em.size, ink.x1, baseline);
@@ -386,7 +385,7 @@ impl Badge<'_> {
         (frame.with_letters(letters.into()), ink.width())
     }
 
-    /// Sets a line in the middle of the upper or of the lower side, or moved along by an offset.
+    /// Sets a line in the middle of the upper or lower side, moved along the path by an offset.
     fn line(
         &self,
         label: &str,
@@ -402,7 +401,7 @@ impl Badge<'_> {
         line(self.registry, label, frame, args, &around(&layout.path, is_lower), self.options)
     }
 
-    /// The shape between the lines.
+    /// Returns the shape between the lines.
     fn separator(&self) -> Result<Option<Outline>, Failure> {
         let flag = |name: &str| self.m.get_flag(name);
         let own = self.m.get_one::<String>(SEPARATOR).map(String::as_str);
@@ -424,7 +423,7 @@ impl Badge<'_> {
         bounds.map(|_| Some(path)).ok_or_else(|| Failure::usage(format!("--separator: {reference} has no area")))
     }
 
-    /// The separators, each in the middle between the ends of the lines.
+    /// Sets the separators halfway between the ends of the lines.
     fn separators(&self, shape: &Outline, layout: &Layout, widths: &[f64]) -> Result<SetGroup, Failure> {
         let bounds = shape.bounding_box().unwrap_or_default();
         let height = if self.m.get_flag("dots") { DOT } else { HEIGHT } * layout.capitals;
@@ -449,11 +448,10 @@ impl Badge<'_> {
         Ok(group)
     }
 
-    /// The drawing in the middle: halfway between the centre of its area and that of its box on the centre of the free room, and as large
-    /// as that allows.
+    /// Returns the drawing in the middle, as large as fits. The mean of its centroid and its box's centre lies amid the free area.
     fn center(&self, layout: &Layout) -> Result<Option<SetGroup>, Failure> {
         const HALVINGS: u32 = 40;
-        /// Strokes enlarge the box of the paths by at most this factor. Shadows enlarge it more, and need no room.
+        /// Strokes enlarge the box of the paths by at most this factor. Shadows enlarge it more, and may overlap.
         const MOST_BEYOND: f64 = 1.2;
         let Some(file) = self.m.get_one::<PathBuf>("center") else { return Ok(None) };
         let (half, reading) = (self.half(), &self.options.reading);
@@ -486,7 +484,7 @@ impl Badge<'_> {
             ];
         }
         let ink = points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p));
-        // Lines reach beyond their paths.
+        // Strokes extend beyond their paths.
         let beyond = (seen.width() / ink.width()).max(seen.height() / ink.height()).clamp(1.0, MOST_BEYOND);
         let fits = |scale: f64| points.iter().all(|p| room.contains(middle + (*p - anchor) * (scale * beyond)));
         let (mut small, mut large) = (0.0, 2.0 * half / fine);
@@ -503,10 +501,10 @@ impl Badge<'_> {
     }
 }
 
-/// Heights of letters for an em of 1.
+/// Heights of letters, with an em of 1.
 struct Heights {
     capitals: f64,
-    /// The middle of the letters above the baseline.
+    /// The height of the letters' middle above the baseline.
     middle: f64,
     /// The greatest distance of any letter from the middle.
     reach: f64,
@@ -514,7 +512,7 @@ struct Heights {
 
 impl Heights {
     fn of(texts: &[OutlinedText]) -> Self {
-        /// Letters below this share of the capitals are small ones without ascenders.
+        /// Letters lower than this share of the capitals are small ones without ascenders.
         const SMALL: f64 = 0.85;
         let metrics = texts[0].metrics.scaled(1.0 / EM);
         let ends = texts.iter().filter_map(|t| {

@@ -1,4 +1,4 @@
-//! `--in`: the lines put into a shape by the deformation `envelope`.
+//! `--in` puts the lines into a shape by the deformation `envelope`.
 
 use super::on_path::{self, SetLines, as_letters, bent, text_arg};
 use super::style::Em;
@@ -9,7 +9,7 @@ use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::CommonOptions;
 use pathwarp_text::OutlinedText;
 
-/// The deformation, and its parameter that is the shape.
+/// The deformation, and its parameter for the shape.
 const ENVELOPE: &str = "envelope";
 const IN: &str = "in";
 
@@ -25,7 +25,7 @@ pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
     m.contains_id(IN)
 }
 
-/// Puts a text into the shape that `--in` names.
+/// Puts a text into the shape given by `--in`.
 pub(super) fn set(
     registry: &Registry,
     m: &ArgMatches,

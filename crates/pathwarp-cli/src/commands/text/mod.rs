@@ -36,7 +36,7 @@ pub(super) fn text_command(registry: &Registry) -> Command {
 }
 
 pub(super) fn badge_command(_: &Registry) -> Command {
-    /// Options of `text` that are about one line of text, its font and its colour.
+    /// Options of `text` for the font and colour of one line of text.
     const SHARED: [&str; 10] =
         ["out", "font", "weight", "italic", "synthesize", "variation", "fill", "margin", "data", "letter-spacing"];
     let shared = text_and_font().into_iter().chain(spacing()).filter(|a| SHARED.contains(&a.get_id().as_str()));
@@ -51,13 +51,13 @@ pub(super) fn badge_command(_: &Registry) -> Command {
         .after_help(badge::AFTER)
 }
 
-/// Sets the text, or that of each row of a table, and writes the drawings.
+/// Sets the text, once or for each row of a table, and writes the drawings.
 pub(super) fn text(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let size = ("size", TextStyle::default().size);
     run(registry, m, words, &Job { size, font: None, texts: both_texts, draw: |s, t, l| s.text(t, l) })
 }
 
-/// Makes the badge, or that of each row of a table, and writes the drawings.
+/// Makes the badge, once or for each row of a table, and writes the drawings.
 pub(super) fn badge(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> Result<Status, Failure> {
     let texts = |m: &ArgMatches| {
         let mut words = m.get_many::<String>("WORDS").into_iter().flatten().cloned();
@@ -68,9 +68,9 @@ pub(super) fn badge(registry: &Registry, m: &ArgMatches, words: &[OsString]) -> 
 
 /// A command that draws texts.
 struct Job {
-    /// The option that the page has its unit from, and its default in px.
+    /// The option that determines the page's unit, and its default in px.
     size: (&'static str, f64),
-    /// The font without `--font`, if it is not the bundled one.
+    /// The default font, if it is not the bundled one.
     font: Option<&'static str>,
     texts: fn(&ArgMatches) -> Result<[Option<String>; 2], Failure>,
     draw: Draw,
@@ -134,13 +134,13 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     })
 }
 
-/// Fonts and style, with which texts are set.
+/// The fonts and the style for setting texts.
 struct Setting<'a> {
     registry: &'a Registry,
     m: &'a ArgMatches,
     options: CommonOptions,
     read: ReadOptions,
-    /// Weight, and whether italic, of fonts that are not named.
+    /// Weight and slant (`true` for italic) of fonts that are not named.
     look: (u16, bool),
     format: Format,
     em: Em,
@@ -197,7 +197,7 @@ impl Setting<'_> {
         Ok(Drawn { svg, warnings, missing })
     }
 
-    /// Makes a badge of an upper text, and a lower one.
+    /// Makes a badge from an upper text and a lower one.
     fn badge(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, fonts, em, options, read, look, .. } = self;
         let made = badge::Badge { registry, m, fonts, em, options, read, look: *look }.made(texts)?;
@@ -206,8 +206,8 @@ impl Setting<'_> {
         Ok(Drawn { svg, warnings: made.warnings, missing: made.missing })
     }
 
-    /// The colour, and the page with its margin. A drawing to look at has one unless the user says otherwise; what has a size on
-    /// paper, goes to a machine or into another command has none.
+    /// Returns the colour, and the page with its margin. By default, only a drawing for display has a margin; one with a size on paper, for
+    /// a machine or for another command has none.
     fn page(&self, fill: Option<String>, target: Option<&Path>) -> Result<LetteringOptions, Failure> {
         const MARGIN: f64 = 0.06;
         let is_shown =
@@ -219,7 +219,7 @@ impl Setting<'_> {
     }
 }
 
-/// The lettering as one shape.
+/// Unites the lettering to one shape.
 fn welded(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
     let mut unite = Warper::edit(registry, "unite", &[("by", "all")]).map_err(|e| Failure::usage(e.to_string()))?;
     if let Some(tolerance) = m.get_one::<String>("tolerance") {
@@ -254,7 +254,7 @@ fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
 }
 
-/// All options, in the order of help.
+/// Returns all options, in the order of help.
 fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
     all.push(in_shape::arg());
@@ -356,7 +356,7 @@ fn shaping() -> impl Iterator<Item = Arg> {
     .into_iter()
 }
 
-/// The text and the one of `--below`. Only the latter may be alone.
+/// Returns the text and the text of `--below`; the latter may be alone.
 fn both_texts(m: &ArgMatches) -> Result<[Option<String>; 2], Failure> {
     let below = m.get_one::<String>("below").map(|t| unescaped(t));
     let given = m.contains_id("file") || m.get_many::<String>("WORDS").is_some_and(|mut w| w.any(|w| !w.is_empty()));
@@ -364,7 +364,7 @@ fn both_texts(m: &ArgMatches) -> Result<[Option<String>; 2], Failure> {
     Ok([text, below])
 }
 
-/// The text of the arguments, a file or standard input.
+/// Returns the text from the arguments, a file or standard input.
 fn words(m: &ArgMatches) -> Result<String, Failure> {
     let words: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
     let file = match (m.get_one::<PathBuf>("file"), &words[..]) {

@@ -1,8 +1,8 @@
-//! `--on`: lines on a path, each bent onto it by the deformation `bend`.
+//! `--on` sets lines on a path, each bent onto it by the deformation `bend`.
 //!
-//! A line above stands on the path with its baseline, on the outer side of a closed path, its middle at the top. A line below hangs
-//! from the path by the height of its capitals, its middle at the bottom, and reads from left to right as well: both are in one
-//! ring. `--inside` swaps what touches the path, so that the ring is within it.
+//! The upper line stands with its baseline on the path, on the outer side of a closed path, centred at the top. The lower line hangs from
+//! the path by the height of its capitals, centred at the bottom, and also reads from left to right, so that both lie in one ring.
+//! `--inside` swaps the edges that touch the path, which puts the ring inside of it.
 
 use super::style::Em;
 use crate::steps;
@@ -26,7 +26,7 @@ use pathwarp_text::{Cluster, OutlinedText};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The deformation that sets the lines, and those of its parameters that are options here.
+/// The deformation that bends the lines, and its parameters that are options here.
 const BEND: &str = "bend";
 const OF_BEND: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"];
 
@@ -38,16 +38,16 @@ const KEEP: &str = "keep-path";
 const LINE: f64 = 0.05;
 const PARAMS: &[Param] = &[Param::path(ON, ""), Param::new(AT, Kind::Angle, "")];
 
-/// Middles of lines on a circle, in degrees clockwise from the right: its top and its bottom.
+/// Centres of lines on a circle, in degrees clockwise from the right: its top and bottom.
 const TOP: f64 = 270.0;
 const BOTTOM: f64 = 90.0;
 
-/// An option of this kind whose value is text.
+/// A text-valued option on paths and shapes.
 pub(super) fn text_arg(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
 }
 
-/// A path as it is, filled or drawn as a line.
+/// Draws a path as it is, filled or as a line.
 pub(super) fn drawn(
     path: &Outline,
     label: &str,
@@ -96,14 +96,14 @@ pub(super) fn is_asked_for(m: &ArgMatches) -> bool {
     m.contains_id(ON)
 }
 
-/// Lines in their last place, and warnings.
+/// The lines as set, and warnings.
 #[derive(Default)]
 pub(super) struct SetLines {
     pub(super) lines: Vec<SetGroup>,
     pub(super) warnings: Vec<String>,
 }
 
-/// Sets a text above and one below on the path that `--on` names.
+/// Sets an upper and a lower text on the path given by `--on`.
 pub(super) fn set(
     registry: &Registry,
     m: &ArgMatches,
@@ -165,7 +165,7 @@ pub(super) fn set(
     Ok(out)
 }
 
-/// A path on which lines are set, with what it is if it is round.
+/// A path for lines, with its circle if it is round.
 struct Curve<'a> {
     path: &'a Outline,
     round: Option<Round>,
@@ -176,13 +176,13 @@ struct Curve<'a> {
 struct Round {
     centre: Point,
     radius: f64,
-    /// The middle of an open arc, radians.
+    /// The angle of an open arc's midpoint, in radians.
     middle: f64,
     /// The direction in which `bend` runs an open arc: 1 is clockwise.
     way: f64,
 }
 
-/// A path as a line needs it, the values of `bend` that go with it, and the shift of the line.
+/// A path adapted to a line, the values of `bend` for it, and the shift of the line.
 struct Laid {
     path: Outline,
     args: Args,
@@ -195,7 +195,7 @@ impl<'a> Curve<'a> {
         Self { path, round: Round::of(path), closed }
     }
 
-    /// Refuses what does not go with this path.
+    /// Refuses options that do not suit this path.
     fn check(&self, m: &ArgMatches, name: &str, both: bool, stretches: bool) -> Result<(), Failure> {
         let problem = if self.round.is_none() && m.contains_id(AT) {
             "--at goes with circles and arcs; on another path --offset moves the line along"
@@ -209,7 +209,7 @@ impl<'a> Curve<'a> {
         Err(Failure::usage(format!("{problem} (--{name} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
     }
 
-    /// Warns of two lines of these widths that run into each other.
+    /// Warns if two lines of these widths overlap.
     fn crowded(&self, middles: [f64; 2], widths: [f64; 2]) -> Option<String> {
         let half = 0.5 * (widths[0] + widths[1]);
         let room = match &self.round {
@@ -225,8 +225,8 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// The path for a line: of a circle from opposite its `middle` (degrees) around to there again, or the half of it around the middle
-    /// without a `gap` at both ends together.
+    /// Returns the path for a line. Of a circle, it is the whole, starting opposite to the line's `middle` (degrees), or only the half
+    /// around that, shortened by a `gap`.
     fn laid(&self, is_below: bool, reverse: bool, middle: Option<f64>, gap: Option<f64>) -> Laid {
         let mut args = Args::new();
         let (mut path, mut shift) = (self.path.clone(), 0.0);
@@ -238,7 +238,7 @@ impl<'a> Curve<'a> {
                 args.push("as-drawn", "true");
             }
             _ => {
-                // A closed path runs clockwise; lines below read from left to right against that.
+                // A closed path runs clockwise, and lower lines read from left to right against it.
                 if reverse != (is_below && self.closed) {
                     args.push("reverse", "true");
                 }
@@ -254,7 +254,7 @@ impl<'a> Curve<'a> {
 
 impl Round {
     fn of(path: &Outline) -> Option<Self> {
-        /// Radii and centres that differ by less, relative to the radius, are the same.
+        /// Relative difference of radii and centres that counts as zero.
         const SAME: f64 = 1e-9;
         let [only] = &path.subpaths[..] else { return None };
         let arcs = only.segs.iter().map(|s| if let Seg::Arc(a) = s { Some(a) } else { None });
@@ -279,7 +279,7 @@ impl Round {
     }
 
     fn around(&self, middle: f64, way: f64, gap: Option<f64>) -> Outline {
-        /// Most of a half that is left free at each of its ends, radians.
+        /// Largest part of a half circle that stays free at each end, in radians.
         const MOST_FREE: f64 = PI / 6.0;
         let half = gap.map_or(PI, |g| 0.5 * PI - (0.5 * g / self.radius).min(MOST_FREE));
         let (u, v) = (Vec2::new(self.radius, 0.0), Vec2::new(0.0, self.radius));
@@ -288,12 +288,12 @@ impl Round {
     }
 }
 
-/// An angle between −π and π.
+/// Reduces an angle to between −π and π.
 fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The end of an open path at which a line is, in the words of `bend`.
+/// Returns the end of an open path at which a line is aligned, as a word of `bend`.
 fn align(m: &ArgMatches, text: &OutlinedText) -> &'static str {
     match m.get_one::<String>("align").map(String::as_str) {
         Some("start") if text.rtl => "end",
@@ -308,7 +308,7 @@ fn length(frame: &Frame, name: &str, text: &str) -> Result<f64, Failure> {
     Ok(Settings::new(&[], &args, frame)?.length_in(name, text, pathwarp::param::Axis::X)?)
 }
 
-/// The path that `--on` names, and the angles of `--at`.
+/// Returns the path given by `--on`, and the angles of `--at`.
 fn path_and_middles(
     m: &ArgMatches,
     width: f64,
@@ -331,7 +331,7 @@ fn path_and_middles(
     Ok((path, angles))
 }
 
-/// The path of a file that a reference names. The text has its size on paper, and so has the path, whatever the units of its file are.
+/// Reads the path of a file that a reference names. The text has its real size on paper, so the path is scaled to its real size, too.
 pub(super) fn on_page(reference: &str, em: &Em, options: &CommonOptions) -> Result<Option<Outline>, Error> {
     let [x, y] = em.units_per_px();
     match reference.strip_prefix('#') {
@@ -341,7 +341,7 @@ pub(super) fn on_page(reference: &str, em: &Em, options: &CommonOptions) -> Resu
     }
 }
 
-/// The box from the lowest baseline to the highest ascent, with the letters.
+/// Returns the box from the lowest baseline to the highest ascent, with the letters.
 fn frame(text: &OutlinedText, em: &Em) -> Frame {
     let (top, bottom) = (text.lines.first(), text.lines.last());
     let y = bottom.map_or(0.0, |l| l.start.y);
@@ -350,7 +350,7 @@ fn frame(text: &OutlinedText, em: &Em) -> Frame {
     Frame::new(rect).on_baseline(y).with_letters(as_letters(text)).with_units_per_px(em.units_per_px())
 }
 
-/// The letters of a text as deformations know them.
+/// Converts the letters of a text for deformations.
 pub(super) fn as_letters(text: &OutlinedText) -> Arc<[Letter]> {
     let letters = text.lines.iter().flat_map(|l| &l.clusters).filter(|c| !c.outline.is_empty());
     let letter = |c: &Cluster| Letter {
@@ -362,7 +362,7 @@ pub(super) fn as_letters(text: &OutlinedText) -> Arc<[Letter]> {
     letters.map(letter).collect()
 }
 
-/// The y of the top of capitals in the first line.
+/// Returns the y coordinate of the top of capitals in the first line.
 fn cap_height(text: &OutlinedText) -> f64 {
     text.lines.first().map_or(0.0, |l| l.start.y) - text.metrics.cap_height
 }
@@ -420,7 +420,7 @@ pub(super) fn bent(
     let set = |(i, l): (usize, &Letter)| Ok(SetPath { label: l.name.clone(), path: set(i, l)?, line: None });
     let paths = letters.iter().enumerate().map(set).collect::<Result<_, GeometryError>>().map_err(Error::from)?;
     let flags = Flags::of(registry);
-    // Heights and widths go with the size of the text here.
+    // Here, `--size` determines heights and widths.
     let own = |w: &String| flags.in_text(w).replacen(&format!("{deformation}: "), "", 1).replace("--width", "--size");
     let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(own);
     Ok((SetGroup { label: label.to_owned(), paths, ..SetGroup::default() }, warnings.collect()))

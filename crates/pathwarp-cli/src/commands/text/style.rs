@@ -1,4 +1,4 @@
-//! The style: size, spacing, and the fonts, found by file or family, at their weight and variations.
+//! The style: size, spacing, and fonts, found by file or family, with their weights and variations.
 
 use clap::ArgMatches;
 use pathwarp::kurbo::Rect;
@@ -9,17 +9,17 @@ use pathwarp_svg::ReadOptions;
 use pathwarp_svg::engine::family_styles;
 use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, features, variations};
 
-/// The size of the em, and the unit that it and the whole page have.
+/// The size of the em, and the unit of it and of the page.
 pub(super) struct Em {
     pub(super) size: f64,
-    /// `None`: px.
+    /// `None` for px.
     pub(super) unit: Option<LengthUnit>,
-    /// Percentages refer to it.
+    /// The frame that percentages refer to.
     frame: Frame,
 }
 
 impl Em {
-    /// Reads `--size`, or another option that the whole page has its unit from. With a unit, user units of the page are that unit.
+    /// Reads `--size`, or another option that determines the unit of the page's user units.
     pub(super) fn given(m: &ArgMatches, name: &str, default: f64) -> Result<Self, Failure> {
         let text = word(m, name);
         let typed = text.map(str::parse::<Length>).transpose();
@@ -35,18 +35,18 @@ impl Em {
         Ok(Self { size: 0.0, unit, frame: Frame::new(Rect::ZERO).with_units_per_px([1.0 / px; 2]) }.resized(size))
     }
 
-    /// Another size on the same page.
+    /// Returns another size on the same page.
     pub(super) fn resized(&self, size: f64) -> Self {
         let frame = Frame { rect: Rect::new(0.0, 0.0, size, size), ..self.frame.clone() };
         Self { size, unit: self.unit, frame }
     }
 
-    /// User units of the page per px.
+    /// Returns the user units of the page per px.
     pub(super) fn units_per_px(&self) -> [f64; 2] {
         self.frame.units_per_px
     }
 
-    /// The length given for the option `name`, in user units of the page.
+    /// Returns the length given for the option `name`, in user units of the page.
     pub(super) fn length(&self, m: &ArgMatches, name: &str) -> Result<Option<f64>, Failure> {
         let Some(text) = word(m, name) else { return Ok(None) };
         let args = Args::new();
@@ -54,7 +54,7 @@ impl Em {
     }
 }
 
-/// The value of an option that the command may have.
+/// Returns the value of an option that the command may lack.
 fn word<'m>(m: &'m ArgMatches, name: &str) -> Option<&'m str> {
     m.try_get_one::<String>(name).ok().flatten().map(String::as_str)
 }
@@ -111,7 +111,7 @@ pub(super) fn weight_of(text: &str) -> Result<u16, Failure> {
     })
 }
 
-/// The positions on variation axes that `--variation` gives.
+/// Returns the positions on variation axes given by `--variation`.
 pub(super) fn axis_positions(m: &ArgMatches) -> Result<Vec<Variation>, Failure> {
     let mut all = Vec::new();
     for list in m.get_many::<String>("variation").into_iter().flatten() {
@@ -120,7 +120,7 @@ pub(super) fn axis_positions(m: &ArgMatches) -> Result<Vec<Variation>, Failure> 
     Ok(all)
 }
 
-/// Checks that the first font has the weight and the slant asked for, by itself, by an axis, or because it may be synthesised.
+/// Checks that the first font has the requested weight and slant, as it is, by an axis, or by synthesis if that is allowed.
 pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &ReadOptions) -> Result<(), Failure> {
     let lacking = wanted.weight_lacking(font);
     let bolder = lacking.is_some_and(|w| f64::from(w) > font.weight());
