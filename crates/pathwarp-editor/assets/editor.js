@@ -22,7 +22,7 @@
     waiting = /* @__PURE__ */ new Map();
     next = 1;
     isStopped = false;
-    /** The requests that somebody waits for; small pictures come when they come. */
+    /** The requests whose answers are awaited, as opposed to thumbnails. */
     urgent = /* @__PURE__ */ new Set();
     onBusy = () => {
     };
@@ -58,7 +58,7 @@
         else this.look();
       }, RETRY);
     }
-    /** Does not connect again. */
+    /** Stops connecting. */
     stop() {
       this.isStopped = true;
     }
@@ -70,7 +70,7 @@
       if (answer.error === void 0) waiting?.resolve(answer);
       else waiting?.reject(new Refused(answer.error));
     }
-    /** Somebody waits for an answer. */
+    /** `true` while an answer is awaited. */
     get isBusy() {
       return this.urgent.size > 0;
     }
@@ -240,7 +240,7 @@
     return /^(\S+|[^:;]*\.\w{1,5}): /.test(text) ? text : text.replace(/^./, (c) => c.toUpperCase());
   }
   var Field = class {
-    /** `take` returns what is wrong with a text; `isWrong` knows it while it is typed. */
+    /** `take` accepts a text and returns its problem, if any; `isWrong` checks texts while they are typed. */
     constructor(input, read, take, isWrong = () => null, nudge) {
       this.input = input;
       this.read = read;
@@ -289,7 +289,7 @@
       if (problem === null) this.input.removeAttribute("aria-describedby");
       else this.input.setAttribute("aria-describedby", this.message.id);
     }
-    /** The value that holds is on show again. */
+    /** Shows the valid value again. */
     reset() {
       this.say(null);
       this.input.value = this.shown = this.read();
@@ -619,9 +619,9 @@
     step;
     handles = [];
     grips;
-    /** Handles of plain numbers. */
+    /** Handles of numbers. */
     dials = [];
-    /** A path of the drawing that a parameter named before its line was dragged. */
+    /** A path of the drawing that a parameter referred to before its line was dragged. */
     released = null;
     /** Control points of nets that have been moved. */
     moved = {};
@@ -648,25 +648,25 @@
     get net() {
       return Object.values(this.grips).find((grip) => grip.net)?.net;
     }
-    /** A pin is added with the place in the artwork that it takes hold of. */
+    /** `true` if points are added as pins, at the artwork's points under the pointer. */
     get pairs() {
       return this.grows && this.deformation.params.some(({ name, notation }) => notation === PAIR && this.grips[name]?.pairs);
     }
-    /** The handle of a point nearest to a place. */
+    /** Returns the handle of the point that is nearest to `at`. */
     nearest(at) {
       const far = (h2) => Math.hypot(h2.get()[0] - at[0], h2.get()[1] - at[1]);
       return this.handles.filter(({ shape }) => shape === "node").reduce((best, h2) => best && far(best) <= far(h2) ? best : h2, null);
     }
-    /** Points are added to and taken from all rows at once. */
+    /** Returns `true` if points are added to all rows, or removed from all, at once. */
     isRows(param) {
       return this.points(param) === "rows";
     }
-    /** A point that is added at a place adds none elsewhere. */
+    /** Returns `true` if a point added at `at` adds no others. */
     isFree(at, reach) {
       const found = this.near(at, reach, (param) => param.points !== void 0);
       return !found || this.points(found.name) === "any";
     }
-    /** The values with which a net has one more row or column through a place on one of its lines. */
+    /** Returns values for which the net has another row or column through a point on one of its lines. */
     denser(at, reach) {
       const { net } = this;
       const sides = net?.lines.flatMap((line) => line.slice(1).map((b2, i) => [line[i], b2])) ?? [];
@@ -689,11 +689,11 @@
     points(name) {
       return this.deformation.params.find((p) => p.name === name)?.points;
     }
-    /** The path may have any number of points. */
+    /** Returns `true` if the path may have any number of points. */
     isAny(name) {
       return this.points(name) === "any";
     }
-    /** The rows of points, which have equally many. */
+    /** The rows of points, all of equal length. */
     get rows() {
       const all = this.deformation.params.filter((p) => p.points === "rows");
       return all.flatMap(({ name }) => (this.grips[name]?.paths ?? []).flat().map((sub) => [name, sub]));
@@ -709,7 +709,7 @@
         set: (to) => void (grip.point = to)
       });
     }
-    /** The amount by which a preset bends the artwork: pulled up or down from the middle, half a height being all of it. */
+    /** Adds the handle for the bend of a preset: half a height up or down from the middle is the full bend. */
     addBend(param, grip) {
       const [x, y, w, h2] = this.frame;
       const middle2 = [x + w / 2, y + h2 / 2];
@@ -723,7 +723,7 @@
         set: (to) => void (grip.value = Math.max(-FARTHEST_BEND, Math.min(FARTHEST_BEND, 2 * (middle2[1] - to[1]) / Math.max(h2, 1e-9))))
       });
     }
-    /** A radius about a centre: a handle on the circle. */
+    /** Adds the handle for a radius about a centre, on the circle. */
     addRadius(param, grip) {
       const centre = () => this.grips.center.point;
       this.handles.push({
@@ -736,7 +736,7 @@
         set: (to) => void (grip.value = Math.hypot(to[0] - centre()[0], to[1] - centre()[1]))
       });
     }
-    /** A circle or an arc: its centre moves it, the handle opposite its start makes it larger, its ends turn about the centre. */
+    /** Adds the handles for a circle or arc: the centre moves it, a handle opposite to its start changes the radius, its ends rotate. */
     addCircle(param, grip) {
       const c = grip.circle;
       const name = words(param);
@@ -800,8 +800,8 @@
         }
       });
     }
-    /** The nodes and control points of a path. Smooth nodes carry their control points along; at a corner, the pieces beside it keep their
-     * shape: straight ones stay straight. The ends of a closed path are one node. */
+    /** Adds the nodes and control points of a path. A smooth node moves its control points; at a corner, adjacent pieces keep their shape,
+     * and straight ones stay straight. The ends of a closed path are one node. */
     addSubpath(param, path, sub, id) {
       const { segments } = sub;
       const last = segments.length - 1;
@@ -867,7 +867,7 @@
         arm2("out");
       }
     }
-    /** Takes a node of a path away, if enough are left. */
+    /** Returns a function that removes a node of a path, if enough remain. */
     removal(param, sub, n, nodes) {
       if (this.points(param) === "rows" && nodes > 2 && n > 0 && n < nodes - 1) {
         return () => {
@@ -884,7 +884,7 @@
         this.collect();
       };
     }
-    /** The path that passes nearest to a place, among those of which something is true. */
+    /** Returns the nearest path of parameters for which `is` holds. */
     near(at, reach, is) {
       let best = null;
       for (const param of this.deformation.params.filter(is)) {
@@ -895,7 +895,7 @@
       }
       return best;
     }
-    /** Takes hold of the line near a place: a curve bends with the pointer, a straight line moves. */
+    /** Starts to drag the line near a point: a curve bends with the pointer, a straight line moves. */
     pull(at, reach) {
       const found = this.near(at, reach, () => true);
       if (!found) return this.pullRow(at, reach) ?? this.pullCircle(at, reach);
@@ -935,7 +935,7 @@
       const from = handles.map((h2) => [...h2.get()]);
       return { param, handles, ends: handles.map(({ key }) => key), targets: (to) => from.map(([x, y]) => [x + to[0] - at[0], y + to[1] - at[1]]) };
     }
-    /** Adds a point to the path that passes near a place. */
+    /** Adds a point to the path near `at`. */
     divide(at, reach) {
       const found = this.near(at, reach, (param) => param.points !== void 0);
       if (!found) return false;
@@ -954,7 +954,7 @@
       this.collect();
       return true;
     }
-    /** The lines to draw under the handles. */
+    /** Returns the lines to draw under the handles. */
     lines() {
       const out = this.dials.map(({ line }) => line());
       for (const grip of Object.values(this.grips)) {
@@ -1016,7 +1016,7 @@
         this.released ??= before2.find((value) => value.startsWith("#")) ?? null;
       }
     }
-    /** A net's moved control points each have a value, which replaces an earlier one and a shift. */
+    /** Writes a value for each moved control point of a net; it replaces earlier values and shifts. */
     writeNet(name, net) {
       for (const i of this.moved[name] ?? []) {
         const index = `${net.names[i]}:`;
@@ -1025,7 +1025,7 @@
         this.step.args[name] = [...without(name), node(net.names[i], net.points[i], this.frame)];
       }
     }
-    /** The middle of the piece of a line that follows a node. */
+    /** Returns the midpoint of the piece that follows a node. */
     after(handle) {
       const [param, id = "", n] = handle.key.split("/");
       const [i, j] = id.split(".").map(Number);
@@ -1033,7 +1033,7 @@
       if (!sub || this.points(handle.param) === void 0) return null;
       return middle(sub, Math.min(Number(n), sub.segments.length - 1));
     }
-    /** Adds a point where the step takes any number of them, to paths within `reach`; a pin takes `from` there. */
+    /** Adds a point where the step takes any number of them, to paths within `reach`; a pin moves `from` to it. */
     add(at, from, reach) {
       if (this.divide(at, reach)) return true;
       if (!this.grows) return false;
@@ -1056,16 +1056,16 @@
       }
       return false;
     }
-    /** Returns `true` if points can be added. */
+    /** `true` if points can be added. */
     get grows() {
       if (Object.values(this.grips).some((grip) => grip.net)) return false;
       return this.deformation.params.some(({ name, repeat }) => repeat && (this.grips[name]?.pairs || this.grips[name]?.points));
     }
-    /** Returns `true` if there are paths that points can be added to. */
+    /** `true` if there are paths to which points can be added. */
     get divides() {
       return this.deformation.params.some(({ name, points }) => points && this.grips[name]?.paths);
     }
-    /** The handle on the other side of the frame's middle, if one is there. */
+    /** Returns the handle at the mirror image about the frame's middle, if one is there. */
     partner(of) {
       const [x, , w, h2] = this.frame;
       const [px, py] = of.get();
@@ -1135,29 +1135,29 @@
     steps = [];
     /** The step whose handles and settings are shown. */
     selected = 0;
-    /** The steps are a first proposal that nothing has been done with. */
+    /** `true` while the steps are a proposal that has not been used. */
     isProposal = false;
-    /** The step being changed is more than a shape that has just been chosen. */
+    /** `true` once the edited step has been changed since its shape was chosen. */
     isWorkedOn = false;
-    /** The next shape that is chosen becomes a step after the others. */
+    /** `true` if the next chosen shape is appended as a step. */
     appends = false;
     /** Selectors of the parts that no step bends. */
     locks = [];
     grips = [];
-    /** The places of steps for parts that the drawing lacks. */
+    /** The indices of steps for parts that the drawing lacks. */
     gone = [];
     handles = null;
-    /** A path of the drawing that was a guide until its line was dragged just now. */
+    /** A path of the drawing that was a guide until its line was dragged. */
     released = null;
     summary = null;
     warnings = [];
     problem = null;
     isConnected = false;
-    /** The steps have been given to the program that waited for them. */
+    /** `true` once the steps have been handed to the program that waited for them. */
     isDone = false;
-    /** A handle is being dragged, so the handles stay as they are. */
+    /** `true` while a handle is dragged; the handles then stay as they are. */
     isDragging = false;
-    /** Takes back what a pointer that is down has done. */
+    /** Cancels the drag in progress. */
     hold = null;
     screen = { show: () => {
     }, pixel: 1, reveal: () => {
@@ -1166,13 +1166,13 @@
     isBusy = false;
     isWanted = false;
     since = 0;
-    /** Changes of the steps, one after another. */
+    /** The queue of changes to the steps. */
     turns = Promise.resolve();
-    /** The last commit, which the server answers after those before it. */
+    /** The last commit; the server answers commits in order. */
     lastCommit = Promise.resolve();
     /** The number of commits that the server has refused. */
     refusals = 0;
-    /** Runs while keys move a handle, until the steps are committed. */
+    /** The timer that commits the steps after keys have moved a handle; 0 if none runs. */
     pause = 0;
     connection;
     constructor() {
@@ -1186,7 +1186,7 @@
         (news) => void this.hear(news)
       );
     }
-    /** What is changed is kept. */
+    /** `true` if changes are stored. */
     get isLive() {
       return this.isConnected && !this.isDone;
     }
@@ -1202,11 +1202,11 @@
     deformation(name) {
       return this.catalogue.find((d) => d.name === name);
     }
-    /** A step changes the drawing before it is bent. */
+    /** Returns `true` for an edit, which changes the drawing before it is bent. */
     isFirst(step2) {
       return this.deformation(step2?.deformation)?.first ?? false;
     }
-    /** The steps up to the one being changed. */
+    /** The steps up to the edited one. */
     get visible() {
       return this.steps.slice(0, this.selected + 1);
     }
@@ -1217,13 +1217,13 @@
       this.tell("link");
       await this.load(answer.state);
     }
-    /** Nothing is left to do here. */
+    /** Ends the page after the steps have been handed over. */
     finish() {
       this.isDone = true;
       this.connection.stop();
       this.tell("link");
     }
-    /** Takes over a state of the server, with a proposal if nothing has been done yet. */
+    /** Adopts a state of the server, with a proposal if nothing has been done yet. */
     async load(state) {
       this.state = state;
       this.steps = structuredClone(state.steps);
@@ -1252,25 +1252,25 @@
       if (this.isProposal) this.isProposal = false;
       else this.fail(problem);
     }
-    /** Puts another drawing in the place of this one, when everything before is done; what follows, an undo for one, waits for it. */
+    /** Replaces the drawing after all pending changes; later changes, such as an undo, wait for it. */
     enter(answer) {
       return this.inTurn(async () => {
         const state = (await answer())?.state;
         if (state) await this.load(state);
       });
     }
-    /** The first values of a deformation after these steps. */
+    /** Requests the first values of a deformation that follows these steps. */
     async opening(deformation, steps, variant = null, select = []) {
       return this.attempt(async () => {
         const { step: step2 } = await this.connection.ask({ do: "opening", deformation, variant, steps, select });
         return step2 ? { ...step2, exclude: this.locks } : null;
       });
     }
-    /** The parts of the drawing that the step being changed holds for; none for all. */
+    /** The selectors of the edited step; empty for the whole drawing. */
     get chosen() {
       return this.step?.select ?? [];
     }
-    /** Lets the step being changed hold for these parts alone; its paths are laid onto their box. */
+    /** Applies the edited step only to these parts, with its paths mapped onto their box. */
     scope(select) {
       return this.inTurn(async () => {
         const { step: step2, selected } = this;
@@ -1283,12 +1283,12 @@
         await this.commit();
       });
     }
-    /** Lets no step bend these parts. */
+    /** Excludes these parts from all steps. */
     lock(locks) {
       this.locks = locks;
       return this.arrange(this.steps.map((step2) => ({ ...step2, exclude: locks })), this.selected);
     }
-    /** Shows the picture of the present steps, exactly. Returns `false` if there is none. */
+    /** Shows the exact picture of the present steps. Returns `false` if there is none. */
     async refresh() {
       const shown3 = await this.attempt(async () => {
         this.take(await this.connection.ask({ do: "bend", steps: this.visible, draft: null }));
@@ -1296,7 +1296,7 @@
       });
       return shown3 ?? !this.isConnected;
     }
-    /** Shows a quick picture of the present steps. While one is being made, only the newest wish counts. */
+    /** Shows a draft of the present steps. While one is being made, only the newest request is kept. */
     draft(since) {
       this.since = since;
       if (this.isBusy) {
@@ -1321,7 +1321,7 @@
       } while (this.isWanted);
       this.isBusy = false;
     }
-    /** Makes the present steps the ones to undo from and to save. */
+    /** Stores the present steps, with a state to undo. */
     commit() {
       this.lastCommit = this.committed();
       return this.lastCommit;
@@ -1342,17 +1342,17 @@
       await this.load(this.state);
       this.fail(problem);
     }
-    /** Commits when no other key follows for a while. */
+    /** Commits if no other key follows for a while. */
     commitSoon() {
       this.isDragging = true;
       clearTimeout(this.pause);
       this.pause = window.setTimeout(() => void this.flush(), KEYS);
     }
-    /** Commits what keys have done so far, if anything. */
+    /** Commits changes made by keys so far, if any. */
     async flush() {
       if (this.endPause()) await this.commit();
     }
-    /** Waits until the server has all that was done so far. Returns `false` if it refuses some of it. */
+    /** Waits until the server has stored all changes. Returns `false` if it refuses some. */
     async settle() {
       const { refusals } = this;
       this.takeTyped();
@@ -1361,7 +1361,7 @@
       await this.lastCommit;
       return !showWrong() && this.refusals === refusals;
     }
-    /** Takes the value that is being typed, as if its field were left. */
+    /** Accepts the value that is being typed, as if its field had lost the focus. */
     takeTyped() {
       const field = document.activeElement;
       if (!isTyping(field)) return;
@@ -1375,7 +1375,7 @@
       this.isDragging = false;
       return true;
     }
-    /** Takes back what has been dragged since the last commit: the step is as it was before. */
+    /** Cancels a drag: restores the step as it was before. */
     cancel(step2, before2) {
       this.hold = null;
       this.isDragging = false;
@@ -1384,14 +1384,14 @@
       void this.refresh();
       this.tell("values");
     }
-    /** Does something to the steps when everything before is done, so that no late answer takes the place of a newer choice. */
+    /** Changes the steps after all pending changes, so that a late answer does not replace a newer choice. */
     inTurn(work) {
       hush();
       const done = this.turns.then(() => this.flush()).then(work);
       this.turns = done.catch(() => void 0);
       return done;
     }
-    /** Undoes or redoes; while something is dragged, that is taken back alone. */
+    /** Undoes or redoes; during a drag, undoing only cancels the drag. */
     async turn(direction) {
       if (this.hold) return direction === "undo" ? this.hold() : void 0;
       this.takeTyped();
@@ -1406,12 +1406,12 @@
         this.screen.reveal();
       });
     }
-    /** Starts or ends the choice of a shape for a further step. */
+    /** Starts or ends the choice of a shape for another step. */
     append(appends) {
       this.appends = appends;
       this.tell("steps");
     }
-    /** Replaces the step being changed, or appends one if that is wanted. */
+    /** Replaces the edited step, or appends one if requested. */
     choose(deformation, args, variant = null) {
       const { appends } = this;
       this.appends = false;
@@ -1438,7 +1438,7 @@
       this.tell("steps");
       this.screen.reveal();
     }
-    /** Puts a step before all that bends, in the order of the catalogue; there is one of each kind. */
+    /** Inserts an edit before all deformations, in the order of the catalogue; there is one of each kind. */
     async prepared(deformation) {
       const others = this.isProposal ? [] : this.steps;
       const known = others.findIndex((s2) => s2.deformation === deformation && !isCaption(s2));
@@ -1453,7 +1453,7 @@
       this.dropHandles();
       await this.proposed();
     }
-    /** Puts words after those that there are, before all else. Returns their step, which is kept as soon as it is committed. */
+    /** Inserts words after existing ones, before all other steps. Returns their step, which is stored when it is committed. */
     caption(args) {
       return this.inTurn(async () => {
         const step2 = await this.opening("caption", []);
@@ -1469,7 +1469,7 @@
         return step2;
       });
     }
-    /** Changes the list of steps. */
+    /** Replaces the list of steps. */
     arrange(steps, selected) {
       return this.inTurn(() => this.arranged(steps, selected));
     }
@@ -1491,7 +1491,7 @@
       this.tell("steps");
       await this.refresh();
     }
-    /** Sets a parameter of the step being changed. */
+    /** Sets a parameter of the edited step. */
     set(name, values, isDone) {
       const { step: step2 } = this;
       if (!step2) return;
@@ -1510,14 +1510,14 @@
       if (isDone) void this.commit();
       else this.draft(performance.now());
     }
-    /** Sets a parameter by a key; those that follow are one change with it. */
+    /** Sets a parameter by a key; keys that follow belong to the same change. */
     setSoon(name, values) {
       if (NET.has(name) && this.handles?.net) return this.set(name, values, true);
       this.set(name, values, false);
       this.commitSoon();
       this.tell("values");
     }
-    /** Sets a parameter to what was typed. Returns what is wrong with it. */
+    /** Sets a parameter to a typed value. Returns the problem, if any. */
     async setTyped(name, values) {
       const { refusals } = this;
       this.set(name, values, true);
@@ -1531,7 +1531,7 @@
       this.fail(null);
       return inWords(problem, true);
     }
-    /** Gives the net of the step more or fewer control points; it bends as before. */
+    /** Changes the number of control points of the step's net, which bends as before. */
     async renet(values) {
       const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
       if (!answer?.step) return this.tell("steps");
@@ -1546,7 +1546,7 @@
     grip(name) {
       return this.grips[this.selected]?.params[name];
     }
-    /** The radius that a circle would need for the artwork not to be longer than it; `null` if it is long enough, or the artwork stretched. */
+    /** Returns the radius of a circle around which the artwork would fit; `null` if it fits, or is stretched. */
     tooSmall(name) {
       const [circle2, frame, step2] = [this.grip(name)?.circle, this.grips[this.selected]?.frame, this.step];
       if (!circle2 || !frame || name !== "along" || ["stretch", "copies", "width"].some((other) => step2?.args[other])) return null;
@@ -1567,7 +1567,7 @@
       if (!this.isDragging) this.takeHandles();
       this.tell("report");
     }
-    /** The handles of a step that is replaced must not be pulled while its successor is on the way. */
+    /** Removes the handles of a step that is being replaced, so that they cannot be dragged meanwhile. */
     dropHandles() {
       this.hold?.();
       this.handles = null;
@@ -1581,7 +1581,7 @@
       this.handles = this.step && deformation && grips ? new Handles(deformation, this.step, grips) : null;
       this.tell("handles");
     }
-    /** Another page has changed the steps. */
+    /** Adopts changes of the steps by another page. */
     async hear(news) {
       if (news.event !== "changed" || !news.state) return;
       if (this.isDragging) {
@@ -1593,7 +1593,7 @@
       await this.load(news.state);
       if (news.state.file !== file) toast(`${news.state.file} has been opened in another tab. The steps of ${file} are kept with it`);
     }
-    /** Does something that the server may refuse; then the message is shown. */
+    /** Does something that the server may refuse, and shows the message then. */
     async attempt(work) {
       try {
         return await work();
@@ -1606,7 +1606,7 @@
       this.problem = problem;
       this.tell("report");
     }
-    /** Adds a point at a place, where the step takes any number, and at others that mirror it. Returns the key of its handle. */
+    /** Adds a point where the step takes any number of them, and at the mirrored points. Returns the key of its handle. */
     addPoint(at, others, reach) {
       return this.inTurn(async () => {
         const { handles } = this;
@@ -1627,7 +1627,7 @@
       await this.commit();
       return true;
     }
-    /** The place in the drawing that the visible steps take to this one, or this one if there is none. */
+    /** Returns the point of the drawing that the visible steps map to `at`, or `at` if there is none. */
     async source(at) {
       for (let k = this.visible.length; k > 0; k--) {
         const steps = this.visible.slice(0, k);
@@ -1636,7 +1636,7 @@
       }
       return at;
     }
-    /** The place in the artwork that the step takes to this one. */
+    /** Returns the point of the artwork that the step maps to `at`. */
     async preimage(at) {
       const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
       if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
@@ -1758,7 +1758,7 @@
       });
     }
     app;
-    /** Opens what was dropped or pasted: a file, or the text of a drawing. */
+    /** Opens a dropped or pasted file, or the text of a drawing. */
     take(data) {
       const file = data?.files[0];
       const text = data?.getData("text/plain") ?? "";
@@ -1851,12 +1851,12 @@
     app;
     stage;
     image = s("image", { class: "background" });
-    /** The paths of a drawing, which are clicked and not seen. */
+    /** The paths of the drawing, invisible but clickable. */
     outlines = s("g", { class: "outlines", opacity: 0 });
     layer = s("g", { visibility: "hidden" }, this.image, this.outlines);
     edge = s("path", { class: "line arm" });
     ground = s("path", { class: "ground", tabindex: 0, role: "button", "aria-label": "Background; arrow keys move it" });
-    /** The corners clockwise from the upper left, and what turns it. */
+    /** The corners, clockwise from the upper left, and the rotation handle. */
     knobs = ["nw", "ne", "se", "sw", "turn"].map((part) => s(
       "g",
       { class: `part ${part}` },
@@ -1872,16 +1872,16 @@
     file = null;
     isDrawing = false;
     lie = { x: 0, y: 0, width: 1, turn: 0 };
-    /** Height over width. */
+    /** Ratio of height to width. */
     ratio = 1;
     fields = [];
     opacity = byId("background-opacity");
-    /** The program has been asked for the background, or told of it. */
+    /** `true` once the server has been asked for the background, or has stored it. */
     isKept = false;
-    /** Asks for points around what a photograph shows. */
+    /** Requests points around the object in a photograph. */
     onRound = () => {
     };
-    /** Lets the program keep the background for the next time the page is loaded. */
+    /** Stores the background in the server, until the page is loaded again. */
     async keep() {
       const { file, lie, opacity } = this;
       const background2 = file && { name: file.name, type: file.type, bytes: await base64(file), lie, opacity: opacity.value };
@@ -1898,7 +1898,7 @@
       this.show(false);
       this.app.screen.reveal();
     }
-    /** Shows a file behind the drawing: a drawing at its own size and place, a picture as wide as the page. */
+    /** Shows a file behind the drawing: a drawing at its original size and position, a picture as wide as the page. */
     async take(file) {
       const url = URL.createObjectURL(file);
       const probe = new Image();
@@ -1935,7 +1935,7 @@
         cy + sin * (px - cx) + cos * (py - cy)
       ]);
     }
-    /** Moves, scales and turns it. */
+    /** Moves, scales or rotates it. */
     lay(change) {
       Object.assign(this.lie, change);
       const { x, y, width, turn } = this.lie;
@@ -1945,7 +1945,7 @@
       for (const field of this.fields) field.refresh();
       this.place();
     }
-    /** Puts its frame around it on the screen. */
+    /** Updates the frame around it on the screen. */
     place() {
       const { scale: scale2, shift } = this.stage.camera;
       const corners2 = this.corners.map(([x, y]) => [scale2 * x + shift[0], scale2 * y + shift[1]]);
@@ -1956,7 +1956,7 @@
       this.edge.setAttribute("d", `M${corners2.join("L")}ZM${top}L${turn}`);
       [...corners2, turn].forEach((p, i) => this.knobs[i].setAttribute("transform", `translate(${p})`));
     }
-    /** A scaling about the corner opposite. */
+    /** Returns a scaling about the opposite corner. */
     scaled(corner, from) {
       const [[ox, oy], [cx, cy], { width }] = [this.corners[(corner + 2) % 4], this.middle, this.lie];
       const [ax, ay] = [from[0] - ox, from[1] - oy];
@@ -1973,7 +1973,7 @@
         return { turn: shiftKey ? NOTCH * Math.round(now / NOTCH) : (now + 540) % 360 - 180 };
       };
     }
-    /** Follows a pointer, which begins at a place in px of the drawing, until it is lifted, or Escape gives it up. */
+    /** Follows a pointer from a point in px of the drawing until it is lifted, or Escape cancels the drag. */
     grab(e, begin) {
       if (e.button !== 0) return;
       e.stopPropagation();
@@ -2027,7 +2027,7 @@
       this.file = null;
       this.show(false);
     }
-    /** Puts the artwork into an outline of the background: a path that is clicked, or points around what a photograph shows. */
+    /** Bends the artwork into an outline of the background: a clicked path, or points around the object in a photograph. */
     async shape() {
       const { app: app2, file, stage: stage2, outlines } = this;
       const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
@@ -2087,7 +2087,7 @@
     text = byId("caption-text");
     step = null;
     before = "";
-    /** Asks for the place of words with these values. */
+    /** Asks for the position of words with these values. */
     begin(args) {
       this.sketching.begin("point", async (value) => {
         const [x, y] = await this.app.source(value.split(",").map(Number));
@@ -2102,7 +2102,7 @@
       this.text.focus();
       this.text.select();
     }
-    /** Puts the field below the words. */
+    /** Positions the field below the words. */
     place() {
       const at = this.stage.handle("at")?.get();
       if (this.box.hidden || !at) return;
@@ -2119,7 +2119,7 @@
       this.app.draft(performance.now());
       this.app.tell("values");
     }
-    /** Keeps what was typed; where nothing was, the words go. */
+    /** Stores the typed words, or removes them if there are none. */
     done() {
       const { app: app2, step: step2, text, before: before2 } = this;
       const at = step2 ? app2.steps.indexOf(step2) : -1;
@@ -2169,7 +2169,7 @@
     queue = [];
     isDrawing = false;
     own = h("section", { hidden: true });
-    /** Says that nothing was found. */
+    /** The message that nothing was found. */
     none = h("p", { class: "none", role: "status", hidden: true });
     /** The names of the user's presets. */
     names = [];
@@ -2219,7 +2219,7 @@
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
       if (answer?.presets) this.showPresets(answer.presets);
     }
-    /** Lists the user's presets. */
+    /** Shows the user's presets. */
     showPresets(names) {
       this.names = names;
       const entry = (name) => {
@@ -2274,7 +2274,7 @@
       card.words += ` ${called(d)} ${d.name} ${d.title}`;
       return card;
     }
-    /** Of two shapes with one name, the later one says what it is. */
+    /** Returns `true` if an earlier shape has this name; the later one then needs a description. */
     isTaken(name) {
       return this.cards.some(({ button }) => button.textContent === name);
     }
@@ -2286,7 +2286,7 @@
         return this.card(d.name, args, [{ deformation: d.name, inverse: false, args }], h("span", { class: "name" }, this.isTaken(words(name)) ? `${words(name)} (${d.gallery.title})` : words(name)));
       });
     }
-    /** Draws what is in view, one after another, so that neither dragging nor the drawing itself waits. */
+    /** Draws the visible cards one by one, so that neither dragging nor the picture of the drawing is delayed. */
     async draw() {
       if (this.isDrawing) return;
       this.isDrawing = true;
@@ -2302,7 +2302,7 @@
       }
       this.isDrawing = false;
     }
-    /** Marks the shape of the step being changed. */
+    /** Marks the shape of the edited step. */
     mark() {
       const { step: step2 } = this.app;
       for (const { button, deformation, args, variant } of this.cards) {
@@ -2377,7 +2377,7 @@
   var PALE = 235;
   var Ground = class {
     shown = "white";
-    /** The drawing that the sheet was last chosen for. */
+    /** The drawing for which the sheet was last chosen. */
     drawing = "";
     constructor(app2) {
       this.show(this.chosen);
@@ -2397,7 +2397,7 @@
       for (const other of GROUNDS) document.body.classList.toggle(`on-${other}`, other === name);
       byId("ground-name").textContent = name === "checks" ? "transparent" : name;
     }
-    /** Shows a drawing of white alone on black, where the user has chosen white. */
+    /** Shows an all-white drawing on black if the user has chosen white. */
     suit(drawing) {
       const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
       if (drawing === this.drawing || art.length === 0) return;
@@ -2414,26 +2414,26 @@
   // src/modes.ts
   var Modes = class {
     snaps = true;
-    /** Dragging the ground selects the points in a frame. */
+    /** `true` if dragging the background selects the points in a frame. */
     selects = false;
-    /** A click on the drawing chooses a part of it. */
+    /** `true` if a click on the drawing selects a part of it. */
     picksParts = false;
     mirrors = false;
     smooths = true;
     marks = [];
-    /** Shows where the handle has snapped to; the points are in user units. */
+    /** Shows the lines to which the handle has snapped, in user units. */
     onSnap = () => {
     };
-    /** The reflection that symmetry is about. */
+    /** Returns the reflection for symmetry. */
     reflection(handles) {
       return reflection(handles);
     }
-    /** Where else a point is added that is added at a place: its reflection, if symmetry is on. */
+    /** Returns the other points to add with a point: its reflection, if symmetry is on. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
       return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
     }
-    /** A function that pulls a line, and its reflection if symmetry is on. */
+    /** Returns a function that drags a line, and its reflection if symmetry is on. */
     puller(handles, { handles: own, targets }) {
       const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
       const mirrored = reflection(handles);
@@ -2450,7 +2450,7 @@
         });
       };
     }
-    /** A function that moves a handle, and its partner if symmetry is on. */
+    /** Returns a function that moves a handle, and its partner if symmetry is on. */
     mover(handles, handle) {
       const partner = this.mirrors ? handles.partner(handle) : null;
       const mirrored = reflection(handles);
@@ -2463,7 +2463,7 @@
         partner?.set(mirrored(target), this.smooths);
       };
     }
-    /** The place near `to` that lines up with the frame or another handle; Alt turns that off. */
+    /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
     snapped(to, handle, handles, reach, e) {
       if (!this.snaps || e.altKey || handle.shape === "control") {
         this.onSnap(null, null);
@@ -2527,7 +2527,7 @@
     scope = byId("parts-scope");
     all = [];
     rows = [];
-    /** The names of what is not shown; the file has it all the same. */
+    /** The names of parts hidden on the page; the file contains them regardless. */
     hidden = /* @__PURE__ */ new Set();
     shown = "";
     file = "";
@@ -2567,7 +2567,7 @@
       row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
       return row;
     }
-    /** What a group holds. */
+    /** Returns the contents of a group. */
     inside(part) {
       const after = this.all.slice(this.all.indexOf(part) + 1);
       const end2 = after.findIndex(({ depth }) => depth <= part.depth);
@@ -2578,12 +2578,12 @@
       if (part) this.toggle(part, adds);
       else if (!adds) void this.app.scope([]);
     }
-    /** A part is locked or hidden, by itself or with a group around it. */
+    /** Returns `true` if a part is locked or hidden, or belongs to a group that is. */
     isOut(part) {
       const isOut = ({ name, selector }) => this.hidden.has(name) || this.app.locks.includes(selector);
       return this.all.some((p) => isOut(p) && (p === part || this.inside(p).includes(part)));
     }
-    /** Chooses a part alone, or adds it to the others, or takes it from them. */
+    /** Selects a part alone, or adds it to the selection, or removes it. */
     toggle(part, adds) {
       const { chosen } = this.app;
       const { selector } = part;
@@ -2598,7 +2598,7 @@
       this.show();
       this.shade();
     }
-    /** What is locked is bent by no step. */
+    /** Locks or unlocks a part. No step bends locked parts. */
     lock({ selector }) {
       const { locks } = this.app;
       return this.app.lock(locks.includes(selector) ? locks.filter((s2) => s2 !== selector) : [...locks, selector]);
@@ -2619,7 +2619,7 @@
       const own = this.all.filter(({ selector }) => chosen.includes(selector));
       this.stage.lightParts(this.modes.picksParts || this.details.open ? own.flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name) : []);
     }
-    /** Hides what is not to be seen. */
+    /** Hides the hidden parts on the canvas. */
     shade() {
       const away = new Set(this.all.filter(({ name }) => this.hidden.has(name)).flatMap((p) => [p, ...this.inside(p)]).map(({ name }) => name));
       this.stage.hideParts(away);
@@ -2682,7 +2682,7 @@
       this.remove.hidden = !handle.remove;
       for (const field of this.fields) field.refresh();
     }
-    /** Tells screen readers where keys have moved a handle. */
+    /** Tells screen readers the position to which keys have moved a handle. */
     say(handle) {
       byId("spoken").textContent = `${handle.label}: ${shown2(handle).join(", ")}`;
     }
@@ -2695,12 +2695,12 @@
   var RANGE = [0.01, 64];
   var FITTED = [1e-4, 1e5];
   var Camera = class {
-    /** Screen = scale · px + shift. */
+    /** The scale in screen = scale · px + shift. */
     scale = 1;
     shift = [0, 0];
-    /** From user units to px of the drawing. */
+    /** The map from user units to px of the drawing. */
     toPx = [1, 0, 0, 1, 0, 0];
-    /** A point of the drawing, in px of it. */
+    /** Converts a point from user units to px of the drawing. */
     inPx([x, y]) {
       const [a, b, c, d, e, f] = this.toPx;
       return [a * x + c * y + e, b * x + d * y + f];
@@ -2720,18 +2720,18 @@
       const [a, b, c, d] = this.toPx;
       return 1 / (this.scale * Math.sqrt(Math.abs(a * d - b * c)));
     }
-    /** The transform of the drawing, which is in px. */
+    /** The transform of the drawing, whose unit is px. */
     get transform() {
       return `matrix(${this.scale} 0 0 ${this.scale} ${this.shift[0]} ${this.shift[1]})`;
     }
-    /** Magnifies by a factor about a point of the screen. */
+    /** Magnifies by a factor around a point of the screen. */
     zoom(factor2, [x, y]) {
       const scale2 = Math.min(Math.max(this.scale * factor2, Math.min(RANGE[0], this.scale)), Math.max(RANGE[1], this.scale));
       const by = scale2 / this.scale;
       this.shift = [x - by * (x - this.shift[0]), y - by * (y - this.shift[1])];
       this.scale = scale2;
     }
-    /** Shows a box of the drawing, two corners in px of it, in the middle of a view of this size. */
+    /** Centres a box of the drawing, two corners in px, in a view of this size. */
     fit([x0, y0, x1, y1], [width, height]) {
       const scale2 = Math.min(width / Math.max(x1 - x0, 1e-9), height / Math.max(y1 - y0, 1e-9));
       this.scale = Math.min(Math.max(scale2, FITTED[0]), FITTED[1]);
@@ -2787,25 +2787,25 @@
         this.layer.append(knob);
       }
     }
-    /** More than one point is selected. */
+    /** `true` if more than one point is selected. */
     get isMany() {
       return this.keys.size > 1;
     }
-    /** Selects these alone. */
+    /** Selects only these points. */
     take(keys) {
       this.keys = new Set(keys);
       byId("spoken").textContent = keys.length > 1 ? `${keys.length} points are selected` : "";
     }
-    /** Adds a point, or takes it out. */
+    /** Adds a point to the selection, or removes it. */
     toggle(key) {
       if (!this.keys.delete(key)) this.keys.add(key);
       this.take(Array.from(this.keys));
     }
-    /** The selected handles. */
+    /** Returns the selected handles. */
     of(handles) {
       return handles.handles.filter(({ key }) => this.keys.has(key));
     }
-    /** Puts the box around the selected points. */
+    /** Fits the box around the selected points. */
     place(handles, toScreen) {
       const points = handles ? this.of(handles).map((h2) => toScreen(h2.get())) : [];
       this.layer.setAttribute("visibility", points.length > 1 ? "visible" : "hidden");
@@ -2818,12 +2818,12 @@
       const places = { nw: [x0, y0], ne: [x1, y0], se: [x1, y1], sw: [x0, y1], turn: [middle2, y0 - ABOVE3] };
       for (const [part, knob] of this.parts) knob.setAttribute("transform", `translate(${places[part].join(" ")})`);
     }
-    /** A place is in the box or on its edge. */
+    /** Returns `true` for a point in the box or on its edge. */
     holds([x, y]) {
       const [[x0, y0], [x1, y1]] = this.box;
       return this.isMany && x > x0 - EDGE && x < x1 + EDGE && y > y0 - EDGE && y < y1 + EDGE;
     }
-    /** What a pointer does that has taken the box by a part: a turn about its middle, or a scaling about the corner opposite. */
+    /** Returns the map of the points when a part of the box is dragged: a rotation about its centre, or a scaling about a corner. */
     transform(part, from) {
       const [[x0, y0], [x1, y1]] = this.box;
       const about = part === "turn" ? [(x0 + x1) / 2, (y0 + y1) / 2] : [part.endsWith("w") ? x1 : x0, part.startsWith("n") ? y1 : y0];
@@ -2965,79 +2965,79 @@
     modes;
     camera = new Camera();
     svg = byId("stage");
-    /** A filter would be drawn anew with every picture, so the shadow is made of lines. */
+    /** The shadow consists of lines, because a filter would be redrawn with every picture. */
     shadows = [s("rect", { class: "shadow wide" }), s("rect", { class: "shadow" })];
     sheet = s("rect", { class: "sheet" });
-    /** The pattern of a transparent sheet: squares of the same size at any magnification. */
+    /** The pattern of a transparent sheet: squares whose size does not depend on the magnification. */
     checks = s("pattern", { id: "checks", width: 16, height: 16, patternUnits: "userSpaceOnUse" }, s("rect", { class: "checks-light", width: 16, height: 16 }), s("path", { class: "checks-dark", d: "M0 0h8v8H0zM8 8h8v8H8z" }));
-    /** What is seen behind the drawing. */
+    /** The layer behind the drawing. */
     behind = s("g", {});
     art = s("g", { class: "art" });
     beforeArt = s("g", { class: "art", visibility: "hidden" });
-    /** The result of all steps, behind that of an earlier one. */
+    /** The result of all steps, behind the picture of fewer steps. */
     aheadArt = s("g", { class: "ahead" });
     heat = s("g", { class: "heat" });
     nodes = s("path", { class: "nodes" });
     arms = s("path", { class: "arms" });
-    /** Takes the pointer, so that the browser need not look for it among the shapes of a large drawing. */
+    /** Receives pointer events, so that the browser need not search the shapes of a large drawing. */
     shield = s("rect", { class: "shield", width: "100%", height: "100%" });
     selection = new Selection();
-    /** The frame that points are selected with. */
+    /** The frame that selects points. */
     marquee = s("rect", { class: "marquee", visibility: "hidden" });
     lit = s("path", { class: "lit" });
-    /** Outlines of the parts that are chosen or pointed at in their list. */
+    /** Outlines of the parts that are selected, or pointed at in the list. */
     chosen = s("g", { class: "chosen-parts" });
     litParts = [];
-    /** The names of parts that are not shown. */
+    /** The names of hidden parts. */
     away = /* @__PURE__ */ new Set();
-    /** Lines that are being drawn. */
+    /** The layer for lines that are being drawn. */
     overlay = s("g", {});
     guides = s("g", { class: "guides" });
     marks = s("g", { class: "marks" });
     knobs = s("g", { class: "knobs" });
-    /** The value of the handle that is dragged. */
+    /** The value of the dragged handle. */
     value = s("text", { class: "value-of-drag" });
     drawing = new Drawing(this.art);
     elements = /* @__PURE__ */ new Map();
     lines = [];
-    /** Wide, invisible lines over those that can be pulled, by their index. */
+    /** Wide, invisible lines over draggable ones, by index. */
     reaches = [];
     focused = null;
-    /** Nobody has moved the view since it showed the whole page. */
+    /** `true` while the view shows the whole page, unmoved by the user. */
     isFitted = false;
-    /** The first picture of a drawing has not arrived yet. */
+    /** `true` until the first picture of a drawing arrives. */
     isFresh = true;
     /** The name of the drawing on show. */
     shown = "";
-    /** The handles of the first picture are on their way. */
+    /** `true` until the handles of the first picture arrive. */
     isToFit = false;
-    /** The page of the last picture, as saving would have it; null for the drawing's own. */
+    /** The page of the last picture when saved; null for the drawing's page. */
     grown = null;
-    /** Set while the page shows the drawing as it was. */
+    /** `true` while the page shows the drawing without steps. */
     isBefore = false;
     showsNodes = false;
     showsStretch = false;
     showsEnd = false;
-    /** The deformation whose handles are pointed out. */
+    /** The deformation whose handles are highlighted. */
     greeted = "";
-    /** The time that the last result of all steps took, in ms. */
+    /** The time that the last faint result took, in ms. */
     endTook = 0;
-    /** Takes the path that is clicked next, of those that a selector matches, and the place, instead of anything else. */
+    /** If set, receives the next clicked path that a selector matches, and the clicked point; other reactions are disabled. */
     picks = null;
     pickable = "";
-    /** Takes the question for a path away. */
+    /** Removes the request for a path. */
     answered = () => {
     };
-    /** Places in px of the drawing that Fit shows, too. */
+    /** Returns further points that Fit shows, in px of the drawing. */
     around = () => [];
     /** The names of the drawing's parts. */
     parts = /* @__PURE__ */ new Set();
-    /** A part was clicked, or none. */
+    /** Called when a part is clicked; the name is null elsewhere. */
     onPart = () => {
     };
     onFocus = () => {
     };
-    /** A handle has been moved by keys. */
+    /** Called when keys have moved a handle. */
     onKeys = () => {
     };
     onLayout = [];
@@ -3074,7 +3074,7 @@
       this.isFitted = true;
       this.layout();
     }
-    /** Moves the view as little as shows a handle. */
+    /** Moves the view as little as necessary to show a handle. */
     panTo(handle) {
       const [x0, y0, x1, y1] = this.view;
       const [x, y] = this.camera.toScreen(handle.get());
@@ -3088,11 +3088,11 @@
       this.isFitted = false;
       this.layout();
     }
-    /** Shows the whole page and all handles, unless the user looks at a detail. */
+    /** Shows the whole page and all handles, unless the user has moved the view. */
     reveal() {
       if (this.isFitted) this.fit();
     }
-    /** Magnifies about a point of the screen, or about the middle of the view. */
+    /** Magnifies about a point of the screen, or about the centre of the view. */
     zoom(factor2, at) {
       const [x0, y0, x1, y1] = this.view;
       this.camera.zoom(factor2, at ?? [(x0 + x1) / 2, (y0 + y1) / 2]);
@@ -3127,7 +3127,7 @@
       if (this.litParts.length > 0) this.lightParts(this.litParts);
       this.marks.replaceChildren(...(answer.summary?.folds ?? []).map(([, at]) => this.fold(at)));
     }
-    /** The page as saving makes it, as two corners in px of the drawing. */
+    /** The page when saved, as two corners in px of the drawing. */
     get pageBox() {
       const { state } = this.app;
       if (!state) return [0, 0, 0, 0];
@@ -3135,7 +3135,7 @@
       const [[ax, ay], [bx, by]] = [this.camera.inPx([x, y]), this.camera.inPx([x + w, y + h2])];
       return [Math.min(ax, bx), Math.min(ay, by), Math.max(ax, bx), Math.max(ay, by)];
     }
-    /** Draws the sheet as large as the page. */
+    /** Resizes the sheet to the page. */
     grow() {
       const [x0, y0, x1, y1] = this.pageBox;
       for (const sheet of [...this.shadows, this.sheet]) {
@@ -3151,7 +3151,7 @@
       mark.dataset.at = JSON.stringify(at);
       return mark;
     }
-    /** Shows the drawing as it was, or as it is. */
+    /** Shows the drawing without steps, or with them. */
     async before(on2) {
       if (on2 === this.isBefore) return;
       this.isBefore = on2;
@@ -3163,7 +3163,7 @@
       this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
       this.beforeArt.setAttribute("visibility", this.isBefore ? "visible" : "hidden");
     }
-    /** Another drawing is on show. */
+    /** Prepares for another drawing. */
     forget() {
       this.beforeArt.replaceChildren();
       this.isFresh = true;
@@ -3174,14 +3174,14 @@
       this.nodes.setAttribute("d", nodes);
       this.arms.setAttribute("d", arms);
     }
-    /** Shows the stretch of the visible steps, or hides it. */
+    /** Shows or hides the stretch of the visible steps. */
     drawStretch = latest(async () => {
       const { app: app2 } = this;
       const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
       const stretch = this.showsStretch ? answer?.stretch : null;
       this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
     });
-    /** Shows the result of all steps behind that of an earlier one, or hides it. */
+    /** Shows or hides the result of all steps behind the picture of fewer steps. */
     drawEnd = latest(async () => {
       const { app: app2 } = this;
       const isEarlier = () => this.showsEnd && app2.selected < app2.steps.length - 1;
@@ -3192,7 +3192,7 @@
       if (answer) this.endTook = performance.now() - start;
       this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : void 0, "ahead")?.children ?? []));
     });
-    /** Puts everything in its place on the screen. */
+    /** Positions everything on the screen. */
     layout() {
       const { camera } = this;
       const layers = [...this.shadows, this.sheet, this.behind, this.aheadArt, this.art, this.beforeArt, this.nodes, this.arms, this.heat];
@@ -3206,7 +3206,7 @@
       if (this.litParts.length > 0) this.lightParts(this.litParts);
       for (const follow of this.onLayout) follow();
     }
-    /** Puts handles and their lines where they are now. */
+    /** Positions handles and their lines. */
     placeHandles() {
       const { handles } = this.app;
       if (!handles) return;
@@ -3226,7 +3226,7 @@
       }
       this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
     }
-    /** A drag on the ground selects points. */
+    /** `true` if dragging the background selects points. */
     get selects() {
       return this.modes.selects && (this.app.handles?.handles.length ?? 0) > 1;
     }
@@ -3268,7 +3268,7 @@
         else this.focus(this.focused);
       }
     }
-    /** The first time that a deformation has handles here, they are pointed out. */
+    /** Highlights handles the first time that a deformation has some here. */
     greet() {
       const [name, known] = [this.app.step?.deformation, new Set((localStorage.getItem(GREETED) ?? "").split(" "))];
       this.knobs.classList.toggle("greeting", name !== void 0 && (name === this.greeted || !known.has(name)));
@@ -3291,12 +3291,12 @@
       this.focus(last);
       if (last) this.elements.get(last)?.focus({ preventScroll: true });
     }
-    /** The selected points, if a handle is one of several. */
+    /** Returns the selected points if a handle is one of several. */
     several(handle) {
       const { handles } = this.app;
       return handles && this.selection.isMany && this.selection.keys.has(handle.key) ? this.selection.of(handles) : null;
     }
-    /** The points in a frame between two places of the screen: those that curves pass through, if there are any. */
+    /** Returns the points in a frame between two points of the screen: nodes, or else control points. */
     within([ax, ay], [bx, by]) {
       const inside = (this.app.handles?.handles ?? []).filter((h2) => {
         const [x, y] = this.camera.toScreen(h2.get());
@@ -3311,12 +3311,12 @@
     handle(key) {
       return this.app.handles?.handles.find((h2) => h2.key === key) ?? null;
     }
-    /** The place of a pointer on the canvas. */
+    /** Returns the position of a pointer on the canvas. */
     point(e) {
       const box = this.svg.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
     }
-    /** The next click takes a path, of those that a selector matches; what is asked for is shown until then. */
+    /** Lets the next click pick a path among those that a selector matches; the request is shown until then. */
     pick(take, among = ".art [id]", wish = "") {
       [this.picks, this.pickable] = [take, among];
       this.svg.classList.toggle("picking", take !== null || this.modes.picksParts);
@@ -3326,7 +3326,7 @@
       this.answered = take && wish ? toast(wish, true) : () => {
       };
     }
-    /** Names the path that was clicked; elsewhere, the question stays. */
+    /** Picks the clicked path; elsewhere, the request stays. */
     picked(e) {
       const named = this.named(e, this.pickable);
       if (!named) return void toast("No path is there. Click one, or press Escape");
@@ -3334,7 +3334,7 @@
       this.pick(null);
       take?.(named, this.camera.toUser(this.point(e)));
     }
-    /** Names the part that was clicked. */
+    /** Reports the clicked part. */
     pickedPart(e) {
       let name = null;
       for (let at = this.named(e, ".art *"); at && !at.matches(".art"); at = at.parentElement) {
@@ -3344,7 +3344,7 @@
       this.light(null);
       if (name !== null || !this.isHiddenAt(e)) this.onPart(name, e.shiftKey);
     }
-    /** A part that is not shown has this place. */
+    /** Returns `true` if a hidden part is at the pointer. */
     isHiddenAt(e) {
       const { away } = this;
       this.hideParts(/* @__PURE__ */ new Set());
@@ -3352,7 +3352,7 @@
       this.hideParts(away);
       return isThere;
     }
-    /** The elements of parts in the picture. */
+    /** Returns the elements of parts in the picture. */
     ofParts(names) {
       const all = names.size > 0 ? Array.from(this.art.querySelectorAll("[id]")) : [];
       return all.filter(({ id }) => names.has(partOf(id)));
@@ -3363,13 +3363,13 @@
       const outlines = this.ofParts(new Set(names)).flatMap((e) => e instanceof SVGPathElement ? [e] : Array.from(e.querySelectorAll("path")));
       this.chosen.replaceChildren(...outlines.map((path) => outlineOf(path, this.svg, s("path", { class: "lit" }))));
     }
-    /** Leaves parts out of the picture. */
+    /** Hides parts in the picture. */
     hideParts(names) {
       this.away = names;
       for (const e of Array.from(this.art.querySelectorAll(".away"))) e.classList.remove("away");
       for (const e of this.ofParts(names)) e.classList.add("away");
     }
-    /** The path, of those that the selector matches, that is nearest to the pointer. */
+    /** Returns the path nearest to the pointer among those that the selector matches. */
     named(e, which) {
       for (let r = 0; r <= PICKED; r += 2) {
         for (let k = 0; k < (r === 0 ? 1 : 4 * r); k++) {
@@ -3380,12 +3380,12 @@
       }
       return null;
     }
-    /** Lights up a path. */
+    /** Highlights a path. */
     light(path) {
       if (path) outlineOf(path, this.svg, this.lit);
       else this.lit.setAttribute("d", "");
     }
-    /** Shows the value of a handle beside it while it is dragged, or no longer does. */
+    /** Shows the value of the dragged handle beside it; null hides it. */
     tell(handle) {
       const { step: step2 } = this.app;
       const param = this.app.deformation(step2?.deformation)?.params.find(({ name }) => name === handle?.param);
@@ -3398,7 +3398,7 @@
       this.value.setAttribute("x", String(sx + REACH));
       this.value.setAttribute("y", String(sy - REACH));
     }
-    /** Writes the values of a handle that has been moved, and asks for the picture. */
+    /** Writes the values of a moved handle, and requests a draft. */
     changed(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
@@ -3418,7 +3418,7 @@
       const key = await this.app.addPoint(at, this.modes.reflections(handles, at, reach), reach);
       if (key) this.select([key]);
     }
-    /** Arrow keys move a handle by a px of the screen, with Shift by ten. */
+    /** Arrow keys move a handle by a px of the screen; with Shift, by ten. */
     key(e) {
       const handle = this.handle(e.target.closest(".knob")?.dataset.key ?? null);
       if (!handle || !this.app.handles) return;
@@ -3448,7 +3448,7 @@
         else this.remove(handle);
       }
     }
-    /** Takes several points away, as far as enough are left. */
+    /** Removes several points, as long as enough remain. */
     removeAll(several) {
       const { handles } = this.app;
       if (!handles) return;
@@ -3462,7 +3462,7 @@
       this.app.tell("handles");
       void this.app.commit();
     }
-    /** Writes the values of parameters whose handles have been moved together. */
+    /** Writes the values of parameters whose handles have moved together, and requests a draft. */
     changedAll(params, since) {
       for (const param of params) this.app.handles.write(param);
       this.placeHandles();
@@ -3470,7 +3470,7 @@
       this.app.tell("values");
       this.app.draft(since);
     }
-    /** Takes a point away. */
+    /** Removes a point. */
     remove(handle) {
       const { handles } = this.app;
       if (!handle.remove || !handles) return;
@@ -3484,7 +3484,7 @@
       this.app.tell("handles");
       void this.app.commit();
     }
-    /** Moves a handle by keys or by typed numbers. */
+    /** Moves a handle by keys or typed numbers. */
     moveTo(handle, to) {
       const { handles } = this.app;
       if (!handles) return;
@@ -3547,11 +3547,11 @@
     app;
     stage;
     modes;
-    /** The pointers that are down, with their places. */
+    /** The pointers that are down, with their positions. */
     down = /* @__PURE__ */ new Map();
-    /** Ends what the first pointer does. */
+    /** Ends the action of the first pointer. */
     finish = null;
-    /** The view was moved by somebody who took hold of the artwork. */
+    /** Called if the view was moved by a drag that began on the artwork. */
     onPan = () => {
     };
     wheel(e) {
@@ -3583,7 +3583,7 @@
       else if (bends && (e.shiftKey || stage2.selects)) this.frame(e);
       else if (!(bends && target.matches(".pull") && this.pull(e))) this.pan(e, () => stage2.select([]));
     }
-    /** Follows a pointer until it is lifted, until Escape, or until a second finger comes down. Returns what gives it up. */
+    /** Follows a pointer until it is lifted, Escape is pressed, or a second finger touches. Returns a function that cancels the action. */
     follow(e, { move, end: end2, cancel = end2 }) {
       const stop = new AbortController();
       const { signal } = stop;
@@ -3603,7 +3603,7 @@
       }, { signal });
       return () => finish(cancel);
     }
-    /** Follows a pointer that changes the step: `move` does, and `done` tidies up. */
+    /** Follows a pointer that changes the step by `move`; `done` cleans up. */
     bend(e, move, done, clicked = () => {
     }) {
       const { app: app2 } = this;
@@ -3667,7 +3667,7 @@
         stage2.placeHandles();
       }, clicked);
     }
-    /** Moves, turns or scales the selected points with the pointer. */
+    /** Moves, rotates or scales the selected points with the pointer. */
     transform(e, image, clicked = () => {
     }) {
       const { stage: stage2, modes: modes2 } = this;
@@ -3681,7 +3681,7 @@
         stage2.changedAll(mover((p) => camera.toUser(there(camera.toScreen(p)))), event.timeStamp);
       }, () => stage2.placeHandles(), clicked);
     }
-    /** Draws a frame, and selects the points in it. */
+    /** Draws a frame, and selects the points within. */
     frame(e) {
       const { stage: stage2 } = this;
       const start = stage2.point(e);
@@ -3702,7 +3702,7 @@
         cancel: hide2
       });
     }
-    /** Follows a line that is pulled. Returns `false` if there is none. */
+    /** Follows a line that is dragged. Returns `false` if there is none. */
     pull(e) {
       const { stage: stage2, modes: modes2 } = this;
       const { handles } = this.app;
@@ -3745,7 +3745,7 @@
         }
       });
     }
-    /** Two fingers move and magnify the view. */
+    /** Moves and magnifies the view by two fingers. */
     pinch() {
       const [one, two] = Array.from(this.down.keys());
       const stop = new AbortController();
@@ -3824,7 +3824,7 @@
       byId("warnings").addEventListener("click", () => toast(app2.warnings.join(" · ")));
     }
     app;
-    /** The drawing whose draft has been announced. */
+    /** The drawing whose draft has been reported. */
     announced = null;
     slow = 0;
     busy(isBusy) {
@@ -3858,7 +3858,7 @@
       if (restored && restored !== this.announced) toast("Your last, unsaved steps are here again");
       this.announced = restored;
     }
-    /** What can be done with the handles on show. */
+    /** Shows a hint about the visible handles. */
     hint() {
       const { app: app2 } = this;
       const { handles } = app2;
@@ -3879,7 +3879,7 @@
       const note = isCaption(app2.step ?? { deformation: "" }) ? "Pull the blue point to move the words, double-click to type" : !has ? "Change the settings" : handles.net || handles.grows || handles.divides ? `${pulls}. ${adds}` : `${pulls} to bend the artwork`;
       show("note", app2.isProposal && has ? `${note}, or choose a shape` : note);
     }
-    /** Somebody has moved the view, and may have meant to bend the artwork. */
+    /** Reacts to a moved view: the user may have meant to bend the artwork. */
     panned() {
       if (this.app.isProposal && this.app.handles?.handles.length) show("note", "This moves the view. Pull a blue point or line to bend the artwork");
     }
@@ -3961,9 +3961,9 @@
     unit = byId("save-unit");
     background = byId("save-background");
     colour = byId("save-colour");
-    /** The photograph whose own size was offered. */
+    /** The photograph whose size was offered. */
     offered = "";
-    /** The steps that were downloaded last. */
+    /** The steps downloaded last. */
     downloaded = "";
     show() {
       const { state } = this.app;
@@ -3983,20 +3983,20 @@
     get isDownloaded() {
       return this.downloaded === JSON.stringify(this.app.state?.steps);
     }
-    /** Something would be lost without saving. */
+    /** `true` if leaving the page would lose changes. */
     get isUnsaved() {
       const { state } = this.app;
       if (!state) return false;
       return state.program ? state.undo && !this.app.isDone : state.steps.length > 0 && !state.saved && !this.isDownloaded;
     }
-    /** Gives the steps to the program that waits for them. */
+    /** Hands the steps to the program that waits for them. */
     async handOver() {
       const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
       if (!answer?.done) return;
       this.app.finish();
       window.close();
     }
-    /** Saves where it was saved last; the first time, under the usual name. */
+    /** Saves to the file saved last or, the first time, to the usual one. */
     async quick() {
       if (this.dialog.open) return this.write(false);
       if (!await this.app.settle()) return;
@@ -4008,7 +4008,7 @@
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.done(answer.written, answer.state, answer.warnings ?? []);
     }
-    /** Asks for a name, and says why if nothing could be written. */
+    /** Opens the dialog for a name, with the reason if nothing could be written. */
     async open(unwritable = "") {
       if (!await this.app.settle()) return;
       const { state } = this.app;
@@ -4024,7 +4024,7 @@
       this.dialog.showModal();
       this.name.select();
     }
-    /** The choices of last time. */
+    /** Restores the choices made last. */
     recall() {
       const { unit = "px", size = WIDTH, background: background2 = "none" } = JSON.parse(localStorage.getItem(REMEMBERED) ?? "{}");
       const isColour = background2.startsWith("#");
@@ -4032,7 +4032,7 @@
       if (isColour) this.colour.value = background2;
       this.colour.hidden = !isColour;
     }
-    /** The file that is asked for. Returns `null` for a picture without a size. */
+    /** Returns the file in the dialog; `null` for a picture without a size. */
     target() {
       const [name, folder] = [this.name.value, this.folder.value];
       if (!PICTURES.includes(this.extension)) return { name, folder };
@@ -4056,7 +4056,7 @@
       byId("save-picture").hidden = !PICTURES.includes(extension);
       this.say("");
     }
-    /** Shows a message, with the button that helps. */
+    /** Shows a message, with a button if it asks for something. */
     say(text, asks = false) {
       this.message.textContent = text;
       this.replace.hidden = !asks;
@@ -4077,7 +4077,7 @@
         this.say(inWords(reason(e)));
       }
     }
-    /** Hands the file to the browser, which knows a folder that can be written. */
+    /** Downloads the file, since the browser knows a writable folder. */
     async fetch() {
       const target = this.target();
       if (!target) return;
@@ -4158,7 +4158,7 @@
     message = byId("words-message");
     families = null;
     font = null;
-    /** Words are to be put on the drawing, with these values. */
+    /** Called to place words on the drawing, with these values. */
     onPlace = () => {
     };
     show() {
@@ -4182,7 +4182,7 @@
       this.dialog.showModal();
       this.text.focus();
     }
-    /** The families that fit what was typed, each in its own letters. */
+    /** Lists the families that match the typed text, each in its letters. */
     list() {
       const wanted = this.search.value.trim().toLowerCase();
       const all = [BUNDLED, ...this.families ?? []].filter((name) => name.toLowerCase().includes(wanted));
@@ -4242,13 +4242,13 @@
     box = byId("settings");
     shown = "";
     refreshers = [];
-    /** Asks for the id of a path that is clicked on the canvas. */
+    /** Asks for a path on the canvas; a click returns its id. */
     onPick = () => {
     };
-    /** Asks for a line that is drawn on the canvas. */
+    /** Asks for a line drawn on the canvas. */
     onDraw = () => {
     };
-    /** The settings are those of another step. */
+    /** Called when the settings of another step are shown. */
     onOther = () => {
     };
     build() {
@@ -4326,7 +4326,7 @@
       this.refreshers.push(() => input.value = /^#[0-9a-f]{6}$/i.test(this.current(p)) ? this.current(p) : "#000000");
       return input;
     }
-    /** The fonts that are installed. */
+    /** Returns the choice of installed fonts. */
     family(p, id) {
       const select = h("select", { id }, h("option", { value: "" }, BUNDLED));
       select.addEventListener("change", () => this.app.set(p.name, select.value ? [select.value] : [], true));
@@ -4342,7 +4342,7 @@
       });
       return select;
     }
-    /** The radius of a circle, in mm, and a word where the artwork is longer than it. */
+    /** Returns a field for the radius of a circle in mm, with a warning if the artwork is longer than the circle. */
     radius(p, id) {
       const { app: app2 } = this;
       const [a, b] = app2.state?.toPx ?? [1, 0];
@@ -4389,7 +4389,7 @@
       });
       return h("fieldset", { class: "field", title }, h("legend", {}, paramName(p)), h("div", { class: "segments" }, ...options));
     }
-    /** A row with a field for a number in the unit of its value, and the line for what is wrong. */
+    /** Returns a row with a field for a number in the unit of its value, and the line for its message. */
     number(p, id, label, usual, by) {
       const isWhole = p.kind === "count";
       const measure = h("span", { class: "unit" });
@@ -4428,12 +4428,12 @@
       });
       return [h("div", { class: "row" }, label, h("span", { class: "measure" }, input, measure)), field.message];
     }
-    /** The value that a parameter has without being given. */
+    /** Returns the value of a parameter that is not given. */
     derived(p, unit) {
       const value = this.inUnit(p, unit, this.current(p));
       return value === null ? null : { value, unit };
     }
-    /** Chooses a file. Pages do not learn where it is, so a copy goes beside the drawing. */
+    /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
     chooseFile(p) {
       const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
       input.addEventListener("change", async () => {
@@ -4472,11 +4472,11 @@
       });
       return h("div", {}, input, field.message);
     }
-    /** The names of the adjust values on show. */
+    /** Returns the names of the adjust values shown. */
     adjusts(params) {
       return params.flatMap((p) => (this.app.grip(p.name)?.adjust ?? []).map((a) => `${a.name} ${a.least} ${a.most}`));
     }
-    /** The slider of an adjust value. */
+    /** Returns the slider of an adjust value. */
     adjust(p, all, i, title) {
       const { least, most, name } = all[i];
       const [unit, size] = adjustUnit(all[i]);
@@ -4516,7 +4516,7 @@
       const label = h("label", { for: id, title }, adjustName(all, i));
       return h("div", { class: "field slider", title }, h("div", { class: "row" }, label, h("span", { class: "measure" }, input, h("span", { class: "unit" }, sign))), field.message, slider);
     }
-    /** What a slider does: what the pointer drags is one change, and so are keys that follow each other. */
+    /** Connects a slider: a drag is one change, and so is a sequence of keys. */
     slide(slider, values, reset) {
       const { app: app2 } = this;
       let [isDragged2, isGivenUp] = [false, false];
@@ -4559,7 +4559,7 @@
       const [row, wrong] = this.number(p, id, label, usual, range[1] - range[0] >= COARSE ? 1 : step(range));
       return h("div", { class: "field slider", title }, row, wrong, slider);
     }
-    /** The value of a parameter in the unit of its slider. */
+    /** Returns the value of a parameter in the unit of its slider. */
     inUnit(p, unit, typed) {
       const plainNumber = Number(typed.replace(unit, ""));
       if (typed !== "" && Number.isFinite(plainNumber) && (unit === "" || typed.endsWith(unit))) return plainNumber;
@@ -4650,7 +4650,7 @@
     stage;
     line = s("path", { class: "lit" });
     stop = null;
-    /** Draws until the line is done; Escape and Undo give it up. */
+    /** Draws until the line is complete; Escape and undo cancel. */
     begin(kind, take) {
       this.end();
       const { app: app2, stage: stage2 } = this;
@@ -4757,15 +4757,15 @@
     }
     app;
     list = byId("steps");
-    /** Where a row has been moved to. */
+    /** The index to which a row has been moved. */
     moved = null;
-    /** The steps on show whose letters are gone. */
+    /** The steps shown as lacking their letters. */
     gone = "";
-    /** A row is being dragged, so its button is not clicked. */
+    /** `true` while a row is dragged, which is not a click on its button. */
     isDragged = false;
     note = byId("steps-note");
     add = byId("add-step");
-    /** Asks for the shape of a further step, or no longer does. */
+    /** Starts or ends the choice of a shape for another step. */
     append() {
       this.app.append(!this.app.appends);
       document.body.classList.toggle("shapes-open", this.app.appends);
@@ -4832,7 +4832,7 @@
         )
       );
     }
-    /** Asks for a name in the place of the present one. */
+    /** Replaces a step's name by a field for another one. */
     rename(i) {
       const { app: app2 } = this;
       const [row, step2] = [this.list.children[i], app2.steps[i]];
@@ -4855,7 +4855,7 @@
       row.firstElementChild?.replaceWith(input);
       input.select();
     }
-    /** Follows a pointer that moves a row among those that may change places. */
+    /** Follows a pointer that moves a row among those that may be exchanged. */
     drag(e, i, first, moved2) {
       if (e.pointerType === "touch" || e.button !== 0 || this.app.isProposal) return;
       const rows = Array.from(this.list.children);
