@@ -24,6 +24,7 @@ pub(super) struct Model {
     pub(super) content: Content,
     /// Counts the work for the file.
     pub(super) budget: Arc<Budget>,
+    /// The format of the file, or OBJ for a drawing; the result has it, too, unless its file is named otherwise.
     pub(super) format: ModelFormat,
     /// `true` for a drawing, whose objects are named after shapes.
     pub(super) drawn: bool,
@@ -139,7 +140,7 @@ pub(super) enum ModelFormat {
     Dxf,
 }
 
-/// The word for names among the properties that a format cannot store.
+/// The word for names in [`ModelFormat::lost`]. For a drawing they are no loss.
 pub(super) const NAMES: &str = "names";
 
 /// The extensions and their formats.
@@ -245,7 +246,7 @@ fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Res
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
     let to_mm =
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
-    let unit = to_mm.determinant().abs().sqrt();
+    let unit = to_mm.determinant().abs().sqrt(); // Millimetres in a user unit.
     let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
         let named = NamedShape { name, outline, even_odd };
