@@ -179,9 +179,9 @@ impl Guide {
         ends: Ends,
         [within, finest]: [f64; 2],
     ) -> Result<Vec<(Self, f64)>, Vec<[f64; 2]>> {
-        /// Largest means of the distance to one side, as shares of `within`, one after the other.
+        /// Largest mean distance to one side, as a share of `within`: knots are added for one level after the other.
         const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
-        /// Most rounds of divisions for each.
+        /// Most rounds of divisions for each level.
         const ROUNDS: usize = 8;
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
         let (mut levels, mut rounds) = (NEAR.iter().peekable(), 0);
@@ -225,7 +225,7 @@ impl Guide {
         const ROUNDS: usize = 4;
         /// Share of the weight that a sample keeps.
         const KEPT: f64 = 0.05;
-        /// Ratio of a round's distance to the least so far above which the rounds end.
+        /// The rounds end with one whose distance is more than this share of the least before.
         const GAIN: f64 = 0.99;
         let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
         for _ in 0..ROUNDS {
@@ -270,7 +270,7 @@ impl Guide {
         out
     }
 
-    /// Adds the distances of the guide from the edges between samples, measured in steps of about `fine` between foot points.
+    /// Adds the distances of the guide from the edges between neighbouring samples, measured in steps of about `fine` between foot points.
     fn strays(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
         /// Most steps between two samples.
         const MOST: f64 = 64.0;
@@ -355,8 +355,8 @@ impl Miss {
     }
 }
 
-/// Divides the intervals that are too far away or, in the mean, further than `near` to one side. Returns the knots, and `true` if another
-/// interval is so far away that weights do not bring it near, either.
+/// Divides the intervals that are further away than `within` or, in the mean, than `near` to one side. Returns the knots, and `true` if an
+/// interval that stays whole is so far away that other weights cannot bring it near.
 fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> (Vec<f64>, bool) {
     /// Bias, as a share of the distance, from which on more knots help.
     const BIASED: f64 = 0.2;

@@ -4056,7 +4056,7 @@
       byId("save-picture").hidden = !PICTURES.includes(extension);
       this.say("");
     }
-    /** Shows a message, with a button if it asks for something. */
+    /** Shows a message, with the button that replaces a file if it `asks` for that. */
     say(text, asks = false) {
       this.message.textContent = text;
       this.replace.hidden = !asks;

@@ -57,7 +57,7 @@ impl Picture {
         ))
     }
 
-    /// Draws the content of a drawing as a PNG with this length of the longer side in pixels. Also returns the box that it fills, in px.
+    /// Draws the content of a drawing as a PNG whose longer side has `longest` pixels. Also returns the box that the PNG fills, in px.
     pub(crate) fn bitmap(svg: &str, longest: f32, reading: &ReadOptions) -> Result<(Vec<u8>, Rect), String> {
         let (drawn, filled) = drawn(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
         Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
@@ -68,7 +68,7 @@ impl Picture {
         self.lines.join("\n")
     }
 
-    /// Returns the lines that are paths, with their path data.
+    /// Returns the indices of the lines that are paths, with their path data.
     pub(crate) fn paths(&self) -> Vec<(usize, &str)> {
         let lines = self.lines.iter().enumerate();
         lines.filter_map(|(i, line)| Some((i, &line[data_range(line)?]))).collect()
@@ -122,7 +122,7 @@ impl Picture {
 /// Returns the text of a drawing with its large embedded pictures reduced to few pixels; `None` if there are none. Pictures without a
 /// width and a height stay, as their size would change, and all stay if pixels are meant to be seen (`image-rendering: pixelated`).
 pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
-    /// Length of a large picture's text.
+    /// Length in bytes from which on the text of a picture is large.
     const LARGE: usize = 1 << 16;
     /// The longer side of reduced pictures, in pixels.
     const PIXELS: f32 = 400.0;
@@ -153,8 +153,8 @@ pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
     (done > 0).then(|| out + &svg[done..])
 }
 
-/// Draws the content of a drawing with this length of the longer side in pixels. Also returns the box that it fills, in px. `length` is the
-/// length of the drawing's text. The renderer moves the corner of the box to the origin.
+/// Draws the content of a drawing with `longest` pixels on the longer side. Also returns the box that the pixels fill, in px. `length` is
+/// the length of the drawing's text. The renderer moves the corner of the box to the origin.
 fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
     let seen = tree.root().abs_layer_bounding_box();
     let scale = longest / seen.width().max(seen.height());

@@ -216,7 +216,7 @@ fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
 
 /// Follows a chain of symbolic links to its last file, which may not exist.
 pub fn behind(link: &Path) -> PathBuf {
-    /// Systems follow no longer chains.
+    /// Length of the longest chain that systems follow.
     const MOST_LINKS: usize = 40;
     let mut at = link.to_owned();
     for _ in 0..MOST_LINKS {

@@ -182,7 +182,7 @@ export class Saving {
     this.say("");
   }
 
-  /** Shows a message, with a button if it asks for something. */
+  /** Shows a message, with the button that replaces a file if it `asks` for that. */
   private say(text: string, asks = false): void {
     this.message.textContent = text;
     this.replace.hidden = !asks;

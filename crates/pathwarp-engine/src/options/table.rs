@@ -1,4 +1,4 @@
-//! The table of common options. It declares all of them.
+//! The table that declares all common options.
 
 use super::common::{
     CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
@@ -604,7 +604,7 @@ pub struct CommonOption {
     pub name: &'static str,
     /// Its letter on a command line.
     pub short: Option<char>,
-    /// Another long name, on the command line only.
+    /// Another long name, which recipes may have, too.
     pub alias: Option<&'static str>,
     /// The kind of its value, with the function that sets it.
     pub value: OptionValue,
@@ -664,7 +664,7 @@ impl CommonOption {
         matches!(self.value, OptionValue::List { .. })
     }
 
-    /// Returns the words of a choice, without those that are only for its [`alias`](Self::alias).
+    /// Returns the words of a choice, except `on` and `off`, which only belong to its [`alias`](Self::alias).
     pub fn words(&self) -> Vec<&'static str> {
         let OptionValue::Choice(words) = &self.value else { return Vec::new() };
         let is_old = |word: &str| self.alias.is_some() && ["on", "off"].contains(&word);

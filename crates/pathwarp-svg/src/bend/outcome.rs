@@ -144,7 +144,7 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
-    /// The sentences for the reader's notes, given as pairs of a text and a name.
+    /// The sentences for notes from reading the drawing, given as pairs of a text and a name.
     pub(crate) fn in_words(read: &BTreeSet<(&'static str, String)>) -> Vec<String> {
         let mut notes = Self::default();
         read.iter().for_each(|(text, name)| notes.add(text, name));

@@ -409,7 +409,7 @@ impl SourceText {
                 None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
             })
         }));
-        // usvg finds the stand-in of a mesh gradient first.
+        // usvg reads a stand-in instead of a mesh gradient, which it does not know.
         patches.extend(self.elements.iter().filter(|e| mesh::is_mesh(&e.tag)).filter_map(|e| {
             let id = e.attr(&self.text, "id").filter(|id| self.meshes.contains_key(&**id))?;
             Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))

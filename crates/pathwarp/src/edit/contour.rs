@@ -1,4 +1,4 @@
-//! Lines around an area, at a distance.
+//! The line around an area at a distance, and necks that join islands along the shortest ways (Prim's algorithm).
 
 use super::area::{Area, outermost};
 use super::offset::{Moved, Offset, OpenPaths, Side, moved};
@@ -13,7 +13,7 @@ use kurbo::{Join, Point, Rect};
 pub struct Contour {
     /// Distance from the area in user units; below zero, the line is inside.
     pub by: f64,
-    /// `true` if remaining holes get a line, too.
+    /// `true` if holes that remain at the distance get a line, too.
     pub holes: bool,
     /// `true` if islands that the distance leaves apart are joined by necks as wide as the distance.
     pub join: bool,

@@ -114,7 +114,7 @@ fn is_drawing(bytes: &[u8]) -> bool {
 fn decimals(mesh: &Mesh) -> u8 {
     /// Significant figures of the size.
     const FIGURES: f64 = 9.0;
-    /// The option's maximum.
+    /// The maximum of `--precision`.
     const MOST: f64 = 15.0;
     let size = mesh.bounds().map_or(1.0, |b| b.diagonal());
     let decimals = FIGURES - size.log10().floor();
@@ -162,7 +162,7 @@ impl ModelFormat {
         EXTENSIONS.into_iter().find(|(e, _)| extension.eq_ignore_ascii_case(e)).map(|(_, f)| f)
     }
 
-    /// Detects the format of a file without such an extension.
+    /// Detects the format of a file by its content, for other extensions.
     pub(super) fn sniffed(bytes: &[u8]) -> Self {
         let json = || bytes.trim_ascii_start().starts_with(b"{");
         if gltf::sniff(bytes) {

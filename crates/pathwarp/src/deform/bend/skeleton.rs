@@ -283,7 +283,7 @@ artwork's height; a smaller `width` helps too",
                 return Err(Error::input("handles", problem));
             }
         }
-        // By parameter, the pieces of a spline have the lengths of their knots.
+        // By parameter, the pieces of a spline are long in proportion to the distances of their knots.
         let whole: f64 = self.frames.iter().map(|(_, width)| width).sum();
         let strips = self.spines.iter().zip(ribbons).enumerate().map(|(i, ((_, table), ribbon))| {
             let knots = self.frames.get(i).filter(|_| !by_arc_length);
