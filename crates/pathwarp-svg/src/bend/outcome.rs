@@ -44,8 +44,8 @@ pub struct ShapeReport {
     pub id: String,
     /// Number of copies in the result.
     pub copies: usize,
-    /// Report on the curves. The segments are counted in every copy, tile and letter, those after also in outlined strokes. Errors include
-    /// the rounding of the text.
+    /// Report on the curves. Segments are counted in every copy, tile and letter; those of the output include outlined strokes. Errors
+    /// include the rounding of the text.
     pub path: PathReport,
     /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite if no
     /// affine map is close. `None` if there are no such paints, or they were kept or replaced.

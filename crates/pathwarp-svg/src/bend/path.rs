@@ -95,7 +95,7 @@ pub fn warp_path(
 ) -> Result<WarpedPath, GeometryError> {
     options.check()?;
     let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect(); // Tolerances.
+    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect(); // Their tolerances.
     let finest = contours.iter().copied().fold(options.tolerance, f64::min);
     let mut outline = outline.clone();
     outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));
