@@ -289,7 +289,7 @@ impl SourceText {
         self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
-    /// The element to which `href` or `xlink:href` refers: the last one with the id, as for usvg.
+    /// The element to which `href` or `xlink:href` refers: the last one with the id, as for usvg (except in a `use`).
     pub(crate) fn target(&self, e: ElementId) -> Option<ElementId> {
         self.by_id().get(&self.href(e)?)?.last().copied()
     }
