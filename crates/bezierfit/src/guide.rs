@@ -1,4 +1,4 @@
-//! Guides: splines of cubics with continuous derivative, near to points by least squares. Their parameter is about the length.
+//! Guides: splines of cubics with continuous derivative, near to points by least squares. Their parameter is nearly arc length.
 
 use crate::banded::solve_banded;
 use kurbo::{CubicBez, Point, Vec2};
@@ -9,7 +9,7 @@ pub(crate) struct Samples {
     pub(crate) place: Vec<f64>,
     pub(crate) point: Vec<Point>,
     pub(crate) weight: Vec<f64>,
-    /// Distances from the last guide.
+    /// Distances from the last guide, not squared.
     off: Vec<f64>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Guide {
 const STIFF: f64 = 1e-6;
 /// Weight of given ends.
 const FIXED: f64 = 1e3;
-/// Largest multiple of the allowed distance that other weights may bring down to it.
+/// A guide up to this multiple of the allowed distance away may still come within it by other weights.
 const UNEVEN: f64 = 2.5;
 
 /// The cubic Hermite basis on an interval of length h.
@@ -82,7 +82,7 @@ impl Guide {
         let total: f64 = weights.iter().sum();
         for k in 0..n - 1 {
             let h = knots[k + 1] - knots[k];
-            let stiff = STIFF * (weights[k] + 1e-3 * total / n as f64);
+            let stiff = STIFF * (weights[k] + 1e-3 * total / n as f64); // Intervals without samples are stiff, too.
             let bending = [
                 [12.0, 6.0 * h, -12.0, 6.0 * h],
                 [0.0, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
@@ -138,7 +138,7 @@ impl Guide {
         (point, (a + (c2 * 2.0 + c3 * (3.0 * t)) * t) / h, (c2 * 2.0 + c3 * (6.0 * t)) / (h * h))
     }
 
-    /// The foot point of `p` near a parameter, the distance, and the signed distance of `p` to the left.
+    /// The parameter of the point nearest to `p`, sought from `place`, the distance, and the signed distance of `p` to the left.
     fn foot(&self, p: Point, place: f64) -> (f64, f64, f64) {
         let (mut best, mut at, mut left) = (f64::INFINITY, place, 0.0);
         let mut now = place;
@@ -152,7 +152,7 @@ impl Guide {
             }
             let slope = d.hypot2() - v.dot(dd).min(0.5 * d.hypot2());
             let step = v.dot(d) / slope;
-            // A small step changes the distance by half of its square.
+            // Stop if the step would shorten the squared distance by less than a millionth.
             if !step.is_finite() || (v.dot(d) * step).abs() < 1e-6 * far * far {
                 break;
             }
@@ -171,17 +171,17 @@ impl Guide {
     }
 
     /// Guides whose distance from all samples is at most `within`, with that distance: first with few knots, then with as many as it takes
-    /// to come near to the samples without their noise. Intervals between knots are not shorter than `finest`. `Err` are the
-    /// intervals in which the last guide was too far away, if none was found.
+    /// to come near to the samples without their noise. Intervals between knots are not shorter than `finest`. If no guide is found, `Err`
+    /// holds the intervals in which the last one was too far away.
     pub(crate) fn all(
         samples: &mut Samples,
         mut knots: Vec<f64>,
         ends: Ends,
         [within, finest]: [f64; 2],
     ) -> Result<Vec<(Self, f64)>, Vec<[f64; 2]>> {
-        /// Largest means of the distance to one side, as shares of `within`, one after the other.
+        /// Largest mean distance to one side, as a share of `within`: knots are added for one level after the other.
         const NEAR: [f64; 3] = [1.0, 0.25, 0.1];
-        /// Most rounds of divisions for each.
+        /// Most rounds of divisions for each level.
         const ROUNDS: usize = 8;
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
         let (mut levels, mut rounds) = (NEAR.iter().peekable(), 0);
@@ -225,7 +225,7 @@ impl Guide {
         const ROUNDS: usize = 4;
         /// Share of the weight that a sample keeps.
         const KEPT: f64 = 0.05;
-        /// Ratio of a round's distance to the least so far above which the rounds end.
+        /// The rounds end with one whose distance is more than this share of the least before.
         const GAIN: f64 = 0.99;
         let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
         for _ in 0..ROUNDS {
@@ -270,7 +270,7 @@ impl Guide {
         out
     }
 
-    /// Adds the distances of the guide from the edges between samples, measured in steps of about `fine` between foot points.
+    /// Adds the distances of the guide from the edges between neighbouring samples, measured in steps of about `fine` between foot points.
     fn strays(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
         /// Most steps between two samples.
         const MOST: f64 = 64.0;
@@ -295,7 +295,7 @@ impl Guide {
         }
     }
 
-    /// The nearest closed spline, fitted to samples that are repeated before the start and after the end.
+    /// The nearest closed spline for knots from 0 to the length, fitted to samples that are repeated before the start and after the end.
     fn nearest_closed(knots: &[f64], samples: &Samples) -> Option<Self> {
         let n = knots.len() - 1;
         let length = knots[n];
@@ -313,7 +313,7 @@ impl Guide {
                 }
             }
         }
-        Some(Self::nearest(all, &around, Ends::Closed)?.closed([more, more + n]))
+        Some(Self::nearest(all, &around, Ends::Closed)?.closed([more, more + n])) // `Closed`: ends without conditions.
     }
 }
 
@@ -355,12 +355,12 @@ impl Miss {
     }
 }
 
-/// Divides the intervals that are too far away or, in the mean, further than `near` to one side. Returns the knots, and `true` if another
-/// interval is so far away that weights do not bring it near, either.
+/// Divides the intervals that are further away than `within` or, in the mean, than `near` to one side. Returns the knots, and `true` if an
+/// interval that stays whole is so far away that other weights cannot bring it near.
 fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> (Vec<f64>, bool) {
     /// Bias, as a share of the distance, from which on more knots help.
     const BIASED: f64 = 0.2;
-    /// Bias of noise by chance, as a share of the distance times the root of the number of samples.
+    /// Noise has by chance a bias of this many times the largest distance, divided by the root of the number of samples.
     const CHANCE: f64 = 1.5;
     /// Least number of samples of an interval that is divided.
     const FEW: usize = 12;

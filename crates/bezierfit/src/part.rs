@@ -73,12 +73,13 @@ impl<S: Source> Source for Part<'_, S> {
     }
 
     fn quotient(&self) -> Option<Quotient> {
-        // Bernstein coefficients would belong to the whole source.
+        // Drop the weights: they are Bernstein coefficients over the whole source.
         self.source.quotient().map(|q| Quotient { weights: None, ..q })
     }
 
     fn denominators(&self, t: &Lane) -> Lane {
         let t = t.map(|t| self.at(t));
+        // Use the weights of the source, if it has any, which the part's quotient lacks.
         self.source.quotient().map_or_else(|| self.source.denominators(&t), |q| q.denominators(self.source, &t))
     }
 
@@ -90,7 +91,7 @@ impl<S: Source> Source for Part<'_, S> {
         if t == 0.0 || t == 1.0 {
             return Ok(self.ends[usize::from(t == 1.0)]);
         }
-        self.count(2);
+        self.count(2); // The source is also evaluated aside, to see if its derivative vanishes.
         let end = self.source.end(self.at(t))?;
         Ok(BreakPoint { t, speed: end.speed * (self.t[1] - self.t[0]), ..end })
     }
@@ -116,7 +117,7 @@ pub(crate) fn parts<'a, S: Source>(
     places.push(1.0);
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let inner = places.len() > 1;
+    let inner = places.len() > 1; // Then all tangents are taken inside the parts, at the outer ends, too.
     let mut out: Vec<Part<'_, S>> = Vec::with_capacity(places.len());
     let mut t0 = 0.0;
     for t1 in places {
@@ -138,7 +139,7 @@ pub(crate) fn parts<'a, S: Source>(
     Ok(out)
 }
 
-/// The end of a smooth part at `t`, with the tangent and the speed a little further inside.
+/// The end of a smooth part at `t`, with the tangent and the speed a little further inside: after `t` if `side` is 1, before it if −1.
 fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
     // Where the curve jumps, take the limit from the left.
     let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });

@@ -1,4 +1,4 @@
-//! Pointers from C and to C: checked for null, copied, and handed over.
+//! Pointers from C and to C: checked for null, borrowed, handed over, and taken back.
 
 #![expect(unsafe_code, reason = "C's pointers can only be read and written so")]
 
@@ -6,7 +6,7 @@ use pathwarp_engine::{Error, ErrorKind};
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The statuses of `pathwarp.h`.
+/// The statuses of `pathwarp.h`: the command line's exit statuses, of which 1 and 5 do not occur here.
 pub(crate) const OK: i32 = 0;
 const USAGE: i32 = 2;
 const INPUT: i32 = 3;

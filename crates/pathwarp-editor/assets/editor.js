@@ -1157,7 +1157,7 @@
     isDone = false;
     /** `true` while a handle is dragged; the handles then stay as they are. */
     isDragging = false;
-    /** Cancels the drag in progress. */
+    /** Cancels the drag or the drawing of a line in progress. */
     hold = null;
     screen = { show: () => {
     }, pixel: 1, reveal: () => {
@@ -3961,7 +3961,7 @@
     unit = byId("save-unit");
     background = byId("save-background");
     colour = byId("save-colour");
-    /** The photograph whose size was offered. */
+    /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
     offered = "";
     /** The steps downloaded last. */
     downloaded = "";
@@ -4056,7 +4056,7 @@
       byId("save-picture").hidden = !PICTURES.includes(extension);
       this.say("");
     }
-    /** Shows a message, with a button if it asks for something. */
+    /** Shows a message, with the button that replaces a file if it `asks` for that. */
     say(text, asks = false) {
       this.message.textContent = text;
       this.replace.hidden = !asks;
@@ -4650,7 +4650,7 @@
     stage;
     line = s("path", { class: "lit" });
     stop = null;
-    /** Draws until the line is complete; Escape and undo cancel. */
+    /** Draws, and calls `take` with path data, with `x,y` for a point, or with `arc:…` for a circle; Escape and undo cancel. */
     begin(kind, take) {
       this.end();
       const { app: app2, stage: stage2 } = this;
@@ -4714,7 +4714,7 @@
       const circle2 = `M${x - r},${y}a${r},${r} 0 1 1 ${2 * r},0a${r},${r} 0 1 1 ${-2 * r},0`;
       this.line.setAttribute("d", kind === "circle" ? circle2 : `M${places.join("L")}`);
     }
-    /** Ends drawing and picking. */
+    /** Ends drawing, or picking a path by a click: only one of them is under way at a time. */
     end() {
       this.stop?.();
       this.stop = null;

@@ -1,4 +1,4 @@
-//! The drawing as a page shows it: rewritten by usvg, so that only shapes, paints and embedded pictures remain.
+//! The drawing as the editor's web page shows it: rewritten by usvg, so that only shapes, paints and embedded pictures remain.
 //!
 //! usvg resolves scripts, events, links, foreign objects and style sheets away; the page gets plain elements with attributes, one per line.
 //! While something is dragged, most lines stay and most others differ in one attribute, so only changed attributes are sent.
@@ -15,7 +15,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use usvg::{Indent, Node, Transform, WriteOptions};
 
-/// Prefix of every id of the drawing, which distinguishes them from the page's.
+/// Prefix of every id of the drawing, which distinguishes them from the web page's.
 const ID_PREFIX: &str = "art-";
 
 /// A drawing in the form that is shown: one element per line.
@@ -38,7 +38,7 @@ impl Picture {
         Ok(Self { lines: text.lines().map(ToOwned::to_owned).collect() })
     }
 
-    /// Returns the text of a drawing whose page is the box of its content.
+    /// Returns the text of a drawing as SVG whose page is the box of its content.
     pub(crate) fn small(svg: &str, reading: &ReadOptions) -> Result<String, String> {
         /// Margin around the content, as a share of its size.
         const MARGIN: f64 = 0.02;
@@ -57,7 +57,7 @@ impl Picture {
         ))
     }
 
-    /// Draws the content of a drawing as a PNG with this length of the longer side in pixels. Also returns the box that it fills, in px.
+    /// Draws the content of a drawing as a PNG whose longer side has `longest` pixels. Also returns the box that the PNG fills, in px.
     pub(crate) fn bitmap(svg: &str, longest: f32, reading: &ReadOptions) -> Result<(Vec<u8>, Rect), String> {
         let (drawn, filled) = drawn(resolved(svg, reading)?.as_ref(), longest, svg.len())?;
         Ok((encode_png(&drawn).map_err(|e| e.to_string())?, filled))
@@ -68,7 +68,7 @@ impl Picture {
         self.lines.join("\n")
     }
 
-    /// Returns the lines that are paths, with their path data.
+    /// Returns the indices of the lines that are paths, with their path data.
     pub(crate) fn paths(&self) -> Vec<(usize, &str)> {
         let lines = self.lines.iter().enumerate();
         lines.filter_map(|(i, line)| Some((i, &line[data_range(line)?]))).collect()
@@ -119,9 +119,10 @@ impl Picture {
     }
 }
 
-/// Returns the text of a drawing with its large embedded pictures reduced to few pixels; `None` without large ones of a given size.
+/// Returns the text of a drawing with its large embedded pictures reduced to few pixels; `None` if there are none. Pictures without a
+/// width and a height stay, as their size would change, and all stay if pixels are meant to be seen (`image-rendering: pixelated`).
 pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
-    /// Length of a large picture's text.
+    /// Length in bytes from which on the text of a picture is large.
     const LARGE: usize = 1 << 16;
     /// The longer side of reduced pictures, in pixels.
     const PIXELS: f32 = 400.0;
@@ -152,8 +153,8 @@ pub(crate) fn lightened(svg: &str, reading: &ReadOptions) -> Option<String> {
     (done > 0).then(|| out + &svg[done..])
 }
 
-/// Draws the content of a drawing with this length of the longer side in pixels. Also returns the box that it fills, in px. `length` is the
-/// length of the drawing's text.
+/// Draws the content of a drawing with `longest` pixels on the longer side. Also returns the box that the pixels fill, in px. `length` is
+/// the length of the drawing's text. The renderer moves the corner of the box to the origin.
 fn drawn(tree: &usvg::Tree, longest: f32, length: usize) -> Result<(Pixmap, Rect), String> {
     let seen = tree.root().abs_layer_bounding_box();
     let scale = longest / seen.width().max(seen.height());
@@ -191,7 +192,7 @@ fn has_image(node: &Node) -> bool {
     }
 }
 
-/// Escapes the names in usvg's text, which escapes only quotes, and keeps each on one line.
+/// Escapes the values of attributes in usvg's text, where only quotes are escaped, and keeps each on one line.
 fn well_formed(text: &str) -> String {
     let (mut out, mut done, mut quoted) = (String::with_capacity(text.len()), 0, false);
     for (at, sign) in text.match_indices(['"', '<', '&', '\n']) {

@@ -35,7 +35,7 @@ impl PendingFile {
         Self { content: Content::Stdout(bytes), to: PathBuf::from("-") }
     }
 
-    /// Calls `write` with a temporary file beside `to`.
+    /// Calls `write` with a temporary file beside `to`. Fails for standard output and devices.
     pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
         Self::in_place(Place::of(to), to, write)
     }
@@ -54,7 +54,7 @@ impl PendingFile {
         for stream in streams {
             stream.print()?;
         }
-        let _gate = temporaries::hold();
+        let _gate = temporaries::hold(); // An interruption waits until all files are in place.
         let alone = files.len() == 1;
         let mut placed = Vec::with_capacity(files.len());
         for file in files {
@@ -167,7 +167,7 @@ impl Place {
     fn of_link(link: &Path) -> Self {
         let file = behind(link);
         if is_descriptor(&file) {
-            // Keep the content of the open file; it may have no name any more.
+            // Write to the open file instead of replacing it: it may have lost its name.
             return if file.ends_with("1") { Self::Stdout } else { Self::Device };
         }
         Self::File(link.canonicalize().unwrap_or(file))
@@ -216,7 +216,7 @@ fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
 
 /// Follows a chain of symbolic links to its last file, which may not exist.
 pub fn behind(link: &Path) -> PathBuf {
-    /// Systems follow no longer chains.
+    /// Length of the longest chain that systems follow.
     const MOST_LINKS: usize = 40;
     let mut at = link.to_owned();
     for _ in 0..MOST_LINKS {

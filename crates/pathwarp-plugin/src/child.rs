@@ -1,4 +1,4 @@
-//! Starts and ends processes. None of them outlives this process, unless it is killed.
+//! Starts and ends processes. They end with this process, unless it is killed itself.
 
 use crate::fault::Fault;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// All running processes.
 static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
 
-/// A process, or `None` once it has ended, since another process may then have its number.
+/// A process, shared by [`LIVE`] and its [`Running`]; `None` once it has been ended, since another process may then have its number.
 type Shared = Arc<Mutex<Option<Child>>>;
 
 /// Environment variable set for plug-ins. A plug-in that called pathwarp with itself as a plug-in would start programs endlessly.
@@ -53,12 +53,12 @@ impl Running {
         self.child.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns `true` if the process has ended.
+    /// Returns `true` if the process has ended, or if the system cannot tell.
     pub(crate) fn has_ended(&self) -> bool {
         self.child().as_mut().is_none_or(has_ended)
     }
 
-    /// Kills the process and its children. Returns its exit status, from before the kill if it had already ended.
+    /// Kills the process, with its group where the system has them. Returns its exit status, from before the kill if it had already ended.
     pub(crate) fn end(&mut self) -> Option<ExitStatus> {
         let status = self.child().take().and_then(kill);
         live().retain(|c| !Arc::ptr_eq(c, &self.child));

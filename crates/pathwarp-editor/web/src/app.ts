@@ -60,7 +60,7 @@ export class App {
   isDone = false;
   /** `true` while a handle is dragged; the handles then stay as they are. */
   isDragging = false;
-  /** Cancels the drag in progress. */
+  /** Cancels the drag or the drawing of a line in progress. */
   hold: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 

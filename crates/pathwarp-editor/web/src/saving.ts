@@ -20,7 +20,7 @@ const PICTURES = ["png", "jpg", "webp"];
 /** Usual and largest width of a picture, in px. */
 const WIDTH = 2000;
 const WIDEST = 20_000;
-/** The key under which the browser stores the choices for pictures and the folder. */
+/** The key under which the browser stores the choices for pictures. */
 const REMEMBERED = "pathwarp-export";
 
 /** The choices made last. */
@@ -47,7 +47,7 @@ export class Saving {
   private unit = byId<HTMLSelectElement>("save-unit");
   private background = byId<HTMLSelectElement>("save-background");
   private colour = byId<HTMLInputElement>("save-colour");
-  /** The photograph whose size was offered. */
+  /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
   private offered = "";
   /** The steps downloaded last. */
   private downloaded = "";
@@ -85,7 +85,7 @@ export class Saving {
     const isEmpty = state.steps.length === 0;
     byId("saved").textContent = state.program ? `From ${state.program}` : state.saved ? (state.savedTo === state.file ? "Saved" : `Saved as ${state.savedTo}`) : isEmpty ? "No changes yet" : this.isDownloaded ? "Downloaded" : "Not saved yet";
     const save = byId<HTMLButtonElement>("save");
-    // For a program, removing all steps is a result, too.
+    // For a program that waits for the result, removing all steps is one, too.
     save.disabled = state.program ? isEmpty && !state.undo : isEmpty || state.saved;
     if (state.program) {
       save.textContent = `Keep in ${state.program}`;
@@ -133,6 +133,7 @@ export class Saving {
     if (!(await this.app.settle())) return;
     const { state } = this.app;
     if (!state || state.program || this.dialog.open) return;
+    // A drawing set from words can be saved without steps.
     if (state.steps.length === 0 && !state.words) return void toast(NOTHING);
     this.name.value = state.target;
     this.choose("svg");
@@ -181,7 +182,7 @@ export class Saving {
     this.say("");
   }
 
-  /** Shows a message, with a button if it asks for something. */
+  /** Shows a message, with the button that replaces a file if it `asks` for that. */
   private say(text: string, asks = false): void {
     this.message.textContent = text;
     this.replace.hidden = !asks;

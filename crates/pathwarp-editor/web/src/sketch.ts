@@ -23,7 +23,7 @@ const HINTS: Record<Sketch, string> = {
 const NEAR = 8;
 /** Turn from which a line around an object has a corner, in degrees. */
 const CORNER = 50;
-/** A circle begins at the bottom and passes the top, where words are centred. */
+/** Angles of a circle's start and end, in degrees clockwise from the right: from the bottom over the top, where words are centred. */
 const [FROM, TO] = [90, 450];
 
 export class Sketching {
@@ -34,7 +34,7 @@ export class Sketching {
     stage.overlay.append(this.line);
   }
 
-  /** Draws until the line is complete; Escape and undo cancel. */
+  /** Draws, and calls `take` with path data, with `x,y` for a point, or with `arc:…` for a circle; Escape and undo cancel. */
   begin(kind: Sketch, take: (value: string) => void): void {
     this.end();
     const { app, stage } = this;
@@ -50,7 +50,7 @@ export class Sketching {
     };
     app.hold = giveUp;
     stage.svg.classList.add("picking");
-    const explained = toast(HINTS[kind], true);
+    const explained = toast(HINTS[kind], true); // Removes the instructions.
     const done = (value: string | null) => {
       this.end();
       if (value) take(value);
@@ -103,7 +103,7 @@ export class Sketching {
     this.line.setAttribute("d", kind === "circle" ? circle : `M${places.join("L")}`);
   }
 
-  /** Ends drawing and picking. */
+  /** Ends drawing, or picking a path by a click: only one of them is under way at a time. */
   end(): void {
     this.stop?.();
     this.stop = null;

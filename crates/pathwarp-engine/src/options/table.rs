@@ -1,4 +1,4 @@
-//! The table of common options. It declares all of them.
+//! The table that declares all common options.
 
 use super::common::{
     CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
@@ -40,7 +40,7 @@ const fn family(
     CommonOption { reading: true, ..stored(name, value, help) }
 }
 
-/// An option that names fonts besides the installed ones.
+/// An option that names fonts besides the installed ones. `value` stands for its value in help.
 const fn fonts(name: &'static str, value: &'static str, help: &'static str) -> CommonOption {
     let value = OptionValue::List {
         name: value,
@@ -604,7 +604,7 @@ pub struct CommonOption {
     pub name: &'static str,
     /// Its letter on a command line.
     pub short: Option<char>,
-    /// Another long name, on the command line only.
+    /// Another long name, which recipes may have, too.
     pub alias: Option<&'static str>,
     /// The kind of its value, with the function that sets it.
     pub value: OptionValue,
@@ -614,7 +614,7 @@ pub struct CommonOption {
     pub stored: bool,
     /// `true` if every command that reads drawings has the option.
     pub reading: bool,
-    /// Options that cannot be given together with this one.
+    /// Options that cannot be given together with this one; one of the two lists the other.
     pub conflicts: &'static [&'static str],
     /// A sentence about its effect.
     pub help: &'static str,
@@ -623,7 +623,7 @@ pub struct CommonOption {
 /// Sets an option whose value needs no parsing.
 pub(crate) type Set = fn(&mut CommonOptions);
 
-/// The kind of value an option takes, and how it updates [`CommonOptions`].
+/// The kind of value an option takes, the `name` that stands for the value in help, and the function that updates [`CommonOptions`].
 #[expect(missing_docs, reason = "names, ranges and setters")]
 pub enum OptionValue {
     /// Present or absent; takes no value.
@@ -640,7 +640,7 @@ pub enum OptionValue {
     File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
 }
 
-/// Values that may start with a minus.
+/// The values that may start with a minus on a command line instead of being taken for options, if only to be refused by `set`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "names, ranges and setters")]
 pub enum LeadingMinus {
@@ -664,14 +664,14 @@ impl CommonOption {
         matches!(self.value, OptionValue::List { .. })
     }
 
-    /// Returns the words of a choice, without those that are only for its [`alias`](Self::alias).
+    /// Returns the words of a choice, except `on` and `off`, which only belong to its [`alias`](Self::alias).
     pub fn words(&self) -> Vec<&'static str> {
         let OptionValue::Choice(words) = &self.value else { return Vec::new() };
         let is_old = |word: &str| self.alias.is_some() && ["on", "off"].contains(&word);
         words.iter().map(|(word, _)| *word).filter(|word| !is_old(word)).collect()
     }
 
-    /// Checks a value against its kind: one of the words, a number in the range, or `true` for a switch.
+    /// Checks a value against its kind: one of the words, a number in the range, or `true` for a switch (recipes drop `false` before).
     pub(crate) fn check(&self, value: &str) -> Result<(), String> {
         match &self.value {
             OptionValue::Switch(_) if value != "true" => Err(format!("`{value}` is neither true nor false")),

@@ -1,5 +1,5 @@
-//! Bends mesh gradients. The image of a mesh is cut along lines of constant u and v until the Coons patches over the sides of the pieces
-//! are within the tolerance of it. Each side is the Hermite cubic with the ends and derivatives of the image.
+//! Bends mesh gradients. A mesh is cut along lines of constant u and v until the Coons patch over the bent sides of each piece is within
+//! the tolerance of the piece's image. Each bent side is the Hermite cubic with the ends and derivatives of the image.
 
 use super::pictures::PictureError;
 use super::task::PartTask;
@@ -20,7 +20,7 @@ const PATCH: f64 = (SAMPLES.len() * SAMPLES.len()) as f64 + 4.0 * cost::SEGMENT;
 /// Largest difference of bilinear colours from smooth ones: half of a noticeable one.
 const COLOR: f64 = 4.0 / 255.0;
 
-/// The image of a mesh gradient on a part.
+/// The image of a mesh gradient on a part, in the part's user space as written.
 pub(super) fn bend_mesh(t: &PartTask<'_>, mesh: &MeshGradient) -> Result<MeshGradient, PictureError> {
     let bounds = t.part.local.bounding_box().unwrap_or_default();
     let source = mesh.on(bounds).transformed(t.part.frame);
@@ -74,7 +74,7 @@ impl Grid<'_> {
     /// The image, with a Hermite cubic for each side.
     fn image(&self, map: &dyn Map) -> MeshGradient {
         self.source.cut(&self.u, &self.v, |ends| {
-            let points: Vec<Point> = ends.iter().map(|e| e.0).collect();
+            let points: Vec<Point> = ends.iter().map(|e| e.0).collect(); // The ends of all sides, each with the handle there.
             let mut jets = vec![Jet::UNDEFINED; points.len()];
             map.jets(&points, &mut jets);
             jets.iter().zip(ends).map(|(jet, end)| (jet.p, jet.push(end.1))).collect()
@@ -89,6 +89,7 @@ impl Grid<'_> {
         let in_cell = |(i, k): (usize, usize), (x, y)| [between(&self.u[k..], x), between(&self.v[i..], y)];
         let point = |cell: (usize, usize), xy| {
             let [u, v] = in_cell(cell, xy);
+            // The corner of the cell selects the patch of the source, where u or v is on a crease between two.
             self.source.point(u, v, [self.u[cell.1], self.v[cell.0]]).at
         };
         let point = &point;

@@ -318,7 +318,7 @@ impl Edit {
         }
     }
 
-    /// Edits an outline. Returns `None` if the edit only refits it.
+    /// Edits an outline. `contours` are the tolerances of its subpaths, if not the options'. Returns `None` if the edit only refits it.
     pub(super) fn apply(
         self,
         outline: &Outline,

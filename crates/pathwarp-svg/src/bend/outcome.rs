@@ -27,11 +27,10 @@ pub struct WarpedDocument {
     pub overhang: Option<Overhang>,
     /// The visible areas of the source and the result, in root user units, if the page is adapted.
     pub page: Option<[Rect; 2]>,
-    /// With [`PageFit::Shrink`](crate::PageFit::Shrink), the transform of the result that takes its artwork back onto the page, with the
-    /// margin of the original.
+    /// With [`PageFit::Shrink`](crate::PageFit::Shrink), if the artwork leaves the page: the transform that takes it back, with the margin
+    /// of the original. `svg` does not contain it; the caller applies it.
     pub back: Option<Affine>,
-    /// Names of elements with filters: first the ones whose filters became pictures, then the ones whose filters follow a fit that looks
-    /// right.
+    /// Names of the elements whose filters became pictures, and of the elements whose filters follow an affine fit that looks right.
     pub filters: [Vec<String>; 2],
     /// `true` if nothing of the result lies on its page.
     pub blank: bool,
@@ -45,7 +44,7 @@ pub struct ShapeReport {
     pub id: String,
     /// Number of copies in the result.
     pub copies: usize,
-    /// Report on the curves. Segments before include copies, segments after include outlined strokes, tiles and letters, and errors
+    /// Report on the curves. Segments are counted in every copy, tile and letter; those of the output include outlined strokes. Errors
     /// include the rounding of the text.
     pub path: PathReport,
     /// Largest distance between the map and the affine fit of the shape's gradients or patterns, in root user units; infinite if no
@@ -85,7 +84,7 @@ impl ShapeReport {
         let larger = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::max);
         self.path.segments_in += part.path.segments_in;
         self.path.segments_out += part.path.segments_out;
-        self.path.add(part.path);
+        self.path.add(part.path); // This leaves the numbers of segments alone.
         self.pictures += part.pictures;
         self.paint_residual = larger(self.paint_residual, part.paint_residual);
         self.stroke_error = larger(self.stroke_error, part.stroke_error);
@@ -145,7 +144,7 @@ impl Notes {
         self.0.entry(text).or_default().insert(name.to_owned());
     }
 
-    /// The sentences for the reader's notes, given as pairs of a text and a name.
+    /// The sentences for notes from reading the drawing, given as pairs of a text and a name.
     pub(crate) fn in_words(read: &BTreeSet<(&'static str, String)>) -> Vec<String> {
         let mut notes = Self::default();
         read.iter().for_each(|(text, name)| notes.add(text, name));
@@ -161,6 +160,7 @@ impl Notes {
 /// Result of warping a part.
 #[derive(Debug)]
 pub(crate) enum PartOutcome {
+    /// The part is written as it is in the source.
     Kept,
     Warped(Box<WarpedPart>),
 }
@@ -182,7 +182,8 @@ pub(crate) struct WarpedPart {
     /// is nothing to fill.
     pub(crate) fill: Option<BezPath>,
     pub(crate) decimals: u8,
-    /// The largest unit of the last decimal under any transform of a drawing; `None` for a requested number of decimals.
+    /// The largest step between coordinates that rounding may have, in units as written; the unit of the last decimal is the power of ten
+    /// below. `None` if the number of decimals is requested.
     pub(crate) coarsest: Option<f64>,
     /// The path data of `path`, if already written: because it has arcs, which `path` approximates, or because the threads that bend a
     /// large drawing also write its path data.
@@ -215,7 +216,7 @@ impl WarpedPart {
         !self.path.is_empty() || self.stroke.outline().is_some()
     }
 
-    /// Returns `true` if the part got no fewer segments, so that it stays as it was, and then resets its report.
+    /// For a simplification: returns `true` if the part got no fewer segments. It then stays as it was, and its report is reset.
     pub(super) fn reset_if_no_fewer(&mut self) -> bool {
         let r = &mut self.report;
         let stays = r.segments_out >= r.segments_in;

@@ -45,6 +45,7 @@ pub fn edit_path(
         other => other,
     };
     if let Edit::Unite { .. } = edit {
+        // Find the area within a share of the tolerance; the rest is for its gaps.
         let area = Area::of(outline, false, FINE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
         let one = area.with_arcs_of(outline, FINE * options.tolerance);
         return warp_path(&one, &AffineMap::IDENTITY, options, precision);
@@ -69,8 +70,8 @@ fn returning_closed(outline: &Outline) -> Outline {
     outline
 }
 
-/// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) writes that of a `<path>` in root
-/// user space. `precision` is the number of decimals; `None` takes enough for a hundredth of the tolerance.
+/// Maps a path and writes its image as path data, as [`Document::warp`](crate::Document::warp) does for a `<path>` in root user
+/// space. `precision` is the number of decimals; `None` takes enough for a hundredth of the tolerance.
 ///
 /// ```
 /// use pathwarp::map::AffineMap;
@@ -94,7 +95,7 @@ pub fn warp_path(
 ) -> Result<WarpedPath, GeometryError> {
     options.check()?;
     let digits = Digits { size: 1.0, given: precision, whole: options.tolerance };
-    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
+    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect(); // Their tolerances.
     let finest = contours.iter().copied().fold(options.tolerance, f64::min);
     let mut outline = outline.clone();
     outline.subpaths.iter_mut().for_each(|s| drop_closing_stub(s, digits.rounding(finest)));
@@ -122,8 +123,8 @@ const ROUND: f64 = 1e-10;
 /// Largest radius of an image, in distances between the image's start and its middle. Flatter arcs are better written as curves.
 const MAX_RADIUS: f64 = 1e4;
 
-/// Bends an outline in root user space, and writes images of arcs that are arcs again, and of lines (if `lines`) that become arcs, as
-/// arcs. Returns `None` if there are no such images.
+/// Bends an outline in root user space. Images of arcs, and with `lines` of lines, that are circular arcs are arcs in the result. Returns
+/// `None` if there are no such images.
 pub(super) fn with_arcs(
     map: &dyn Map,
     outline: &Outline,
@@ -301,7 +302,7 @@ pub(super) fn allowed(tolerance: f64, rounding: f64) -> f64 {
     (tolerance - rounding).max(0.5 * tolerance)
 }
 
-/// Factor of [`ROUNDING`] that gives the fraction of a contour's tolerance that rounding may use: a tenth.
+/// Rounding may use this many times [`ROUNDING`] of a contour's own tolerance: a tenth of it.
 const COARSE: f64 = 10.0;
 
 /// Determines the decimals of written coordinates.
@@ -331,8 +332,8 @@ impl Digits {
         rounding(self.size, self.decimals(tolerance))
     }
 
-    /// The largest unit of the last decimal under any transform of a drawing, in units as written here; `None` for a requested number of
-    /// decimals.
+    /// The largest step between coordinates that rounding may have, in units as written; the unit of the last decimal is the power of ten
+    /// below. In root user space it is the same under any transform. `None` if the number of decimals is requested.
     pub(super) fn coarsest(self, tolerance: f64) -> Option<f64> {
         let unit = || ROUNDING * self.whole.min(COARSE * tolerance) * std::f64::consts::SQRT_2 / self.size;
         self.given.is_none().then(unit)
@@ -379,7 +380,7 @@ impl Digits {
                 _ => match spans.peek_mut() {
                     None => [MAX_DECIMALS; 2],
                     Some((s, pieces)) => {
-                        let is_last = *pieces <= 1;
+                        let is_last = *pieces <= 1; // At its end, a span may meet contours with smaller tolerances.
                         let handles = self.decimals(s.tolerance);
                         let node = if is_last { handles.max(self.decimals(s.nodes[1])) } else { handles };
                         *pieces = pieces.saturating_sub(1);

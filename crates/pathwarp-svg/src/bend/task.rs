@@ -175,7 +175,7 @@ impl<'a> PartTask<'a> {
         self.digits.remaining(tolerance)
     }
 
-    /// The largest unit of the last decimal under any transform; `None` for a requested number of decimals.
+    /// [`Digits::coarsest`] for the finest contour.
     pub(super) fn coarsest(&self) -> Option<f64> {
         self.digits.coarsest(self.finest)
     }

@@ -145,7 +145,7 @@ pub(crate) enum Node {
     Text {
         element: Option<ElementId>,
         content: Box<Group>,
-        /// The source element of each node of the content; empty if nothing inside has a name.
+        /// The source element of each node of the content; empty if nothing inside has a name or a colour that is declared elsewhere.
         owners: Vec<ElementId>,
     },
 }

@@ -189,9 +189,9 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 }
 
 /// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
-/// element, by its index, and `coarsest` the largest unit of the last decimal under any transform, if decimals are free. Then handles so
+/// element, by its index, and `coarsest` the largest step between coordinates that rounding may have, if decimals are free. Then handles so
 /// short that rounding would turn them get more decimals, so that smooth joints stay smooth, and the choice of quadratics depends on that
-/// unit alone, so that neighbours under different transforms write a shared edge equally.
+/// step alone, so that neighbours under different transforms write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,

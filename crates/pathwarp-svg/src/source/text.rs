@@ -39,11 +39,11 @@ pub(crate) struct SourceText {
     pub(crate) far: Vec<(ElementId, String)>,
     /// Unsupported style: the element, or `None` for style sheets, and a message.
     pub(crate) unsupported_style: Vec<(Option<ElementId>, String)>,
-    /// Declarations of paint in the file, by element.
+    /// The declarations of paint that hold for each element, inherited ones included.
     pub(crate) words: Vec<Arc<Words>>,
     /// Small differences from browsers' rendering: a sentence, and the element or name that it concerns.
     pub(crate) notes: BTreeSet<(&'static str, String)>,
-    /// Texts that stand for HTML in the same `switch`: the `foreignObject`, and the `text`.
+    /// Texts that stand for HTML in the same `switch`: pairs of the `foreignObject` and the `text`, in document order.
     pub(crate) foreign: Vec<(ElementId, ElementId)>,
     /// Mesh gradients by id.
     pub(crate) meshes: HashMap<String, MeshGradient>,
@@ -115,8 +115,8 @@ impl SourceText {
         })
     }
 
-    /// Returns `true` if any stack is deep enough for the drawing and nothing in it could make its readers panic. References multiply
-    /// the depth, as their targets may hold further references.
+    /// Returns `true` if the drawing can be read on any thread: the smallest stack is deep enough, and nothing in it could make its readers
+    /// panic. References multiply the depth, as their targets may hold further references.
     pub(crate) fn is_shallow(&self) -> bool {
         /// Limit on depth times references. A level takes a few kilobytes of stack.
         const MAX_LEVELS: usize = 80;
@@ -128,7 +128,7 @@ impl SourceText {
                 matches!(e.tag.as_ref(), "use" | "clipPath" | "mask" | "pattern" | "marker" | "filter" | "image");
             references += usize::from(refers);
         }
-        // An embedded font may be crafted to make its reader panic, which only `with_stack` catches.
+        // Entities make depths unreliable. An embedded font may be crafted to make its reader panic, which only `with_stack` catches.
         self.unpatchable.is_none()
             && !self.css.contains("@font-face")
             && depths.iter().max().is_none_or(|d| d * references <= MAX_LEVELS)
@@ -147,7 +147,7 @@ impl SourceText {
         both(f, read).0
     }
 
-    /// The style attribute that results get if nothing changes it.
+    /// The element's style attribute as results have it, unless a warp changes it.
     pub(crate) fn written_style(&self, e: ElementId) -> String {
         let first = self.originals.partition_point(|o| o.element < e);
         let original = self.originals[first..].iter().take_while(|o| o.element == e).find(|o| o.name == "style");
@@ -206,7 +206,7 @@ impl SourceText {
         })
     }
 
-    /// The paint server of an element's `fill` or `stroke`, declared on it or inherited.
+    /// The paint server of an element's `fill` or `stroke`, declared on it or inherited: the first one with the id, as in browsers.
     pub(crate) fn paint_server(&self, e: ElementId, property: &str) -> Option<ElementId> {
         let value = self.ancestors(e).find_map(|a| self.property(a, property).filter(|v| v != "inherit"))?;
         let id = value.strip_prefix("url(")?.split(')').next()?.trim_matches(['"', '\'', ' ']).strip_prefix('#')?;
@@ -289,7 +289,7 @@ impl SourceText {
         self.link(e)?.trim().strip_prefix('#').map(ToOwned::to_owned)
     }
 
-    /// The element to which `href` or `xlink:href` refers: the last one with the id.
+    /// The element to which `href` or `xlink:href` refers: the last one with the id, as for usvg (except in a `use`).
     pub(crate) fn target(&self, e: ElementId) -> Option<ElementId> {
         self.by_id().get(&self.href(e)?)?.last().copied()
     }
@@ -384,7 +384,7 @@ impl SourceText {
     /// attributes; `None` if that changes nothing. Also returns the temporary ids.
     pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (Option<String>, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
-        let links = links(&self.text);
+        let links = links(&self.text); // Doubled ids stay if something may refer to them.
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
         for (i, e) in self.elements.iter().enumerate() {
             if !is_tracked(&e.tag) {
@@ -409,7 +409,7 @@ impl SourceText {
                 None => (e.qname.end..e.qname.end, format!(" style=\"{style}\"")),
             })
         }));
-        // usvg finds the stand-in of a mesh gradient first.
+        // usvg reads a stand-in instead of a mesh gradient, which it does not know.
         patches.extend(self.elements.iter().filter(|e| mesh::is_mesh(&e.tag)).filter_map(|e| {
             let id = e.attr(&self.text, "id").filter(|id| self.meshes.contains_key(&**id))?;
             Some((e.range.start..e.range.start, mesh::stand_in(self.prefix(), &id)))

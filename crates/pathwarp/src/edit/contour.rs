@@ -1,4 +1,4 @@
-//! Lines around an area, at a distance.
+//! The line around an area at a distance, and necks that join islands along the shortest ways (Prim's algorithm).
 
 use super::area::{Area, outermost};
 use super::offset::{Moved, Offset, OpenPaths, Side, moved};
@@ -13,9 +13,9 @@ use kurbo::{Join, Point, Rect};
 pub struct Contour {
     /// Distance from the area in user units; below zero, the line is inside.
     pub by: f64,
-    /// `true` if remaining holes get a line, too.
+    /// `true` if holes that remain at the distance get a line, too.
     pub holes: bool,
-    /// `true` if necks as wide as the distance join islands that are further apart than twice the distance.
+    /// `true` if islands that the distance leaves apart are joined by necks as wide as the distance.
     pub join: bool,
 }
 
@@ -49,8 +49,8 @@ pub struct Around {
 pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Around, GeometryError> {
     let side = if contour.by < 0.0 { Side::Inside } else { Side::Outside };
     let offset = Offset { by: contour.by.abs(), join: Join::Round, side, even_odd: false, open: OpenPaths::Close };
-    let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?;
-    let (mut report, fine) = (path.report, ARCS * options.tolerance);
+    let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?; // All tolerances are the options'.
+    let (mut report, fine) = (path.report, ARCS * options.tolerance); // `fine` is for arcs that become cubics.
     if !contour.holes {
         outline = outermost(&outline, fine);
     }
@@ -80,7 +80,7 @@ impl Island {
         Self(subpath.segs.iter().flat_map(on).collect(), subpath.bounding_box())
     }
 
-    /// Returns the ends of the shortest way to another island.
+    /// Returns the ends of the shortest way to another island, between points of both.
     fn way(&self, other: &Self) -> Option<[Point; 2]> {
         let pairs = self.0.iter().flat_map(|p| other.0.iter().map(move |q| [*p, *q]));
         pairs.min_by(|a, b| a[0].distance_squared(a[1]).total_cmp(&b[0].distance_squared(b[1])))
@@ -96,7 +96,7 @@ fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, Geomet
         let gap = |p: f64, q: f64| p.max(q).max(0.0);
         gap(a.x0 - b.x1, b.x0 - a.x1).hypot(gap(a.y0 - b.y1, b.y0 - a.y1))
     };
-    // The shortest way to each island from those already joined, at first only island 0.
+    // The shortest way to each island from those already joined, at first only island 0. `last` is the one joined last.
     let mut ways: Vec<Option<[Point; 2]>> = vec![None; islands.len()];
     let mut left: Vec<usize> = (1..islands.len()).collect();
     let (mut last, mut out) = (0, Vec::new());

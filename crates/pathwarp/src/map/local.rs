@@ -16,6 +16,7 @@ const ROUNDING: f64 = 1e-12;
 pub(crate) struct Local {
     /// The coefficients of each side's signed distance a·x + b·y + c, positive inside, and the bounding box of the side.
     sides: Vec<([f64; 3], Rect)>,
+    /// Distance within which outside points count as inside, in user units.
     reach: f64,
     inside: Arc<dyn Map>,
 }
@@ -46,7 +47,7 @@ impl Local {
         self.sides.iter().map(|s| s.1).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
     }
 
-    /// A margin for parts that end on the sides.
+    /// Distance by which the inverse goes on beyond the sides, for curves that end on them.
     fn margin(&self) -> f64 {
         1e-3 * (self.bounds().width() + self.bounds().height())
     }
@@ -59,7 +60,7 @@ impl Local {
 
 impl Map for Local {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(self.inside.work())
+        Cost::new(self.inside.work()) // The map inside does not search.
     }
 
     fn jet(&self, p: Point) -> Jet {
@@ -83,6 +84,7 @@ impl Map for Local {
         }
     }
 
+    /// The branch at the point `inside`, which may lie outside the polygon.
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
         Some(if self.contains(inside) {
             self.inside.branch(inside).unwrap_or_else(|| self.inside.clone())
@@ -102,6 +104,7 @@ impl Map for Local {
     }
 
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
+        // Preimages are less exact than points.
         let inside = self.inside.preimages(q)?.into_iter().filter(|p| self.depth(*p) >= -1e3 * self.reach);
         Some(inside.chain((!self.contains(q)).then_some(q)).collect())
     }
@@ -112,6 +115,7 @@ impl Map for Local {
             Some(closed) => InnerInverse::Closed(closed),
             None if !matches!(self.inside.class(), Class::Rational(_) | Class::Smooth) => return None,
             None => {
+                // The map inside is a single smooth piece along x and y.
                 let (inside, bounds) = (self.inside.clone(), self.bounds());
                 InnerInverse::Newton(Arc::new(NewtonInverse::new(inside, bounds, self.margin(), [1, 1])))
             }

@@ -45,7 +45,7 @@ pub trait Real:
     fn powf(self, n: f64) -> Self;
     /// √(x² + y²).
     fn hypot(self, y: Self) -> Self;
-    /// |x|; at 0 the derivative of +x.
+    /// |x|; at 0 with the derivative of x.
     fn abs(self) -> Self {
         if self.value() < 0.0 { -self } else { self }
     }
@@ -85,6 +85,7 @@ macro_rules! operators {
 }
 pub(super) use operators;
 
+/// Implements [`Real`] for `f64` by the functions that `f64` has by the same names.
 macro_rules! own_functions {
     ($($name:ident($($argument:ident: $type:ty)?);)*) => {
         impl Real for f64 {

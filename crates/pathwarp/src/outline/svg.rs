@@ -60,6 +60,7 @@ impl fmt::Display for Outline {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, s) in self.subpaths.iter().enumerate() {
             write!(f, "{}M{}", if i > 0 { " " } else { "" }, Pair(s.start))?;
+            // `Z` draws the closing line, unless that has no length.
             let drawn =
                 s.segs.len() - usize::from(s.closed && matches!(s.segs.last(), Some(Seg::Line(l)) if l.p0 != l.p1));
             for seg in &s.segs[..drawn] {
@@ -67,7 +68,7 @@ impl fmt::Display for Outline {
                     Seg::Line(l) => write!(f, " L{}", Pair(l.p1))?,
                     Seg::Quad(q) => write!(f, " Q{} {}", Pair(q.p1), Pair(q.p2))?,
                     Seg::Cubic(c) => write!(f, " C{} {} {}", Pair(c.p1), Pair(c.p2), Pair(c.p3))?,
-                    // A single command cannot draw a whole turn.
+                    // One command cannot draw a whole turn, and near it, rounding of the ends moves the centre far.
                     Seg::Arc(a) if a.sweep.abs() > 1.5 * PI => {
                         write_arc(&a.subsegment(0.0, 0.5), f)?;
                         write_arc(&a.subsegment(0.5, 1.0), f)?;
@@ -89,6 +90,7 @@ impl fmt::Display for Pair {
     }
 }
 
+/// Writes an arc as a command with the radii of its ellipse, of which `a.a` and `a.b` are conjugate semi-axes.
 fn write_arc(a: &EllipticArc, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let (radii, turn) = Ellipse::from_affine(Affine::new([a.a.x, a.a.y, a.b.x, a.b.y, 0.0, 0.0])).radii_and_rotation();
     let turn = if radii.x == radii.y { 0.0 } else { turn.to_degrees() };

@@ -24,6 +24,7 @@ pub(super) struct Model {
     pub(super) content: Content,
     /// Counts the work for the file.
     pub(super) budget: Arc<Budget>,
+    /// The format of the file, or OBJ for a drawing; the result has it, too, unless its file is named otherwise.
     pub(super) format: ModelFormat,
     /// `true` for a drawing, whose objects are named after shapes.
     pub(super) drawn: bool,
@@ -113,7 +114,7 @@ fn is_drawing(bytes: &[u8]) -> bool {
 fn decimals(mesh: &Mesh) -> u8 {
     /// Significant figures of the size.
     const FIGURES: f64 = 9.0;
-    /// The option's maximum.
+    /// The maximum of `--precision`.
     const MOST: f64 = 15.0;
     let size = mesh.bounds().map_or(1.0, |b| b.diagonal());
     let decimals = FIGURES - size.log10().floor();
@@ -139,7 +140,7 @@ pub(super) enum ModelFormat {
     Dxf,
 }
 
-/// The word for names among the properties that a format cannot store.
+/// The word for names in [`ModelFormat::lost`]. For a drawing they are no loss.
 pub(super) const NAMES: &str = "names";
 
 /// The extensions and their formats.
@@ -161,7 +162,7 @@ impl ModelFormat {
         EXTENSIONS.into_iter().find(|(e, _)| extension.eq_ignore_ascii_case(e)).map(|(_, f)| f)
     }
 
-    /// Detects the format of a file without such an extension.
+    /// Detects the format of a file by its content, for other extensions.
     pub(super) fn sniffed(bytes: &[u8]) -> Self {
         let json = || bytes.trim_ascii_start().starts_with(b"{");
         if gltf::sniff(bytes) {
@@ -245,7 +246,7 @@ fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Res
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
     let to_mm =
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
-    let unit = to_mm.determinant().abs().sqrt();
+    let unit = to_mm.determinant().abs().sqrt(); // Millimetres in a user unit.
     let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
         let named = NamedShape { name, outline, even_odd };

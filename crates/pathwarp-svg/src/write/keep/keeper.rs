@@ -26,7 +26,7 @@ pub(super) struct Keeper<'a, 'w> {
     pub(super) source: &'a SourceText,
     pub(super) edits: Edits<'a>,
     pub(super) writer: &'w mut Writer<'a>,
-    /// Elements that have become groups.
+    /// Elements that have become groups. Animations of their paint are removed.
     pub(super) fragments: BTreeSet<ElementId>,
     /// Pictures beneath and above the content of elements that become groups.
     pub(super) around: HashMap<ElementId, [String; 2]>,

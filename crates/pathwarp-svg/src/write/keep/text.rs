@@ -32,8 +32,8 @@ impl SpanTree {
         Self(vec![TextSpan { element: text, content: Vec::new() }])
     }
 
-    /// The index of the innermost span of a chain of elements, `path`, outermost first. Adds missing spans and, with `reopen`, spans that
-    /// are no longer the last.
+    /// The index of the innermost span of a chain of elements, `path`, outermost first. Adds a span that is missing or, with `reopen`, is
+    /// no longer the last of its parent; its element then gets a second group.
     fn find_or_add(&mut self, path: &[ElementId], reopen: bool) -> usize {
         let mut here = 0;
         for &e in path {
@@ -56,7 +56,7 @@ impl SpanTree {
     }
 }
 
-/// Replaces a text by a group of outlines, if it has changed. `owners` lists the source element of each outline.
+/// Replaces a text by a group of outlines, if it has changed. `owners` are the outlines' source elements, if it needs groups inside.
 pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, owners: &[ElementId]) {
     if !content.children.iter().any(|n| k.changed(n)) {
         return;
@@ -68,6 +68,7 @@ pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, 
         let written = SpanWriter { k, spans: &spans, content, owners, seen: Vec::new() }.items(0);
         k.writer.group_around(content, &written)
     } else {
+        // The outlines keep the text's declarations of paint, such as `currentColor`.
         k.written_inside(e, |w| {
             w.surroundings = w.surroundings.map(|s| s.for_text(source, Some(e)));
             w.group(content, "")
@@ -118,6 +119,7 @@ fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> Span
         let span = spans.find_or_add(&path(owner), true);
         spans.0[span].content.push(SpanItem::Outline(i));
     }
+    // Named elements without outlines get an empty group, so that their names remain.
     for named in text_content(source, text).filter(|&n| is_named(source, n)) {
         spans.find_or_add(&path(named), false);
     }
@@ -156,7 +158,7 @@ impl SpanWriter<'_, '_, '_, '_> {
         let source = self.k.source;
         let element = self.spans.0[span].element;
         let el = &source.elements[element];
-        // An element with several spans has its id and title on the first.
+        // An element with several spans has its id and title on the first. Attributes that warping makes untrue are left out.
         let again = self.seen.contains(&element);
         self.seen.push(element);
         let text = &source.text;

@@ -252,8 +252,8 @@ impl Map for OnPiece {
 pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S, where S is the unit normal, blended at the ends into the mitres of corners: linearly, or smoothly if `smooth`,
-    /// where the mitre vanishes within the piece. s is the length of the offset curve at height `even`.
+    /// F = C(u(s)) + d·S, where S is the unit normal plus `mitres` (the corners' mitres minus the normals), which fade from the ends:
+    /// linearly, or smoothly if `smooth`, where they vanish within the piece. s is the length of the offset curve at height `even`.
     Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
     /// The paper's polynomial F(u, v) with v = d / unit. u comes from the arc length by `table`, or without one is s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },

@@ -1,4 +1,4 @@
-//! The skeleton: the pieces of a path, measured, oriented and joined in a row.
+//! The skeleton: the pieces of a path, measured, oriented and joined in a row. The module above names the paper.
 
 use super::map::{Curve, MovingFrame, Ribbon, SkeletonPiece, Spine, Strip, normal};
 use super::spline::{Part, directions, mitre};
@@ -18,11 +18,11 @@ const SHARPEST: f64 = 1.0 / 32.0;
 /// The measured pieces of a path.
 pub(super) struct Skeleton {
     spines: Vec<(Spine, ArcLength)>,
-    /// For a spline, the handles at the points of every piece, and the piece's share of the parameter; empty otherwise.
+    /// For a spline, the handles at the control points of every piece and the distance of its knots; empty otherwise.
     frames: Vec<(Vec<Vec2>, f64)>,
     pub(super) closed: bool,
     pub(super) length: f64,
-    /// The height at which lengths are measured.
+    /// The height at which lengths are measured; 0 on the skeleton.
     even: f64,
     name: String,
 }
@@ -227,9 +227,9 @@ artwork's height; a smaller `width` helps too",
         Ok(Joined { pieces, corners, notes: Vec::new(), warning: None })
     }
 
-    /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`. The handles are `given`, or
-    /// belong to a spline. Otherwise a single piece has the normals of its control polygon's sides, and several pieces have mitres at their
-    /// points, which keep parallels smooth wherever the skeleton is (the paper's equation 5).
+    /// Joins pieces whose sides are the paper's handles, for artwork `unit` high between these `heights`. The handles are `given` for each
+    /// level of each piece, or belong to a spline. Otherwise a single piece has the normals of its control polygon's sides, and several
+    /// pieces have mitres at their points, which keep parallels smooth wherever the skeleton is (the paper's equation 5).
     pub(super) fn with_handles(
         self,
         given: Option<&[Vec<Vec<Vec2>>]>,
@@ -283,7 +283,7 @@ artwork's height; a smaller `width` helps too",
                 return Err(Error::input("handles", problem));
             }
         }
-        // By parameter, the pieces of a spline have the lengths of their knots.
+        // By parameter, the pieces of a spline are long in proportion to the distances of their knots.
         let whole: f64 = self.frames.iter().map(|(_, width)| width).sum();
         let strips = self.spines.iter().zip(ribbons).enumerate().map(|(i, ((_, table), ribbon))| {
             let knots = self.frames.get(i).filter(|_| !by_arc_length);
@@ -305,7 +305,7 @@ artwork's height; a smaller `width` helps too",
         })
     }
 
-    /// Lines up strips of given lengths as pieces. An open skeleton continues straight at both ends.
+    /// Lines up strips of given lengths as pieces. An open skeleton continues straight at both ends, in pieces whose length is not used.
     fn in_a_row(&self, strips: Vec<(Strip, f64)>) -> Vec<SkeletonPiece> {
         let mut pieces = Vec::with_capacity(strips.len() + 2);
         let mut at = 0.0;
@@ -335,8 +335,8 @@ artwork's height; a smaller `width` helps too",
     }
 }
 
-/// Returns the strips on a side of a polygon. The normals are blended into the mitres near the corners, over a few times the mitre's
-/// width at `height`, and are square to the rest of the line. A line too short for that is blended all along.
+/// Returns the strips on a side of a polygon, where `mitres` are what the corners' mitres add to the normal. Near the corners, normals are
+/// blended into the mitres, over a few times the mitre's width at `height`. A line too short for that is blended all along.
 fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
     /// Length of a blend as a multiple of the mitre's width. At the inner side of a corner, artwork keeps a third of its width; a
     /// factor of 2 would leave nothing of it.
@@ -382,7 +382,7 @@ fn turns_left(curves: &[&Curve]) -> bool {
     points.windows(2).map(|p| p[0].cross(p[1])).sum::<f64>() < 0.0
 }
 
-/// Returns `true` if an open run ends left of its start, by more than rounding, as in a whole circle.
+/// Returns `true` if an open run ends left of its start. Rounding does not count: a whole circle ends at its start.
 fn runs_left(curves: &[&Curve]) -> bool {
     const SAME: f64 = 1e-9;
     let (Some(first), Some(last)) = (curves.first(), curves.last()) else { return false };
@@ -407,8 +407,8 @@ fn measured(curve: Curve) -> (Spine, ArcLength) {
     (Spine::new(curve), table)
 }
 
-/// Returns handles at the points of a piece, with the given ones at its ends and mitres of the control polygon between them. At both
-/// ends they change along the skeleton alone, as unit normals do.
+/// Returns handles at the points of a piece, with the given ones at its ends and mitres of the control polygon between them. The handle
+/// next to an end differs from that at the end only along the leg, so that handles turn there as unit normals do.
 fn mitres(points: &[Point], ends: [Vec2; 2]) -> Vec<Vec2> {
     let (n, legs) = (points.len() - 1, directions(points, false));
     let inner = legs.windows(2).map(|d| mitre(normal(d[0]), normal(d[1])));
