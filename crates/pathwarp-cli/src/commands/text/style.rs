@@ -11,6 +11,7 @@ use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, fea
 
 /// The size of the em, and the unit of it and of the page.
 pub(super) struct Em {
+    /// In user units of the page.
     pub(super) size: f64,
     /// `None` for px.
     pub(super) unit: Option<LengthUnit>,
