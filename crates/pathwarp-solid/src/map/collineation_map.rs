@@ -1,4 +1,4 @@
-//! Implements [`Map3`] for collineations.
+//! Implements [`Map3`] for collineations. The domain is where the forms `positive` are positive.
 
 use super::collineation::Collineation;
 use crate::map::{Creases3, Jet3, Map3};
@@ -33,7 +33,6 @@ impl Map3 for Collineation {
     }
 
     fn creases(&self, out: &mut Creases3) {
-        // The domain's edges: each form is positive in the domain.
         for form in &self.positive {
             let (form, about) = (*form, self.about);
             out.edge(move |p| form.dot((p - about).extend(1.0)));

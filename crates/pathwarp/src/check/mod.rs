@@ -372,7 +372,7 @@ fn inverse(t: &Tested<'_>) -> Check {
 
 /// Compares the refitted images of a circle and of lines with dense samples of the true images. The lines are 1 to 400 details long. The
 /// map's detail is the size of its smallest feature, a quarter of its shortest wave, taken as at most a hundredth of the frame's diagonal
-/// and at least a ten-thousandth.
+/// and at least a ten-thousandth. For a map that declares none, reports say that errors are `sampled` and may be larger in between.
 fn refitting(t: &Tested<'_>) -> Check {
     const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
     /// The number of samples of a detail, to which a prime number is added for each line.
@@ -437,7 +437,6 @@ fn refitting(t: &Tested<'_>) -> Check {
     if fitted < all {
         check.detail += "; the others leave the domain and are skipped";
     }
-    // Errors are then measured at samples that may miss details: `Assurance::Sampled`.
     if declared.is_none() {
         check.detail += "; it declares no detail, so reports say sampled";
     }

@@ -180,7 +180,7 @@ struct Round {
     radius: f64,
     /// The angle of an open arc's midpoint, in radians.
     middle: f64,
-    /// The direction in which `bend` runs an open arc: 1 is clockwise.
+    /// The direction in which `bend` runs an open arc, which is from left to right: 1 if clockwise, −1 if not.
     way: f64,
 }
 
@@ -277,7 +277,6 @@ impl Round {
         let turn = |a: &EllipticArc| a.sweep.copysign(a.sweep * a.a.cross(a.b));
         let sweep: f64 = arcs.iter().map(|a| turn(a)).sum();
         let middle = (first.p0 - centre).atan2() + 0.5 * sweep;
-        // `bend` runs an open arc from left to right.
         let way = if (last.p1.x < first.p0.x) == (sweep < 0.0) { 1.0 } else { -1.0 };
         Some(Self { centre, radius, middle, way })
     }
