@@ -322,7 +322,6 @@ struct Edges {
 }
 
 impl Edges {
-    /// The edges of a filled path.
     fn of_fill(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
         let mut edges = Self { count: 0.0, rows: 0.0, columns: 0.0 };
         // The renderer first cuts off the parts outside the picture.

@@ -298,7 +298,6 @@ fn number(v: f64) -> String {
     if short == 0.0 || (1e-4..1e9).contains(&short.abs()) { short.to_string() } else { format!("{short:e}") }
 }
 
-/// Describes the number of points that were skipped.
 fn skipped(count: usize) -> String {
     if count == 0 { String::new() } else { format!("; {count} outside of the domain are skipped") }
 }
