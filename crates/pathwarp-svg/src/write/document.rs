@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// Writes the document to `out`, with warnings and skipped elements.
+/// Writes the document to `out`, with warnings, skipped elements, and artwork that lies past the page or has moved onto it.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
     let unread = unread_images(input.drawing, input.options).chain(elements(input));

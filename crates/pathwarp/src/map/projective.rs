@@ -1,4 +1,4 @@
-//! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
+//! Affine and projective maps as [`Map`]s: the two classes that keep straight lines. Enclosures are infinite where W may vanish.
 
 use super::{Class, Crease, Creases, Enclosure, Homography, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};

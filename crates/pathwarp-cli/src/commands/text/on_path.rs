@@ -385,7 +385,7 @@ pub(super) fn line(
     bent(registry, BEND, label, frame, args, options)
 }
 
-/// Bends a text by a deformation.
+/// Bends a text by a recipe of one step, which applies to all of it (`whole`).
 pub(super) fn bent(
     registry: &Registry,
     deformation: &str,
