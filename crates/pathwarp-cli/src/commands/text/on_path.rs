@@ -118,7 +118,7 @@ pub(super) fn set(
     let curve = Curve::of(&path.outline);
     let stretches = m.get_one::<String>("stretch").is_some_and(|s| s != "keep");
     let both = texts.len() > 1;
-    curve.check(m, &path.name, both, stretches)?;
+    curve.check(m, both, stretches)?;
 
     // A lower line alone takes the first angle.
     let first = at.first().copied();
@@ -198,7 +198,7 @@ impl<'a> Curve<'a> {
     }
 
     /// Refuses options that do not suit this path.
-    fn check(&self, m: &ArgMatches, name: &str, both: bool, stretches: bool) -> Result<(), Failure> {
+    fn check(&self, m: &ArgMatches, both: bool, stretches: bool) -> Result<(), Failure> {
         let problem = if self.round.is_none() && m.contains_id(AT) {
             "--at goes with circles and arcs; on another path --offset moves the line along"
         } else if both && !self.closed && m.get_flag("inside") {
@@ -208,7 +208,7 @@ impl<'a> Curve<'a> {
         } else {
             return Ok(());
         };
-        Err(Failure::usage(format!("{problem} (--{name} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
+        Err(Failure::usage(format!("{problem} (--{ON} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
     }
 
     /// Warns if two lines of these widths overlap.
