@@ -49,7 +49,7 @@ pub struct ReachMemory {
     ends: Vec<Option<(usize, BreakPoint)>>,
     /// For each joint, the greatest length of the shorter side of a cubic that crosses it.
     crossing: Vec<f64>,
-    /// For each block of joints, the length along the run from which on a cubic may cross all of them.
+    /// For each block of joints, the position along the run from which on a cubic starts near enough to cross all of them.
     blocks: Vec<f64>,
     tried: Vec<Tried>,
     /// The last entry of `tried` from each grid point.
@@ -77,11 +77,11 @@ pub struct MergeSettings {
     pub tolerance: f64,
     /// Prove the error.
     pub proof: bool,
-    /// Mark cubics, for use elsewhere.
+    /// Keep samples of cubics, so that these can be carried to other copies of the shape.
     pub marks: bool,
-    /// The marked cubics are certain to be used, so that their errors should be small.
+    /// The shape comes again, so that marked cubics will be carried. That adds a little to their errors, which should be small.
     pub again: bool,
-    /// Fit alike from either end.
+    /// Fit alike from either end: a cubic does not depend on the direction of its stretch.
     pub evenly: bool,
 }
 
@@ -180,6 +180,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// Piece and error of a cubic, by the samples of all segments or proven segment by segment. `None` if it is not within the tolerance.
+    /// `measure` leaves foot points in `distances.feet` for the proof and the marks.
     fn within(&mut self, cubic: &RunCubic) -> Result<Option<Passed>, NotFinite> {
         let enough = self.tolerance;
         let checked = self.memory.distances.measure(self.run, cubic, enough)?;
@@ -256,8 +257,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         last
     }
 
-    /// The furthest grid point found within reach of one cubic from `k`; `k` itself if there is none, or if the only piece of the segment
-    /// leads as far.
+    /// The furthest grid point found that one cubic from `k` reaches; `k` itself if there is none, or if `k` is a joint and the segment's
+    /// own fit, a single piece, leads as far.
     ///
     /// If a stretch fails, nearly all longer ones do, so grid points are tried as in a bisection, with the sixth-order law of
     /// the error as the guess.
@@ -284,7 +285,8 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
     }
 
-    /// The furthest grid point that one cubic reaches from `k`, as far as its samples show. If `back`, grid points count from the end.
+    /// The furthest grid point that one cubic reaches from `k`, as far as its samples show; `k` if the segment's own piece leads as far, to
+    /// `joint`. If `back`, grid points count from the end, and with `joint` = k + 1, own pieces do not matter.
     fn seek(&mut self, k: usize, (joint, limit): (usize, usize), back: bool) -> Result<usize, NotFinite> {
         let start = self.place(k, back);
         let (mut low, mut high) = (k, limit + 1);
@@ -434,7 +436,6 @@ impl<F: FitOwn> OwnPieces<F> {
         self.fitted(i).map(|(from, to, _)| to - from)
     }
 
-    /// Number of segments.
     pub(crate) fn segments(&self) -> usize {
         self.known.len()
     }
@@ -520,7 +521,7 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
 }
 
 /// Searches for legs with fewer pieces on a finer grid: where pieces are hardly longer than segments, ending at the points of a coarse
-/// grid costs many. Returns `legs` if there are none.
+/// grid costs many. The finer grid has about 24 points for each piece; its cubics are not carried. Returns `legs` if there are none.
 ///
 /// # Errors
 /// [`NotFinite`] if a segment is not finite.

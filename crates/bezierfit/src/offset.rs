@@ -12,8 +12,9 @@ use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 pub struct Offset {
     segment: Segment,
     distance: f64,
-    /// Power basis of a vector along the segment that vanishes at no end, and the factor a + b·t with which it is the derivative.
+    /// A vector along the segment that vanishes at neither end, in the power basis. The segment's derivative is this vector times a factor.
     along: [Vec2; 3],
+    /// a and b of the factor a + b·t; both 0 stand for the factor 2t(1 − t).
     factor: [f64; 2],
     /// Vectors that are added at the start and at the end, and in proportion in between.
     shift: [Vec2; 2],
@@ -117,7 +118,7 @@ impl Offset {
         let at = |i: usize| i as f64 / SAMPLES as f64;
         let speeds: Vec<f64> = (0..=SAMPLES).map(|i| self.speed(at(i))).collect();
         let mut ends: Vec<f64> = (0..=SAMPLES).map(at).collect();
-        // Two cusps between samples have the least speed between them.
+        // If there are two cusps between samples of one sign, the speed has the other sign at its extremum between them.
         for i in 1..SAMPLES {
             let [a, b, c] = [speeds[i - 1], speeds[i], speeds[i + 1]];
             if a * b > 0.0 && b * c > 0.0 && b.abs() < a.abs().min(c.abs()) {
@@ -174,6 +175,7 @@ impl Source for Offset {
 
     fn breaks(&self) -> Vec<f64> {
         let mut out = self.cusps();
+        // Where the segment nearly stops, its direction may turn fast.
         out.extend(self.segment.slow_spots().all());
         out
     }
@@ -190,6 +192,7 @@ impl Source for Offset {
         }
         let (along, speed) = (self.direction(t), self.speed(t));
         let beside = |t: f64| along * if self.speed(t.clamp(0.0, 1.0)) < 0.0 { -1.0 } else { 1.0 };
+        // The curve has one direction unless the speed is small against that beside it, at a cusp or a stop. Then points beside give two.
         let [before, after] = [self.speed(t - 1e-3), self.speed(t + 1e-3)];
         if speed.abs() > 1e-6 * before.abs().max(after.abs()) && d != Vec2::ZERO {
             let d_unit = d / d.hypot();

@@ -5,9 +5,9 @@
 //! point of C has one on g. With a polynomial φ that follows the foot points of the fit, D = g − C∘φ is a polynomial of known
 //! degree, and a bound for it follows from finitely many values.
 //!
-//! [`piece()`] tries proofs in the order of their cost: first from the samples that the fit has taken, or sixteen more (`sampled`),
-//! then from D at 24 to 48 Chebyshev nodes, as follows. Nodes also serve merged pieces, whose ends are not on the image ([`stretch()`]).
-//! Lines have a proof by themselves ([`line()`]).
+//! [`piece()`] tries proofs in the order of their cost: first from the samples that the fit has taken, or sixteen more (`sampled`), with
+//! φ(τ) = τ (`identity`) or through foot points; then from D at 24 to 48 Chebyshev nodes, as follows. Nodes also serve merged pieces,
+//! whose ends are not on the image ([`stretch()`]). Lines have a proof by themselves ([`line()`]).
 //!
 //! **φ** is a polynomial through the foot points of the fit, φ(τ) = τ + τ(1−τ)·p(2τ−1) with P coefficients in p. Since
 //! φ = τ·(1 + (1−τ)p) and 1−φ = (1−τ)·(1 − τp), it stays in [0, 1] if the two brackets, polynomials of degree P, are not
@@ -24,8 +24,8 @@
 //! holds for its component in any direction, hence for its length. A bound from few nodes with a simple φ comes first, as it is cheap;
 //! if it is above the tolerance, many nodes follow, which lose less.
 //!
-//! **Denominators.** If g = G/W, D is no polynomial. But with a polynomial V close to 1/W, the product F = V·W·D is one, and
-//! |D| ≤ |F| / (1−ε) where |VW − 1| ≤ ε. VW is a polynomial too, bounded in the same way.
+//! **Denominators.** If g = G/W with W of degree `below` > 0, D is no polynomial. But with a polynomial V close to 1/W, the product
+//! F = V·W·D is one, and |D| ≤ |F| / (1−ε) where |VW − 1| ≤ ε. VW is a polynomial too, bounded in the same way.
 //!
 //! **Rounding** of the samples (some 1e-14 of the coordinates) is added to the bound.
 
@@ -64,6 +64,7 @@ pub(crate) fn stretch(
     let ((t0, a), (t1, b)) = (unit(cubic.p1 - cubic.p0), unit(cubic.p3 - cubic.p2));
     let frame = ChordFrame { q, t0, t1, floor: [0.0; 2], size: q.hypot() + a + b, home: [a, b], pull: 0.0 };
     let c = Candidate { t0: t[0], t1: t[1], p0: cubic.p0, frame, a, b };
+    // Foot points by four Newton steps; their distances, and the frame's bounds and pulls of handles, do not matter.
     let mut feet = [0.0; FEET];
     for half in feet.chunks_exact_mut(8).enumerate() {
         let (first, out) = (8 * half.0, half.1);
@@ -279,7 +280,7 @@ pub(crate) fn piece(
 
 /// Bound for the distance between the image and the line between two break points, if the image runs along the line in one direction.
 /// Then every point of the line has a partner on the image with the same component along the line, and their distance is the
-/// component across.
+/// component across. `size` is the scale of the image for rounding.
 pub(crate) fn line(
     source: &impl Source,
     form: &Quotient,
@@ -330,7 +331,7 @@ pub(crate) fn line(
 /// Number of samples with foot points, at j/17.
 pub(crate) const FEET: usize = 16;
 
-/// Most groups of four coefficients of one parity. Coefficients are computed in fours, even and odd ones apart.
+/// Even and odd coefficients are computed apart, in groups of four. This is the largest number of groups of each, N/8 for N = 48.
 const MOST_QUARTERS: usize = 6;
 
 /// Constant tables of the proofs with N nodes and P coefficients of p.

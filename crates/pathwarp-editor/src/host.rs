@@ -107,7 +107,7 @@ pub trait Artwork: Send {
     /// Returns the drawing.
     fn document(&self) -> &Document;
 
-    /// Returns the drawing with the captions of a recipe.
+    /// Returns the drawing with the texts that the recipe's `caption` steps set.
     ///
     /// # Errors
     /// A sentence if a caption cannot be set.
@@ -147,7 +147,7 @@ pub trait Artwork: Send {
     /// A sentence if a step cannot be built.
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String>;
 
-    /// Returns the options that a command line with these steps needs for an equal result, by name.
+    /// Returns the options, by name, that a command line needs beside a recipe's steps for the same result.
     fn options(&self) -> Vec<(String, String)>;
 
     /// Returns the text of a recipe file with these steps.
@@ -208,7 +208,7 @@ pub enum Purpose {
         /// The file that *Save* writes; `None` for a name beside the drawing.
         out: Option<PathBuf>,
     },
-    /// A program waits for the steps, and nothing is written. It is an error if no page opens.
+    /// A program waits for the steps, and nothing is written. It is an error if the editor does not open in a browser.
     Program {
         /// The program's name.
         name: String,

@@ -3,9 +3,9 @@
 //!
 //! `cargo run --release -p pathwarp-raster --example warp_speed [FOLDER]`
 //!
-//! With FOLDER, writes `source.rgba` and two files per map: `NAME.rgba`, the result, and `NAME.f32`, for each pixel of the result,
-//! rows from top to bottom, x and y in the source (pixel centres at integers) as little-endian 32-bit floats. `warp_opencv.py`
-//! reads these. Times are CPU times where `/proc` has them; `RAYON_NUM_THREADS=1` uses one thread.
+//! With FOLDER, writes `source.rgba` and two files per map: `NAME.rgba`, the result, and `NAME.f32`, the source point of each pixel, by
+//! rows from the top: x and y as little-endian 32-bit floats, with pixel centres at integers. `warp_opencv.py` beside this file reads
+//! them. Times are CPU times where `/proc` has them; `RAYON_NUM_THREADS=1` uses one thread.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a benchmark that prints to the terminal")]
 
 use kurbo::{Affine, Point, Rect};
@@ -85,7 +85,7 @@ fn main() {
     }
 }
 
-/// Rings whose period falls to two pixels in the far corner, different in each channel, so that sparse sampling shows.
+/// Rings whose period falls to two pixels in the far corner, different in each channel, so that sparse sampling shows. `r2` counts periods.
 fn rings(pixel: usize, channel: usize) -> u8 {
     let (x, y) = ((pixel % SIDE as usize) as f64, (pixel / SIDE as usize) as f64);
     let r2 = (x * x + y * y) / (4.0 * f64::from(SIDE) * std::f64::consts::SQRT_2);

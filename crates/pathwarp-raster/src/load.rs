@@ -90,7 +90,7 @@ impl Canvas {
     }
 }
 
-/// The work of a drawing, added up.
+/// The work of a drawing, added up. Counting is cut short where it exceeds the limit.
 struct Load {
     limits: Limits,
     work: f64,
@@ -104,7 +104,7 @@ impl Load {
         Ok(self.limits.check(Limit::Work, cost::PIXEL * self.work).map_err(Exceeded::cut_short)?)
     }
 
-    /// Adds a surface of `area` pixels to those held.
+    /// Adds a surface of `area` pixels to those held. A mask takes one byte for a pixel, so that it counts as a quarter of its area.
     fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
         let held = canvas.held + area;
         self.limits.check(Limit::Memory, PIXEL_BYTES * held)?;
@@ -197,7 +197,7 @@ impl Load {
         let pixels = *self.sizes.entry(Arc::as_ptr(data) as usize).or_insert_with(|| {
             // The renderer skips pictures that it cannot decode.
             let pixels = header_size(data).map_or(0.0, |(w, h)| f64::from(w) * f64::from(h));
-            // The picture's size was checked when it was read, so it may hold as much memory as a result of its size.
+            // The size was checked when the picture was read, so that the limits grow by the picture and the decoder's buffer.
             *limits = limits.for_pixels(2.0 * pixels);
             pixels
         });
@@ -238,7 +238,7 @@ impl Load {
         mask.mask().map_or(Ok(()), |mask| self.mask(mask, transform, area, &inner))
     }
 
-    /// Adds a filter on a layer of `area` pixels. The results of all primitives are held until it is done.
+    /// Adds a filter on a layer of `area` pixels. Each primitive holds its result until the filter is done, and a copy of its input.
     fn filter(
         &mut self,
         filter: &usvg::filter::Filter,
@@ -322,7 +322,6 @@ struct Edges {
 }
 
 impl Edges {
-    /// The edges of a filled path.
     fn of_fill(path: &tiny_skia::Path, transform: Transform, [width, height]: [f32; 2]) -> Self {
         let mut edges = Self { count: 0.0, rows: 0.0, columns: 0.0 };
         // The renderer first cuts off the parts outside the picture.
@@ -379,7 +378,7 @@ impl Edges {
     /// The work of filling the outline, whose visible part has this width and height.
     fn work(&self, [width, height]: [f64; 2]) -> f64 {
         let beside = self.rows / height.max(1.0);
-        // Edges only cross in a row where their columns overlap.
+        // Two edges cross at most once, and only in a row that both reach, where their columns overlap.
         let overlap = (2.0 * self.columns / (self.count.max(1.0) * width.max(1.0))).min(1.0);
         SEGMENT * self.count + CROSSING * self.rows + BESIDE * self.count.min(self.rows) * beside * overlap
     }

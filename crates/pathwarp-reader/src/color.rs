@@ -19,6 +19,7 @@ pub(super) fn paint<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>>
     if is_hex(value) || value == "none" {
         return Some(Cow::Borrowed(value));
     }
+    // `url(#…)`, or a link to another file without `id`, and its fallback.
     if let Some(link) = reference(value) {
         let fallback = link.rest.trim();
         let solid = || paint(fallback, current).filter(|_| reference(fallback).is_none());
@@ -50,6 +51,7 @@ pub(super) fn color<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>>
     if value.eq_ignore_ascii_case("currentcolor") {
         return Some(Cow::Borrowed("currentColor"));
     }
+    // Other values with `#`, such as with spaces around, are rewritten.
     if !value.starts_with('#') && svgtypes::Color::from_str(value).is_ok() {
         return Some(Cow::Borrowed(value));
     }
@@ -117,7 +119,7 @@ fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
             let words = inside.strip_prefix("from ").map(|_| words(inside));
             let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
             let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
-            // In these functions a percentage equals the bare number, and the parser takes only the latter in relative colours.
+            // In relative colours the parser takes no percentages. In these functions, 30% means the same as 30.
             let plain = plain.map(|p| if matches!(name, "hsl" | "hsla" | "hwb") { without_percent(&p) } else { p });
             let plain = plain.unwrap_or(lower);
             csscolorparser::parse(&to_xyz(&plain).unwrap_or(plain)).ok()

@@ -68,6 +68,7 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
                     *most = (used / promised, format!("{used:.1} of {promised:.0} {unit}"));
                 }
             }
+            // 1 is a result in which something was left unchanged or missed the tolerance.
             if !matches!(used.code, Some(0 | 1)) {
                 refused.push(format!("{}: {:?}", file.display(), used.code));
             }
@@ -85,7 +86,7 @@ fn compared(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'stati
     [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
 
-/// The size of a file in megabytes or megapixels, and the seconds and megabytes promised for it.
+/// The size of a file in megabytes or megapixels, and the seconds and megabytes that `docs/security.md` (*Work*) promises for it.
 fn promise(file: &Path, bytes: f64) -> Result<(f64, [f64; 2]), ChoreError> {
     if shell::ends_in(file, &["svg"]) {
         let begun = (bytes / MEBIBYTE).ceil();
@@ -133,7 +134,6 @@ fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
     Picture::from(pixmap).write(PictureFormat::Jpeg { quality: 85 })
 }
 
-/// A random point of the page.
 fn point(random: &mut Random) -> [f64; 2] {
     [0.0; 2].map(|_| (1000.0 * random.next()).round() + 1.0)
 }
@@ -149,7 +149,7 @@ fn words(count: usize, random: &mut Random) -> String {
     (0..count).map(|_| word(random) + " ").collect()
 }
 
-/// Up to 27,000 letters.
+/// Up to 27,000 characters.
 fn poster(n: usize, random: &mut Random) -> String {
     let line =
         |i: usize, r: &mut Random| format!("<text x='5' y='{}' font-size='3'>{}</text>", 4 + 3 * i, words(13, r));

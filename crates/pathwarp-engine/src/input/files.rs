@@ -92,7 +92,7 @@ pub fn not_a_drawing(bytes: &[u8], input: &Path, failure: Failure) -> Failure {
     described(bytes, input).map_or(failure, |what| Failure::Input(format!("{}: {what}", display(input))))
 }
 
-/// Returns options for reading `input` as SVG: linked images are looked up relative to its folder.
+/// Returns options for reading `input` as SVG: linked images are looked up relative to the folder `reading.base`, or else to its own.
 pub fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
     let own = || match input.parent() {
         Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
@@ -102,7 +102,7 @@ pub fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
     reading.read_options().with_base_dir(folder)
 }
 
-/// Advice for pictures that cannot be warped in their format.
+/// Advice on what to do with files that are not SVG.
 const AS_PICTURE: &str = "save it as PNG, JPEG or WebP, whose pixels are warped; for curves, trace it (Inkscape: Path › Trace Bitmap) and \
                           save that as SVG";
 const AS_DRAWING: &str = "export it as SVG from the program that made it";
@@ -111,7 +111,7 @@ const PDF: &str = "export SVG instead, from Illustrator (File › Export › SVG
 const POSTSCRIPT: &str = "export SVG instead, or open it in Inkscape and save it as SVG";
 const FONT: &str = "set words in it: pathwarp text 'Words' --font FILE -o words.svg";
 
-/// Kinds of files by bytes at an offset: a description, and advice.
+/// Kinds of files by bytes at an offset: a description, and advice. The first match counts.
 const MAGIC: [(usize, &[u8], &str, &str); 39] = [
     (0, b"%PDF", "a PDF", PDF),
     (0, b"%!PS", "PostScript (EPS)", POSTSCRIPT),

@@ -76,7 +76,7 @@ impl GimpPaths {
         to_svg(self.file.canvas(), &paths, Some(ALL))
     }
 
-    /// Reads the paths of a result. Unchanged paths keep data that SVG cannot hold.
+    /// Reads the paths of a result, which are the chosen ones in their order. Unchanged paths keep data that SVG cannot hold.
     fn warped(&self, svg: &str) -> Result<Vec<GimpPath>, Failure> {
         if self.chosen.is_empty() {
             return Ok(Vec::new());
@@ -93,7 +93,7 @@ impl GimpPaths {
         Ok(all.map(path).collect())
     }
 
-    /// Writes the paths of a result, without `guides`, in a format or into a copy of the XCF. Also returns warnings about losses.
+    /// Writes the paths of a result: without `guides` in a format, or all into a copy of the XCF. Also returns warnings; a copy has none.
     pub(super) fn written(
         &self,
         svg: &str,

@@ -1,4 +1,4 @@
-//! GIMP files, read for their paths: as artwork, and as targets of path references.
+//! GIMP files (XCF, plain or packed; exported SVG, GIMP 1 text, point lists in JSON), read for their paths: as artwork, and for references.
 
 use super::files::{is_named_xcf, split_reference};
 use crate::failure::Failure;
@@ -14,7 +14,7 @@ pub struct GimpFile {
     pub(crate) file: pathwarp_gimp::PathFile,
     /// The name in `FILE#NAME`; `None` selects all paths.
     pub(crate) only: Option<String>,
-    /// The damage that ends the salvaged part.
+    /// A warning of the damage before which reading stopped.
     pub damage: Option<String>,
 }
 

@@ -24,7 +24,7 @@ pub(super) fn string(input: &mut ByteSource<'_>, what: &str) -> Result<String, E
     text.map_err(|e| Error::damaged(at + 4 + e.utf8_error().valid_up_to() as u64, format!("{what} is not UTF-8")))
 }
 
-/// Reads the number of things that take at least `min_size` bytes each.
+/// Reads the number of things that take at least `min_size` bytes each, and checks that so many can follow.
 pub(super) fn count(input: &mut ByteSource<'_>, min_size: u64, what: &str) -> Result<u32, Error> {
     let at = input.offset();
     let n = input.u32(what)?;

@@ -24,7 +24,7 @@ const CHUNK: u32 = 4096;
 /// Reads the property. GIMP checks its length word.
 pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Result<(), Error> {
     let (start, file_end) = (input.offset(), input.end);
-    // A property that exceeds the file fails only at the end of the file, after the paths before it.
+    // A property that claims to extend past the file is read up to the file's end, so that the paths before it are salvaged.
     let end = start.saturating_add(length);
     input.end = end.min(file_end);
     let read = paths(input, xcf);
@@ -40,6 +40,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Re
 
 fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     version(input)?;
+    // The index of the active path.
     input.u32("PROP_VECTORS")?;
     for _ in 0..count(input, MIN_PATH, "paths")? {
         let start = input.offset();
@@ -64,7 +65,6 @@ fn paths(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
     Ok(())
 }
 
-/// Checks the version of a path.
 pub(super) fn version(input: &mut ByteSource<'_>) -> Result<(), Error> {
     let at = input.offset();
     match input.u32("a path's version")? {

@@ -1,4 +1,4 @@
-//! Implements [`Map3`] for collineations.
+//! Implements [`Map3`] for collineations. The domain is where the forms `positive` are positive.
 
 use super::collineation::Collineation;
 use crate::map::{Creases3, Jet3, Map3};
@@ -15,7 +15,7 @@ impl Map3 for Collineation {
     fn jet(&self, p: DVec3) -> Jet3 {
         let q = self.matrix * (p - self.about).extend(1.0);
         let image = q.truncate() / q.w;
-        // d(N/W) = (dN − image·dW)/W.
+        // M·(p, 1) = (N, W) makes the image N/W, and d(N/W) = (dN − image·dW)/W.
         let column = |c: DVec4| (c.truncate() - image * c.w) / q.w;
         let m = &self.matrix;
         Jet3 { p: image + self.about, d: DMat3::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis)) }
@@ -44,7 +44,8 @@ impl Map3 for Collineation {
         if !back.is_finite() {
             return None;
         }
-        // A form f(p) becomes f(M⁻¹·q) at the image q, where the last coordinate of M⁻¹·q is 1/W.
+        // The image q of p has M⁻¹·(q, 1) = (p, 1)/W with W > 0. So at q, f(M⁻¹·(q, 1)) is positive where f(p, 1) is, and the last
+        // coordinate, 1/W, is positive, too.
         let forms = self.positive.iter().map(|f| back.transpose() * *f);
         let last = back.row(3);
         let affine = last == DVec4::new(0.0, 0.0, 0.0, 1.0);

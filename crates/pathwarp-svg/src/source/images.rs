@@ -34,7 +34,7 @@ pub(super) struct Unread {
 
 /// Media type of data whose format is detected from its content.
 pub(super) const ANY: &str = "text/plain";
-/// Media type of embedded data whose format is detected. It is no drawing, which would have to declare its type.
+/// Media type given to embedded data without one (usvg: `text/plain`). Its format is detected, but a drawing has to declare its type.
 const EMBEDDED: &str = "";
 
 /// A transparent pixel in place of a picture that was not read, so that its element is still warped.
@@ -72,7 +72,7 @@ pub(super) fn resolver<'a>(
     let decode = usvg::ImageHrefResolver::default_data_resolver();
     let load = Arc::new(move |mime: &str, data: Arc<Vec<u8>>, what: &str, usvg: &usvg::Options<'_>| {
         match checked(mime, data, &format!("{name}: {what}"), options) {
-            // As in browsers, the content determines the format.
+            // As in browsers, the content determines the format, and metadata may turn the pixels.
             Ok(data) if mime == SVG => decode(mime, data?, usvg),
             Ok(data) => {
                 let data = data?;
@@ -114,7 +114,6 @@ pub(super) fn resolver<'a>(
     }
 }
 
-/// Media type of drawings.
 pub(super) const SVG: &str = "image/svg+xml";
 
 /// Charges an image to the budget, and returns it; a drawing is resolved into plain SVG for usvg. Returns `None` for damaged images.
@@ -150,6 +149,7 @@ pub(super) fn checked(
         Err(e @ Error::Input { limit: Some(_), .. }) => return Err(e),
         Err(_) => return Ok(None),
     };
+    // Undeclared prefixes are errors, and drawings that this one links to are not read.
     let checked = plain(text, place, budget, None, &|_| None, |_, doc, _| {
         Ok(check::check_drawing(doc, place, budget).map(|_| Arc::new(doc.input_text().as_bytes().to_vec())))
     });
@@ -185,7 +185,7 @@ pub(crate) fn is_same_link(link: &str, recorded: &str) -> bool {
     let Some((head, _)) = recorded.split_once(BASE64).filter(|_| recorded.starts_with(DATA)) else { return false };
     match link.contains(BASE64) {
         true => link.split_ascii_whitespace().collect::<String>() == recorded,
-        // Other encodings have many forms, so only the type is compared.
+        // Other encodings have many forms, so only the type is compared. That says too little about drawings, which often use them.
         false => link.starts_with(head) && !head.ends_with(SVG),
     }
 }

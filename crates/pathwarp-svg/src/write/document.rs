@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// Writes the document to `out`, with warnings and skipped elements.
+/// Writes the document to `out`, with warnings, skipped elements, and artwork that lies past the page or has moved onto it.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
     let unread = unread_images(input.drawing, input.options).chain(elements(input));
@@ -29,6 +29,7 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
     for prefix in &input.source.undeclared {
         notes.add("the file used namespace prefixes without declaring them; the result declares them", prefix);
     }
+    // The visible areas before and after; the file states the new one unless its view is to stay.
     let change = page::change(input);
     let written = change.filter(|_| !input.options.same_view);
     let patched = match (structure, &input.scene.unpatchable) {
@@ -90,7 +91,7 @@ fn unread_images(drawing: &Drawing, options: &WarpOptions) -> impl Iterator<Item
     })
 }
 
-/// Writes a new file. `change` is the visible area before and after, if it changes.
+/// Writes a new file: the artwork and the cut line around it (`line`), or that alone. `change` is the visible area before and after.
 fn flatten(
     input: &WriteInput<'_>,
     change: Option<(Rect, Rect)>,
@@ -168,7 +169,7 @@ fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
     }
 }
 
-/// Notes unsupported rules of the style sheets.
+/// Notes unsupported rules of the style sheets, and what reading the source noted, if anything is warped.
 fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
     if !input.outcomes.iter().any(|o| o.warped().is_some()) {
         return;

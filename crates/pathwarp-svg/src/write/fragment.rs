@@ -54,7 +54,7 @@ pub(super) struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// A writer to the source, or to a new file.
+    /// A writer to the source if `in_source`, else to a new file.
     pub(super) fn new(
         input: WriteInput<'a>,
         in_source: bool,

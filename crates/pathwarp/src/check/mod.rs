@@ -120,7 +120,7 @@ pub fn table(info: &Info) -> [Check; 2] {
     [help(info), parameters(info)]
 }
 
-/// Checks the texts for people.
+/// Checks the texts for people, and the guides, of which `usual` is the default number.
 fn help(info: &Info) -> Check {
     let mut check = Check::new("help");
     check.detail = format!("title, group, about, source, {} examples", info.examples.len());
@@ -195,7 +195,7 @@ pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
     }
     let mut is_smooth = true;
     for (number, check) in [values::values, creases, exact_images, inverse, refitting].into_iter().enumerate() {
-        // Wrong values would also be seen as kinks, and both as errors of the refit.
+        // Wrong values would also be seen as kinks (check 1), and both as errors of the refit (check 4).
         if !is_smooth && (number == 1 || number == 4) {
             continue;
         }
@@ -250,7 +250,7 @@ impl<'a> Tested<'a> {
         self.creases.defined_at(p) && self.built.undefined.as_ref().is_none_or(|why| why(p).is_none())
     }
 
-    /// Returns `true` if a declared crease lies between `p` − `reach` and `p` + `reach`.
+    /// Returns `true` if a declared crease lies between `p` − 2·`reach` and `p` + 2·`reach`.
     fn declares(&self, p: Point, reach: Vec2) -> bool {
         self.creases.items().iter().any(|c| c.level.at(p - reach * 2.0) * c.level.at(p + reach * 2.0) <= 0.0)
     }
@@ -298,7 +298,6 @@ fn number(v: f64) -> String {
     if short == 0.0 || (1e-4..1e9).contains(&short.abs()) { short.to_string() } else { format!("{short:e}") }
 }
 
-/// Describes the number of points that were skipped.
 fn skipped(count: usize) -> String {
     if count == 0 { String::new() } else { format!("; {count} outside of the domain are skipped") }
 }
@@ -370,8 +369,9 @@ fn inverse(t: &Tested<'_>) -> Check {
     check
 }
 
-/// Compares the refitted images of a circle and of lines with dense samples of the true images. The lines are from 1 to 400 of the map's
-/// details long, where a detail counts as at most a hundredth of the frame and at least a hundredth of that.
+/// Compares the refitted images of a circle and of lines with dense samples of the true images. The lines are 1 to 400 details long. The
+/// map's detail is the size of its smallest feature, a quarter of its shortest wave, taken as at most a hundredth of the frame's diagonal
+/// and at least a ten-thousandth. For a map that declares none, reports say that errors are `sampled` and may be larger in between.
 fn refitting(t: &Tested<'_>) -> Check {
     const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
     /// The number of samples of a detail, to which a prime number is added for each line.
@@ -409,6 +409,7 @@ fn refitting(t: &Tested<'_>) -> Check {
         pieces += w.report.segments_out;
         let segs: Vec<_> = w.path.segments().collect();
         let off = art.segs().find_map(|seg| Some((seg, away(map, seg, &segs, *samples, tolerance)?)));
+        // A larger error is no fault if the refit reports it as unresolved.
         if let (Some((seg, (p, off))), true) = (off, w.report.unresolved.is_empty()) {
             let told = declared.map_or_else(|| "none is declared".to_owned(), |d| format!("{} is declared", number(d)));
             let length = seg.eval(0.0).distance(seg.eval(1.0));
@@ -456,8 +457,10 @@ fn wave(map: &dyn Map, p: Point, length: f64) -> Option<f64> {
         Some(sides.windows(2).filter(|s| s[0] != s[1]).count())
     };
     let waves = |along: Vec2| {
-        let counts: Vec<usize> = (8..=15).filter_map(|k| turns(along, 1 << k)).collect();
-        let settled = counts.windows(2).enumerate().find(|(k, c)| c[0] > 1 && c[0] == c[1] && c[0] < 32 << k)?.1[0];
+        let counts: Vec<Option<usize>> = (8..=15).map(|k| turns(along, 1 << k)).collect();
+        // The number settles if twice the samples give the same, and there are more than eight samples for each turn.
+        let mut pairs = counts.windows(2).enumerate().filter(|(_, c)| c[0] == c[1]);
+        let settled = pairs.find_map(|(k, c)| c[0].filter(|n| *n > 1 && *n < 32 << k))?;
         Some(2.0 * length / settled as f64)
     };
     (0..8).filter_map(|k| waves(Vec2::from_angle(f64::from(k) * PI / 8.0) * length)).reduce(f64::min)
@@ -569,11 +572,11 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
     let seen = Cell::new(None);
     let worst = |f: &dyn Fn(Point) -> f64| {
         seen.set(None);
-        let mut largest = 0.0_f64;
+        let (mut largest, mut undefined) = (0.0_f64, tested.outside);
         for &p in &tested.samples {
             let off = f(p);
             if off.is_nan() && is_partial {
-                skips.set(skips.get() + 1);
+                undefined += 1;
                 continue;
             }
             tried.set(tried.get() + 1);
@@ -582,6 +585,8 @@ fn check_law(entry: &dyn Deformation, law: &Law, check: &mut Check) -> usize {
                 largest = if off.is_nan() { f64::INFINITY } else { off };
             }
         }
+        // A law may ask twice about the samples.
+        skips.set(skips.get().max(undefined));
         largest
     };
     let fault = broken(law, values[0], [&*first.map, &*last.map], &worst);

@@ -1,4 +1,4 @@
-//! Affine and projective maps as [`Map`]s: the two classes that keep straight lines.
+//! Affine and projective maps as [`Map`]s: the two classes that keep straight lines. Enclosures are infinite where W may vanish.
 
 use super::{Class, Crease, Creases, Enclosure, Homography, Jet, Level, Map, RationalBezier};
 use kurbo::{Affine, Point, Vec2};
@@ -78,6 +78,7 @@ impl Map for Homography {
     }
 
     fn creases(&self, out: &mut Creases) {
+        // The map is defined where W = a·x + b·y + c is positive.
         let [a, b, c] = self.horizon();
         if a != 0.0 || b != 0.0 {
             out.push(Crease::edge(Level::Line { a, b, c }));

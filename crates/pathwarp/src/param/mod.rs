@@ -51,7 +51,7 @@ pub(crate) use circle::is_spiral;
 /// A path to which a value refers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPath {
-    /// The reference as typed, for messages.
+    /// A name for messages: the parameter's, followed by the reference as typed if that was looked up.
     pub name: String,
     /// The geometry in root user units.
     pub outline: Outline,

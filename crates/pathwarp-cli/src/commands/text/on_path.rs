@@ -47,7 +47,7 @@ pub(super) fn text_arg(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help_heading(HEADING)
 }
 
-/// Draws a path as it is, filled or as a line.
+/// Draws a path as it is: filled, or as a line of the width `line`.
 pub(super) fn drawn(
     path: &Outline,
     label: &str,
@@ -118,8 +118,9 @@ pub(super) fn set(
     let curve = Curve::of(&path.outline);
     let stretches = m.get_one::<String>("stretch").is_some_and(|s| s != "keep");
     let both = texts.len() > 1;
-    curve.check(m, &path.name, both, stretches)?;
+    curve.check(m, both, stretches)?;
 
+    // A lower line alone takes the first angle.
     let first = at.first().copied();
     let second = at.get(1).copied().or(first.map(|a| a + 180.0));
     let middles = if above.is_some() { [first, second] } else { [first, None] };
@@ -139,6 +140,7 @@ pub(super) fn set(
         out.warnings.extend(curve.crowded(middles, [a.rect.width(), b.rect.width()]));
     }
     for (((is_below, text), frame), middle) in texts.into_iter().zip(frames).zip(middles) {
+        // Two stretched lines take a half of the circle each, less a gap of the letters' size.
         let share = (both && stretches).then_some(em.size);
         let laid = curve.laid(is_below, m.get_flag("reverse"), middle, share);
         let mut args = laid.args;
@@ -178,7 +180,7 @@ struct Round {
     radius: f64,
     /// The angle of an open arc's midpoint, in radians.
     middle: f64,
-    /// The direction in which `bend` runs an open arc: 1 is clockwise.
+    /// The direction in which `bend` runs an open arc, which is from left to right: 1 if clockwise, −1 if not.
     way: f64,
 }
 
@@ -196,7 +198,7 @@ impl<'a> Curve<'a> {
     }
 
     /// Refuses options that do not suit this path.
-    fn check(&self, m: &ArgMatches, name: &str, both: bool, stretches: bool) -> Result<(), Failure> {
+    fn check(&self, m: &ArgMatches, both: bool, stretches: bool) -> Result<(), Failure> {
         let problem = if self.round.is_none() && m.contains_id(AT) {
             "--at goes with circles and arcs; on another path --offset moves the line along"
         } else if both && !self.closed && m.get_flag("inside") {
@@ -206,7 +208,7 @@ impl<'a> Curve<'a> {
         } else {
             return Ok(());
         };
-        Err(Failure::usage(format!("{problem} (--{name} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
+        Err(Failure::usage(format!("{problem} (--{ON} {})", m.get_one::<String>(ON).map_or("", String::as_str))))
     }
 
     /// Warns if two lines of these widths overlap.
@@ -225,8 +227,8 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// Returns the path for a line. Of a circle, it is the whole, starting opposite to the line's `middle` (degrees), or only the half
-    /// around that, shortened by a `gap`.
+    /// Returns the path for a line. For a circle, this is the whole circle from the point opposite to `middle` (degrees), or with a `gap`
+    /// the half of it around `middle`, shortened by the gap.
     fn laid(&self, is_below: bool, reverse: bool, middle: Option<f64>, gap: Option<f64>) -> Laid {
         let mut args = Args::new();
         let (mut path, mut shift) = (self.path.clone(), 0.0);
@@ -235,10 +237,11 @@ impl<'a> Curve<'a> {
                 let middle = middle.unwrap_or(if is_below { BOTTOM } else { TOP }).to_radians();
                 let way = if is_below == reverse { 1.0 } else { -1.0 };
                 path = r.around(middle, way, gap);
+                // Without this, `bend` would choose the direction and the start.
                 args.push("as-drawn", "true");
             }
             _ => {
-                // A closed path runs clockwise, and lower lines read from left to right against it.
+                // `bend` runs closed paths clockwise and open ones from left to right. On a closed path, a lower line reads against that.
                 if reverse != (is_below && self.closed) {
                     args.push("reverse", "true");
                 }
@@ -293,7 +296,7 @@ fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// Returns the end of an open path at which a line is aligned, as a word of `bend`.
+/// Returns the part of an open path at which a line is aligned, as a word of `bend`. Lines to `justify` or `fill` are centred.
 fn align(m: &ArgMatches, text: &OutlinedText) -> &'static str {
     match m.get_one::<String>("align").map(String::as_str) {
         Some("start") if text.rtl => "end",
@@ -308,7 +311,7 @@ fn length(frame: &Frame, name: &str, text: &str) -> Result<f64, Failure> {
     Ok(Settings::new(&[], &args, frame)?.length_in(name, text, pathwarp::param::Axis::X)?)
 }
 
-/// Returns the path given by `--on`, and the angles of `--at`.
+/// Returns the path given by `--on`, and the angles of `--at`. Percentages in the path refer to `width`.
 fn path_and_middles(
     m: &ArgMatches,
     width: f64,
@@ -362,7 +365,7 @@ pub(super) fn as_letters(text: &OutlinedText) -> Arc<[Letter]> {
     letters.map(letter).collect()
 }
 
-/// Returns the y coordinate of the top of capitals in the first line.
+/// Returns the y coordinate (not the height) of the top of capitals in the first line.
 fn cap_height(text: &OutlinedText) -> f64 {
     text.lines.first().map_or(0.0, |l| l.start.y) - text.metrics.cap_height
 }
@@ -382,7 +385,7 @@ pub(super) fn line(
     bent(registry, BEND, label, frame, args, options)
 }
 
-/// Bends a text by a deformation.
+/// Bends a text by a recipe of one step, which applies to all of it (`whole`).
 pub(super) fn bent(
     registry: &Registry,
     deformation: &str,
@@ -407,8 +410,10 @@ pub(super) fn bent(
     let unmoved = AffineMap(Affine::IDENTITY);
     let set = |i: usize, letter: &Letter| {
         let diagonal = letter.outline.bounding_box().map_or(0.0, |b| b.size().to_vec2().hypot());
+        // By default, a letter is held to the tolerance for its size.
         let held = if options.tolerance.is_none() { refit::suited(tolerance, diagonal) } else { tolerance };
         let refit = refit.clone().with_tolerance(held);
+        // Letters are placed one by one, before the map (`before`) or instead of it; or they take the copies of the line, and the map.
         let (placed, map): (_, &dyn Map) = match places.get(i) {
             Some(places) if !built.placement.before => (letter.outline.repeated(places), &unmoved),
             Some(places) => (letter.outline.repeated(places), &built.map),

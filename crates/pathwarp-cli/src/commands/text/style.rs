@@ -9,7 +9,7 @@ use pathwarp_svg::ReadOptions;
 use pathwarp_svg::engine::family_styles;
 use pathwarp_text::{Align, Direction, Font, Ligatures, TextStyle, Variation, features, variations};
 
-/// The size of the em, and the unit of it and of the page.
+/// The size of the em in user units of the page, and the unit of both.
 pub(super) struct Em {
     pub(super) size: f64,
     /// `None` for px.

@@ -137,6 +137,7 @@ impl Shaper {
             }
         };
         let map = compose(&anchors::to_standard("base", &base)?, net, after);
+        // If only rounding moves the frame, the map is the identity.
         let map = anchors::settled(map, self.frame);
 
         let mut built = Built::new(map);
@@ -159,6 +160,7 @@ impl Shaper {
         explanation: &mut Explanation,
     ) -> Result<Net, Error> {
         const EXPECTED: &str = "exactly four, in one closed path";
+        // Three lines that do not return to their start are closed by a fourth.
         let sub = anchors::closed_subpath(path, EXPECTED, |lines| lines == 3)?;
         let drawn = sub.anchors();
         let wrong_count = |drawn: Vec<Point>| GeometryError::anchor_count(&path.name, &drawn, EXPECTED);
@@ -352,8 +354,7 @@ pub(in crate::deform) fn rows_path(n: &Net) -> BezPath {
 // A way is judged by the best direct similitude from the base's corners to the cage's. Relative to their means, let the corners be the
 // complex numbers bᵢ and cᵢ. The residual, as a share of the cage's size, is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)).
 
-/// Distortions that differ by less than this tie, so that artwork and cages with sides up to about 1:1.3 are not turned on
-/// their sides.
+/// Distortions that differ by less than this are ties. So neither artwork nor cages with sides up to about 1:1.3 are turned on their side.
 const TIE: f64 = 0.25;
 
 /// One way to lay the corners of the base on the corners of the cage.
@@ -553,7 +554,7 @@ mod laying_tests {
         let base = turned(2.0, 1.0, 0.0);
         let way = |bottom, reversed| CornerMatch::new(&base, &base, Arrangement { bottom, reversed }).distortion;
         assert!(way(0, false) < 1e-7 && way(2, false) < 1e-7);
-        // Σ|b|² = 5, and the mirror image leaves 4 − 1 of it: √(1 − (3/5)²).
+        // At each corner, |b|² is 4 + 1 up to a factor, of which the mirror image leaves 4 − 1: √(1 − (3/5)²).
         assert!((way(0, true) - 0.8).abs() < 1e-12, "{}", way(0, true));
         // On its side 4 of 5 remain: √(1 − (4/5)²).
         assert!((way(1, false) - 0.6).abs() < 1e-12, "{}", way(1, false));
