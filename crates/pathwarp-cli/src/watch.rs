@@ -25,7 +25,7 @@ struct Watched {
     limits: Limits,
     /// Bytes and pixels counted before the inputs under way.
     before: [u64; 2],
-    /// Number of inputs under way beyond the first.
+    /// Number of inputs of a batch under way; 0 outside a batch.
     more: usize,
     /// Processor time at the end of the last input.
     since: Duration,
@@ -35,7 +35,7 @@ struct Watched {
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 
-/// `true` if watching is allowed, which is up to `main_with`: a host program must not be ended.
+/// `true` if the watchdog may end the process. Only `main_with` allows it: a program that uses this library must not be ended.
 static ALLOWED: AtomicBool = AtomicBool::new(false);
 
 /// Allows the watchdog to end the program.
@@ -51,6 +51,7 @@ pub(crate) fn begin(limits: Limits) {
     let mut watched = lock();
     if let Some(watched) = watched.as_mut() {
         watched.limits = limits;
+        // `before` stays: bytes and pixels counted during a rest only raise the limits.
         if std::mem::take(&mut watched.rests) {
             watched.since = used();
         }
@@ -62,7 +63,7 @@ pub(crate) fn begin(limits: Limits) {
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
 }
 
-/// Stops watching until [`begin`]: an editor may stay open for hours, and counts the work of every picture.
+/// Stops watching until [`begin`]: an editor may stay open for hours, and limits the work of every picture itself.
 pub(crate) fn rest() {
     if let Some(watched) = lock().as_mut() {
         watched.rests = true;
@@ -124,6 +125,7 @@ impl Watched {
         let now = meter::counted();
         let [bytes, pixels] = [0, 1].map(|i| now[i].saturating_sub(self.before[i]) as f64 / inputs as f64);
         let limits = self.limits.for_input(bytes as usize).for_pixels(pixels);
+        // Inputs share the seconds and the memory equally. Both are measured midway, so the whole need is unknown.
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
         check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())
