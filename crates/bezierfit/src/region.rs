@@ -162,8 +162,7 @@ fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], option
             edges.iter().flat_map(|e| strips(e, outside, fine.tolerance, &neighbors)).collect();
         let edge = fit_contours(&strips, &fine)?;
         let around = covered(&BezPath::new(), &edge.path, options.tolerance, |w| w.shape_b != 0)?;
-        // The strips fill the band between the area's outlines and those wanted; `at_least` drops the former. When the area shrinks, the
-        // latter are holes of the band, so they are turned round.
+        // Strips unite to a band, whose side on the source `at_least` drops. Outlines of a shrunken area are its holes: turn them round.
         let around = if distance > 0.0 { around } else { around.reverse_subpaths() };
         (edge, around)
     } else {

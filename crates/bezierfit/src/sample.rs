@@ -60,7 +60,6 @@ pub(crate) fn sum(v: &Lane) -> f64 {
     (h[0] + h[2]) + (h[1] + h[3])
 }
 
-/// Largest of eight numbers.
 #[inline(always)]
 pub(crate) fn largest(v: &Lane) -> f64 {
     let mut h = [0.0; 4];
@@ -176,8 +175,7 @@ pub(crate) fn predicted_peak([before, top, after]: [f64; 3], factor: f64) -> f64
     if (b >= a) & (b >= c) { peak } else { 0.0 }
 }
 
-/// Height to which errors may rise between a sample at the end of a smooth part and the next: above it by `factor` eighths of the second
-/// difference, as beside a middle sample.
+/// Height to which errors may rise between a sample at the end of a smooth part and the next, by as much as in [`predicted_peak`].
 pub(crate) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f64 {
     let side = 1.0f64.copysign(end);
     let (a, b, c) = (end * side, next * side, after * side);

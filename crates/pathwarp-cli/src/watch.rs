@@ -23,7 +23,7 @@ const TOO_MUCH: i32 = 3;
 /// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
-    /// Bytes and pixels counted before the inputs under way.
+    /// Bytes and pixels counted before the inputs under way. More of them during a rest only raise the limits.
     before: [u64; 2],
     /// Number of inputs of a batch under way; 0 outside a batch.
     more: usize,
@@ -38,7 +38,6 @@ static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 /// `true` if the watchdog may end the process. Only `main_with` allows it: a program that uses this library must not be ended.
 static ALLOWED: AtomicBool = AtomicBool::new(false);
 
-/// Allows the watchdog to end the program.
 pub(crate) fn allow() {
     ALLOWED.store(true, Ordering::Relaxed);
 }
@@ -51,7 +50,6 @@ pub(crate) fn begin(limits: Limits) {
     let mut watched = lock();
     if let Some(watched) = watched.as_mut() {
         watched.limits = limits;
-        // `before` stays: bytes and pixels counted during a rest only raise the limits.
         if std::mem::take(&mut watched.rests) {
             watched.since = used();
         }
@@ -116,7 +114,7 @@ fn watch() {
 }
 
 impl Watched {
-    /// Returns the exceeded limit, if any.
+    /// Returns the exceeded limit, if any. Inputs under way share seconds and memory equally; their whole need is not known yet.
     fn exceeded(&self) -> Option<Exceeded> {
         if self.rests {
             return None;
@@ -125,7 +123,6 @@ impl Watched {
         let now = meter::counted();
         let [bytes, pixels] = [0, 1].map(|i| now[i].saturating_sub(self.before[i]) as f64 / inputs as f64);
         let limits = self.limits.for_input(bytes as usize).for_pixels(pixels);
-        // Inputs share the seconds and the memory equally. Both are measured midway, so the whole need is unknown.
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
         check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())

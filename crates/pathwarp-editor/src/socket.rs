@@ -268,8 +268,7 @@ impl Shared {
         self.background.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Locks the session, even after a panic in another connection. It is whole even then, since steps replace the old ones only after
-    /// bending has succeeded.
+    /// Locks the session, even after a panic in another connection: it is still whole, since steps change only once they are bent.
     pub(crate) fn with_session<T>(&self, f: impl FnOnce(&mut Session) -> T) -> T {
         f(&mut self.session.lock().unwrap_or_else(PoisonError::into_inner))
     }

@@ -1,5 +1,5 @@
-//! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock. Ctrl-C ends it: soon if it owns
-//! its data (`on_threads_alone`), or once it notices (`on_threads`).
+//! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock;
+//! after Ctrl-C, `on_threads` awaits its end, `on_threads_alone` does not.
 
 use crate::errors::{exception, usage};
 use crate::function::Function;

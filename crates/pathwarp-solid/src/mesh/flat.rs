@@ -132,7 +132,6 @@ impl FlatShape {
     }
 }
 
-/// Iterates over the sides of triangles.
 pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
@@ -170,7 +169,7 @@ fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2
 
 /// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from z = 0 to `depth`, with a front, a back and walls
 /// between them. Where solids would touch themselves or each other in an edge or at a corner, vertices move apart, by some
-/// hundred-thousandths of the largest coordinate.
+/// hundred-thousandths of the largest coordinate. Indices that need more than 32 bits become [`NONE`].
 pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut all = FlatShape::default();
     let mut ends = Vec::with_capacity(shapes.len());
@@ -179,7 +178,6 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
         ends.push(all.triangles.len());
     }
     let all = if depth == 0.0 { all } else { all.unpinched().separated() };
-    // Indices that need more than 32 bits become `NONE`, the missing index.
     let count = u32::try_from(all.points.len()).unwrap_or(NONE);
     let back = u32::try_from(mesh.positions.len()).unwrap_or(NONE);
     let front = back.saturating_add(count);

@@ -24,8 +24,7 @@ use usvg::{LineCap, LineJoin, Stroke};
 /// side by side apart if their widths differ by about a twentieth.
 const WIDTH_ERROR: f64 = 0.02;
 
-/// Factor for errors between samples, about 1/cos(π/8). Under an affine map, widths vary as a sinusoid with the period of half a turn;
-/// samples [`TURN`] apart reach at least cos(π/8) of its amplitude.
+/// Factor for errors between samples, about 1/cos(π/8): widths under an affine map vary as a sinusoid whose period is half a turn.
 const BETWEEN: f64 = 1.08;
 
 /// Largest turn of a path between samples, in radians: an eighth of that period.
@@ -114,7 +113,6 @@ impl<'a> StrokeWidth<'a> {
         Some(out)
     }
 
-    /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
     pub(super) fn stretch(&self) -> f64 {
         self.stretch
     }
@@ -145,18 +143,16 @@ impl<'a> StrokeWidth<'a> {
         if self.stroke.dasharray().is_some() && self.length > 0.0 { 1.0 + self.half * tilt + self.turns } else { 1.0 }
     }
 
-    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
+    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or `off` by at most [`WIDTH_ERROR`].
     pub(super) fn is_right(&self, s: f64, tolerance: f64) -> bool {
-        // `off` is true where the edge is off by at most this share of the width.
         let off = |p: &Pair| (p.exact - p.drawn * s).hypot() <= WIDTH_ERROR * s * p.drawn.hypot();
         !self.leaves_domain && (self.error(s) <= tolerance || self.pairs.iter().all(off))
     }
 
     /// Largest shift of a dash along the path, in user units of the result. It counts up to half a gap, since no point of a gap is farther
-    /// from a dash.
+    /// from a dash. The entries of odd index are gaps; usvg gives an even number of entries.
     fn drift(&self, s: f64) -> f64 {
         let Some(dashes) = self.stroke.dasharray() else { return 0.0 };
-        // Lengths of dashes and gaps alternate; usvg repeats a list of odd length.
         let gap = dashes.iter().skip(1).step_by(2).fold(0.0_f32, |m, g| m.max(*g));
         let shifts = self.lengths.iter().map(|[source, image, outer]| (image - s * source).abs() * outer);
         let shift = shifts.fold(0.0, f64::max).min(0.5 * f64::from(gap) * s);
@@ -341,7 +337,7 @@ impl<'a> StrokeWidth<'a> {
         }
     }
 
-    /// Adds the outermost points of the join of two segments.
+    /// Adds the outermost points of the join of two segments. `from` is true if the exact join is a miter, `to` if the drawn one is.
     fn add_join(&mut self, map: &dyn Map, at: &Node, b: &Spot) {
         let (p, a) = (at.p, &at.spot);
         let turned = a.tangent.cross(b.tangent).atan2(a.tangent.dot(b.tangent));
@@ -356,7 +352,6 @@ impl<'a> StrokeWidth<'a> {
         let mitered = !matches!(self.stroke.linejoin(), LineJoin::Bevel);
         let limit = if mitered { f64::from(self.stroke.miterlimit().get()) } else { 0.0 };
         let outer = -turned.signum();
-        // `from` is true if the exact join is a miter, `to` if the drawn one is.
         let (exact, from) = tip(a.normal * outer, b.normal * outer, limit);
         let (drawn, to) = tip(a.image[1] * outer, b.image[1] * outer, limit);
         self.add_corner(at, exact.hypot().max(drawn.hypot()).max(1.0));

@@ -31,7 +31,6 @@ pub(super) fn element(
             let tag = markup.element(tag).with_all(rectangle(areas::primitive_region(f, p, all)));
             tag.with("color-interpolation-filters", space)
         };
-        // An `feImage` takes its picture even if it is left out.
         let (tag, content) = primitive(markup, &begin, p, &mut pictures);
         // Keeps the smooth edges of an opaque graphic. An uncut composite passes its input on: the graphic hides the rest.
         let smooth = |m| layer.and_then(|l| l.smooth(m));
@@ -51,7 +50,7 @@ pub(super) fn element(
     filter.with_all(rectangle(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
 }
 
-/// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`.
+/// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`, even if it is left out.
 fn primitive(
     markup: &Markup<'_>,
     begin: &dyn Fn(&str) -> Tag,

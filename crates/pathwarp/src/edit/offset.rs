@@ -41,8 +41,7 @@ pub enum OpenPaths {
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// The join at corners that open. Miters reach up to four times the distance. Longer ones are cut off there on areas, and left
-    /// out on open paths.
+    /// The join at corners that open. Miters reach up to four times the distance; areas have longer ones cut off, paths none.
     pub join: Join,
     /// The side to which outlines move.
     pub side: Side,

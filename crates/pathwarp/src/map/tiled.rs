@@ -1,5 +1,4 @@
-//! Tiled maps: rows of smooth maps, each responsible for a rectangle of the source plane. A ruled map between two guide curves is one such
-//! row.
+//! Tiled maps: rows of smooth maps, each on a rectangle of the source plane. A ruled map between two guide curves is one such row.
 //!
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Adjacent maps need not agree there; a path across a gap is connected by a straight line.
@@ -13,7 +12,6 @@ use crate::budget::{Budget, Search, is_over};
 use kurbo::{Affine, CubicBez, Point, Rect};
 use std::sync::Arc;
 
-/// A row of tiles.
 #[derive(Clone)]
 pub(crate) struct TileRow {
     /// The increasing abscissae between tiles, one fewer than there are tiles.
@@ -175,7 +173,6 @@ impl Map for Tiled {
     }
 }
 
-/// The inverse of a [`Tiled`] map.
 #[derive(Clone)]
 struct TiledInverse {
     of: Tiled,
@@ -226,7 +223,6 @@ impl TiledInverse {
 
 impl Map for TiledInverse {
     fn cost(&self) -> Cost<'_> {
-        // Longer searches are charged to the budget, if there is one.
         Cost::new(USUAL_TILES as f64 * INVERSE_WORK * self.of.cost().work).searching(self)
     }
 
@@ -290,7 +286,6 @@ fn unit(frame: Rect, u0: f64, u1: f64) -> Affine {
     Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -(frame.x0 + u0 * frame.width()) / w, -frame.y0 / h])
 }
 
-/// Returns the map over one strip.
 fn strip(frame: Rect, top: &Guide, bottom: &Guide, u0: f64, u1: f64) -> Arc<dyn Map> {
     let middle = 0.5 * (u0 + u1);
     let (top, bottom) = (top.piece(middle), bottom.piece(middle));
