@@ -41,7 +41,7 @@ pub enum OpenPaths {
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// The join at corners that open. Miters reach up to four times the distance; areas have longer ones cut off, paths none.
+    /// The join at corners that open. Miters reach up to four times the distance; longer ones are cut off on areas, left out on paths.
     pub join: Join,
     /// The side to which outlines move.
     pub side: Side,
