@@ -23,7 +23,7 @@ const TOO_MUCH: i32 = 3;
 /// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
-    /// Bytes and pixels counted before the inputs under way. More of them during a rest only raise the limits.
+    /// Bytes and pixels counted before the inputs under way. Those counted during a rest only raise the limits.
     before: [u64; 2],
     /// Number of inputs of a batch under way; 0 outside a batch.
     more: usize,

@@ -76,7 +76,7 @@ impl Warper {
     #[staticmethod]
     fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {
         let read = |registry: &Registry| pathwarp_engine::Warper::from_recipe(registry, text, &folder, external);
-        // A name that is not built in may be that of an installed plug-in; "" stands for it, as the text has not been read.
+        // A name that is not built in may be that of an installed plug-in. "" is not built in, so all are sought.
         let built_in = py.detach(|| read(&Registry::builtin()));
         let engine = match built_in {
             Ok(engine) => engine,

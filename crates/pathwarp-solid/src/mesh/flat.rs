@@ -167,8 +167,8 @@ fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2
     if length > 0.0 { [0, 1].map(|a| at[a] + by * sum[a] / length) } else { at }
 }
 
-/// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from z = 0 to `depth`, with a front, a back and walls
-/// between them. Where solids would touch themselves or each other in an edge or at a corner, vertices move apart, by some
+/// Appends shapes as objects: flat at z = 0 if `depth` is 0, closed solids from z = 0 to `depth` if it is larger, with a front, a back and
+/// walls between them. Where solids would touch themselves or each other in an edge or at a corner, vertices move apart, by some
 /// hundred-thousandths of the largest coordinate. Indices that need more than 32 bits become [`NONE`].
 pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut all = FlatShape::default();

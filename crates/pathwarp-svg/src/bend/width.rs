@@ -84,7 +84,7 @@ struct Node {
 }
 
 impl<'a> StrokeWidth<'a> {
-    /// Samples the stroke of a part, over all placed copies of its letters `t.pieces`. `pieces` is the number of segments of the bent path,
+    /// Samples the stroke of a part, or of all copies of its letters, `t.pieces`. `pieces` is the number of segments of the bent path,
     /// which letters share equally. Returns `None` if the map's derivative is not finite on the path.
     pub(super) fn sample(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
         let mut out = Self {

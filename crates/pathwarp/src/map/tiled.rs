@@ -230,6 +230,7 @@ impl Map for TiledInverse {
         self.solve(q).map_or(Jet::UNDEFINED, |s| s.1)
     }
 
+    /// The images of the kinks of the tiled map.
     fn creases(&self, out: &mut Creases) {
         kinks_through(self, &self.of, out);
     }
