@@ -19,9 +19,9 @@ use std::panic::{self, AssertUnwindSafe};
 /// and mostly where edges lie along the axes, as they do in drawings.
 const TURNS: [f64; 6] = [0.3, 1.1, 0.7, 2.0, 2.6, 1.4];
 
-/// Largest mean number of neighbours of a node within the distance for which outlines are moved at once, and a least number of nodes for
-/// the mean.
+/// Largest mean number of neighbours of a node within the distance; beyond it, outlines are moved in strips.
 const MOST_NEIGHBORS: usize = 4;
+/// Areas with fewer nodes are taken to have this many.
 const FEW_NODES: usize = 3000;
 
 /// Most pairs of segments of a result and its source that are compared.
@@ -106,6 +106,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
         return Ok(out);
     }
     let style = Stroke::new(2.0 * distance.abs()).with_join(join).with_caps(Cap::Round).with_miter_limit(MITER_LIMIT);
+    // The shares of the tolerance have the sum 1. With `best`, the report lists where one is not met.
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
     let starts: Vec<Point> = subpaths(path).filter_map(|s| s.segments().next().map(|s| s.start())).collect();
@@ -116,6 +117,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
             area.extend(&subpath);
             continue;
         }
+        // The outline of the stroke's area has no loops. Its parts on the wanted side are kept.
         let edge = stroke(&subpath, &style, &fine)?;
         let near = covered(&edge.path, &BezPath::new(), options.tolerance, |w| w.shape_a != 0)?;
         let side = beside_path(&subpath, &style, distance, &fine)?;
@@ -150,7 +152,7 @@ fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], option
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
-    // All outlines of an area turn around it in one direction.
+    // All outlines have the area on one side. Distances are positive to the left where y points up.
     let (outside, turn) = if area.area() > 0.0 { (-distance, 1) } else { (distance, -1) };
     let turns_with = |w: &BinaryWindingNumber| w.shape_b * turn > 0;
     let (edge, moved) = if style.join == Join::Round && is_crowded(area, distance) {
@@ -160,6 +162,7 @@ fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], option
             edges.iter().flat_map(|e| strips(e, outside, fine.tolerance, &neighbors)).collect();
         let edge = fit_contours(&strips, &fine)?;
         let around = covered(&BezPath::new(), &edge.path, options.tolerance, |w| w.shape_b != 0)?;
+        // Strips unite to a band, whose side on the source `at_least` drops. Outlines of a shrunken area are its holes: turn them round.
         let around = if distance > 0.0 { around } else { around.reverse_subpaths() };
         (edge, around)
     } else {
@@ -356,6 +359,7 @@ fn along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
         });
         each.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a })
     };
+    // Two fits of one edge, one of them with crossings, differ by at most 2·(EDGES + CROSSINGS) = 0.64 of the tolerance.
     let is_along = |s: &PathSeg| [0.1, 0.5, 0.9].into_iter().all(|t| place(s.eval(t)).0.sqrt() <= 0.8 * tolerance);
     let mut out = Vec::new();
     for contour in subpaths(outlines) {

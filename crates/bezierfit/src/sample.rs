@@ -1,4 +1,4 @@
-//! Eight numbers side by side, with the operations that all stages share, and the sixteen samples of a piece, at j/17 of its
+//! Eight numbers side by side, with the operations that all stages of a fit share, and the sixteen samples of a piece, at j/17 of its
 //! parameter: eight to fit, and eight between them to check.
 //!
 //! Loops run by index through several arrays at once, the form that LLVM turns into vector instructions. Comparisons are
@@ -7,10 +7,10 @@
 use crate::limits::PEAK_FACTOR;
 use kurbo::Vec2;
 
-/// Values of eight samples, the unit of work: two AVX registers of four, or four SSE2 registers of two.
+/// Values of eight samples, the unit of work: two AVX registers of four, or four SSE2 registers of two. (SIMD calls one value a lane.)
 pub type Lane = [f64; 8];
 
-/// Eight points.
+/// Eight points, a [`Lane`] for each coordinate.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Lanes {
     /// First coordinates.
@@ -60,7 +60,6 @@ pub(crate) fn sum(v: &Lane) -> f64 {
     (h[0] + h[2]) + (h[1] + h[3])
 }
 
-/// Largest of eight numbers.
 #[inline(always)]
 pub(crate) fn largest(v: &Lane) -> f64 {
     let mut h = [0.0; 4];
@@ -135,7 +134,7 @@ pub(crate) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Evenly {
     v
 }
 
-/// Interpolates the foot points of the checked samples linearly from those of the fitted ones.
+/// Interpolates the checked samples' parameters on the cubic, those of their foot points, linearly from the fitted samples'.
 #[inline(always)]
 pub(crate) fn between(s: &Lane) -> Lane {
     let third = (s[4] - s[3]) / 3.0;
@@ -176,7 +175,7 @@ pub(crate) fn predicted_peak([before, top, after]: [f64; 3], factor: f64) -> f64
     if (b >= a) & (b >= c) { peak } else { 0.0 }
 }
 
-/// Height to which errors may rise between a sample at the end of a smooth part and the next: by as much as beside a middle sample.
+/// Height to which errors may rise between a sample at the end of a smooth part and the next, by as much as in [`predicted_peak`].
 pub(crate) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f64 {
     let side = 1.0f64.copysign(end);
     let (a, b, c) = (end * side, next * side, after * side);

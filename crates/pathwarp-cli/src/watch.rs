@@ -23,9 +23,9 @@ const TOO_MUCH: i32 = 3;
 /// The inputs under way and their limits.
 struct Watched {
     limits: Limits,
-    /// Bytes and pixels counted before the inputs under way.
+    /// Bytes and pixels counted before the inputs under way. Those counted during a rest only raise the limits.
     before: [u64; 2],
-    /// Number of inputs under way beyond the first.
+    /// Number of inputs of a batch under way; 0 outside a batch.
     more: usize,
     /// Processor time at the end of the last input.
     since: Duration,
@@ -35,10 +35,9 @@ struct Watched {
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 
-/// `true` if watching is allowed, which is up to `main_with`: a host program must not be ended.
+/// `true` if the watchdog may end the process. Only `main_with` allows it: a program that uses this library must not be ended.
 static ALLOWED: AtomicBool = AtomicBool::new(false);
 
-/// Allows the watchdog to end the program.
 pub(crate) fn allow() {
     ALLOWED.store(true, Ordering::Relaxed);
 }
@@ -62,7 +61,7 @@ pub(crate) fn begin(limits: Limits) {
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
 }
 
-/// Stops watching until [`begin`]: an editor may stay open for hours, and counts the work of every picture.
+/// Stops watching until [`begin`]: an editor may stay open for hours, and limits the work of every picture itself.
 pub(crate) fn rest() {
     if let Some(watched) = lock().as_mut() {
         watched.rests = true;
@@ -115,7 +114,7 @@ fn watch() {
 }
 
 impl Watched {
-    /// Returns the exceeded limit, if any.
+    /// Returns the exceeded limit, if any. Inputs under way share seconds and memory equally; their whole need is not known yet.
     fn exceeded(&self) -> Option<Exceeded> {
         if self.rests {
             return None;

@@ -9,13 +9,12 @@ use tungstenite::http::{Method, Request, Version};
 
 /// Most bytes of a request's head. Browsers send less than two thousand.
 const LONGEST_HEAD: usize = 16 << 10;
-/// Most headers of a request.
 const MOST_HEADERS: usize = 64;
-/// A browser that has connected sends its whole request within this time.
+/// Most time for a browser that has connected to send its whole request, and for each write of the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The content security policy. The page's script and style are files; a drawing may hold style attributes and embedded pictures, but
-/// nothing is ever loaded from elsewhere.
+/// The content security policy. The page's script and style are files. A drawing may hold embedded pictures, and style attributes, of
+/// which `drawing.ts` makes properties, as they are forbidden here. Nothing is ever loaded from elsewhere.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src data: blob:; connect-src 'self'; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -52,7 +51,7 @@ pub(crate) fn answer(mut stream: TcpStream, guard: &Guard) -> io::Result<Option<
             Err(_) => refuse(&mut stream, "400 Bad Request", "this is not a WebSocket"),
         };
     }
-    // A page that has lost the server asks for this proof, instead of telling its token to whoever listens here now.
+    // A page that has lost the server asks for this proof, a hash of the token and its question: another program may listen here now.
     if path == "/proof" {
         respond(&mut stream, "200 OK", "text/plain", &guard.proof(query))?;
         return Ok(None);
@@ -72,7 +71,7 @@ fn explain(refusal: Refusal) -> &'static str {
     }
 }
 
-/// Reads the head of a request; `None` if it is not one.
+/// Reads the head of a request; `None` if it is not one. No more follows: browsers then wait for the answer.
 fn read(stream: &mut TcpStream) -> io::Result<Option<Request<()>>> {
     let begun = Instant::now();
     let mut head = Vec::new();

@@ -49,7 +49,7 @@ struct Page {
     shared: Arc<Shared>,
     /// The last picture sent.
     picture: Option<Picture>,
-    /// The quick update from that picture to the next.
+    /// The quick update from that picture to the next draft, if nothing but path data may change.
     quick: Option<Quick>,
     /// The number of changes that the page has been told.
     seen: usize,
@@ -78,12 +78,14 @@ impl Page {
         };
         let shared = Arc::clone(&self.shared);
         let mut answer = shared.with_session(|session| {
+            // `said` calls the drawing by its name in the program that waits, if one does.
             self.respond(session, request).unwrap_or_else(|problem| json!({ "error": session.said(&problem) }))
         });
         answer["id"] = json!(id);
         self.send(&answer)
     }
 
+    /// Answers a request; [`Request`] describes each. Of steps that are stored, only the first `shown` ones are drawn.
     fn respond(&mut self, session: &mut Session, request: Request) -> Result<Value, String> {
         match request {
             Request::Hello => {
@@ -184,7 +186,7 @@ impl Page {
         Ok(answer)
     }
 
-    /// Returns the message after a change of the steps.
+    /// Counts a change of the steps, and returns the message about it.
     fn changed(&mut self, session: &Session, shown: Shown) -> Result<Value, String> {
         self.count_change();
         let mut answer = self.show(shown)?;
@@ -207,7 +209,7 @@ fn changed_paths(changes: Vec<(usize, String)>) -> Value {
 /// State shared by the connections.
 pub(crate) struct Shared {
     session: Mutex<Session>,
-    /// The page's picture behind the drawing.
+    /// The page's picture behind the drawing; only pages know its format.
     background: Mutex<Value>,
     pub(crate) pages: Pages,
 }
@@ -266,7 +268,7 @@ impl Shared {
         self.background.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Locks the session, even after a panic in another connection: steps replace the old ones only after bending has succeeded.
+    /// Locks the session, even after a panic in another connection: it is still whole, since steps change only once they are bent.
     pub(crate) fn with_session<T>(&self, f: impl FnOnce(&mut Session) -> T) -> T {
         f(&mut self.session.lock().unwrap_or_else(PoisonError::into_inner))
     }

@@ -20,7 +20,7 @@ enum Kind {
     Pattern,
     /// A picture or a group.
     Object,
-    /// A colour space.
+    /// The colour space of a spot colour.
     Ink,
 }
 
@@ -34,8 +34,8 @@ pub(crate) struct Stream {
     used: Used,
     /// Maps the current coordinates to the coordinates at the start of the stream, to which patterns refer.
     pub(crate) to_start: Affine,
-    /// Subtracted from the current coordinates before they are written, since the single precision of PDF is too coarse for maps in
-    /// metres. Zero unless the page's corner is far away.
+    /// The page's corner in the current coordinates if it is far from their origin, else zero. It is subtracted from coordinates before
+    /// they are written, since the single precision of PDF is too coarse for maps in metres.
     pub(crate) shift: Vec2,
     /// `to_start` and `shift` of the saved graphics states.
     outer: Vec<(Affine, Vec2)>,
@@ -100,7 +100,6 @@ impl Stream {
         self.content.end_path();
     }
 
-    /// Sets a graphics state.
     pub(crate) fn state(&mut self, state: Ref) {
         let name = self.used.name(Kind::State, state);
         self.content.set_parameters(Name(name.as_bytes()));
@@ -211,7 +210,7 @@ fn write(out: &mut Content, path: &BezPath) {
     }
 }
 
-/// Returns `true` if the outline has an area to fill.
+/// Returns `true` if the outline's box has an area; the outline itself may have none, as a slanted line.
 pub(crate) fn has_area(path: &BezPath) -> bool {
     let r = path.bounding_box();
     r.width() > 0.0 && r.height() > 0.0
@@ -222,7 +221,7 @@ pub(crate) fn affine(t: usvg::Transform) -> Affine {
     Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
 }
 
-/// Converts a transform for PDF.
+/// Converts a transform for PDF, without entries that are rounding errors beside others (`single`).
 pub(crate) fn matrix(m: Affine) -> [f32; 6] {
     single(m).as_coeffs().map(|v| v as f32)
 }

@@ -1,4 +1,5 @@
-//! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock.
+//! The class `Warper`: [`pathwarp_engine::Warper`] for Python. Work is done without the interpreter's lock;
+//! after Ctrl-C, `on_threads` awaits its end, `on_threads_alone` does not.
 
 use crate::errors::{exception, usage};
 use crate::function::Function;
@@ -57,6 +58,7 @@ impl Warper {
     ) -> PyResult<Self> {
         let creases = pathwarp_plugin::creases(creases.iter().map(String::as_str));
         let creases = creases.map_err(|fault| usage(py, &format!("creases: {fault}")))?;
+        // A function may return NaN where it is undefined.
         let abilities = Abilities { jacobian: gives.0, inverse: gives.1, partial: true, creases, detail };
         let function = Arc::new(Function::new(call));
         let callee = Arc::clone(&function) as Arc<dyn Callee>;
@@ -74,7 +76,7 @@ impl Warper {
     #[staticmethod]
     fn from_recipe(py: Python<'_>, text: &str, folder: PathBuf, external: bool) -> PyResult<Self> {
         let read = |registry: &Registry| pathwarp_engine::Warper::from_recipe(registry, text, &folder, external);
-        // A name that is not built in may be that of an installed plug-in.
+        // A name that is not built in may be that of an installed plug-in. "" is not built in, so all are sought.
         let built_in = py.detach(|| read(&Registry::builtin()));
         let engine = match built_in {
             Ok(engine) => engine,
@@ -247,6 +249,7 @@ impl Warper {
         };
         let warped: Vec<_> = on_threads_alone(py, &mut tell, move |stop| {
             let warper = warper.stopped_by(stop);
+            // Drawings left after a stop are dropped; the exception behind it is then returned instead of the list.
             let warp = |(data, name): &(PyBackedBytes, Option<PathBuf>)| {
                 let warped = (!stop.load(Ordering::Relaxed)).then(|| warper.warp_drawing(data, name.as_deref()));
                 counted.fetch_add(1, Ordering::Relaxed);
@@ -272,16 +275,18 @@ impl Warper {
         Self { engine, functions: Vec::new() }
     }
 
+    /// Turns an error into its exception, which may come from a function.
     fn done<T>(&self, py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
         result.map_err(|e| self.exception(py, &e))
     }
 
-    /// Returns the exception for an error: the one that a function raised, if the error stands for it.
+    /// Returns the exception for an error: the one that a function raised, if the error's message contains its key; else a new one.
     fn exception(&self, py: Python<'_>, error: &Error) -> PyErr {
         let raised = self.functions.iter().find_map(|f| f.raised(py, &error.message));
         raised.unwrap_or_else(|| exception(py, error))
     }
 
+    /// The map for these points. Deformations that examine artwork examine lines all over the points' box (`hatching`).
     fn point_map(
         &self,
         points: numpy::ndarray::ArrayView2<'_, f64>,
@@ -315,6 +320,7 @@ fn pairs(points: &Bound<'_, PyArray2<f64>>) -> PyResult<()> {
     }
 }
 
+/// Turns an error into its exception.
 fn done<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
     result.map_err(|e| exception(py, &e))
 }

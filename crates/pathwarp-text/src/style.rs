@@ -56,7 +56,7 @@ pub struct TextStyle {
     /// Size of the em, greater than 0 and at most 1e6.
     pub size: f64,
     /// Space added between clusters, but not within joined scripts (Arabic, Syriac, …). Positive or negative, at most a thousand
-    /// times the size; a cluster that would lie before the one it follows lies upon it.
+    /// times the size; a cluster moves back at most to the start of the one before it.
     pub letter_spacing: f64,
     /// Space added to every space character. Positive or negative, at most a thousand times the size.
     pub word_spacing: f64,
@@ -194,8 +194,8 @@ impl fmt::Display for Variation {
     }
 }
 
-/// Parses OpenType features separated by commas: `liga=0, ss01, salt=2`. `on` and `off` mean 1 and 0, as does a sign in front
-/// (`-liga`).
+/// Parses OpenType features separated by commas: `liga=0, ss01, salt=2`. `on` and `off` mean 1 and 0, as do `+` and `-` in
+/// front (`-liga`); a value overrides the sign.
 ///
 /// ```
 /// let f = pathwarp_text::features("liga=0, ss01, -kern")?;
@@ -250,7 +250,7 @@ pub fn variations(text: &str) -> Result<Vec<Variation>, Error> {
     words(text).map(parse).collect()
 }
 
-/// Splits a list at commas.
+/// The items between a list's commas, trimmed, without empty ones.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(str::trim).filter(|w| !w.is_empty())
 }

@@ -56,7 +56,7 @@ pub(crate) fn stages(line: &str) -> Vec<Vec<String>> {
     stages.collect()
 }
 
-/// Runs a command with `input` as its standard input and captures its output.
+/// Runs a command with `input` as its standard input, which it must read before it writes much, and captures its output.
 pub(crate) fn feed(command: &mut Command, input: &[u8]) -> io::Result<Output> {
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     if let Some(mut stdin) = child.stdin.take() {
@@ -93,7 +93,7 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
         drawing = pipe(root, program, &stage, &drawing)?;
     }
     if ["text", "badge"].contains(&last[0].as_str()) {
-        // There is nothing to show before lettering.
+        // A preview shows the drawing before and after; lettering has no before.
         return render(root, program, &pipe(root, program, &last, &drawing)?, "800", png);
     }
     // Replace any preview that the example itself asks for.
@@ -106,6 +106,7 @@ pub(crate) fn preview(root: &Path, program: &Path, command: &str, png: &Path) ->
     if let (Some(file), Some(output)) = (file, last.iter_mut().skip_while(|w| *w != "-o").nth(1)) {
         *output = folder.path().join(file).display().to_string();
     }
+    // A preview needs no explanations.
     last.retain(|w| w != "--explain");
     last.extend(["--quiet", "--preview"].map(str::to_owned));
     last.push(png.display().to_string());
@@ -130,7 +131,6 @@ pub(crate) fn files_below(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Resu
     Ok(out)
 }
 
-/// Copies a folder with everything in it.
 pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
     for file in files_below(from, |_| true)? {
         let copy = to.join(file.strip_prefix(from).unwrap_or(&file));

@@ -7,7 +7,7 @@ import { together, type Part } from "./selection";
 import { hush } from "./toast";
 import type { XY } from "./types";
 
-/** The event for moves of a pointer, immediate if possible: `pointermove` waits for the next frame, which the answer would miss. */
+/** The event for moves of a pointer, immediate if possible: `pointermove` comes with the next frame, and its answer a frame later. */
 const MOVES = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
 /** The distance within which a handle snaps to a line, in px. */
 const SNAP = 7;
@@ -65,6 +65,7 @@ export class Pointing {
   private press(e: PointerEvent): void {
     const { stage } = this;
     const target = e.target as Element;
+    // `picks` is set while a path is asked for, `isBefore` while no steps are shown; `picksParts` and `selects` are modes.
     if (stage.picks) return stage.picked(e);
     this.down.set(e.pointerId, stage.point(e));
     if (this.down.size > 2) return;
@@ -109,6 +110,7 @@ export class Pointing {
     const { app } = this;
     const start = this.stage.point(e);
     hush();
+    // Commit changes by keys first. An undo during the drag calls `hold`.
     void app.flush();
     const step = app.step!;
     const before = structuredClone(step);
@@ -145,6 +147,7 @@ export class Pointing {
     const handle = stage.handle(knob.dataset.key ?? null);
     if (!handle || !handles) return;
     e.preventDefault();
+    // Focus selects this handle alone, unless it is selected already.
     const before = new Set(stage.selection.keys);
     knob.focus({ preventScroll: true });
     if (e.shiftKey) stage.selection.keys = before;
@@ -246,6 +249,7 @@ export class Pointing {
         const [x, y, w, h] = this.app.handles?.frame ?? [0, 0, 0, 0];
         // The first of two fingers does not click.
         if (Math.hypot(last[0] - first[0], last[1] - first[1]) < SHAKES && this.down.size < 2) clicked();
+        // Clear moves that began on the artwork call for a hint.
         const isInside = start[0] > x && start[0] < x + w && start[1] > y && start[1] < y + h;
         if (isInside && Math.hypot(last[0] - first[0], last[1] - first[1]) > REACH / 4) this.onPan();
       },

@@ -15,7 +15,7 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// Reads the orientation from EXIF metadata, which are a TIFF file; upright if there is none.
+    /// Reads the orientation, a number `n` from 1 to 8, from EXIF metadata, which are a TIFF file; upright if there is none.
     pub(super) fn of_exif(metadata: &[u8]) -> Self {
         exif::orientation(metadata).map_or_else(Self::default, |n| Self {
             mirror_x: matches!(n, 2 | 3 | 7 | 8),
@@ -80,7 +80,7 @@ mod tests {
             let other = (0x010f, 2, 1, 65);
             assert_eq!(number(&tiff(is_little, &[other, (0x0112, 3, 1, 6)])), Some(6));
             assert_eq!(number(&tiff(is_little, &[other])), None);
-            // A number of 32 bits, two numbers.
+            // A number of 32 bits does not count, nor do two numbers.
             assert_eq!(number(&tiff(is_little, &[(0x0112, 4, 1, 6)])), None);
             assert_eq!(number(&tiff(is_little, &[(0x0112, 3, 2, 6)])), None);
             let whole = tiff(is_little, &[other, (0x0112, 3, 1, 6)]);
@@ -92,8 +92,8 @@ mod tests {
         assert_eq!(number(b"II\0\x2a\x08\0\0\0"), None);
     }
 
-    /// The stored picture is `ab` over `cd` over `ef`. EXIF 2.32, 4.6.4.A, says for each number which sides the first row and the
-    /// first column are.
+    /// The stored picture is `ab` over `cd` over `ef`. EXIF 2.32, 4.6.4.A, gives for each number the sides at which the first row and
+    /// the first column are.
     #[test]
     fn every_orientation() {
         let upright = [

@@ -13,7 +13,7 @@ use pathwarp::outline::boundary;
 use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-/// Largest error of a source point in a traced tile, in pixels.
+/// Largest error of a source point in a traced tile, in pixels of the result.
 const MAX_OFF: f64 = 1.0 / 64.0;
 /// Largest side of a block in pixels. Smooth colours tolerate a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic covers a
 /// larger area.
@@ -76,6 +76,7 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
         let mut band = ShadeBand { top, columns, pixels, known, inverse };
         blocks.into_iter().for_each(|block| painter.block(&mut band, block));
     };
+    // A costly inverse, such as another program's, is asked for many points at once.
     let batches = shade.inverse.cost().batches.is_some();
     if known.len() >= WORTH_THREADS {
         for_each_chunk_pair(out.pixels_mut(), &mut known, columns * BLOCK, |i, pixels, known| {
@@ -114,6 +115,7 @@ struct ShadePainter<'a> {
     /// The visible part; `None` if everything is visible.
     cover: Option<Cover>,
     basis: ChebyshevBasis,
+    /// Scales the paint's coordinates so that [`MAX_ERROR`], the tolerance of traces, stands for [`MAX_OFF`].
     to_pixels: Affine,
 }
 
@@ -124,7 +126,7 @@ impl<'a> ShadePainter<'a> {
         seen.filter(|seen| self.shade.inverse.touches(seen.covered(self.shade.shown)))
     }
 
-    /// Caches the values of the inverse for these blocks, computed in batches.
+    /// Caches the values of the inverse for these blocks, computed in batches. Painting needs no jets.
     fn cache(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let cache = Gathered::new(self.shade.inverse);
         announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &cache, |pixels| {
@@ -158,7 +160,7 @@ impl<'a> ShadePainter<'a> {
         }
     }
 
-    /// Paints at most a tile. `row` gives the source points of a row's pixels, measured in pixels.
+    /// Paints at most a tile. `row` gives the source points of a row's pixels, scaled by `to_pixels`.
     fn paint<Row: Fn(usize) -> Point>(&self, band: &mut ShadeBand<'_>, area: PixelArea, row: impl Fn(usize) -> Row) {
         let to_paint = self.to_pixels.inverse();
         let (mut points, mut colors) = ([Point::ORIGIN; TILE], [[0.0; 4]; TILE]);
@@ -217,7 +219,7 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 const CELL: usize = 8;
 /// Flattening tolerance in pixels.
 const FLAT: f64 = 0.25;
-/// Reach of a pixel in pixels, since renderers read up to two on either side of a point.
+/// Distance from the shape, in pixels, up to which pixels are needed: renderers read up to two on either side of a point.
 const MARGIN: f64 = 2.0 + FLAT;
 
 /// The cells that a shape touches or comes near.
@@ -243,7 +245,7 @@ impl Cover {
         cover
     }
 
-    /// Shrinks an area to its visible cells. `None` if there are none.
+    /// Shrinks an area of the picture to its visible cells. `None` if there are none.
     pub(super) fn seen(&self, area: PixelArea) -> Option<PixelArea> {
         let cells = |from: usize, size: usize| from / CELL..(from + size).div_ceil(CELL);
         let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);

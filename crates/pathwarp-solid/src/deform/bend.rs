@@ -89,7 +89,7 @@ impl Bend3 {
         through(p: DVec3) => through: Some(p);
     }
 
-    /// Sets handles of a skeleton: of the legs of Bézier pieces, or of the points of a spline. Handles of the first level that are not set
+    /// Adds a handle of a skeleton: of a leg of Bézier pieces, or of a point of a spline. Handles of the first level that are not set
     /// are perpendicular to their legs, of length 1, and turn as little as possible from leg to leg, or are their mitres at points; others
     /// are 0.
     #[must_use]
@@ -124,6 +124,7 @@ impl Bend3 {
         let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
         let corners = [(from[b], from[c]), (to[b], from[c]), (to[b], to[c]), (from[b], to[c])];
         let first_level: Vec<_> = pieces.iter().flat_map(|p| p.first_level(corners)).collect();
+        // Compares derivatives on both sides of a joint, along the skeleton and along the four edges of the box.
         let joint = |i: usize| {
             let ends =
                 [(pieces[i - 1].stand(1.0), knots[i] - knots[i - 1]), (pieces[i].stand(0.0), knots[i + 1] - knots[i])];
@@ -222,6 +223,7 @@ impl Bend3 {
     fn interpolated(&self, points: &[DVec3]) -> Result<(Vec<Strip>, Vec<f64>), Error> {
         directions(points)?;
         let distances: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
+        // Their sum is 1, so the last knot is 1.
         let widths = bspline::centripetal(&distances);
         let flat: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
         let pieces: Vec<Vec<DVec3>> = bspline::through(&flat, &widths, false)
@@ -284,7 +286,8 @@ impl Bend3 {
             }
             let mut all = mitres(&legs);
             for i in (0..pieces).map(|i| i * degree).filter(|_| degree > 1) {
-                // At both ends of a piece, sides must change along the skeleton alone.
+                // At both ends of a piece, S' and T' must be parallel to C', or lines along it would kink at smooth joints. Between mitres
+                // within a right angle they are, as in quadratics that are not raised; else the inner mitre moves.
                 for (end, inner, leg) in [(i, i + 1, i), (i + degree, i + degree - 1, i + degree - 1)] {
                     let d = legs[leg].0;
                     all[inner] = std::array::from_fn(|k| all[end][k] + d * d.dot(all[inner][k] - all[end][k]));
@@ -361,8 +364,8 @@ fn directions(points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
     points.windows(2).enumerate().map(leg).collect()
 }
 
-/// Returns the handles at the points of a polygon from the directions and handles of its legs. They are mitres, between which lines
-/// along the legs stay parallel to them. Where the polygon turns by more than a right angle, they grow no longer.
+/// Returns the handles at the points of a polygon from the directions and handles of its legs. They are mitres: lines between
+/// them at constant v and w are parallel to the leg. Beyond a turn by a right angle, they stay as long as there.
 fn mitres(legs: &[(DVec3, [DVec3; 2])]) -> Vec<[DVec3; 2]> {
     let inner = legs.windows(2).map(|l| {
         let ((d, a), (e, b)) = (l[0], l[1]);
@@ -401,7 +404,6 @@ struct BendMap3 {
 }
 
 impl BendMap3 {
-    /// Returns the other two axes.
     fn sides(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
@@ -537,6 +539,7 @@ impl Strip {
             sum.iter_mut().zip(elevated(curve, n)).for_each(|(o, p)| *o = std::array::from_fn(|k| o[k] + p[k]));
         }
         let degree = levels[0].len() - 1;
+        // The degree of S and T; their higher coefficients are rounding errors.
         let curves = Tensor::bernstein([n, 1, 1], sum).without(degree, 3);
         Self::Ribbon { points, first: levels.into_iter().next().unwrap_or_default(), curves }
     }
@@ -595,7 +598,7 @@ fn elevated(mut curve: Vec<[f64; 9]>, n: usize) -> Vec<[f64; 9]> {
     curve
 }
 
-/// The presets: Barr's deformations, and two of the same form.
+/// The presets: Barr's deformations, and two of the same form. The frame of laws and cases below is from 0,0,0 to 100,100,100.
 const PRESETS: &[&str] = &["stretch", "swell", "taper", "twist", "bend"];
 
 static ABOUT: About3 = About3 {

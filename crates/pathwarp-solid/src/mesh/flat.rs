@@ -20,7 +20,7 @@ pub struct FlatShape {
 
 /// Distance between vertices, as a fraction of the largest coordinate, below which they would coincide in a single-precision file.
 const SAME: f64 = 1e-6;
-/// Distance by which such vertices are moved apart, as a fraction of the largest coordinate.
+/// Least distance by which such vertices are moved, as a fraction of the largest coordinate.
 const APART: f64 = 1e-5;
 
 impl FlatShape {
@@ -89,7 +89,7 @@ impl FlatShape {
         }
         let (old, by) = (self.clone(), APART * self.reach());
         for (vertex, (number, fan)) in crowded {
-            // Move by different lengths, since the triangles of two vertices may lie on one side.
+            // Move by 1 to 16.5 times the distance, since the triangles of two vertices may lie on one side.
             let by = by * (1.0 + 0.5 * f64::from(number % 32));
             self.points[vertex as usize] = drawn_back(&old, vertex, &fan, by);
         }
@@ -104,7 +104,7 @@ impl FlatShape {
             starts.entry(a).or_default().push(b);
         }
         starts.retain(|_, next| next.len() > 1);
-        // The triangle at each such vertex, by the corner that follows the vertex.
+        // The triangles at these vertices, each under its vertex and the corner that follows it in the triangle.
         let mut after: HashMap<(u32, u32), usize> = HashMap::new();
         for (n, t) in self.triangles.iter().enumerate() {
             let corners = (0..3).map(|k| (t[k], t[(k + 1) % 3])).filter(|(a, _)| starts.contains_key(a));
@@ -132,7 +132,6 @@ impl FlatShape {
     }
 }
 
-/// Iterates over the sides of triangles.
 pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
@@ -160,6 +159,7 @@ fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2
     let others = fan.iter().flat_map(|n| shape.triangles[*n]).filter(|i| *i != vertex);
     let mut sum = [0.0; 2];
     for p in others.map(|i| shape.at(i)) {
+        // A corner at the same point gives NaN, and the vertex stays.
         let length = (p[0] - at[0]).hypot(p[1] - at[1]);
         (0..2).for_each(|a| sum[a] += (p[a] - at[a]) / length);
     }
@@ -167,9 +167,9 @@ fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2
     if length > 0.0 { [0, 1].map(|a| at[a] + by * sum[a] / length) } else { at }
 }
 
-/// Appends shapes as objects: flat at z = 0 if `depth` is 0, otherwise closed solids from z = 0 to `depth`, with a front, a back and walls
-/// between them. Solids that would touch themselves or each other in an edge or at a corner are moved apart by a hundred-thousandth of the
-/// largest coordinate.
+/// Appends shapes as objects: flat at z = 0 if `depth` is 0, closed solids from z = 0 to `depth` if it is larger, with a front, a back and
+/// walls between them. Where solids would touch themselves or each other in an edge or at a corner, vertices move apart, by some
+/// hundred-thousandths of the largest coordinate. Indices that need more than 32 bits become [`NONE`].
 pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut all = FlatShape::default();
     let mut ends = Vec::with_capacity(shapes.len());

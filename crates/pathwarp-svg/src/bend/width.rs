@@ -24,10 +24,10 @@ use usvg::{LineCap, LineJoin, Stroke};
 /// side by side apart if their widths differ by about a twentieth.
 const WIDTH_ERROR: f64 = 0.02;
 
-/// Factor for errors between samples. At [`TURN`] between samples, a sinusoid over half a turn is missed by at most 1 − cos(π/8).
+/// Factor for errors between samples, about 1/cos(π/8): widths under an affine map vary as a sinusoid whose period is half a turn.
 const BETWEEN: f64 = 1.08;
 
-/// Largest turn of a path between samples, in radians: an eighth of the period in which widths under an affine map vary.
+/// Largest turn of a path between samples, in radians: an eighth of that period.
 const TURN: f64 = std::f64::consts::PI / 8.0;
 
 /// Smallest turn of a corner, in radians. At smaller ones, joins don't extend past the edges by more than a millionth.
@@ -84,8 +84,8 @@ struct Node {
 }
 
 impl<'a> StrokeWidth<'a> {
-    /// Samples the stroke of a part, over all placed letters. `pieces` is the number of segments of the bent path.
-    /// Returns `None` if the map's derivative is not finite on the path.
+    /// Samples the stroke of a part, or of all copies of its letters, `t.pieces`. `pieces` is the number of segments of the bent path,
+    /// which letters share equally. Returns `None` if the map's derivative is not finite on the path.
     pub(super) fn sample(t: &PartTask<'_>, stroke: &'a Stroke, pieces: usize) -> Option<Self> {
         let mut out = Self {
             stroke,
@@ -113,7 +113,6 @@ impl<'a> StrokeWidth<'a> {
         Some(out)
     }
 
-    /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
     pub(super) fn stretch(&self) -> f64 {
         self.stretch
     }
@@ -123,7 +122,7 @@ impl<'a> StrokeWidth<'a> {
         if self.length > 0.0 { self.scale_integral / self.length } else { self.middle() }
     }
 
-    /// The middle of the range of local scales, which nearly minimizes the largest error.
+    /// The middle of the range of factors that suit the pairs one by one, which nearly minimizes the largest error.
     pub(super) fn middle(&self) -> f64 {
         let scales = self.pairs.iter().map(|p| p.exact.dot(p.drawn) / p.drawn.hypot2());
         let (low, high) = scales.fold((f64::INFINITY, 0.0_f64), |(low, high), s| (low.min(s), high.max(s)));
@@ -136,22 +135,22 @@ impl<'a> StrokeWidth<'a> {
         BETWEEN * (edges * self.half + self.drift(s)) * self.unit
     }
 
-    /// Factor by which an error of the bent path moves the corners of dashes; 1 without dashes. A cubic fitted to sixth order oscillates
-    /// about the curve in three waves. So an error ε on a piece of length l tilts it by up to 6π·ε/l, and on a path that turns by θ it
-    /// changes the length by up to ε·θ.
+    /// Factor by which an error of the bent path, of `pieces` segments, moves the corners of a dash's outline; 1 without dashes. A cubic
+    /// fitted to sixth order oscillates about the curve in three waves. So an error ε on a segment of length l tilts it by up to 6π·ε/l,
+    /// and on a path that turns by θ it changes the length by up to ε·θ.
     pub(super) fn leverage(&self, pieces: usize) -> f64 {
         let tilt = 3.0 * std::f64::consts::TAU * pieces as f64 / self.length;
         if self.stroke.dasharray().is_some() && self.length > 0.0 { 1.0 + self.half * tilt + self.turns } else { 1.0 }
     }
 
-    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or its width hardly varies.
+    /// Returns `true` if the stroke scaled by `s` is right: its edges are within `tolerance`, or `off` by at most [`WIDTH_ERROR`].
     pub(super) fn is_right(&self, s: f64, tolerance: f64) -> bool {
         let off = |p: &Pair| (p.exact - p.drawn * s).hypot() <= WIDTH_ERROR * s * p.drawn.hypot();
         !self.leaves_domain && (self.error(s) <= tolerance || self.pairs.iter().all(off))
     }
 
     /// Largest shift of a dash along the path, in user units of the result. It counts up to half a gap, since no point of a gap is farther
-    /// from a dash.
+    /// from a dash. The entries of odd index are gaps; usvg gives an even number of entries.
     fn drift(&self, s: f64) -> f64 {
         let Some(dashes) = self.stroke.dasharray() else { return 0.0 };
         let gap = dashes.iter().skip(1).step_by(2).fold(0.0_f32, |m, g| m.max(*g));
@@ -338,7 +337,7 @@ impl<'a> StrokeWidth<'a> {
         }
     }
 
-    /// Adds the outermost points of the join of two segments.
+    /// Adds the outermost points of the join of two segments. `from` is true if the exact join is a miter, `to` if the drawn one is.
     fn add_join(&mut self, map: &dyn Map, at: &Node, b: &Spot) {
         let (p, a) = (at.p, &at.spot);
         let turned = a.tangent.cross(b.tangent).atan2(a.tangent.dot(b.tangent));
@@ -370,7 +369,7 @@ impl<'a> StrokeWidth<'a> {
     }
 }
 
-/// A point of a stroke's edge relative to the path, in units of half the width.
+/// A point of a stroke's edge relative to the path, in units of half the width, along any axes that both positions share.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     exact: Vec2,
@@ -440,7 +439,7 @@ fn columns(jet: &Jet, read: Affine, after: Affine) -> [Vec2; 2] {
     [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|e| linear(after, jet.push(linear(read, e))))
 }
 
-/// Pairs the semi-axes of an ellipse with the radius of the unit circle, of which the matrix with these columns makes the ellipse.
+/// Pairs each semi-axis of the ellipse that the matrix with these columns makes of the unit circle with the circle's radius.
 fn ellipse([x, y]: [Vec2; 2]) -> [Pair; 2] {
     let long = stretch(Affine::new([x.x, x.y, y.x, y.y, 0.0, 0.0]));
     let short = if long > 0.0 { x.cross(y).abs() / long } else { 0.0 };

@@ -75,8 +75,8 @@ impl MeshGradient {
         coons([top, right, bottom, left], u, v)
     }
 
-    /// The point with the parameters `u` and `v` of the whole mesh, in which each patch has length 1. The patch is the one that contains
-    /// the parameters `column` and `row`, as neighbours meet in a crease.
+    /// The point with the parameters `u` and `v` of the whole mesh, in which each patch has length 1, with the derivatives in the patch
+    /// that contains the parameters `column` and `row`: those of neighbours differ on their common side.
     pub(crate) fn point(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
         let within = |t: f64, count: usize| (t as usize).min(count - 1);
         let (column, row) = (within(column, self.columns()), within(row, self.rows()));
@@ -132,7 +132,7 @@ impl MeshGradient {
     }
 
     /// The colour at the parameters `u` and `v` of the whole mesh, in which each patch has length 1: bilinear between the corners of a
-    /// patch, or bicubic as in Inkscape, in Hermite form with derivatives along the sides and none across. Opacity is always bilinear.
+    /// patch, or bicubic as in Inkscape, in Hermite form with mixed derivatives of zero. Opacity is always bilinear.
     pub(crate) fn color(&self, u: f64, v: f64) -> Rgba {
         let within = |t: f64, count: usize| (t as usize).min(count - 1);
         let (row, column) = (within(v, self.rows()), within(u, self.columns()));
@@ -178,7 +178,7 @@ fn slope(last: usize, i: usize, color: impl Fn(usize) -> Rgba, length: impl Fn(u
         };
         let inner = |k: usize| monotone(step(k - 1), step(k));
         match (i, last) {
-            // Inkscape sets the first end before the last.
+            // In a row of one patch, the ends are neighbours. Inkscape sets the first one while the last is still 0.
             (0, 1) => 2.0 * step(0),
             (_, 1) => 0.0,
             (0, _) => 2.0 * step(0) - inner(1),
@@ -285,7 +285,7 @@ fn children<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Vec<Node<'a, 'i>> {
 }
 
 /// Reads a row of patches. Each patch lists the sides that no earlier patch has, clockwise from the top, with the colour of the corner at
-/// which a side begins. `start` is the start of the first row. Returns the start of the next row.
+/// which a side begins. The first row begins at `start`, others below the last one. Returns the row's lower left corner.
 fn push_row(mesh: &mut MeshGradient, patches: &[Node<'_, '_>], start: Point) -> Option<Point> {
     let first_row = mesh.across.is_empty();
     if first_row {

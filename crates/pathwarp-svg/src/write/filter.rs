@@ -11,8 +11,8 @@ use usvg::filter::{
     Input, Kind, LightSource, MorphologyOperator, Primitive, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. For a `layer`, only the
-/// primitives that it needs are written.
+/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. For a `layer`, the part
+/// drawn beneath or above the filter's graphic, only the primitives that it needs are written, followed by `more`, which draws it.
 pub(super) fn element(
     markup: &Markup<'_>,
     f: &Filter,
@@ -32,6 +32,7 @@ pub(super) fn element(
             tag.with("color-interpolation-filters", space)
         };
         let (tag, content) = primitive(markup, &begin, p, &mut pictures);
+        // Keeps the smooth edges of an opaque graphic. An uncut composite passes its input on: the graphic hides the rest.
         let smooth = |m| layer.and_then(|l| l.smooth(m));
         let (tag, content) = match (layer.map(|l| l.need(at)), p.kind()) {
             (Some(Need::Nothing), _) => return String::new(),
@@ -49,7 +50,7 @@ pub(super) fn element(
     filter.with_all(rectangle(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
 }
 
-/// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`.
+/// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`, even if it is left out.
 fn primitive(
     markup: &Markup<'_>,
     begin: &dyn Fn(&str) -> Tag,

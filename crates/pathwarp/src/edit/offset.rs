@@ -11,7 +11,7 @@ use kurbo::{BezPath, Join, Line, Rect};
 /// Largest reach of an offset's miters, in multiples of its distance.
 const MITERS: f64 = 4.0;
 
-/// Share of the tolerance for the cubics that replace arcs.
+/// Share of the tolerance within which cubics replace the arcs of a finished result; [`ARCS`] is that for arcs of the source.
 const ACCEPTED: f64 = 0.99;
 
 /// The side to which [`moved`] moves outlines.
@@ -41,7 +41,7 @@ pub enum OpenPaths {
 pub struct Offset {
     /// Distance in user units, above zero.
     pub by: f64,
-    /// The join at corners that open. Miters reach up to four times the distance; those of areas are cut off there.
+    /// The join at corners that open. Miters reach up to four times the distance; longer ones are cut off on areas, left out on paths.
     pub join: Join,
     /// The side to which outlines move.
     pub side: Side,
@@ -85,11 +85,13 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[
     let (outline, staying) = &prepared(outline, offset.open);
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let (mut out, mut path, mut report) = (Outline::default(), BezPath::new(), PathReport::default());
+    // Groups that lines along the axes separate cannot meet.
     for group in apart(&boxes) {
         let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
         let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
         let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
         for fitted in moved_group(&group, offset, tolerance)? {
+            // Beside known edges: the distance, `true` for round joins, and the reach of miters.
             let beside = (offset.by, offset.join == Join::Round, reach);
             let moved = known::with_edges(Outline::from(&fitted.path), &group, beside, tolerance);
             let fine = ACCEPTED * tolerance;
@@ -137,6 +139,7 @@ fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec
     let mut source = outline.to_bez_path(fine);
     if offset.even_odd {
         let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
+        // This moves edges by a few hundredths of `fine`.
         let mut area = union_even_odd(&source, fine)?;
         area.extend(Outline { subpaths: open }.to_bez_path(fine));
         source = area;

@@ -1,4 +1,4 @@
-//! Tiled maps: rows of smooth maps, each responsible for a rectangle of the source plane.
+//! Tiled maps: rows of smooth maps, each on a rectangle of the source plane. A ruled map between two guide curves is one such row.
 //!
 //! The outermost tiles continue beyond the region. The lines between tiles are creases: horizontal lines between rows, and
 //! vertical stretches within a row. Adjacent maps need not agree there; a path across a gap is connected by a straight line.
@@ -12,7 +12,6 @@ use crate::budget::{Budget, Search, is_over};
 use kurbo::{Affine, CubicBez, Point, Rect};
 use std::sync::Arc;
 
-/// A row of tiles.
 #[derive(Clone)]
 pub(crate) struct TileRow {
     /// The increasing abscissae between tiles, one fewer than there are tiles.
@@ -34,8 +33,8 @@ pub(crate) struct Tiled {
 
 /// The extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
 const REACH: f64 = 1e3;
-/// The margin, as a share of a tile's rectangle, within which answers of its inverse count: for the ends of parts on the border, and
-/// their rounding.
+/// The margin around a tile within which preimages count, as a share of the sides of the region or of the tile's rectangle: for paths that
+/// end on the border, and rounding.
 const MARGIN: f64 = 1e-9;
 /// The number of tiles usually searched for a point.
 const USUAL_TILES: usize = 2;
@@ -44,7 +43,7 @@ const INVERSE_REACH: f64 = 0.5;
 
 impl Tiled {
     /// The map of these rows over `region`, divided at the ordinates `cuts`. A single tile gives its map. `None` if there are no rows, or
-    /// if the number of cuts does not fit.
+    /// if the cuts of the map or of a row are too few, too many or not in order.
     #[must_use]
     pub(crate) fn over(region: Rect, cuts: Vec<f64>, rows: Vec<TileRow>) -> Option<Arc<dyn Map>> {
         let fits = |cuts: &[f64], n: usize| cuts.len() + 1 == n && cuts.windows(2).all(|w| w[0] <= w[1]);
@@ -123,6 +122,7 @@ impl Map for Tiled {
                 x1: self.extended_rect(j, last).x1,
                 ..self.extended_rect(j, 0)
             };
+            // A single row has no lower or upper end: a whole line is its crease.
             for x in &row.cuts {
                 let (a, b, c) = (1.0, 0.0, -x);
                 out.push(Crease::kink(if self.cuts.is_empty() {
@@ -135,6 +135,7 @@ impl Map for Tiled {
         for (j, i) in self.tiles() {
             let mut own = Creases::default();
             self.rows[j].maps[i].creases(&mut own);
+            // Creases are zeros, so 1 makes none beyond the tile. The jump is at the tile's border, a crease already.
             for c in own.items() {
                 let (level, tiled) = (c.level.clone(), self.clone());
                 let level =
@@ -172,7 +173,6 @@ impl Map for Tiled {
     }
 }
 
-/// The inverse of a [`Tiled`] map.
 #[derive(Clone)]
 struct TiledInverse {
     of: Tiled,
@@ -190,6 +190,7 @@ impl TiledInverse {
             let domain = of.extended_rect(j, i).intersect(wide);
             let margin = MARGIN * (domain.width() + domain.height());
             let (map, core) = (of.rows[j].maps[i].clone(), of.rect(j, i));
+            // The map is one smooth piece. Preimages in the core come first; those beyond the domain do not count.
             (domain.inflate(margin, margin), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
         });
         let tiles: Vec<(Rect, Arc<NewtonInverse>)> = tiles.collect();
@@ -229,6 +230,7 @@ impl Map for TiledInverse {
         self.solve(q).map_or(Jet::UNDEFINED, |s| s.1)
     }
 
+    /// The images of the kinks of the tiled map.
     fn creases(&self, out: &mut Creases) {
         kinks_through(self, &self.of, out);
     }
@@ -237,7 +239,7 @@ impl Map for TiledInverse {
         let (k, _) = self.solve(inside)?;
         let (rect, _) = self.tiles[k];
         let (j, i) = self.of.tiles().nth(k)?;
-        // A margin for parts that end on the border of the tile.
+        // A margin for paths that end on the border of the tile, whose map is one smooth piece.
         let reach = 1e-3 * (rect.width() + rect.height());
         let branch = NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1]);
         Some(Arc::new(self.budget.as_ref().map_or_else(|| branch.clone(), |b| branch.spending(b))))
@@ -254,18 +256,15 @@ impl Searches for TiledInverse {
     }
 }
 
-// The ruled map between two guide curves: straight lines from the top guide to the bottom one.
-//
-// > F(u, v) = (1 − v)·T(u) + v·B(u)
-//
-// with u and v from 0 to 1 over a box of the source. u is proportional to arc length along a guide, or to the parameter of its
-// segments, each with an equal share. The vertical lines through the joints of either guide are creases.
-//
-// On a strip between creases on which both guides are polynomials in u, the map is a bicubic net. It is linear in v, so its rows
-// divide the lines between the guides evenly.
-
-/// The ruled map that takes the upper side of `frame` to `top` and its lower side to `bottom`, as a row of tiles between creases.
-/// `None` if the frame has no area.
+/// The ruled map that takes the upper side of `frame` to `top` and its lower side to `bottom` along straight lines, as a row of tiles:
+///
+/// > F(u, v) = (1 − v)·T(u) + v·B(u)
+///
+/// with u and v from 0 to 1 over the frame. Each guide defines u: as the share of its arc length, or by the parameters of its segments, of
+/// which each takes an equal share of u. The vertical lines through the joints of either guide are creases.
+///
+/// On a strip between creases on which both guides are polynomials in u, the map is a bicubic net. It is linear in v, so its rows
+/// divide the lines between the guides evenly. `None` if the frame has no area.
 #[must_use]
 pub(crate) fn ruled_row(frame: Rect, top: &Guide, bottom: &Guide) -> Option<TileRow> {
     /// Joints closer than this coincide up to rounding, as in guides of equal proportions.
@@ -288,7 +287,6 @@ fn unit(frame: Rect, u0: f64, u1: f64) -> Affine {
     Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -(frame.x0 + u0 * frame.width()) / w, -frame.y0 / h])
 }
 
-/// Returns the map over one strip.
 fn strip(frame: Rect, top: &Guide, bottom: &Guide, u0: f64, u1: f64) -> Arc<dyn Map> {
     let middle = 0.5 * (u0 + u1);
     let (top, bottom) = (top.piece(middle), bottom.piece(middle));
@@ -325,6 +323,7 @@ impl Map for Strip {
         self.top.point(u).lerp(self.bottom.point(u), v)
     }
 
+    /// Infinite: between creases, each guide is one simple curve.
     fn detail(&self, _: Rect) -> Option<f64> {
         Some(f64::INFINITY)
     }

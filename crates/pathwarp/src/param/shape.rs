@@ -1,7 +1,7 @@
 //! Shapes by name as path references: `heart`, `heart,ratio=1.2`, `heart,width=80mm`.
 //!
-//! A shape is centred in the frame. It is as wide as the frame, unless `width` gives a length (percentages refer to the frame's width),
-//! and keeps the proportions of its drawing, unless `ratio` gives its width divided by its height.
+//! A shape is centred in the frame, usually the artwork's box. It is as wide as the frame, unless `width` gives a length (percentages refer
+//! to the frame's width), and keeps the proportions of its drawing, unless `ratio` gives its width divided by its height.
 
 use super::value;
 use super::{Axis, Frame};
@@ -11,8 +11,9 @@ use std::sync::OnceLock;
 
 /// The drawing of all shapes, one per line.
 const DRAWING: &str = include_str!("shapes.svg");
-/// The names of a shape's values, and the largest ratio of its width to its height or of its height to its width.
+/// The names of a shape's values.
 const VALUES: [&str; 2] = ["ratio", "width"];
+/// Largest ratio of a shape's width to its height, and of its height to its width.
 const MOST: f64 = 1000.0;
 
 /// Returns the names and the path data of all shapes.
