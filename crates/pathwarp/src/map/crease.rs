@@ -155,7 +155,7 @@ impl Level {
     /// The ends of parts of a segment on which the function has at most one zero, by its enclosures; `None` if they do not suffice. On
     /// a part, `d[0]` bounds the change of the function, for a circle that of the point: a distance changes no faster than the point.
     fn enclosed(&self, seg: &Seg, f: &impl Fn(f64) -> (f64, f64)) -> Option<Vec<(f64, f64)>> {
-        /// Limits: where the function touches zero, there is no end to halving.
+        /// Limits for the number of parts and their length: where the function touches zero, there is no end to halving.
         const MAX_PARTS: usize = 20_000;
         const SHORTEST: f64 = 1e-7;
         let (mut knots, mut ends) = (vec![f(0.0)], vec![f(1.0)]);

@@ -403,7 +403,7 @@ impl Map for NewtonInverse {
         Some(self.map.clone())
     }
 
-    /// The detail of the map in its image: times the map's least stretch and, for shear, once more times the ratio of least to largest.
+    /// The map's detail times σ·(σ/Σ), with σ and Σ its least and largest stretch: its least size in the image, and smaller for shear.
     fn detail(&self, area: Rect) -> Option<f64> {
         let jet = self.solve(area.center())?;
         let square = jet.dx.hypot2() + jet.dy.hypot2();

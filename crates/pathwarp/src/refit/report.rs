@@ -57,7 +57,7 @@ impl PathReport {
     }
 
     /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest coordinate of the image. If the
-    /// tolerance is missed and no point is known, `unresolved` gets the first one.
+    /// tolerance is missed and no point for it is known, the path's first point becomes unresolved.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);

@@ -254,7 +254,7 @@ pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
     /// F = C(u(s)) + d·S, where S is the unit normal plus shares of `mitres`, the differences between the mitres at the two ends and the
-    /// normals there. A share falls to 0 at the other end: linearly, or quadratically if `smooth`, so that a side without it can follow.
+    /// normals there. A share falls to 0 at the other end: linearly, or quadratically if `smooth`, so that a straight side can follow.
     /// s is the length of the offset curve at height `even`.
     Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
     /// The paper's polynomial F(u, v) with v = d / unit. u comes from the arc length by `table`, or without one is s / length.
