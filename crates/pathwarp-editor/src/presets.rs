@@ -1,7 +1,7 @@
 //! Named sets of steps for any drawing, stored in one file in the user's folder for settings.
 //!
-//! Percentages suit every drawing. Path data is in the units of one drawing, so the frames are stored as well, and paths are mapped from
-//! the old frame onto the new one.
+//! Percentages suit every drawing. Path data is in the units of one drawing, so the box of each step's artwork (its frame) is stored as
+//! well, and paths are mapped from it onto the new one.
 
 use crate::draft;
 use crate::grips::path_data;
@@ -80,14 +80,14 @@ pub(crate) fn forget(host: &dyn Host, name: &str) -> Result<(), String> {
 }
 
 impl Preset {
-    /// Returns the steps, each with the box of the artwork that it was made for.
+    /// Returns the steps with their frames; `None` where the file lacks one.
     pub(crate) fn steps_with_frames(self) -> impl Iterator<Item = (PageStep, Option<Rect>)> {
         let frames = self.frames.into_iter().map(|[x0, y0, x1, y1]| Some(Rect::new(x0, y0, x1, y1)));
         self.steps.into_iter().zip(frames.chain(std::iter::repeat(None)))
     }
 }
 
-/// Maps the paths of a step from one box onto another.
+/// Maps the path data of a step from one box onto another. Circles and arcs stay: they move only to another drawing ([`brought`]).
 pub(crate) fn laid(registry: &Registry, mut step: PageStep, from: Rect, to: Rect) -> PageStep {
     let params = registry.get(&step.deformation).map_or(&[][..], |e| e.info().params);
     let onto = onto(from, to);

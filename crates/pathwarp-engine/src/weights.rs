@@ -34,7 +34,7 @@ impl Wanted {
         self.weight.filter(|w| (font.weight() - f64::from(*w)).abs() > NEAR && !has_axis(font, &["wght"]))
     }
 
-    /// Returns the weight that a font has instead of the requested one.
+    /// Returns the weight that is set if it is neither the requested one nor synthesised.
     pub fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
         let wanted = f64::from(self.weight?);
         let axis = font.axes().into_iter().find(|a| a.tag == "wght");

@@ -16,7 +16,7 @@ pub fn encode_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
     pixmap.encode_png().map_err(|error| Error::Encode(error.to_string()))
 }
 
-/// Decodes a PNG of any colour type to 8 bits per channel.
+/// Decodes a PNG of any colour type to 8 bits per channel, without applying its orientation.
 ///
 /// # Errors
 /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the default limits, before any

@@ -10,7 +10,7 @@ pub const LARGEST: f64 = 1e9;
 
 const REPLACEMENT: &str = "9e8";
 
-/// Digits before the point of the smallest number out of range.
+/// Digits before the point of [`LARGEST`], the smallest number out of range.
 const MIN_DIGITS: usize = 10;
 
 /// Attributes that hold geometry and are neither properties nor lengths.

@@ -52,7 +52,7 @@ fn hints(text: &str) -> impl Iterator<Item = &'static str> {
     HINTS.iter().filter(found).map(|h| h.2)
 }
 
-const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own";
+const SINGLE_LETTERS: &str = "only from left to right, as its letters have positions of their own"; // “… is drawn only …”
 
 /// A drawing resolved into plain SVG.
 #[derive(Debug, Default)]
@@ -61,13 +61,13 @@ pub struct Plain {
     pub text: Option<String>,
     /// Differences from the original, in the order of the text.
     pub changes: Vec<Change>,
-    /// Unsupported features: the element, or `None` for the style sheets, and a phrase about it.
+    /// Unsupported features: the element, or `None` for the style sheets, and a phrase about it (after “is drawn” if it is “only …”).
     pub unsupported: Vec<(Option<usize>, String)>,
     /// Elements whose numbers were out of range, each with the first such number. The text holds smaller ones.
     pub far: Vec<(usize, String)>,
     /// The properties that the style sheets declare.
     pub declared: BTreeSet<String>,
-    /// The declarations about paint that win, for each element in document order.
+    /// The declarations about paint that win, for each element of the new text, in document order.
     pub words: Vec<Arc<Words>>,
     /// Small differences from what browsers show: a sentence, and the id or name it is about.
     pub notes: BTreeSet<(&'static str, String)>,
@@ -75,19 +75,19 @@ pub struct Plain {
     pub foreign: Vec<(usize, usize)>,
 }
 
-/// An attribute or a run of characters that differs from the original. Elements are numbered in document order, from 0.
+/// An attribute or a run of characters that differs from the original. Elements are numbered in the order of the new text, from 0.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Change {
     /// The last element that begins before the change.
     pub element: usize,
     /// The attribute's local name; `xml:space` keeps its prefix. Empty for text content.
     pub name: &'static str,
-    /// Range in the new text: the attribute with the space before it, or the text content.
+    /// Range in the new text (until [`resolve`] writes it, in the original): the attribute with the space before it, or the text content.
     pub range: Range<usize>,
     /// The original text.
     pub text: String,
-    /// The value that the attribute gets in an edited drawing, if any. It differs from the original value if a transform was frozen,
-    /// since the boxes that it refers to change, or if an id had to be renamed.
+    /// The value that the attribute gets in an edited drawing, the output that keeps the original markup; if any. It differs from the
+    /// original value if a transform was frozen, since the boxes that it refers to change, or if an id had to be renamed.
     pub value: Option<String>,
     /// The attribute with this value and the space before it.
     pub kept: String,
@@ -134,7 +134,7 @@ pub fn resolve(doc: &Document<'_>, budget: &Budget, linked: Linked<'_>) -> Resul
     let mut new_text = String::with_capacity(text.len() * 2);
     let mut done = 0;
     for (change, new) in all {
-        let Some(before) = text.get(done..change.range.start) else { continue };
+        let Some(before) = text.get(done..change.range.start) else { continue }; // It overlaps an earlier change.
         budget.spend(cost::COMPARISON * (new.len() / WRITTEN) as f64)?;
         done = change.range.end;
         new_text.push_str(before);
@@ -343,7 +343,7 @@ fn letter_changes(
     }))
 }
 
-/// Lists the attributes of an element to change.
+/// Lists the attributes of an element to change: `style` unless it is right already. `renamed` is `None` if no id is renamed.
 fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>>, linked: Linked<'_>) -> Vec<Edit> {
     let computed = &style.computed;
     let refers = |v: &&String| renamed.is_some() && v.contains("url(#");
@@ -386,7 +386,7 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
     out
 }
 
-/// Renames ids that would cut off the references to them, and corrects links. Results keep both, since they belong together.
+/// Renames ids with characters that would end a reference to them, and corrects links. Edited drawings keep both changes.
 fn renames(node: Node<'_, '_>, renamed: Option<&References<'_>>) -> impl Iterator<Item = Edit> {
     node.attributes().filter_map(move |a| {
         let (name, new) = match a.name() {
@@ -421,7 +421,7 @@ impl<'t> References<'t> {
         Self { text, targets: OnceCell::new(), has_escapes: text.contains('%') && text.contains("href") }
     }
 
-    /// Returns `true` if an id contains characters that end references, and something may refer to it.
+    /// Returns `true` if references break at an id: it contains characters that end them, and something may refer to it.
     fn break_at(&self, id: &str) -> bool {
         if safe_id(id) == id {
             return false;
@@ -436,7 +436,7 @@ impl<'t> References<'t> {
     }
 }
 
-/// The beginning of a text without the escapes of XML and CSS for quotes and other signs.
+/// A text without the escapes of XML and CSS for quotes and other signs. If its beginning has some, only that is returned: ids are short.
 fn unescaped(text: &str) -> Cow<'_, str> {
     const SIGNS: [(&str, &str); 6] =
         [("&quot;", "\""), ("&#34;", "\""), ("&apos;", "'"), ("&#39;", "'"), ("&amp;", "&"), ("\\", "")];

@@ -40,12 +40,12 @@ pub enum Error {
         /// Largest value.
         max: f64,
     },
-    /// A setting is malformed or has an invalid value.
+    /// A setting (feature, variation, script or language) is malformed or has an invalid value.
     #[error("`{value}` {problem}")]
     Setting {
         /// The setting as written.
         value: String,
-        /// Description of the problem, continuing the sentence that starts with the setting.
+        /// The rest of the sentence that the setting begins.
         problem: String,
     },
     /// A property of the style is out of range.

@@ -80,7 +80,7 @@ pub fn option_names() -> impl Iterator<Item = (&'static str, String)> {
     OPTIONS.iter().filter(|o| !OF_THE_PROGRAM.contains(&o.name)).map(|o| (o.name, o.help()))
 }
 
-/// Returns names that a parameter of a plug-in cannot have: options and arguments of the program, of Python or of C use them.
+/// Returns the names that a plug-in's parameter cannot have, as they are options or arguments of the program, of Python or of C.
 pub fn reserved_names() -> impl Iterator<Item = &'static str> {
     const ARGUMENTS: [&str; 9] =
         [INVERSE, "plugin", "plugins", "help", "version", "points", "jacobian", "INPUT", "size"];
@@ -134,7 +134,7 @@ pub fn lettering_drawing(words: &str, font: Option<&str>, size: f64) -> Result<S
     guarded(&Registry::builtin(), || set_plainly(words, font, &style, &Reading::default()).map(|(drawing, _)| drawing))
 }
 
-/// A recipe built for points: the map and its domain.
+/// A recipe built for points: the map, without a limit on its searches, and its creases, some of which bound its domain.
 #[derive(Debug, Clone)]
 pub struct PointMap {
     built: BuiltRecipe,

@@ -314,7 +314,7 @@ pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, boo
     Ok((lattice, file.region.is_some()))
 }
 
-/// Writes a lattice as JSON.
+/// Writes a lattice as JSON; adding 0 turns −0 into 0.
 fn write(lattice: &Lattice3) -> String {
     let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
     let [nx, ny, nz] = lattice.size();
@@ -419,7 +419,7 @@ cells control points. Default with --spline: 4x4x4."),
         ),
     ],
     cases: &[
-        // The middle of degree 2: the middle point counts an eighth.
+        // In the middle of the frame, a cube of 100, the middle point of degree 2 counts an eighth.
         Case3 { args: &[("move", "1,1,1:8,-16,24")], at: [50.0, 50.0, 50.0], to: [51.0, 48.0, 53.0], tolerance: 1e-13 },
         // With weight 8 it counts 8/15 instead of 1/8.
         Case3 { args: &[("move", "1,1,1:15,0,0"), ("weight", "1,1,1:8")], at: [50.0, 50.0, 50.0], to: [58.0, 50.0, 50.0], tolerance: 1e-13 },
@@ -427,7 +427,7 @@ cells control points. Default with --spline: 4x4x4."),
     ],
 };
 
-/// Reads the deformation from text.
+/// Reads the deformation from text. Without a region as a box or in a file, the map continues beyond the model's box.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     let hull = hull(s, &["degree", "region", "lattice", "spline", "cells", "pin", "freeze", "extend"])?;
     let (lattice, from_file) = hull.clone().map_or_else(|| lattice(s), |hull| Ok((hull, true)))?;
@@ -451,7 +451,7 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     Ok(built)
 });
 
-/// Reads the lattice of `hull`, beside which the parameters `others` make no sense.
+/// Reads the lattice that `hull` names, if any. It is an error if one of the parameters `others` is given too.
 pub(super) fn hull(s: &Settings3<'_>, others: &[&str]) -> Result<Option<Lattice3>, Error> {
     let Some(named) = s.file_if("hull")? else { return Ok(None) };
     alone(s, "hull", others)?;
@@ -474,7 +474,7 @@ fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {
         let (lattice, has_region) = read(&named.name, &named.text, region.unwrap_or(frame))?;
         return Ok(match region {
             Some(r) => (lattice.on(r), true),
-            None if s.flat().given("region") => (lattice.on(frame), false),
+            None if s.flat().given("region") => (lattice.on(frame), false), // `--region model`
             None => (lattice, has_region),
         });
     }

@@ -64,8 +64,8 @@ pub trait Map3: Send + Sync {
         None
     }
 
-    /// Returns the smooth map that agrees with this one on a box and continues beyond it, if there is one. If a crease touches the box,
-    /// the box's side of it counts, even on the crease itself, where this map may have the values of the other side.
+    /// Returns the smooth map that agrees with this one on a box and continues beyond it, if there is one. On a crease that touches the
+    /// box it has the values of the box's side; this map may have the other side's there.
     fn branch(&self, _on: &Box3) -> Option<Arc<dyn Map3>> {
         None
     }
@@ -234,7 +234,7 @@ impl Creases3 {
     }
 }
 
-/// Maps applied one after another. Adjacent collineations are folded into one.
+/// Maps applied one after another; adjacent collineations are folded into one. For fractions and branches, ask its [`steps`](Self::steps).
 #[derive(Clone, Default)]
 pub struct Chain3 {
     steps: Vec<Arc<dyn Map3>>,

@@ -53,8 +53,7 @@ pub trait Field: Send + Sync {
     /// The value at a point.
     fn at(&self, p: Point) -> f64;
 
-    /// Encloses the function along a curve whose coordinates are enclosed. `None` if there are no bounds: crossings are then found
-    /// from samples alone.
+    /// Encloses the function along a curve with enclosed coordinates. Without bounds (`None`), crossings are found from samples alone.
     fn enclose(&self, _along: [Enclosure; 2]) -> Option<Enclosure> {
         None
     }
@@ -105,8 +104,7 @@ impl Level {
     }
 
     /// Adds the parameters in (0, 1) where `seg` goes from one side of the zero set to the other. A segment that touches it, up to
-    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed. Returns the number of additional
-    /// evaluations.
+    /// rounding, stays on its side. Straight levels are solved exactly; others are bracketed. Returns the number of additional evaluations.
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) -> usize {
         let within = if let Self::Stretch { within, .. } = self {
             // Inflated by the rounding error of a crossing.
@@ -134,7 +132,7 @@ impl Level {
     }
 
     /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; the size of its rounding errors; and the
-    /// number of evaluations beyond the usual ones. Empty if it has no zero on the segment.
+    /// number of evaluations beyond the [`SAMPLES`] of [`Creases::splits_work`]. No parameters if it has no zero on the segment.
     fn knots(&self, seg: &Seg) -> (Vec<(f64, f64)>, f64, usize) {
         let f = |t: f64| (t, self.at(seg.eval(t)));
         match self {
@@ -154,7 +152,8 @@ impl Level {
         }
     }
 
-    /// The ends of parts of a segment on which the function has at most one zero, by its enclosures; `None` if they do not suffice.
+    /// The ends of parts of a segment on which the function has at most one zero, by its enclosures; `None` if they do not suffice. On
+    /// a part, `d[0]` bounds the change of the function, for a circle that of the point: a distance changes no faster than the point.
     fn enclosed(&self, seg: &Seg, f: &impl Fn(f64) -> (f64, f64)) -> Option<Vec<(f64, f64)>> {
         /// Limits for the number of parts and their length: where the function touches zero, there is no end to halving.
         const MAX_PARTS: usize = 20_000;
@@ -172,7 +171,7 @@ impl Level {
             }
             let e = self.enclose(along)?;
             let stays = e.lo > 0.0 || e.hi < 0.0 || stays(e.d[0]);
-            // The slope differs from the mean slope by less than the bound of the second derivative.
+            // d[1] bounds half the second derivative, so the slope differs from the mean slope by at most 2·d[1].
             let goes_one_way = (to.1 - from.1).abs() > 2.0 * e.d[1];
             let undefined = from.1.is_nan() || to.1.is_nan();
             if stays || goes_one_way || undefined || to.0 - from.0 < SHORTEST {
@@ -192,7 +191,7 @@ fn circle<S: Real>([x, y]: [S; 2], center: Point, radius: f64) -> S {
     ((x - center.x).hypot(y - center.y) - radius.abs()) * radius.signum()
 }
 
-/// The size of the rounding errors of a function with these values on a segment.
+/// The size of the rounding errors of a function with these values on a segment. Far from the origin, coordinates cancel.
 fn noise(seg: &Seg, knots: &[(f64, f64)]) -> f64 {
     let largest = knots.iter().map(|k| k.1.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
     let size = seg.bounding_box().size();
@@ -222,6 +221,7 @@ fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg
         Seg::Arc(s) if level(s.center).abs() > 1.000_001 * along(s.a).hypot(along(s.b)) => return Vec::new(),
         Seg::Arc(s) => {
             let first = along(s.b).atan2(along(s.a));
+            // More half turns than a start and a sweep can reach.
             (-8..=8).map(|k| (first + f64::from(k) * std::f64::consts::PI - s.start) / s.sweep).collect()
         }
     };
@@ -318,11 +318,11 @@ pub struct Creases {
     items: Vec<Crease>,
 }
 
-/// The work of finding the crossings of a segment with a straight crease, in evaluations of a net.
+/// The work of finding the crossings of a segment with a straight crease, in evaluations of a bicubic net.
 const STRAIGHT_WORK: f64 = 1.0;
 
 impl Creases {
-    /// The work of [`splits`](Self::splits) for a map of `work` per evaluation, in evaluations of a net.
+    /// The work of [`splits`](Self::splits) for a map of `work` per evaluation, in evaluations of a bicubic net.
     pub(crate) fn splits_work(&self, seg: &Seg, work: f64) -> f64 {
         let of = |c: &Crease| match (&c.level, seg) {
             (Level::Line { .. } | Level::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => STRAIGHT_WORK,

@@ -149,7 +149,7 @@ impl Lattice {
         out
     }
 
-    /// The patch of one cell.
+    /// The patch of one cell. A polynomial patch takes displacements, a rational one homogeneous points.
     fn patch(&self, [ci, cj]: [usize; 2]) -> Patch {
         let cell = |a: f64, size: f64, c: usize, n: usize| {
             (a + size * (c as f64 / n as f64), a + size * ((c + 1) as f64 / n as f64))
@@ -395,7 +395,7 @@ impl Map for LatticeMap {
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         let mut all: Vec<Point> = self.cell(q).is_none().then_some(q).into_iter().collect();
         for (c, patch) in self.patches.iter().enumerate() {
-            // Points on a border count on both its sides.
+            // Points on a border count on both its sides: `near` is a margin for rounding, as in `LatticeInverse::new`.
             let (i, j, near) = (c % self.cells[0], c / self.cells[0], 1e3 * (self.inside.x1 - self.region.x1));
             let b = patch.rect().inflate(near, near);
             let within = |v: f64, lo: f64, hi: f64, at: usize, n: usize| {
@@ -413,10 +413,10 @@ impl Map for LatticeMap {
     }
 
     fn detail(&self, area: Rect) -> Option<f64> {
-        self.patches[0].detail(area)
+        self.patches[0].detail(area) // An estimate: other cells may have another degree.
     }
 
-    /// The inverse by Newton's method over the region, or up to half its size outside if the map is extended; see [`NewtonInverse`].
+    /// The inverse by Newton's method over the region, enlarged by half its size on every side if the map is extended.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         if let Some(m) = self.affine {
             return AffineMap(m).inverse();

@@ -4,15 +4,15 @@
 //! steps x ← x + J⁻¹(q − F(x)) run from the center of the cell until they no longer change x. The answer is accepted if
 //!
 //! 1. the residual |F(x) − q| is at rounding level,
-//! 2. x lies in the box, or outside by less than the stated reach,
+//! 2. x lies in the box, or outside it by at most the stated reach,
 //! 3. β·L·η ≤ ½, with β = ‖J(x)⁻¹‖, η = |J(x)⁻¹(q − F(x))| and L a Lipschitz bound of the Jacobian: Kantorovich's condition
 //!    (L. V. Kantorovich 1948; Ortega & Rheinboldt, *Iterative Solution of Nonlinear Equations*, theorem 12.6.2), under which
 //!    a solution exists within 2η of x and is the only one within about 1/(βL). On a fold β is unbounded and the test fails.
 //!    L is measured between neighbouring starting points and doubled: a bound for maps that the grid resolves.
 //!
 //! The inverse is undefined (NaN) at every other point. If the map folds, a point can have several preimages. Those in the *core*
-//! (the part of the box that the map is designed for) take precedence; outside the core, only sheets with the orientation of the
-//! core's center count, and of those the preimage nearest to the core is chosen.
+//! (the part of the box that the map is designed for) or within the reach of it take precedence; outside, only sheets with the
+//! orientation of the core's center count, and of those the preimage nearest to the core is chosen.
 
 use super::batches::{Target, broyden, by_rounds};
 use super::{Batches, Cost, Crease, CreaseKind, Creases, Jet, Level, Map, Searches, detail_in};
@@ -200,7 +200,6 @@ impl NewtonInverse {
         self.search_by(&*self.map, q, accept)
     }
 
-    /// Charges the work of a search.
     fn charged(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
         search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
@@ -371,8 +370,8 @@ fn solve(j: &Jet, v: Vec2) -> Option<Vec2> {
     out.is_finite().then_some(out)
 }
 
-/// The work of one point of the inverse, as a multiple of the map's: a dozen jets with the steps around them, where there is a preimage.
-/// Searches charge the rest.
+/// The work of one point of the inverse, as a multiple of the map's, where there is a preimage: a dozen jets with the steps around them, at
+/// 0.4 each. [`Search::spend`] charges the jets beyond these.
 pub(crate) const INVERSE_WORK: f64 = 5.0;
 
 impl Map for NewtonInverse {
@@ -387,6 +386,7 @@ impl Map for NewtonInverse {
 
     fn jets(&self, qs: &[Point], out: &mut [Jet]) {
         match self.map.cost().batches {
+            // Derivatives that are differences of values cost more than values.
             Some(map) if map.differentiates() => out.copy_from_slice(&self.jets_by_values(qs)),
             Some(_) => out.copy_from_slice(&self.jets_by_rounds(qs)),
             None => qs.iter().zip(out).for_each(|(q, o)| *o = self.jet(*q)),
@@ -403,7 +403,7 @@ impl Map for NewtonInverse {
         Some(self.map.clone())
     }
 
-    /// The detail of the map, as far as the inverse shrinks it: by its least stretch, and once more by the ratio of the stretches.
+    /// The map's detail times σ·(σ/Σ), with σ and Σ its least and largest stretch: its least size in the image, and smaller for shear.
     fn detail(&self, area: Rect) -> Option<f64> {
         let jet = self.solve(area.center())?;
         let square = jet.dx.hypot2() + jet.dy.hypot2();
@@ -529,7 +529,7 @@ impl OnBranch {
 
 impl Map for OnBranch {
     fn cost(&self) -> Cost<'_> {
-        Cost { searches: None, ..self.whole.cost() }
+        Cost { searches: None, ..self.whole.cost() } // Its searches are charged to the budget of the whole inverse.
     }
 
     fn jet(&self, q: Point) -> Jet {

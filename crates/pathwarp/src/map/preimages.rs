@@ -1,7 +1,7 @@
 //! All preimages of a point under maps whose coordinates are quotients of polynomials.
 //!
-//! With F = (X, Y)/W, the preimages of q are the common zeros of g₁ = X − qₓ·W and g₂ = Y − q_y·W (Sederberg, Goldman and Wang,
-//! equations 3 and 4), at most 2mn of them for degree m×n. Substituting 1/u for u takes |u| ≥ 1 to |u| ≤ 1, so four squares hold the
+//! With F = (X, Y)/W, the preimages of q are the common zeros of g₁ = X − qₓ·W and g₂ = Y − q_y·W (Sederberg, Goldman, Wang,
+//! CAGD 44, 2016, equations 3 and 4), at most 2mn for degree m×n. Substituting 1/u for u takes |u| ≥ 1 to |u| ≤ 1: four squares hold the
 //! plane. In each, both polynomials are subdivided in Bernstein form, whose coefficients bound them: a square on which one of them, or of
 //! their combinations by the inverse Jacobian, has coefficients of one sign has no zero; one on which the Jacobian of these combinations
 //! is diagonally dominant has at most one, which Newton's method finds (E. Sherbrooke, N. Patrikalakis, *Computation of the solutions of
@@ -121,7 +121,7 @@ pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>
     qs.iter().map(all).collect()
 }
 
-/// Returns the Bernstein coefficients over [−1, 1] of a polynomial in powers: cₖ counts [xᵏ](1 − x)ⁿ⁻ⁱ(1 + x)ⁱ / C(n, k) times in the ith.
+/// Returns the Bernstein coefficients over [−1, 1] of Σ cₖ·xᵏ: the ith is Σₖ cₖ·tᵢₖ / C(n, k), with Σₖ tᵢₖ·xᵏ = (1 − x)ⁿ⁻ⁱ(1 + x)ⁱ.
 fn bernstein(powers: &[Vec2]) -> Vec<Vec2> {
     let n = powers.len() - 1;
     let product = |ones: usize| {

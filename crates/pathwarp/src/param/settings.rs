@@ -15,7 +15,7 @@ pub struct Settings<'a> {
     params: &'a [Param],
     args: &'a Args,
     frame: &'a Frame,
-    /// `true` if numbers may be out of range.
+    /// `true` if ranges are not checked.
     any_range: bool,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Settings<'a> {
         Ok(())
     }
 
-    /// Creates settings with the defaults alone. Lengths may be out of range in this frame. `args` must be empty.
+    /// Creates settings with the defaults alone; `args` must be empty. Ranges are not checked, as lengths may exceed them in this frame.
     pub(crate) fn defaults(params: &'a [Param], args: &'a Args, frame: &'a Frame) -> Self {
         Self { params, args, frame, any_range: true }
     }
@@ -270,7 +270,7 @@ impl<'a> Settings<'a> {
 
     fn path_from(&self, name: &str, text: &str) -> Result<NamedPath, Error> {
         if let Some(p) = self.args.looked_up(text) {
-            return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() });
+            return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() }); // A reference, resolved before.
         }
         let outline = if let Some(circle) = circle::circle(text, self.frame) {
             circle.map_err(|e| Error::usage(name, text, e))?

@@ -9,7 +9,7 @@ use kurbo::{BezPath, PathEl, Point};
 /// as the fit chases noise.
 pub const RESOLUTION: f64 = 1e-13;
 
-/// The relative rounding of sums of errors.
+/// The share by which rounding may lift a sum of errors above the tolerance.
 pub(super) const SUMMED: f64 = 1e-9;
 
 /// Statistics of a refitted path.
@@ -56,7 +56,8 @@ impl PathReport {
         out
     }
 
-    /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest coordinate of the image.
+    /// Accounts for coordinates so large that their rounding exceeds the tolerance. `image` is the largest coordinate of the image. If the
+    /// tolerance is missed and no point for it is known, the path's first point becomes unresolved.
     pub fn account_for_rounding(&mut self, outline: &Outline, image: f64, tolerance: f64) {
         let resolution = RESOLUTION * outline.extent().max(image);
         let mut missed = self.max_error > tolerance * (1.0 + SUMMED);
@@ -79,7 +80,7 @@ impl PathReport {
         self.resolution = larger(self.resolution, part.resolution);
     }
 
-    /// Adds the fitter's report on some pieces.
+    /// Adds the fitter's report on some pieces; `share` is left to the caller.
     pub(super) fn add_pieces(&mut self, part: Report) {
         self.add_error(part.max_error, part.assurance);
         self.unresolved.extend(part.unresolved);
@@ -92,7 +93,6 @@ impl PathReport {
     }
 }
 
-/// The larger of two numbers that may be missing.
 fn larger(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     [a, b].into_iter().flatten().reduce(f64::max)
 }

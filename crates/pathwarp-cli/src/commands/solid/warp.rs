@@ -25,7 +25,7 @@ pub(super) fn command(info: &Info) -> Command {
     described(info).args(model_args())
 }
 
-/// Deforms models by a recipe, which was read from the file `from` if there is one.
+/// Deforms models by a recipe, which was read from the file `from` if there is one. `own` are the options that only solids have.
 pub(super) fn run(
     registry: &Registry3,
     recipe: &Recipe,
@@ -53,14 +53,14 @@ pub(super) fn run(
     }
 }
 
-/// Plans the outputs of all models before anything is read.
+/// Plans the outputs of all models before anything is read. `--in-place` is impossible.
 fn plan(
     registry: &Registry3,
     recipe: &Recipe,
     options: &CommonOptions,
     from: Option<&Path>,
 ) -> Result<Vec<Job>, Failure> {
-    /// The result of a drawing is a model.
+    /// Corrects the name of an output in a folder: from a drawing, an OBJ model is made.
     fn result(target: PathBuf) -> PathBuf {
         let is_drawing =
             target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
@@ -74,7 +74,7 @@ fn plan(
 }
 
 impl Work<'_> {
-    /// Deforms the models one after another, each with all threads, and finishes each before the next.
+    /// Deforms and finishes model after model, each with all threads and the whole allowance. An error that all would meet ends the run.
     fn all(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
         let options = self.options;
         let _empty_ones_removed_at_the_end = Folders::create(options, jobs)?;
@@ -116,7 +116,7 @@ impl Work<'_> {
         Ok(Status::partial_if(partial || !failed.is_empty()))
     }
 
-    /// Prepares the recipe and the report, which is an object for one model, and a list for several.
+    /// Prepares the files of the whole run: the recipe and the report, an object for one model, a list for several.
     fn common(&self, given: &Given, reports: &[String], several: bool) -> Result<Vec<PendingFile>, Failure> {
         let mut files = Vec::new();
         if let Some(file) = &self.options.write_recipe {

@@ -1,4 +1,4 @@
-//! The bend as a map: the pieces of the skeleton, and the artwork's position on them.
+//! The bend as a map: the pieces of the skeleton, and the artwork's position on them. The paper is that of Chang & Rockwood, as in `super`.
 
 use crate::error::show;
 use crate::map::bspline::bernstein;
@@ -10,7 +10,7 @@ use crate::param::Letter;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point, QuadBez, Rect, Vec2};
 use std::sync::Arc;
 
-/// The map from the artwork to the strip: distance s = k·x + origin, height d = up·(base − y).
+/// The map from the artwork to the strip: distance s = k·x + origin, with k > 0, and height d = up·(base − y).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ToStrip {
     pub(super) k: f64,
@@ -88,7 +88,8 @@ impl BendMap {
     }
 
     /// Returns a warning if the artwork folds over itself. `points` are samples of the outlines of letters, each with its letter, or of the
-    /// box of other artwork ([`edges`]). The determinant is linear in the height, and so least at the highest or lowest points.
+    /// box of other artwork ([`edges`]); those of a letter follow one another. The determinant is linear in the height, and so least at the
+    /// highest or lowest points.
     pub(super) fn fold<'a>(&self, points: impl Iterator<Item = (Point, Option<&'a Letter>)>) -> Option<String> {
         let det = |x: f64, y: f64| self.jet(Point::new(x, y)).det() / (self.to_strip.k * self.to_strip.up);
         let mut worst: Option<(f64, Point)> = None;
@@ -143,12 +144,12 @@ pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
 }
 
 impl Map for BendMap {
-    /// A jet on a curve takes less than half as long as one of a net.
+    /// A jet on a curve takes less than half as long as one of a bicubic net, the unit of work.
     fn cost(&self) -> Cost<'_> {
-        /// Number of pieces whose mean work is taken for all.
+        /// Number of pieces whose largest work is taken for all.
         const FIRST: usize = 16;
         const CURVE: f64 = 0.4;
-        const SINGLY: f64 = 3.0;
+        const SINGLY: f64 = 3.0; // Jets take longer one by one than in a batch.
         let work = self.pieces.iter().take(FIRST).map(|p| p.work()).fold(1.0, f64::max);
         Cost { jet: if work > 1.0 { SINGLY * work } else { CURVE }, ..Cost::new(work) }
     }
@@ -188,7 +189,7 @@ impl Map for BendMap {
     }
 
     fn detail(&self, _: Rect) -> Option<f64> {
-        Some(f64::INFINITY)
+        Some(f64::INFINITY) // Between creases, every piece is one simple curve.
     }
 }
 
@@ -252,8 +253,9 @@ impl Map for OnPiece {
 pub(super) enum Strip {
     /// F = p + s·t + d·n.
     Straight { p: Point, t: Vec2, n: Vec2 },
-    /// F = C(u(s)) + d·S, where S is the unit normal plus `mitres` (the corners' mitres minus the normals), which fade from the ends:
-    /// linearly, or smoothly if `smooth`, where they vanish within the piece. s is the length of the offset curve at height `even`.
+    /// F = C(u(s)) + d·S, where S is the unit normal plus shares of `mitres`, the differences between the mitres at the two ends and the
+    /// normals there. A share falls to 0 at the other end: linearly, or quadratically if `smooth`, so that a straight side can follow.
+    /// s is the length of the offset curve at height `even`.
     Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
     /// The paper's polynomial F(u, v) with v = d / unit. u comes from the arc length by `table`, or without one is s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
@@ -266,13 +268,13 @@ pub(super) struct SkeletonPiece {
     pub(super) from: f64,
     /// The distance of its start.
     pub(super) anchor: f64,
-    /// Its length.
     pub(super) length: f64,
     pub(super) strip: Strip,
 }
 
 impl SkeletonPiece {
-    /// Returns the work of a point. An arc takes several sines and cosines, and the de Casteljau steps of a ribbon twice as long as a net.
+    /// Returns the work of a point, in points of a bicubic net. An arc takes several sines and cosines; the de Casteljau steps of a ribbon
+    /// take twice as long as a net.
     pub(super) fn work(&self) -> f64 {
         match &self.strip {
             Strip::Normals { spine, .. } if matches!(spine.curve, Curve::Seg(Seg::Arc(_)) | Curve::Bezier(_)) => 2.0,
@@ -293,7 +295,7 @@ impl SkeletonPiece {
         }
     }
 
-    /// Returns the side S at distance `s`, the normal of `t` blended into the mitres, and the derivative of the blend.
+    /// Returns the side S at distance `s`, the normal of `t` plus the shares of the mitres, and the derivative of these shares.
     fn side(&self, t: Vec2, [start, end]: &[Vec2; 2], smooth: bool, s: f64) -> (Vec2, Vec2) {
         let share = s / self.length;
         let (a, b) = (1.0 - share, share);
@@ -414,7 +416,6 @@ impl Curve {
     }
 }
 
-/// Returns the path along these points.
 pub(super) fn polyline(points: impl Iterator<Item = Point>) -> BezPath {
     let mut out = BezPath::new();
     points.enumerate().for_each(|(i, p)| if i == 0 { out.move_to(p) } else { out.line_to(p) });
@@ -471,9 +472,9 @@ impl Spine {
         MovingFrame { p: self.curve.eval(u), t: v / speed, bend: v.cross(self.curve.second(at)) / speed.powi(3) }
     }
 
-    /// Returns a parameter, with the derivative and its length there: `u`, or a parameter further inside if the speed vanishes at `u`.
+    /// Returns a parameter, and the derivative there with its length. It is `u`, or a little further inside if the speed vanishes.
     fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
-        /// Distance to that parameter.
+        /// Distance from `u` to the other parameter.
         const ASIDE: f64 = 1e-5;
         let v = self.curve.deriv(u);
         let speed = v.hypot();
@@ -490,8 +491,8 @@ impl Spine {
 // a segment:
 //
 // `p[i,j] = p[i,j−1] + u·(p[i+1,j−1] − p[i,j−1]) + v·s[i,j] (+ w·t[i,j] in space)`, where s and t are the *handles* of level j
-// (equations 2 and 3). Terms with v stay linear in v through all levels: in the plane F(u, v) = C(u) + v·S(u), where C is the Bézier
-// curve of the control points, and S is the sum, over the levels j, of the Bézier curves of degree n−j of their handles.
+// (the paper's equations 2 and 3). Terms with v stay linear in v through all levels: in the plane F(u, v) = C(u) + v·S(u), where C is
+// the Bézier curve of the control points, and S is the sum, over the levels j, of the Bézier curves of degree n−j of their handles.
 
 /// Returns the image of u under the affine map of one step: p + u₀·(q − p) + Σ uₖ·hₖ.
 fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: &[S]) -> [S; D] {
@@ -518,7 +519,6 @@ fn eval<'a, S: Real, const D: usize>(
 /// A Bézier piece with its handles.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ribbon {
-    /// The control points.
     points: Vec<Point>,
     /// Handles s at the control points p, which stand for the maps p + v·s; or none.
     at_points: Vec<[f64; 2]>,

@@ -7,7 +7,8 @@
 //!
 //! The default handle of a B-spline's point is the mitre of the polygon's sides, so that the control points of a parallel are the
 //! corners of the polygon's offset (W. Tiller and E. G. Hanson, *Offsets of two-dimensional profiles*, IEEE CG&A 4, 1984). On an
-//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, as for normals.
+//! interpolated skeleton it is the unit normal, and S is the C¹ cubic with S' = −(S·C″)/|C'|²·C' at the points, as for normals: `eased`
+//! returns the inner control point for that slope at an end, from the handle there and the sides of the curve's control polygon.
 
 use super::map::{Curve, normal};
 use crate::error::{Error, show};
@@ -18,7 +19,7 @@ use kurbo::{Point, Vec2};
 /// The kind of spline that the anchors of a path make.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Spline {
-    /// A uniform B-spline of this degree has them as control points.
+    /// A uniform B-spline of this degree runs near them: they are its control points.
     Near(usize),
     /// A C² cubic spline runs through them, with centripetal parameters.
     Through,
@@ -43,8 +44,7 @@ impl Part {
 }
 
 impl Spline {
-    /// Returns the pieces. `given` has a handle for every anchor, or `None` for the default handle, which is `unit` long. An empty `given`
-    /// stands for default handles at all anchors.
+    /// Returns the pieces. `given` has a handle for every anchor, or `None` for the default one, `unit` long; if empty, all are defaults.
     pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
         let (points, closed) = (sub.anchors(), sub.closed);
         let n = points.len();
@@ -103,7 +103,7 @@ pub(super) fn directions(points: &[Point], closed: bool) -> Vec<Vec2> {
     legs.iter().map(fill).collect()
 }
 
-/// Returns the mitre of two unit normals, which has the height 1 over the lines of both. Beyond a right angle it does not grow.
+/// Returns the mitre of two unit normals: the vector whose component along either is 1. At turns over a right angle its length stays √2.
 pub(super) fn mitre(n: Vec2, m: Vec2) -> Vec2 {
     let c = 1.0 + n.dot(m);
     if c < 1e-9 { n } else { (n + m) / c.max(c.sqrt()) }

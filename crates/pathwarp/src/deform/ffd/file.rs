@@ -12,9 +12,9 @@
 //! }
 //! ```
 //!
-//! `points` has rows from the top, each from left to right. A point is x, y, in user units, and, unless it is 1, the weight. A row
-//! has degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may be omitted otherwise. `region` is x, y, width
-//! and height of the box that the lattice deforms, by default the artwork's.
+//! `points` has rows from the top, each from left to right. A point is x and y in user units, and the weight, which may be
+//! negative, unless it is 1. A row has degree + cells points; `cells` above 1 mean uniform clamped B-splines, and may be omitted
+//! otherwise. `region` is x, y, width and height of the box that the lattice deforms, by default the artwork's.
 
 use super::save::{MAX_CELLS, MAX_DEGREE};
 use crate::error::Error;
