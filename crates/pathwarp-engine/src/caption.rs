@@ -28,8 +28,8 @@ pub fn frame(document: &Document) -> Frame {
 /// Returns the drawing with captions, read by the options `read`, and warnings about letters that no font has. The group of the k-th is
 /// called `caption-k`, and its letters `caption-k-1` and so on, with hyphens before the numbers if the drawing has such names.
 ///
-/// [`Failure::Usage`] without words, [`Failure::Library`] for a wrong value or unknown family, else [`Failure::Input`].
-/// [`Failure`] if a value is wrong, a font is missing, or the words are too many.
+/// # Errors
+/// [`Failure::Usage`] without words, [`Failure::Library`] for a wrong value or unknown family, and [`Failure::Input`] for too many words.
 pub fn captioned(
     document: &Document,
     steps: &[Step],

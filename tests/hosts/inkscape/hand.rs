@@ -52,7 +52,7 @@ fn bending_by_hand_comes_back_to_inkscape() {
     let line = recipe(&bent, "b").expect("the object remembers its steps");
     assert_eq!(recipe(&bent, "a"), None, "what is not selected stays");
     assert_near(&numbers(&bent, "a"), &numbers(&source, "a"), "a");
-    // Those words on the command line have the same effect.
+    // The words of the effect, typed on a command line, give its result.
     let words: Vec<String> = line
         .split('\'')
         .enumerate()

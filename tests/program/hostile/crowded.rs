@@ -53,7 +53,6 @@ fn outlines_of_strokes_are_counted() {
 fn letters_are_counted() {
     let dashed = "<text y='50' font-size='50' stroke='red' stroke-width='3' stroke-dasharray='.1'>";
     let folder = Folder::with(&[("a.svg", &svg(&format!("{dashed}{}</text>", "aé&amp;@".repeat(2500))))]).whole();
-    // Which of the two limits comes first depends on the outlines of the font.
     refused(&folder, &["swirl", "a.svg", "-o", "o.svg"], &["work"]);
     refused(&folder, &FLAT, &["work"]);
     let many: String = (0..14_000).map(|i| format!("<text y='{i}'>ab</text>")).collect();

@@ -87,7 +87,7 @@ fn page(mut command: Command) -> String {
     let is_brief = |a: &Arg| is_shared(a) && !COMMON.contains(&a.get_id().as_str());
     for heading in headings {
         let rows = args.iter().filter(|a| self::heading(a) == heading && !is_brief(a));
-        out.push_str(&section(heading, rows.copied()));
+        out.push_str(&section(heading, rows.copied(), false));
     }
     out.push_str(&other_options(&args.iter().copied().filter(|a| is_brief(a)).collect::<Vec<_>>()));
     let after = command.get_after_long_help().or(command.get_after_help()).map(ToString::to_string);
@@ -120,9 +120,9 @@ fn heading(arg: &Arg) -> &str {
     }
 }
 
-/// Formats options under a heading; empty without options.
-fn section<'a>(heading: &str, args: impl Iterator<Item = &'a Arg>) -> String {
-    let rows: String = args.map(|a| row(a, TASKS.iter().any(|t| t.0 == heading))).collect();
+/// Formats options under a heading, with all of their texts if `is_whole`; empty without options.
+fn section<'a>(heading: &str, args: impl Iterator<Item = &'a Arg>, is_whole: bool) -> String {
+    let rows: String = args.map(|a| row(a, is_whole)).collect();
     if rows.is_empty() { rows } else { format!("\n{heading}:\n{rows}") }
 }
 
@@ -145,7 +145,7 @@ pub(super) fn options(args: impl Iterator<Item = Arg>) -> String {
     let mut out = String::from("The options that most commands share, by task.\n");
     for (task, names) in TASKS {
         let find = |name: &&str| args.iter().find(|a| a.get_id() == *name);
-        out.push_str(&section(task, names.iter().filter_map(find).copied()));
+        out.push_str(&section(task, names.iter().filter_map(find).copied(), true));
     }
     out
 }

@@ -203,10 +203,9 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         return Err(Failure::Usage(said).into());
     }
     let mut command = build_for(registry, first.get(1));
-    let asks = |words: &[&str]| first.iter().any(|a| words.iter().any(|w| a == w));
-    if asks(&["-h"]) {
+    if first.iter().any(|a| a == "-h") {
         command = help::shortened(command, &first[1..], "pathwarp");
-    } else if asks(&["--help", "help"]) {
+    } else if first.iter().any(|a| a == "--help") || first.get(1).is_some_and(|a| a == "help") {
         command = help::paged(command, &first[1..]);
     }
     let matches = command

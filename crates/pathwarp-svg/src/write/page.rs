@@ -46,17 +46,16 @@ fn adapted_page(input: &WriteInput<'_>) -> Option<Rect> {
             let margin = margin(input, page);
             artwork(input, None)?.inflate(margin, margin)
         }
-        PageFit::Sheet(sides) => sheet(input, sides)?,
+        PageFit::Sheet(sides) => sheet(input, sides, artwork(input, None)?),
     };
     (shown.width() > 0.0 && shown.height() > 0.0 && shown.is_finite() && shown != page).then_some(shown)
 }
 
 /// A sheet of paper with sides in mm around the artwork, turned as the artwork needs.
-fn sheet(input: &WriteInput<'_>, [a, b]: [f64; 2]) -> Option<Rect> {
-    let all = artwork(input, None)?;
+fn sheet(input: &WriteInput<'_>, [a, b]: [f64; 2], all: Rect) -> Rect {
     let is_wide = all.width() > all.height();
     let sides = if is_wide { (a.max(b), a.min(b)) } else { (a.min(b), a.max(b)) };
-    Some(Rect::from_center_size(all.center(), Size::from(sides) * input.drawing.units_per_mm()))
+    Rect::from_center_size(all.center(), Size::from(sides) * input.drawing.units_per_mm())
 }
 
 /// The page of [`PageFit::Auto`]. Returns `None` if it does not change.
@@ -163,7 +162,8 @@ pub(super) fn change(input: &WriteInput<'_>) -> Option<(Rect, Rect)> {
 /// Measures the overhang over a sheet of paper, or over a page that is not adapted, compared to the original.
 pub(super) fn overhang(input: &WriteInput<'_>) -> Option<Overhang> {
     if let PageFit::Sheet(sides) = input.options.page {
-        let (all, page) = (artwork(input, None)?, sheet(input, sides)?);
+        let all = artwork(input, None)?;
+        let page = sheet(input, sides, all);
         let [x, y] = [page.x0 - all.x0, page.y0 - all.y0].map(|v| v.max(0.0));
         let share = (x / page.width()).max(y / page.height());
         return (share > VISIBLE).then_some(Overhang { by: [x, y, x, y], share });

@@ -680,15 +680,15 @@ const LOCAL: Pairs = &[
 
 /// Reads the deformation from text.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
-    let (eye, mut built) = (eye(s)?, built(s)?);
+    let eye = eye(s)?;
+    let mut built = built(s, eye)?;
     let rod = s.last("sight-hole").map(|name| sight::rod(eye, &s.bounds(), &built, name));
     built.saves.extend(rod);
     Ok(built)
 });
 
 /// Builds the map for these settings.
-fn built(s: &Settings3<'_>) -> Result<Built3, Error> {
-    let eye = eye(s)?;
+fn built(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
     let listed = |name: &str| -> Result<Vec<DVec3>, Error> {
         let words = s.words(name).into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
         words.map(|w| s.point_in(name, w)).collect()

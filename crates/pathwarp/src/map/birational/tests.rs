@@ -41,7 +41,7 @@ fn the_papers_quadrilateral() {
         let by_hand = Point::new((3.0 * x - 4.0 * y) / (36.0 - 4.0 * y), 2.0 * y / (20.0 - x));
         assert!(back.point(Point::new(x, y)).distance(by_hand) < 1e-14);
     }
-    // The same points with the default normalisation: a point has other parameters, but the condition holds.
+    // Under the default normalisation the points have other parameters, but the condition holds.
     let own = build(&[p00, p01], &[p10, p11]).unwrap();
     let rows = &own.pieces[0].rows;
     let (w0, w1) = (&rows[0].weights, &rows[1].weights);
