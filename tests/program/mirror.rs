@@ -181,3 +181,81 @@ fn a_photograph_of_an_old_drawing_is_restored() {
     }
     assert!(all > 9000 && f64::from(same) > 0.98 * f64::from(all), "{same} of {all}");
 }
+
+/// Artwork on the front of a cylinder, seen from beside: a wall of it hides another. Shapes, strokes and pictures are compared with rays.
+#[test]
+fn a_view_shows_what_the_camera_sees_first() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    let inside = r##"<rect x="20" y="20" width="200" height="200" fill="#fd8"/><g fill="#48c"><path d="M40,40h70v70h-70z"/><circle cx="165"
+ cy="75" r="38" stroke="#222" stroke-width="6"/><circle cx="75" cy="165" r="38" fill="none" stroke="#a22" stroke-width="10"/></g><path
+ d="M130,130h70v70h-70z" fill="#2a6"/><path d="M30,30L210,210" stroke="#808" stroke-width="9" stroke-dasharray="20 9" fill="none"/>"##;
+    let svg = |view: &str, inside: &str| {
+        format!(r#"<svg xmlns="http://www.w3.org/2000/svg" width="240" height="240" viewBox="{view}">{inside}</svg>"#)
+    };
+    fs::write(file("photo.svg"), svg("20 20 200 200", inside)).unwrap();
+    expect_code(0, &["render", &file("photo.svg"), "-o", &file("photo.png"), "--width", "800"].map(str::to_owned));
+    fs::write(file("shapes.svg"), svg("0 0 240 240", inside)).unwrap();
+    let photo = r#"<image x="20" y="20" width="200" height="200" href="photo.png"/>"#;
+    fs::write(file("pictures.svg"), svg("0 0 240 240", photo)).unwrap();
+    let source = Picture::new(&fs::read(file("shapes.svg")).unwrap(), 4.0);
+    // x right, y down, z away from the viewer. The cylinder touches the drawing in its middle.
+    let (radius, distance, middle) = (160.0, 300.0, [120.0, 120.0, 0.0]);
+    let (eye, axis) = (add(middle, [0.0, 0.0, -1.0], distance), add(middle, [0.0, 0.0, 1.0], radius));
+    for (name, camera) in
+        [("shapes", [900.0, -250.0, 200.0]), ("shapes", [-700.0, 400.0, 90.0]), ("pictures", [900.0, -250.0, 200.0])]
+    {
+        let [x, y, z] = camera;
+        let view = format!("{x},{y},{}", -z);
+        let (from, out) = (file(&format!("{name}.svg")), file("out.svg"));
+        let words =
+            ["anamorph", &from, "--distance", "300", "--onto", "cylinder:radius=160", "--view", &view, "-o", &out];
+        expect_code(0, &words.map(str::to_owned));
+        let drawn = Picture::new(&fs::read(&out).unwrap(), 2.0);
+        let sight = add(middle, camera, -1.0);
+        let reach = dot(sight, sight).sqrt();
+        let forward = sight.map(|v| v / reach);
+        let flat = forward[0].hypot(forward[2]);
+        let right = [forward[2] / flat, 0.0, -forward[0] / flat];
+        let down = std::array::from_fn(|i| {
+            forward[(i + 1) % 3] * right[(i + 2) % 3] - forward[(i + 2) % 3] * right[(i + 1) % 3]
+        });
+        // The points of the artwork on a ray, the nearer one first.
+        let seen = |v: Point| {
+            let ray = add(add(sight, right, v.x - middle[0]), down, v.y - middle[1]);
+            let start = add(camera, axis, -1.0);
+            let (a, b, c) = (
+                ray[0] * ray[0] + ray[2] * ray[2],
+                ray[0] * start[0] + ray[2] * start[2],
+                start[0] * start[0] + start[2] * start[2] - radius * radius,
+            );
+            let root = (b * b - a * c).sqrt();
+            [-b - root, -b + root].into_iter().filter_map(move |k| {
+                let q = add(camera, ray, k / a);
+                let normal = [q[0] - axis[0], 0.0, q[2] - axis[2]];
+                let p = add(eye, add(q, eye, -1.0), distance / (q[2] + distance));
+                let on_artwork = p[..2].iter().all(|v| (20.0..220.0).contains(v));
+                (on_artwork && dot(normal, add(q, eye, -1.0)) < 0.0).then(|| Point::new(p[0], p[1]))
+            })
+        };
+        let (mut same, mut behind, mut all, mut folded) = (0, 0, 0, 0);
+        for k in 0..300 * 300 {
+            let v = drawn.origin + pathwarp::kurbo::Vec2::new(f64::from(k % 300), f64::from(k / 300)) * 1.37;
+            let points: Vec<Point> = seen(v).collect();
+            let (Some(first), Some(last), Some(color)) = (points.first(), points.last(), drawn.at(v)) else { continue };
+            let has =
+                |p: &Point| source.at(*p).is_some_and(|want| color.iter().zip(want).all(|(a, b)| a.abs_diff(b) < 40));
+            all += 1;
+            same += i32::from(has(first));
+            folded += i32::from(points.len() == 2);
+            behind += i32::from(points.len() == 2 && has(last));
+        }
+        // Edges are a pixel wide, and many on a narrow picture.
+        assert!(
+            all > 4000 && folded > 500 && f64::from(same) > 0.95 * f64::from(all),
+            "{name} {view}: {same} of {all}, {folded}"
+        );
+        // The colours tell the two walls apart.
+        assert!(f64::from(behind) < 0.7 * f64::from(folded), "{name}: {behind} of {folded}");
+    }
+}

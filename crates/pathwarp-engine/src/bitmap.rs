@@ -223,7 +223,8 @@ fn coarsest((width, height): (f64, f64), among: usize) -> Vec2 {
 /// A length that exceeds whole pixels by less than this is rounding error.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Returns the map's analytic inverse if it holds on all of `area`, else Newton's method over it. Both count their evaluations.
+/// Returns the map's own inverse if it holds on all of `area`, or leads to a part of it that lies in front; else Newton's method over it.
+/// Both count their evaluations.
 pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Inverse {
     /// Reach beyond the area, as a fraction of its diagonal: the footprint of the pixels along its edge.
     const REACH: f64 = 0.02;
@@ -234,7 +235,12 @@ pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> I
         let at = |i: usize| (i as f64 + 0.5) / TRIED as f64;
         let places = (0..TRIED * TRIED).map(|k| (at(k % TRIED), at(k / TRIED)));
         let places = places.map(|(u, v)| area.origin() + Vec2::new(u * area.width(), v * area.height()));
-        places.filter(|p| map.point(*p).is_finite()).all(|p| inverse.point(map.point(p)).distance(p) < 1e-3 * diagonal)
+        let leads_back = |p: Point| {
+            let (image, near) = (map.point(p), 1e-3 * diagonal);
+            let q = inverse.point(image);
+            q.distance(p) < near || (area.inflate(near, near).contains(q) && map.point(q).distance(image) < near)
+        };
+        places.filter(|p| map.point(*p).is_finite()).all(leads_back)
     };
     let own = map.inverse().filter(returns);
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(map), area, REACH)) as Arc<dyn Map>;

@@ -373,6 +373,21 @@ fn check_placement(placement: &Placement, i: usize, is_first: bool, step: &Step)
 }
 
 impl BuiltRecipe {
+    /// Returns the outlines of the part of the artwork that other parts hide in a step's image, by the even-odd rule, so that this image is
+    /// within `tolerance`. `None` if no step hides anything, and after steps that do more than an affine map.
+    #[must_use]
+    pub fn hidden(&self, tolerance: f64) -> Option<Outline> {
+        let step = self.steps.iter().position(|s| s.hidden.is_some())?;
+        if self.placement != Placement::default() {
+            return None;
+        }
+        let before = self.steps[..step].iter().try_fold(Affine::IDENTITY, |before, s| match s.map.class() {
+            Class::Affine(m) => Some(m * before),
+            _ => None,
+        })?;
+        Some(self.steps[step].hidden.as_ref()?(tolerance).transformed(before.inverse()))
+    }
+
     fn new(steps: usize, budget: &Arc<Budget>) -> Self {
         Self {
             map: Chain::default(),

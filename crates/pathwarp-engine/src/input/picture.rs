@@ -183,8 +183,8 @@ impl FileArtwork for PictureArtwork {
         };
         warnings.extend(undefined.map(undefined_at));
         let orientation = fold::orientation(source.as_ref().map_or(&self.outline, |s| &s.outline), true, &*map);
-        warnings
-            .extend(orientation.folded_against(&orientation).map(|at| artwork::fold_warning("the picture", &[], at)));
+        let fold = orientation.folded_against(&orientation).filter(|_| built.steps.iter().all(|s| s.hidden.is_none()));
+        warnings.extend(fold.map(|at| artwork::fold_warning("the picture", &[], at)));
         let (natural, proportions) = self.natural_size(source.as_ref(), options)?;
         let (visible, size) = size(bounds, natural, options.image_size)?;
         let smaller = "give a smaller --size, or ";

@@ -18,6 +18,7 @@ use crate::report::{Fold, ReportedShape};
 use crate::units::units_per_px;
 use crate::{advice, meter};
 use pathwarp::budget::{Budget, Limit};
+use pathwarp::edit::Area;
 use pathwarp::fold::{self, Orientation, Survey};
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::map::{AffineMap, Map};
@@ -45,6 +46,9 @@ const SAME_SCALE: f64 = 1e-3;
 
 /// Resolution of bitmaps in a draft, in pixels per inch.
 const DRAFT_DPI: f64 = 24.0;
+
+/// Tolerance of the edge of what is hidden, as a share of the result's.
+const HIDDEN: f64 = 0.2;
 
 /// An SVG drawing. Its plane is root user space.
 pub struct SvgArtwork {
@@ -281,7 +285,8 @@ impl SvgArtwork {
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
         let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| k == 0);
-        let warp = warp.with_line(request.line.clone()).with_sight(sight);
+        let hidden = built.hidden(HIDDEN * tolerance).and_then(|o| Area::of(&o, true, HIDDEN * tolerance).ok());
+        let warp = warp.with_line(request.line.clone()).with_sight(sight).with_hidden(hidden.map(Arc::new));
         let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
         if self.paths.is_none() {
             return warp;
@@ -373,6 +378,9 @@ impl SvgArtwork {
         options: &WarpOptions,
         warped: &WarpedDocument,
     ) -> Result<(HashMap<&str, Fold>, Vec<String>), Error> {
+        if options.hidden.is_some() {
+            return Ok((HashMap::new(), Vec::new()));
+        }
         // Parts of a text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();

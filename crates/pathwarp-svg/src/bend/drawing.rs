@@ -138,7 +138,7 @@ fn warp_parts(
                 Some(one) => (one.clone(), &[][..]),
                 None => (shapes[i].outline.clone(), &contours[k][i][..]),
             };
-            part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]))
+            part::warp(&PartTask::new(p, outline, write, &context, &pieces[k][i]).without_hidden()?)
         })
     };
     let copies = each.iter().map(|b| b.options.copies.len()).max().unwrap_or_default();

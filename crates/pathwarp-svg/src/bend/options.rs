@@ -216,6 +216,8 @@ options! {
         /// Transforms of every shape to its copies before the warp, in root user space, including the identity for the original. A shape
         /// and its copies become one path, also in clip paths and masks. If empty, there is only the shape.
         pub copies: Vec<Affine> = Vec::new(), with_copies;
+        /// The part of the source that other parts hide in the image. It is cut out of fills, strokes and clip paths.
+        pub hidden: Option<Arc<Area>> = None, with_hidden;
         /// Letters to place one by one.
         pub letters: LetterPlaces = LetterPlaces::default(), with_letters;
         /// Treatment of bitmaps.

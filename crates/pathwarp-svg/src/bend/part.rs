@@ -149,7 +149,9 @@ fn bend_fill(t: &PartTask<'_>, bent: BentPath) -> Result<Filled, GeometryError> 
     let stroked = t.part.stroke.is_some() && t.part.role != PartRole::Clip;
     // With `Strokes::Keep`, each centre line has to stay one path, so only fills without a stroke are closed.
     let closes = !(stroked && t.options().strokes == Strokes::Keep);
-    let area = filled_area(t, t.finest).filter(|(a, _)| closes || a.is_empty());
+    let seen = if stroked { t.seen_fill()? } else { None };
+    let area = || filled_area(t, t.finest).filter(|(a, _)| closes || a.is_empty());
+    let area = seen.map(|seen| (seen, Vec::new())).or_else(area);
     let report = Some(report);
     Ok(match area {
         None => Filled { path, data, fill: None, report: [report, None] },

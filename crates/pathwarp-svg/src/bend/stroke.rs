@@ -169,8 +169,12 @@ fn outline(t: &PartTask<'_>, s: &Stroke, stretch: f64) -> Result<(BezPath, PathR
     let united = if options.union { UNION * finest } else { 0.0 };
     let rest = |i: usize| (t.allowed_of(i) - expansion(i)).max((1.0 - MISSED) * t.allowed_of(i)) - united;
     let mut refit = t.refit(rest(DRAWING));
-    let contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
-    let whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
+    let mut contours: Vec<usize> = each.iter().flat_map(|(i, o)| vec![*i; o.subpaths.len()]).collect();
+    let mut whole = Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() };
+    if let Some(hidden) = t.hidden {
+        whole = t.seen_area(hidden, &whole, false)?;
+        contours = vec![DRAWING; whole.subpaths.len()];
+    }
     if !t.whole_contours.is_empty() {
         let rests: Vec<f64> = contours.iter().map(|i| rest(*i)).collect();
         refit = refit.with_spans(SharedEdges::default().spans(&whole, &rests));

@@ -1,6 +1,7 @@
 //! A part to warp, with everything that determines its image.
 
 use super::bends::Bend;
+use super::hidden;
 use super::options::WarpOptions;
 use super::path::{self, Digits, ROUNDING, allowed, with_arcs};
 use super::seam::without_seams;
@@ -10,6 +11,7 @@ use crate::scene::geometry::stretch;
 use crate::scene::model::Part;
 use crate::scene::selected_lettering::{LetterSubpaths, letters_by_part};
 use crate::source::number::arcs_data;
+use pathwarp::edit::Area;
 use pathwarp::engine::{KnownShapes, RESOLUTION};
 use pathwarp::kurbo::{Affine, BezPath, Rect};
 use pathwarp::map::Map;
@@ -54,6 +56,8 @@ pub(super) struct PartTask<'a> {
     pub(super) whole: Arc<Outline>,
     /// The outline to bend: all copies, or the placed letters.
     pub(super) outline: Arc<Outline>,
+    /// The part of the source to cut away, if it may meet this part.
+    pub(super) hidden: Option<&'a Area>,
     /// The tolerances of the contours of `outline`; empty if they all have the drawing's.
     pub(super) contours: Vec<f64>,
     /// The tolerances of the contours of `whole`; empty if they all have the drawing's.
@@ -89,14 +93,16 @@ impl<'a> PartTask<'a> {
             let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
             subpaths.iter_mut().for_each(|s| path::drop_closing_stub(s, rounding));
         }
-        let back = write.inverse();
+        let reach = reach(part, context.to_px);
+        let bounds = whole.bounding_box().map(|b| b.inflate(reach, reach));
         Self {
             part,
             context,
             write,
-            back,
+            back: write.inverse(),
             pieces,
             whole,
+            hidden: options.hidden.as_deref().filter(|hidden| hidden::meet(bounds, hidden)),
             outline,
             contours,
             whole_contours,

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::map::Map;
 use crate::map::called::Called;
+use crate::outline::Outline;
 use crate::param::{Args, Frame, Param, Settings};
 use kurbo::{Affine, BezPath, Point, Rect};
 use std::fmt;
@@ -312,6 +313,8 @@ pub struct Built {
     pub space: Option<InSpace>,
     /// Marks beside the result that show where to look from.
     pub sight: Option<Box<SightMark>>,
+    /// Finds what lies behind another part of the artwork's box in the image, for views of surfaces in space that hide parts of themselves.
+    pub hidden: Option<Hidden>,
     /// Explains why the map is undefined at a point, where it can.
     pub undefined: Option<Undefined>,
     /// Explains how the map failed after it was built, for maps that can fail.
@@ -336,6 +339,7 @@ impl Built {
             saves: Vec::new(),
             space: None,
             sight: None,
+            hidden: None,
             undefined: None,
             failure: None,
         }
@@ -464,6 +468,9 @@ pub struct SightMark {
 
 /// Takes a point of the source to a point in space (x right, y down, z away, user units), if it has one.
 pub type Place = Arc<dyn Fn(Point) -> Option<[f64; 3]> + Send + Sync>;
+
+/// Returns the outlines of the hidden part of the source plane, by the even-odd rule, so that their image is within a tolerance.
+pub type Hidden = Arc<dyn Fn(f64) -> Outline + Send + Sync>;
 
 /// The surface in space that the artwork lies on.
 #[derive(Clone)]

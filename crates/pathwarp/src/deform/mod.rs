@@ -43,8 +43,8 @@ pub use bilinear::Bilinear;
 pub use birational::Birational;
 pub use bulge::Bulge;
 pub use entry::{
-    Built, ByHand, Case, Deformation, Example, Explanation, Failure, Gallery, Guides, InSpace, Info, Instead, Law,
-    Overlay, Pairs, Place, Placement, Role, SavedFile, Seam, SightMark, SpaceFile, Undefined, Variant,
+    Built, ByHand, Case, Deformation, Example, Explanation, Failure, Gallery, Guides, Hidden, InSpace, Info, Instead,
+    Law, Overlay, Pairs, Place, Placement, Role, SavedFile, Seam, SightMark, SpaceFile, Undefined, Variant,
 };
 pub use envelope::{Envelope, Keep, Lines, Spread};
 pub use expr::Expr;

@@ -2,10 +2,10 @@
 
 use super::known;
 use crate::error::GeometryError;
-use crate::outline::{Outline, Subpath};
+use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::ARCS;
 use bezierfit::union_even_odd;
-use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _};
+use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _, Vec2};
 
 /// Tolerance of outlines that close a gap, as a share of its width.
 const FITTED: f64 = 0.1;
@@ -72,6 +72,47 @@ impl Area {
             return Ok(self.clone());
         }
         Ok(Self(Outline::from(&bezierfit::difference(&self.path(), &other.path(), tolerance)?)))
+    }
+
+    /// Returns the parts of lines that lie outside this area, cut within `tolerance` of its edges. A closed line that is cut is open.
+    ///
+    /// ```
+    /// # use pathwarp::{Outline, edit::Area};
+    /// let area = Area::of(&Outline::from_svg("M10,-9H20V9H10Z")?, false, 0.01)?;
+    /// let seen = area.lines_outside(&Outline::from_svg("M0,0H30")?, 1e-9);
+    /// assert_eq!(seen.subpaths.len(), 2);
+    /// assert!((seen.subpaths[0].end().x - 10.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn lines_outside(&self, lines: &Outline, tolerance: f64) -> Outline {
+        let edges: Vec<(PathSeg, Rect)> = self.path().segments().map(|s| (s, s.bounding_box())).collect();
+        let mut out = Outline::default();
+        for line in &lines.subpaths {
+            let mut parts = vec![Vec::new()];
+            for seg in &line.segs {
+                let (mut from, mut pieces) = (0.0, Vec::new());
+                let distance = |t: f64| signed_distance(&edges, seg.eval(t));
+                sides(&distance, largest_speed(seg), [0.0, 1.0], tolerance, &mut pieces);
+                for (to, is_outside) in pieces {
+                    match parts.last_mut().filter(|_| is_outside) {
+                        Some(part) => part.push(subsegment(seg, from, to)),
+                        None => parts.push(Vec::new()),
+                    }
+                    from = to;
+                }
+            }
+            let closed = line.closed && parts.len() == 1;
+            if line.closed
+                && !closed
+                && let Some(last) = parts.pop()
+            {
+                parts[0].splice(0..0, last);
+            }
+            let parts = parts.into_iter().filter(|segs| !segs.is_empty());
+            out.subpaths.extend(parts.map(|segs| Subpath { start: segs[0].start(), segs, closed }));
+        }
+        out
     }
 
     /// Returns `true` if the area is empty.
@@ -251,4 +292,50 @@ pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Optio
     let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
     let simple = closed && united.subpaths.len() == outline.subpaths.len();
     Ok((!simple || (area.area().abs() - path.area().abs()).abs() > room).then_some(united))
+}
+/// Returns the part of a segment between two parameters.
+fn subsegment(seg: &Seg, from: f64, to: f64) -> Seg {
+    match seg {
+        Seg::Arc(arc) => Seg::Arc(arc.subsegment(from, to)),
+        other => other.part(from, to).unwrap_or(*other),
+    }
+}
+
+/// Returns an upper bound for the length of a segment's derivative.
+fn largest_speed(seg: &Seg) -> f64 {
+    if let Seg::Arc(arc) = seg {
+        return arc.major() * arc.sweep.abs();
+    }
+    let c = seg.to_cubic();
+    3.0 * [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(Vec2::hypot).into_iter().fold(0.0, f64::max)
+}
+
+/// Returns the distance of a point from the edges of an area, negative inside. Edges come with their bounding boxes.
+fn signed_distance(edges: &[(PathSeg, Rect)], p: Point) -> f64 {
+    const ACCURACY: f64 = 1e-9;
+    let (mut nearest, mut winding) = (f64::INFINITY, 0);
+    for (edge, bounds) in edges {
+        winding += edge.winding(p);
+        let apart = Vec2::new(p.x - p.x.clamp(bounds.x0, bounds.x1), p.y - p.y.clamp(bounds.y0, bounds.y1));
+        if apart.hypot2() < nearest {
+            nearest = edge.nearest(p, ACCURACY).distance_sq.min(nearest);
+        }
+    }
+    if winding == 0 { nearest.sqrt() } else { -nearest.sqrt() }
+}
+
+/// Divides the interval `[from, to]` where `distance` changes its sign: adds the ends of pieces, with `true` for positive ones. The
+/// distance changes by at most `speed` per unit. Pieces shorter than `tolerance` are not divided.
+fn sides(distance: &dyn Fn(f64) -> f64, speed: f64, [from, to]: [f64; 2], tolerance: f64, out: &mut Vec<(f64, bool)>) {
+    let middle = 0.5 * (from + to);
+    let at_middle = distance(middle);
+    if at_middle.abs() < 0.5 * speed * (to - from) && speed * (to - from) > tolerance {
+        sides(distance, speed, [from, middle], tolerance, out);
+        sides(distance, speed, [middle, to], tolerance, out);
+        return;
+    }
+    match out.last_mut() {
+        Some((end, is_positive)) if *is_positive == (at_middle > 0.0) => *end = to,
+        _ => out.push((to, at_middle > 0.0)),
+    }
 }

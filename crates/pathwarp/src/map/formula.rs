@@ -131,6 +131,10 @@ impl<F: Formula> Map for F {
         self.enclosed(along)
     }
 
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        Formula::inverse(self)
+    }
+
     forward_common!(self => Formula, self);
 }
 

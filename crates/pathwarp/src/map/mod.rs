@@ -34,7 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-/// Forwards the methods that a [`Map`] and a [`Formula`] have in common.
+/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse.
 macro_rules! forward_common {
     ($self:ident => $trait:ident, $to:expr) => {
         fn class(&$self) -> Class {
@@ -52,9 +52,6 @@ macro_rules! forward_common {
         fn denominator(&$self, p: Point) -> f64 {
             $trait::denominator($to, p)
         }
-        fn inverse(&$self) -> Option<Arc<dyn Map>> {
-            $trait::inverse($to)
-        }
         fn preimages(&$self, q: Point) -> Option<Vec<Point>> {
             $trait::preimages($to, q)
         }
@@ -66,6 +63,8 @@ macro_rules! forward_common {
         }
     };
 }
+
+pub(crate) use forward_common;
 
 /// Forwards every method: a method left to its default would lose the speed of the map behind the pointer, silently.
 macro_rules! forward {
@@ -84,6 +83,9 @@ macro_rules! forward {
         }
         fn $enclose(&self, along: [Enclosure; 2]) -> Option<[Enclosure; 2]> {
             (**self).enclose(along)
+        }
+        fn inverse(&self) -> Option<Arc<dyn Map>> {
+            (**self).inverse()
         }
         forward_common!(self => Map, &**self);
     };

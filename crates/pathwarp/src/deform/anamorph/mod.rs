@@ -18,6 +18,7 @@
 //! *Anamorphic 3D geometry*, Computing 79 (2007).
 
 mod dilation;
+mod hidden;
 mod mirror;
 mod net;
 mod reading;
@@ -31,12 +32,13 @@ use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pair
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Settings, parameters};
+use hidden::{FoldedView, Sheet};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
 use net::{Push, PushedNet};
 use reading::{eye, look, mirror, net, onto};
 use scene::{Eye, HERE, Scene, measured};
 use std::sync::Arc;
-use surface::{Anamorphosis, Camera, Radial, Surface};
+use surface::{Anamorphosis, Radial, Surface};
 
 pub use mirror::{Mirror, MirrorShape};
 pub use surface::Onto;
@@ -357,6 +359,15 @@ impl Anamorph {
             (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
         built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
+        if let Look::From(at) = own.as_ref().unwrap_or(self).look {
+            let (camera, solid, scale) = (surface::camera(at, &cast, &scene)?, cast.clone(), scene.scale);
+            let depth = Box::new(move |p| camera.depth(solid.point(scale * p)));
+            if let Some(sheet) = Sheet::folded(Arc::clone(&built.map), depth, self.frame) {
+                let sheet = Arc::new(sheet);
+                built.map = Arc::new(FoldedView(Arc::clone(&sheet)));
+                built.hidden = Some(Arc::new(move |tolerance| sheet.hidden(tolerance)));
+            }
+        }
         built.sight = self.sighted(&cast, &scene, &*map)?.map(Box::new);
         if let Some(Self { look: Look::From([x, y, z]), .. }) = own {
             built.note(format!(
@@ -392,16 +403,7 @@ impl Anamorph {
     fn shown(&self, cast: &Anamorphosis, scene: &Scene) -> Result<Arc<dyn Map>, Error> {
         match self.look {
             Look::Eye => Ok(cast.seen()),
-            Look::From([x, y, z]) => {
-                let p = scene.scale * Point::new(x, y);
-                let middle = scene.frame.center();
-                let text = format!("{x},{y},{z}");
-                let camera = Camera::new([p.x, p.y, -z], cast.point(middle), middle)
-                    .ok_or_else(|| Error::usage("view", text.clone(), "is on the surface itself; move it away"))?;
-                let map = cast.viewed(&camera, scene.frame);
-                surface::check_in_view(&text, cast, &camera, scene.frame)?;
-                Ok(map)
-            }
+            Look::From(at) => Ok(cast.viewed(&surface::camera(at, cast, scene)?, scene.frame)),
             Look::Unrolled => cast.unrolled().ok_or_else(|| {
                 let hint = "such a surface cannot be laid flat; give the camera's position X,Y,Z with Z in front of the drawing, or `seen`";
                 Error::missing("view", hint)

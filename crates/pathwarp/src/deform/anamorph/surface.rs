@@ -207,14 +207,16 @@ pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) ->
     Err(onto.map_or_else(|| Error::usage("push", "", problem.clone()), |onto| onto.wrong(problem.clone())))
 }
 
-/// Refuses a camera that has a part of the image behind it.
-pub(super) fn check_in_view(text: &str, cast: &Anamorphosis, camera: &Camera, frame: Rect) -> Result<(), Error> {
-    match samples(frame).find(|p| camera.depth(cast.point(*p)) <= 0.0) {
-        Some(p) => {
-            let problem = format!("is too near: the image of {} lies behind it; go further away", show(p));
-            Err(Error::usage("view", text, problem))
-        }
-        None => Ok(()),
+/// Returns the camera at `at`, whose z is in front of the drawing. Refuses one that has a part of the image behind it.
+pub(super) fn camera(at: Space, cast: &Anamorphosis, scene: &Scene) -> Result<Camera, Error> {
+    let [x, y, z] = at;
+    let wrong = |problem: String| Error::usage("view", format!("{x},{y},{z}"), problem);
+    let (p, middle) = (scene.scale * Point::new(x, y), scene.frame.center());
+    let camera = Camera::new([p.x, p.y, -z], cast.point(middle), middle)
+        .ok_or_else(|| wrong("is on the surface itself; move it away".into()))?;
+    match samples(scene.frame).find(|p| camera.depth(cast.point(*p)) <= 0.0) {
+        Some(p) => Err(wrong(format!("is too near: the image of {} lies behind it; go further away", show(p)))),
+        None => Ok(camera),
     }
 }
 
@@ -597,7 +599,7 @@ impl Camera {
     }
 
     /// Returns the distance of a point in front of the camera.
-    fn depth<S: Real>(&self, q: [S; 3]) -> S {
+    pub(super) fn depth<S: Real>(&self, q: [S; 3]) -> S {
         project(self.forward, self.at, q)
     }
 }

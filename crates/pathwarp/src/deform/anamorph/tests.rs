@@ -2,7 +2,7 @@
 
 use super::dilation::{Dilation, Reference};
 use super::scene::Eye;
-use super::surface::{Round, Space, SpacePlane, Sphere};
+use super::surface::{Camera, Round, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
@@ -707,4 +707,60 @@ fn mirrors_reflect_the_drawing_into_the_eye() {
     };
     let at = build(&[("mirror", "cylinder:radius=80,tilt=-12"), ("eye", "inf:0.2,-1,1.1")]).unwrap().map;
     assert!(limit(far).distance(at.point((30.0, 20.0).into())) < 1e-7);
+}
+
+/// Compares what a view hides with what rays from the camera meet first on a mesh of the sheet.
+#[test]
+fn a_view_hides_what_lies_behind_other_parts_of_the_sheet() {
+    const N: usize = 100;
+    let index = |i: usize, j: usize| j * (N + 1) + i;
+    let on_sheet = |i: usize, j: usize| Point::new(i as f64 * 100.0 / N as f64, j as f64 * 100.0 / N as f64);
+    let minus = |a: Space, b: Space| -> Space { std::array::from_fn(|i| a[i] - b[i]) };
+    let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let cross = |a: Space, b: Space| -> Space {
+        std::array::from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+    };
+    let mut counts = [0, 0];
+    for (surface, camera) in [
+        (&[("push", "1,1:165%"), ("degree", "2x2")][..], [250.0, -80.0, 20.0]),
+        (&[("push", "1,0:135%"), ("push", "0,1:125%"), ("degree", "1x1")], [300.0, -90.0, 70.0]),
+        (&[("push", "1,1:185%"), ("push", "2,2:60%"), ("degree", "3x3")], [170.0, -40.0, -30.0]),
+        (&[("onto", "cylinder:radius=80")], [460.0, -125.0, -100.0]),
+        (&[("onto", "cone:top-radius=90,bottom-radius=75")], [-320.0, -90.0, -60.0]),
+        (&[("onto", "sphere:radius=95")], [310.0, -260.0, -40.0]),
+    ] {
+        let view = camera.map(|v| v.to_string()).join(",");
+        let built = build(&[surface, &[("distance", "300"), ("view", &view)]].concat()).unwrap();
+        let hidden = built.hidden.expect("folds")(0.01).to_bez_path(1e-3);
+        let (space, from) = (built.space.unwrap(), [camera[0], camera[1], -camera[2]]);
+        let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j)));
+        let mesh: Vec<Space> = grid.map(|(i, j)| minus((space.place)(on_sheet(i, j)).unwrap(), from)).collect();
+        let cells = || (0..N).flat_map(|j| (0..N).map(move |i| (i, j)));
+        let triangles: Vec<[usize; 3]> = cells()
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        // The triangle abc meets the segment from the camera to p if p is a positive combination of its corners, with a sum above 1.
+        let is_hidden = |k: usize| {
+            triangles.iter().filter(|t| !t.contains(&k)).any(|t| {
+                let [a, b, c] = t.map(|k| mesh[k]);
+                let volume = dot(a, cross(b, c));
+                let shares = [[b, c], [c, a], [a, b]].map(|[u, v]| dot(mesh[k], cross(u, v)) / volume);
+                shares.iter().all(|s| *s >= 0.0) && shares.iter().sum::<f64>() > 1.0 + 1e-9
+            })
+        };
+        for (i, j) in cells().filter(|(i, j)| i % 8 == 3 && j % 8 == 5) {
+            let truth = is_hidden(index(i, j));
+            let around = [(i - 2, j), (i + 2, j), (i, j - 2), (i, j + 2), (i - 2, j - 2), (i + 2, j + 2)];
+            // Points near the edge of the hidden part do not count, since the mesh has straight edges.
+            if around.iter().all(|(i, j)| is_hidden(index(*i, *j)) == truth) {
+                counts[usize::from(truth)] += 1;
+                let winding = hidden.winding(on_sheet(i, j));
+                assert_eq!(winding % 2 != 0, truth, "{surface:?} at {:?}", on_sheet(i, j));
+            }
+        }
+    }
+    assert!(counts[0] > 300 && counts[1] > 60, "{counts:?}");
 }
