@@ -2,10 +2,11 @@
 //! pathwarp-svg follow one another, and files and functions stay short.
 
 mod graph;
+mod messages;
 
 use crate::support::root;
 use graph::{Arrows, Crate, circles};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use syn::visit::{self, Visit};
@@ -243,4 +244,46 @@ fn functions(text: &str) -> Vec<(String, usize)> {
     let mut out = Lengths(Vec::new());
     out.visit_file(&syn::parse_file(text).unwrap());
     out.0
+}
+
+/// Lists all messages, to be read in one go; `PATHWARP_STORE=1` writes the list anew. A message names the problem, then what to do.
+#[test]
+fn messages_are_listed_and_short() {
+    /// Most characters of a problem, before the advice.
+    const LONGEST: usize = 160;
+    let file = root().join("tests/program/architecture/messages.txt");
+    let mut listed = String::new();
+    let for_developers = ["pathwarp-oracle", "xtask"];
+    for (name, files) in crates().into_iter().filter(|(name, _)| !for_developers.contains(&&**name)) {
+        let all: BTreeSet<String> = files
+            .iter()
+            .filter(|(f, _)| !f.ends_with("tests.rs"))
+            .flat_map(|(_, text)| messages::of_source(text))
+            .collect();
+        for message in &all {
+            let problem = message.split([';', ':']).next().unwrap_or_default();
+            assert!(problem.chars().count() <= LONGEST, "{name}: too long before the advice: {message}");
+        }
+        listed += &format!("{name}\n{}\n", all.iter().map(|m| format!("  {m}\n")).collect::<String>());
+    }
+    if std::env::var_os("PATHWARP_STORE").is_some() {
+        fs::write(&file, &listed).unwrap();
+    }
+    let stored = fs::read_to_string(&file).unwrap();
+    let new: Vec<&str> = listed.lines().filter(|line| !stored.lines().any(|l| l == *line)).collect();
+    assert!(
+        stored == listed,
+        "messages differ from {}, which PATHWARP_STORE=1 writes anew; new: {new:#?}",
+        file.display()
+    );
+}
+
+#[test]
+fn messages_are_found_in_source() {
+    let found = messages::of_source(
+        r#"/// Not this doc comment.
+        fn f() -> String { panic!("not a bug report"); let m = format!("no such file {}; {}", 1, "look at it"); m.expect("not this one") }
+        #[cfg(test)] mod tests { const A: &str = "not this test text"; }"#,
+    );
+    assert_eq!(found.into_iter().collect::<Vec<_>>(), ["look at it", "no such file {}; {}"]);
 }

@@ -55,7 +55,7 @@ pub(super) fn draw(
         let by = trimmed(-contour.by, 3);
         return Err(Error::input(
             &drawing.name,
-            format!("nothing is left {by} units inside part_bends the edge; the artwork is narrower"),
+            format!("nothing is left {by} units inside the edge; the artwork is narrower"),
         ));
     };
     let bleed = options.line.bleed;

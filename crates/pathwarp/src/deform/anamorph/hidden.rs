@@ -13,7 +13,7 @@ use crate::map::{Class, Cost, Creases, Enclosure, Jet, Map, RationalBezier, forw
 use crate::outline::Outline;
 use crate::refit;
 use kurbo::{Point, Rect, Vec2};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cells along a side of the grid.
@@ -52,7 +52,7 @@ impl Sheet {
             let corners = corner(k).take(2).chain(corner(k).skip(CELLS + 1).take(2));
             let b = corners.map(|jet| Rect::from_points(jet.p, jet.p)).reduce(|a, b| a.union(b)).unwrap_or_default();
             // The image of a cell may bulge beyond its corners.
-            let room = 0.5 * (b.width() + b.height());
+            let room = 0.1 * (b.width() + b.height());
             b.inflate(room, room)
         };
         let images = (0..CELLS * CELLS).map(image).collect();
@@ -142,55 +142,37 @@ impl Tracing<'_> {
     /// Returns the closed polygons of the boundary.
     fn loops(&self) -> Vec<Vec<Point>> {
         const SIDE: usize = CELLS + 2 * MARGIN;
-        let at = |i: usize, j: usize| in_box(self.sheet.frame, i as f64 - MARGIN as f64, j as f64 - MARGIN as f64);
+        let margin = MARGIN as f64;
+        let at = |(i, j): (usize, usize)| in_box(self.sheet.frame, i as f64 - margin, j as f64 - margin);
         // Nothing is hidden on the grid's border, so that every polygon closes.
-        let hides = |i: usize, j: usize| ![i, j].iter().any(|k| *k == 0 || *k == SIDE) && self.sheet.hides(at(i, j));
-        let known: Vec<bool> =
-            (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| (i, j))).map(|(i, j)| hides(i, j)).collect();
-        let hidden = |i: usize, j: usize| known[j * (SIDE + 1) + i];
-        let mut crossings: HashMap<Edge, Point> = HashMap::new();
-        let mut next: HashMap<Edge, Vec<Edge>> = HashMap::new();
+        let hides = |i: usize, j: usize| ![i, j].iter().any(|k| *k == 0 || *k == SIDE) && self.sheet.hides(at((i, j)));
+        let known: Vec<bool> = (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| hides(i, j))).collect();
+        let hidden = |(i, j): (usize, usize)| known[j * (SIDE + 1) + i];
+        let crossing = |&(i, j, down): &Edge| {
+            let ends = [(i, j), if down { (i, j + 1) } else { (i + 1, j) }];
+            let [a, b] = if hidden(ends[0]) { ends } else { [ends[1], ends[0]] };
+            self.bisect(at(a), at(b))
+        };
+        let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
         for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
-            // The corners in their order around the cell, each with the edge to the next one.
-            let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+            let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(hidden);
             let edges = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
-            let mut crossed: Vec<Edge> = Vec::new();
-            for k in 0..4 {
-                let [a, b] = [corners[k], corners[(k + 1) % 4]];
-                if hidden(a.0, a.1) != hidden(b.0, b.1) {
-                    crossed.push(edges[k]);
-                    crossings.entry(edges[k]).or_insert_with(|| {
-                        let [a, b] = if hidden(a.0, a.1) { [a, b] } else { [b, a] };
-                        self.bisect(at(a.0, a.1), at(b.0, b.1))
-                    });
-                }
-            }
-            // Two hidden corners across from each other are joined if the middle is hidden.
-            let middle = at(i, j).midpoint(at(i + 1, j + 1));
-            if crossed.len() == 4 && hidden(i, j) == self.sheet.hides(middle) {
-                crossed.rotate_left(1);
-            }
-            for pair in crossed.chunks_exact(2) {
-                next.entry(pair[0]).or_default().push(pair[1]);
-                next.entry(pair[1]).or_default().push(pair[0]);
+            // The hidden part lies to the right of its boundary, which separates two hidden corners across from each other.
+            for k in (0..4).filter(|k| corners[*k] && !corners[(k + 3) % 4]) {
+                let turns = (1..4).find(|n| !corners[(k + n) % 4]).unwrap_or(1);
+                next.insert(edges[(k + turns + 3) % 4], edges[(k + 3) % 4]);
             }
         }
-        let mut starts: Vec<Edge> = next.keys().copied().collect();
-        starts.sort_unstable();
         let mut loops = Vec::new();
-        for start in starts {
-            let (mut edge, mut polygon) = (start, Vec::new());
-            while let Some(to) = next.get_mut(&edge).and_then(Vec::pop) {
-                if let Some(back) = next.get_mut(&to) {
-                    back.retain(|e| *e != edge);
-                }
-                polygon.push(crossings[&edge]);
-                self.divide([crossings[&edge], crossings[&to]], true, &mut polygon);
-                edge = to;
+        while let Some((&start, _)) = next.first_key_value() {
+            let (mut polygon, mut edge, mut here) = (Vec::new(), start, crossing(&start));
+            while let Some(to) = next.remove(&edge) {
+                let there = crossing(&to);
+                polygon.push(here);
+                self.divide([here, there], true, &mut polygon);
+                (edge, here) = (to, there);
             }
-            if polygon.len() > 2 {
-                loops.push(polygon);
-            }
+            loops.push(polygon);
         }
         loops
     }

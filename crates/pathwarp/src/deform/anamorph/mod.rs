@@ -475,7 +475,7 @@ cone:top-diameter=90mm,bottom-diameter=60mm,height=110mm  a cup; or slant=…, a
 sphere:radius=60mm     a ball; it cannot be laid flat, so it needs --view\n  \
 sphere:eye             a dome with the eye on its near pole: lines become circles\n\
 Add `,inside` to a cylinder, cone or sphere to see it from within, `,level` to a cylinder to lay it down. --seen gives the eye's view, \
-which is the artwork itself; --view the view from elsewhere.\n\n\
+which is the artwork itself; --view the view from elsewhere, in which parts of the artwork's box hide others.\n\n\
 In a mirror (--mirror): the artwork appears in a mirror that stands on a table, from the eye at --distance in front of it and \
 --eye-height above the table (without --distance straight above it). The result is the drawing on the table, seen from above with the \
 viewer at the bottom; lay it out with --sight-mark, which draws the mirror's foot:\n  \
