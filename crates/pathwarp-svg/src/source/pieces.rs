@@ -4,6 +4,7 @@
 //! glyphs. It shapes all letters of one direction by the script of the first letter. Therefore, each text that needs several fonts or
 //! scripts is rewritten: every piece is a `tspan` with a position, and with a name for its font that [`Chooser`] knows.
 
+use super::edit::splice;
 use super::elements::{SVG, tag_end};
 use super::faces::Look;
 use super::fonts::{Chooser, PIECE, PieceFonts};
@@ -89,15 +90,7 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
         edits.extend(writer.element(*node).filter(|_| !known).map(|text| (node.range(), text)));
     });
     edits.sort_by_key(|(range, _)| range.start);
-    if !edits.is_empty() {
-        let (mut text, mut at) = (String::new(), 0);
-        for (range, new) in edits {
-            text += &xml.input_text()[at..range.start];
-            text += &new;
-            at = range.end;
-        }
-        out.text = Some(text + &xml.input_text()[at..]);
-    }
+    out.text = (!edits.is_empty()).then(|| splice(xml.input_text(), edits));
     out
 }
 
@@ -123,16 +116,14 @@ fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
 /// The drawing with an id for each text, by which [`divided`] finds it. Returns `None` if all texts have one.
 pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     let source = xml.input_text();
-    let (mut out, mut at) = (String::new(), 0);
     let lacks_id = |n: &Node<'_, '_>| n.has_tag_name((SVG, "text")) && n.attribute("id").is_none_or(str::is_empty);
-    for (i, node) in xml.descendants().filter(lacks_id).enumerate() {
+    let insertion = |(i, node): (usize, Node<'_, '_>)| {
         let start = node.range().start;
-        let name = source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
-        out += source.get(at..start + name)?;
-        let _ = write!(out, " id=\"{PIECE}text-{i}\"");
-        at = start + name;
-    }
-    (at > 0).then(|| out + &source[at..])
+        let at = start + source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
+        Some((at..at, format!(" id=\"{PIECE}text-{i}\"")))
+    };
+    let insertions: Vec<_> = xml.descendants().filter(lacks_id).enumerate().map(insertion).collect::<Option<_>>()?;
+    (!insertions.is_empty()).then(|| splice(source, insertions))
 }
 
 struct Divider<'a> {

@@ -80,8 +80,8 @@ pub(crate) fn tree(
         let chooser = Chooser::new(options.generic_families.clone(), missing.clone(), guard);
         usvg.font_size = MEDIUM;
         fonts::NO_FAMILY.clone_into(&mut usvg.font_family);
-        let (tree, without) = with_letters(xml, name, &mut usvg, &chooser)?;
-        letters = without;
+        let (tree, missing) = tree_with_texts(xml, name, &mut usvg, &chooser)?;
+        letters = missing;
         tree
     } else {
         usvg_tree(xml, name, &usvg)?
@@ -96,7 +96,7 @@ pub(crate) fn tree(
 
 /// Resolves a drawing with texts, which are divided into pieces where usvg would shape them differently from browsers. Also returns the
 /// letters that no font has, each with the text around it.
-fn with_letters(
+fn tree_with_texts(
     xml: &roxmltree::Document<'_>,
     name: &str,
     usvg: &mut usvg::Options<'_>,
@@ -114,21 +114,20 @@ fn with_letters(
     Ok((usvg_tree(&xml::parse_checked(&text, name)?, name, usvg)?, missing))
 }
 
+/// Runs usvg, which panics on some damaged fonts and images.
 fn usvg_tree(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree, Error> {
     let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, options)));
     let failed = |_| Error::input(name, "the library that reads SVG fails on it; please report it");
-    resolved.map_err(failed)?.map_err(|e| {
-        let problem = match e {
-            usvg::Error::InvalidSize => {
-                "the root <svg> has no valid size; give it a viewBox, or width and height".into()
-            }
-            usvg::Error::ElementsLimitReached => "it has more than a million elements".into(),
-            usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
-                "with its references expanded, it has more than a million elements or nests deeper than 1024".into()
-            }
-            other => other.to_string(),
-        };
-        Error::input(name, problem)
+    resolved.map_err(failed)?.map_err(|e| match e {
+        usvg::Error::InvalidSize => {
+            Error::input(name, "the root <svg> has no valid size; give it a viewBox, or width and height")
+        }
+        usvg::Error::ElementsLimitReached => Error::input(name, "it has more than a million elements"),
+        usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+            let problem = "with its references expanded, it has more than a million elements or nests deeper than 1024";
+            Error::input(name, problem)
+        }
+        other => Error::input(name, other.to_string()),
     })
 }
 
