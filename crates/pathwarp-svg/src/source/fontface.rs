@@ -2,7 +2,7 @@
 //! TrueType, OpenType or WOFF 1.0 font.
 
 use super::elements::declarations;
-use super::fonts::{self, Bytes, listing, load_unnamed};
+use super::fonts::{Bytes, load_unnamed, set_browser_metrics, size_of_listing};
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp_text::GlyphWork;
@@ -38,7 +38,7 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     taken.into_iter().for_each(|id| all.remove_face(id));
     for face in faces {
         let mut data = face.data;
-        fonts::adjust(&mut data, 0);
+        set_browser_metrics(&mut data, 0);
         let data: Bytes = Arc::new(data);
         let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
         if ids.is_empty() {
@@ -118,7 +118,7 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
             Ok(unpacked(&data))
         }
         Some(b"ttcf") => {
-            let size = listing(&data, budget.room(Limit::Bytes) as u64);
+            let size = size_of_listing(&data, budget.room(Limit::Bytes) as u64);
             budget.take(Limit::Bytes, size as f64).map_err(Exceeded::cut_short)?;
             Ok(Some(data))
         }

@@ -220,7 +220,7 @@ impl Chunk<'_> {
     }
 }
 
-/// The chunks of a PNG, up to the first incomplete one; none of other data.
+/// The chunks of a PNG, of which the last may be incomplete; none of other data.
 fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
     let mut rest = png.strip_prefix(SIGNATURE).unwrap_or_default();
     std::iter::from_fn(move || {
