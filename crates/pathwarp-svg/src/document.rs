@@ -9,7 +9,6 @@ use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
 use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
 use crate::scene::geometry::stretch;
-use crate::scene::lettering::PlacedLetter;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering, objects};
@@ -417,13 +416,7 @@ impl Document {
     /// whole drawing is selected, each member of the outermost group that has several. Members whose boxes overlap are one object.
     #[must_use]
     pub fn objects(&self, selection: &Selection) -> Vec<Letter> {
-        let letter = |o: PlacedLetter| Letter {
-            name: o.name,
-            origin: o.origin,
-            advance: o.advance,
-            outline: Outline::default(),
-        };
-        objects(&self.drawing, selection).into_iter().map(letter).collect()
+        objects(&self.drawing, selection).iter().map(|o| o.with_outline(Outline::default())).collect()
     }
 
     /// For each shape of [`Document::selected`], the area that its stroke covers in root user space, to be filled by the nonzero rule,
