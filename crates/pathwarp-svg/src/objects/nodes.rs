@@ -43,15 +43,13 @@ pub fn objects(svg: &str, limits: &Limits) -> Result<Vec<Object>, Error> {
         let Some(id) = n.attribute("id").filter(|id| found.get(id) == Some(&n)) else { continue };
         let around = || n.ancestors().skip(1);
         let tag = n.tag_name().name();
-        let hidden = |n: Node<'_, '_>| {
-            is_definition(n.tag_name().name()) || matches!(n.tag_name().name(), "title" | "desc" | "metadata" | "style")
-        };
+        let is_hidden = is_definition(tag) || matches!(tag, "title" | "desc" | "metadata" | "style");
         out.push(Object {
             id: id.to_owned(),
             label: n.attribute((INKSCAPE, "label")).map(ToOwned::to_owned),
             element: tag.to_owned(),
             is_path: is_shape(tag) && !around().any(|a| is_definition(a.tag_name().name())),
-            is_top: n.parent() == Some(doc.root_element()) && !hidden(n),
+            is_top: n.parent() == Some(doc.root_element()) && !is_hidden,
             is_locked: n.ancestors().any(is_locked),
             inside: around().filter_map(|a| a.attribute("id")).map(ToOwned::to_owned).collect(),
             recipe: n.attribute((NAMESPACE, RECIPE)).map(ToOwned::to_owned),
@@ -105,14 +103,14 @@ pub(super) fn references(value: &str) -> impl Iterator<Item = Range<usize>> + '_
 
 /// All names to which an element and its descendants refer.
 pub(super) fn referred(n: Node<'_, '_>) -> Vec<String> {
-    let values = n.descendants().flat_map(|n| n.attributes().map(|a| a.value()).collect::<Vec<_>>());
-    values.flat_map(|v| references(v).map(|r| v[r].to_owned()).collect::<Vec<_>>()).collect()
+    let values = n.descendants().flat_map(|n| n.attributes()).map(|a| a.value());
+    values.flat_map(|v| references(v).map(move |r| v[r].to_owned())).collect()
 }
 
 /// Replacements in `text` that rename the ids of an element and its descendants, and references to such ids in them.
 pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> Vec<(Range<usize>, String)> {
     let mut out = Vec::new();
-    for a in n.descendants().flat_map(|n| n.attributes().collect::<Vec<_>>()) {
+    for a in n.descendants().flat_map(|n| n.attributes()) {
         let range = a.range_value();
         let raw = &text[range.clone()];
         if a.name() == "id" && a.namespace().is_none() {

@@ -1,6 +1,8 @@
 //! Replaces warped objects by their sources.
 
-use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, referred, renaming};
+use super::nodes::{
+    Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, references, referred, renaming,
+};
 use super::remembering::{Package, unpack};
 use crate::source::elements::SVG;
 use pathwarp::Error;
@@ -44,15 +46,21 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
     let packages = targets.iter().filter_map(|n| Some((*n, n.attribute((NAMESPACE, SOURCE))?)));
     let packages: Vec<(Node<'_, '_>, String)> =
         packages.map(|(n, v)| Ok((n, unpack(v, &limits.for_input(svg.len()))?))).collect::<Result<_, Error>>()?;
-    let around = Around::new(svg, &doc, packages.iter().map(|(n, _)| *n).collect());
-    let mut work =
-        Work { around, taken: HashSet::new(), patches: Vec::new(), defs: String::new(), removed: HashSet::new() };
+    let around =
+        Surroundings { text: svg, doc: &doc, by_id: found, replaced: packages.iter().map(|(n, _)| *n).collect() };
+    let mut restoration = Restoration {
+        around,
+        taken: HashSet::new(),
+        patches: Vec::new(),
+        defs: String::new(),
+        removed: HashSet::new(),
+    };
     let mut objects = Vec::new();
     for (n, text) in &packages {
         let package = parse(text, limits)?;
         let damaged = || Error::input("the source of a warped object", "is damaged: it has no element");
         let package = Package::find(&package).ok_or_else(damaged)?;
-        work.replace(*n, text, &package);
+        restoration.replace(*n, text, &package);
         objects.push(RestoredObject {
             id: n.attribute("id").unwrap_or_default().to_owned(),
             recipe: n.attribute((NAMESPACE, RECIPE)).unwrap_or_default().to_owned(),
@@ -60,7 +68,7 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
             guides: Guides { markup: inside(text, package.guides) },
         });
     }
-    let Work { around, mut patches, defs, .. } = work;
+    let Restoration { around, mut patches, defs, .. } = restoration;
     if !defs.is_empty() {
         patches.push(around.insertion(defs));
     }
@@ -74,18 +82,14 @@ fn inside(text: &str, n: Node<'_, '_>) -> String {
 }
 
 /// The file around the objects to be replaced.
-struct Around<'a, 'i> {
+struct Surroundings<'a, 'i> {
     text: &'a str,
     doc: &'a Document<'i>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     replaced: HashSet<Node<'a, 'i>>,
 }
 
-impl<'a, 'i> Around<'a, 'i> {
-    fn new(text: &'a str, doc: &'a Document<'i>, replaced: HashSet<Node<'a, 'i>>) -> Self {
-        Self { text, doc, by_id: by_id(doc), replaced }
-    }
-
+impl<'a, 'i> Surroundings<'a, 'i> {
     /// Returns `true` for an element that stays.
     fn stays(&self, n: Node<'a, 'i>) -> bool {
         !n.ancestors().any(|a| self.replaced.contains(&a))
@@ -96,10 +100,7 @@ impl<'a, 'i> Around<'a, 'i> {
         let counts = |o: &Node<'a, 'i>| {
             self.stays(*o) && !o.ancestors().any(|a| a == n || a.attribute("id").is_some_and(|id| except.contains(id)))
         };
-        let refers = |o: Node<'a, 'i>| {
-            let values = o.attributes().map(|a| a.value());
-            values.into_iter().any(|v| super::nodes::references(v).any(|r| &v[r] == name))
-        };
+        let refers = |o: Node<'a, 'i>| o.attributes().any(|a| references(a.value()).any(|r| &a.value()[r] == name));
         self.doc.descendants().filter(Node::is_element).filter(counts).any(refers)
     }
 
@@ -118,8 +119,9 @@ impl<'a, 'i> Around<'a, 'i> {
     }
 }
 
-struct Work<'a, 'i> {
-    around: Around<'a, 'i>,
+/// Edits that replace objects by their sources.
+struct Restoration<'a, 'i> {
+    around: Surroundings<'a, 'i>,
     /// Ids in the sources and definitions that have been inserted.
     taken: HashSet<String>,
     patches: Vec<(Range<usize>, String)>,
@@ -129,8 +131,10 @@ struct Work<'a, 'i> {
     removed: HashSet<String>,
 }
 
-impl<'a, 'i> Work<'a, 'i> {
+impl<'a, 'i> Restoration<'a, 'i> {
+    /// Replaces an object by the element of a package, whose text is `text`.
     fn replace(&mut self, n: Node<'a, 'i>, text: &str, package: &Package<'_, '_>) {
+        // New ids by the ids in the package.
         let mut names: HashMap<String, String> = HashMap::new();
         let made: HashSet<String> =
             n.attribute((NAMESPACE, MADE)).unwrap_or_default().split_whitespace().map(ToOwned::to_owned).collect();
@@ -152,6 +156,7 @@ impl<'a, 'i> Work<'a, 'i> {
         for d in &package.definitions {
             let Some(id) = d.attribute("id") else { continue };
             match self.around.by_id.get(id).copied().filter(|o| self.around.stays(*o)) {
+                // Another source has brought it.
                 None if self.taken.contains(id) => {}
                 None => added.push(*d),
                 Some(old) if same_words(&self.around.text[old.range()], &text[d.range()]) => {}

@@ -42,7 +42,7 @@ fn find_file(base: &Path, link: &Path, external: bool) -> Target {
         return if file.exists() { Target::File(file) } else { Target::Nowhere };
     }
     // A path that leads elsewhere is refused without touching the file system.
-    if link.has_root() || link.is_absolute() || leaves(link) {
+    if link.has_root() || link.is_absolute() || climbs_out(link) {
         return Target::Outside;
     }
     match (file.canonicalize(), base.canonicalize()) {
@@ -64,7 +64,7 @@ fn is_through_symlink(base: &Path, link: &Path) -> bool {
 }
 
 /// Returns `true` if a relative link goes above the folder where it starts.
-fn leaves(link: &Path) -> bool {
+fn climbs_out(link: &Path) -> bool {
     let mut depth = 0_i32;
     link.components().any(|c| {
         depth += match c {
@@ -111,8 +111,8 @@ impl Relinking {
     /// # Errors
     /// [`Error::Input`] if the pictures exceed the limits.
     pub fn of(&self, svg: &str, options: &ReadOptions) -> Result<Option<String>, Error> {
-        let is_still = self.way.is_empty() && !self.embed;
-        if is_still || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
+        let keeps_links = self.way.is_empty() && !self.embed;
+        if keeps_links || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
             return Ok(None);
         }
         let options = options.begin(svg.len());
