@@ -39,6 +39,8 @@ const GAP: f64 = 16.0;
 const INSET: f64 = 12.0;
 /// Height of the title's line.
 const TITLE: f64 = 34.0;
+/// Font size of the title.
+const TITLE_SIZE: f64 = 17.0;
 /// Height of a label's line.
 const LABEL: f64 = 22.0;
 /// Font size of labels; long labels are smaller.
@@ -76,8 +78,8 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     );
     let mut labels = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Noto Sans\">\n\
-         <text x=\"{GAP}\" y=\"{}\" font-size=\"17\" fill=\"#222\">{}</text>\n",
-        GAP + 17.0,
+         <text x=\"{GAP}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" fill=\"#222\">{}</text>\n",
+        GAP + TITLE_SIZE,
         escape_content(&options.title)
     );
     for (k, (seen, content)) in drawn.iter().enumerate() {

@@ -70,6 +70,7 @@ impl GeometryReader<'_> {
         }))
     }
 
+    /// The length in an attribute, 0 if it is absent; `None` if the source alone does not determine it.
     fn length_or_zero(&self, e: ElementId, name: &str, dimension: Dimension) -> Option<f64> {
         Some(self.length(e, name, dimension)?.unwrap_or(0.0))
     }

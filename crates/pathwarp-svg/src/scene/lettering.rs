@@ -217,6 +217,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
     let mut out = Vec::new();
     let mut part = first;
     for span in text.layouted() {
+        // usvg draws lines over and under the letters before them, and a line through them last.
         part += usize::from(span.overline.is_some()) + usize::from(span.underline.is_some());
         let mut taken = 0;
         for g in &span.positioned_glyphs {

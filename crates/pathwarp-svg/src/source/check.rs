@@ -154,6 +154,7 @@ impl Size {
         }
     }
 
+    /// The work of resolving it.
     fn work(self) -> f64 {
         let Self { elements, segments, letters } = self;
         cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
@@ -165,6 +166,7 @@ impl Size {
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
     }
 
+    /// Charges for it.
     fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.take(Limit::Elements, self.elements as f64)?;
         budget.spend(self.work())
@@ -191,7 +193,7 @@ enum Reference {
     Context(usize),
 }
 
-/// Targets of the inherited properties.
+/// The elements to which the inherited [`PROPERTIES`] refer.
 type Inherited = [Option<NodeId>; INHERITED];
 
 /// A subtree to show, with all that affects its content.

@@ -110,10 +110,12 @@ pub(crate) struct Element {
 }
 
 impl Element {
+    /// The attribute without a namespace that has this name.
     pub(crate) fn find(&self, text: &str, name: &str) -> Option<&Attr> {
         self.attrs.iter().find(|a| a.namespace == Namespace::None && a.name(text) == name)
     }
 
+    /// The value of the attribute without a namespace that has this name.
     pub(crate) fn attr<'a>(&'a self, text: &'a str, name: &str) -> Option<Cow<'a, str>> {
         self.find(text, name).map(|a| a.value(text))
     }

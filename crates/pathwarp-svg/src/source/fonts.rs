@@ -16,10 +16,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
 
-/// The files and folders last loaded, with their fonts, so that a batch reads them once.
+/// The arguments of the last call of [`database`] with its fonts, so that a batch reads them once.
 type Loaded = (bool, Vec<PathBuf>, Arc<Database>);
 
-/// Loads the fonts. The installed ones are read once per process.
+/// Loads the bundled fonts, the files and folders at `paths`, and, if `system` is `true`, the installed fonts, which are read once per
+/// process.
 pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
     static SYSTEM: OnceLock<Arc<Database>> = OnceLock::new();
     static BARE: OnceLock<Arc<Database>> = OnceLock::new();

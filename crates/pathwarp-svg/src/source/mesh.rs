@@ -145,10 +145,11 @@ impl MeshGradient {
         let linear = ([1.0 - s, s, 0.0, 0.0], [1.0 - t, t, 0.0, 0.0]);
         let (along_u, along_v) = if self.smooth { (hermite(s), hermite(t)) } else { linear };
         let mut out = [0.0; 4];
+        // The corner in row `row` + i and column `column` + k.
         for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (r, c) = (row + i, column + k);
             let (wide, high) = (length(self.across[r][column]), length(self.down[row][c]));
-            let add = |by: f64, color: Rgba, out: &mut Rgba| (0..3).for_each(|n| out[n] += by * color[n]);
+            let add = |weight: f64, color: Rgba, out: &mut Rgba| (0..3).for_each(|n| out[n] += weight * color[n]);
             out[3] += linear.0[k] * linear.1[i] * self.colors[r][c][3];
             add(along_u[k] * along_v[i], self.colors[r][c], &mut out);
             if self.smooth {

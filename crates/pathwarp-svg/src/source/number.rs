@@ -168,9 +168,11 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 }
 
 /// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
-/// element, by its index, and `coarsest` the largest step between coordinates that rounding may have, if decimals are free. Then handles so
-/// short that rounding would turn them get more decimals, so that smooth joints stay smooth, and the choice of quadratics depends on that
-/// step alone, so that neighbours under different transforms write a shared edge equally.
+/// element, by its index.
+///
+/// `coarsest` gives the largest step that rounding to these decimals may have, or `None` if the decimals are fixed. If they are not, handles
+/// so short that rounding would turn them get more decimals, so that smooth joints stay smooth. Whether a cubic is written as a quadratic
+/// then depends on that step alone, so that neighbours under different transforms write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,
@@ -380,9 +382,9 @@ fn subpath_with_arcs(
     holds: impl Fn(&EllipticArc, Point, u8) -> bool,
 ) {
     // The numbers of an arc are its radii and turn, two flags, and its end.
-    let arc_decimals = |i: usize| match i {
-        0..3 => finer(decimals),
-        3..5 => 0,
+    let decimals_of = |command: char, i: usize| match (command, i) {
+        ('A', 0..3) => finer(decimals),
+        ('A', 3..5) => 0,
         _ => decimals,
     };
     let mut add = |command: char, numbers: &[f64]| {
@@ -394,7 +396,7 @@ fn subpath_with_arcs(
             if i > 0 {
                 out.push(if i % 2 == 1 && command != 'A' { ',' } else { ' ' });
             }
-            push(out, *v, if command == 'A' { arc_decimals(i) } else { decimals });
+            push(out, *v, decimals_of(command, i));
         }
     };
     let arc = |a: &EllipticArc| {
@@ -415,8 +417,10 @@ struct ArcText {
     radii: [f64; 2],
     /// Rotation of the ellipse, in degrees.
     turn: f64,
+    /// The flags of the `A` command.
     large: bool,
     sweep: bool,
+    /// The end as it will be read.
     to: Point,
     /// Decimals of radii and turn.
     finer: u8,

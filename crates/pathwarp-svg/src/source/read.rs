@@ -180,9 +180,11 @@ fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, S
 
 /// The range of the encoding's name in the XML declaration.
 fn declared_encoding(bytes: &[u8]) -> Option<Range<usize>> {
+    const BEGIN: &[u8] = b"<?xml";
     let head = &bytes[..bytes.len().min(MAX_DECLARATION)];
+    // A byte order mark may precede the declaration.
     let start = head.strip_prefix(b"\xef\xbb\xbf").map_or(0, |_| 3);
-    let end = start + memchr::memmem::find(head.get(start..)?.strip_prefix(b"<?xml")?, b"?>")? + 5;
+    let end = start + memchr::memmem::find(head.get(start..)?.strip_prefix(BEGIN)?, b"?>")? + BEGIN.len();
     let key = start + memchr::memmem::find(&head[start..end], b"encoding")? + b"encoding".len();
     let rest = &head[key..end];
     let open = rest.iter().position(|b| matches!(b, b'"' | b'\''))?;

@@ -166,12 +166,14 @@ impl<'a> SceneBuilder<'a> {
         self.scene.unpatchable.get_or_insert(why);
     }
 
+    /// Adds a clip path. Returns its index.
     pub(super) fn push_clip(&mut self, clip: Clip) -> usize {
         self.scene.clips.push(clip);
         self.scene.clips.len() - 1
     }
 }
 
+/// Finds the elements whose stroke width is in px.
 fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
     const FIXED: &str = "non-scaling-stroke";
     if !source.text.contains(FIXED) {

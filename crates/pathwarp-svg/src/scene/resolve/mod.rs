@@ -174,6 +174,7 @@ fn only_child(b: &SceneBuilder<'_>, g: &usvg::Group) -> Option<ElementId> {
     found
 }
 
+/// Resolves a text as its outlines.
 fn resolve_text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Context) -> Node {
     let element = b.element(t.id());
     if element.is_none() && context.owner.is_none() {

@@ -22,6 +22,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Margin around a shape's box as a fraction of its size, so that rounding does not show at its edge.
 const MARGIN: f64 = 0.01;
 
+/// Notes for the user on patterns that cannot be laid out.
 const TOO_MANY: &str = "a pattern follows the warp as a whole, as it has too many tiles to bend one by one";
 const NOT_BENT: &str =
     "a pattern follows the warp as a whole, as tiles with masks, filters or bitmaps cannot be bent one by one";
@@ -418,6 +419,7 @@ impl Border {
     }
 }
 
+/// The start and the end of a segment.
 fn ends_mut(s: &mut Seg) -> [&mut Point; 2] {
     match s {
         Seg::Line(l) => [&mut l.p0, &mut l.p1],
