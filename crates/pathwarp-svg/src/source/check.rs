@@ -84,7 +84,7 @@ fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) 
 fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
     let sizes = doc.descendants().filter(Node::is_element).map(Size::of_element);
     let sum = sizes.fold(Size::default(), Size::plus);
-    sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
+    sum.check(budget).map_err(|e| Error::limit(name, "it takes", e))?;
     sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
     Ok(sum.segments)
 }
@@ -161,7 +161,7 @@ impl Size {
     }
 
     /// Compares with the limits, regardless of the work done so far.
-    fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
+    fn check(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.check(Limit::Elements, self.elements as f64)?;
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
     }
@@ -188,6 +188,7 @@ enum Reference {
     Unset,
     /// Set to a value without a reference.
     Plain,
+    /// Set to a reference to this element.
     Shows(NodeId),
     /// The fill (0) or stroke (1) of the context element: the `use`, or the shape with the marker.
     Context(usize),
@@ -210,7 +211,7 @@ struct Body {
 struct Content {
     size: Size,
     depth: usize,
-    /// Bodies shown inside, each with the number of times and the depth.
+    /// Bodies shown inside that are not counted yet, each with the number of times and the depth at which it is shown.
     shown: Vec<(Body, u64, usize)>,
 }
 
@@ -233,21 +234,22 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let first = self.content(root);
         // Visiting elements takes time, too, so bound it as well.
         let mut visited = first.size;
+        // The body being counted, after the ones that show it.
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
         let (mut last, mut first_over) = ((Size::default(), 0), None);
-        while let Some((body, inside)) = open.last_mut() {
-            if let Some(next) = inside.shown.pop() {
-                let (other, times, at) = next;
+        while let Some((body, content)) = open.last_mut() {
+            if let Some(next) = content.shown.pop() {
+                let (other, times, around) = next;
                 match self.known.get(&other) {
                     Some(Some((size, depth))) => {
-                        inside.size = inside.size.plus_times(*size, times);
-                        inside.depth = inside.depth.max(at + depth);
+                        content.size = content.size.plus_times(*size, times);
+                        content.depth = content.depth.max(around + depth);
                     }
                     // usvg breaks the cycle here.
                     Some(None) => {}
                     None => {
-                        inside.shown.push(next);
+                        content.shown.push(next);
                         let new = self.content(other);
                         visited.elements += new.size.elements + new.shown.len() as u64;
                         self.known.insert(other, None);
@@ -257,19 +259,19 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 continue;
             }
             let node = self.doc.get_node(body.node).unwrap_or(self.doc.root_element());
-            last = (inside.size, inside.depth);
+            last = (content.size, content.depth);
             self.known.insert(*body, Some(last));
             open.pop();
-            if last.0.exceeded(budget).is_err() {
+            if last.0.check(budget).is_err() {
                 first_over.get_or_insert(node);
             }
-            visited.exceeded(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
+            visited.check(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
             if last.1.max(open.len()) > MAX_DEPTH {
                 return Err((node, TooMuch::Depth));
             }
         }
         // Report the size of the whole drawing, but name the first element that exceeds the limits.
-        let counted = last.0.exceeded(budget);
+        let counted = last.0.check(budget);
         counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
 
@@ -287,11 +289,11 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 continue;
             }
             let (references, filters) = self.references(node);
-            for (slot, reference) in inherited.iter_mut().zip(references) {
+            for (value, reference) in inherited.iter_mut().zip(references) {
                 match reference {
-                    Reference::Shows(id) => *slot = Some(id),
-                    Reference::Plain => *slot = None,
-                    Reference::Context(paint) => *slot = body.context[paint],
+                    Reference::Shows(id) => *value = Some(id),
+                    Reference::Plain => *value = None,
+                    Reference::Context(paint) => *value = body.context[paint],
                     Reference::Unset => {}
                 }
             }
@@ -394,7 +396,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
 }
 
 /// The number of letters of a text node; 0 for other nodes.
-pub(super) fn letters(n: Node<'_, '_>) -> u64 {
+fn letters(n: Node<'_, '_>) -> u64 {
     n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
 }
 

@@ -3,6 +3,8 @@
 //! If the font of a line lacks a letter, usvg shapes the whole line with another font, and gives up if that yields another number of
 //! glyphs. It shapes all letters of one direction by the script of the first letter. Therefore, each text that needs several fonts or
 //! scripts is rewritten: every piece is a `tspan` with a position, and with a name for its font that [`Chooser`] knows.
+//!
+//! A chunk is a stretch of a text that begins at a given position, and a span is a stretch of a chunk in one style.
 
 use super::edit::splice;
 use super::elements::{SVG, tag_end};
@@ -73,10 +75,10 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
     let texts = xml.descendants().filter(|n| n.has_tag_name((SVG, "text")));
     let by_id: HashMap<&str, Node<'_, '_>> = texts.filter_map(|n| Some((n.attribute("id")?, n))).collect();
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    let mut named: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
+    let mut fonts: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
     each_text(tree.root(), &mut |text| {
         let Some(node) = by_id.get(text.id()) else { return };
-        let mut divider = Divider { text, chooser, language: language(*node), named: &mut named, out: &mut out };
+        let mut divider = Divider { text, chooser, language: language(*node), fonts: &mut fonts, out: &mut out };
         let Some(pieces) = divider.pieces() else { return };
         let shown: Vec<char> = text.chunks().iter().flat_map(|c| c.text().chars()).collect();
         let mut writer = Writer {
@@ -103,15 +105,15 @@ fn language(node: Node<'_, '_>) -> String {
 }
 
 /// Visits all texts except the ones in images, which are separate drawings.
-fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
+fn each_text(group: &usvg::Group, visit: &mut dyn FnMut(&Text)) {
     for node in group.children() {
         match node {
-            usvg::Node::Group(g) => each_text(g, see),
-            usvg::Node::Text(t) => see(t),
+            usvg::Node::Group(g) => each_text(g, visit),
+            usvg::Node::Text(t) => visit(t),
             _ => {}
         }
         if !matches!(node, usvg::Node::Image(_)) {
-            node.subroots(|g| each_text(g, see));
+            node.subroots(|g| each_text(g, visit));
         }
     }
 }
@@ -135,7 +137,7 @@ struct Divider<'a> {
     chooser: &'a Chooser,
     language: String,
     /// The fonts of texts, by their requested font and language.
-    named: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
+    fonts: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
     out: &'a mut Divided,
 }
 
@@ -234,22 +236,19 @@ impl Divider<'_> {
         let features = features.join(",");
         let mut style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
         let db = &mut self.out.db;
-        let fonts = self.named.entry((span.font().clone(), language)).or_insert_with(|| {
+        let fonts = self.fonts.entry((span.font().clone(), language)).or_insert_with(|| {
             let faces = self.chooser.candidates(span.font(), db);
             faces.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
         });
         let look = Look::of_text(span.font());
         let is_small = span.small_caps() && fonts.first().is_some_and(|f| !f.has_small_capitals());
-        let whole = &chunk.text()[run.range.clone()];
-        let lower = |c: char| is_small && c.is_lowercase();
-        let mut at = run.range.start;
+        // Stretches of letters with their bytes, and `true` for those drawn as small capitals.
         let mut stretches: Vec<(bool, Range<usize>)> = Vec::new();
-        for c in whole.chars() {
-            let range = at..at + c.len_utf8();
-            at = range.end;
+        for (i, c) in chunk.text()[run.range.clone()].char_indices() {
+            let (start, small) = (run.range.start + i, is_small && c.is_lowercase());
             match stretches.last_mut() {
-                Some((small, before)) if *small == lower(c) => before.end = range.end,
-                _ => stretches.push((lower(c), range)),
+                Some((same, stretch)) if *same == small => stretch.end = start + c.len_utf8(),
+                _ => stretches.push((small, start..start + c.len_utf8())),
             }
         }
         if run.rtl {
@@ -381,16 +380,15 @@ impl Divider<'_> {
         }
         style.push('"');
         let natural: f64 = letters.iter().map(|l| l.natural).sum();
+        let advance: f64 = letters.iter().map(|l| l.advance).sum();
         let is_ignored = ignores_spacing(part.run.writing) && span.letter_spacing() != 0.0;
         match (span.text_length(), span.length_adjust()) {
             (length, LengthAdjust::Spacing) if (length.is_some() || is_ignored) && !is_apart && letters.len() > 1 => {
-                let all: f64 = letters.iter().map(|l| l.advance).sum();
-                let last = letters.last().map_or(0.0, |l| l.advance - l.natural);
-                let _ = write!(style, " textLength=\"{}\"", all - last);
+                let after_last = letters.last().map_or(0.0, |l| l.advance - l.natural);
+                let _ = write!(style, " textLength=\"{}\"", advance - after_last);
             }
             (Some(_), LengthAdjust::SpacingAndGlyphs) if natural > 0.0 => {
-                let all: f64 = letters.iter().map(|l| l.advance).sum();
-                let _ = write!(style, " textLength=\"{all}\" lengthAdjust=\"spacingAndGlyphs\"");
+                let _ = write!(style, " textLength=\"{advance}\" lengthAdjust=\"spacingAndGlyphs\"");
             }
             _ => {}
         }
@@ -400,7 +398,7 @@ impl Divider<'_> {
     /// The index in [`Divided::fonts`] of a piece's fonts. For each font that replaces the text's face, that face is in the database once
     /// more.
     fn font(&mut self, span: &TextSpan, face: ID, writing: Writing) -> Option<usize> {
-        let first = self.named.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
+        let first = self.fonts.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
         // A font without colours may have letters for emoji, so usvg must not look into it.
         let for_heights = if writing == Writing::Emoji { face } else { first };
         let db = Arc::make_mut(&mut self.out.db);

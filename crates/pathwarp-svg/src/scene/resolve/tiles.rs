@@ -59,6 +59,7 @@ impl Layout<'_> {
         clip_to_box(&all, self.area, TOLERANCE * self.area.width().max(self.area.height()))
     }
 
+    /// A group of the shape's tiles that only transforms its content.
     fn group(&self, transform: Affine, children: Vec<Node>) -> Group {
         Group::plain(self.context.owner, transform, children)
     }
@@ -72,7 +73,7 @@ pub(super) fn lay_out_tiles(
     frame: Affine,
     context: Context,
 ) -> Option<Tiles> {
-    let (paint, opacity, r) = match paint_of {
+    let (paint, opacity, bounds) = match paint_of {
         PaintOf::Stroke => p.stroke().map(|s| (s.paint(), s.opacity(), p.stroke_bounding_box()))?,
         PaintOf::Fill => p.fill().map(|f| (f.paint(), f.opacity(), p.bounding_box()))?,
     };
@@ -84,7 +85,7 @@ pub(super) fn lay_out_tiles(
     {
         return None;
     }
-    let area = rect(r);
+    let area = rect(bounds);
     let margin = MARGIN * area.width().max(area.height());
     let area = area.inflate(margin, margin);
     let is_mask = context.role == PartRole::Mask;
@@ -141,6 +142,7 @@ fn cells(tile: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Ve
     let (x, y) = (f64::from(tile.x()), f64::from(tile.y()));
     let (w, h) = (f64::from(tile.width()), f64::from(tile.height()));
     let needed = to_shape.inverse().transform_rect_bbox(area);
+    // The first column and row, and the ones after the last.
     let columns = (((needed.x0 - x) / w).floor(), ((needed.x1 - x) / w).ceil());
     let rows = (((needed.y0 - y) / h).floor(), ((needed.y1 - y) / h).ceil());
     let count = (columns.1 - columns.0) * (rows.1 - rows.0);
@@ -152,8 +154,8 @@ fn cells(tile: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Ve
     for j in 0..(rows.1 - rows.0) as u32 {
         for i in 0..(columns.1 - columns.0) as u32 {
             let corner = Vec2::new(x + (columns.0 + f64::from(i)) * w, y + (rows.0 + f64::from(j)) * h);
-            let seen = to_shape.transform_rect_bbox(cell + corner).intersect(area);
-            if seen.width() > 0.0 && seen.height() > 0.0 {
+            let common = to_shape.transform_rect_bbox(cell + corner).intersect(area);
+            if common.width() > 0.0 && common.height() > 0.0 {
                 cells.push(corner);
             }
         }
@@ -264,6 +266,7 @@ impl TilePaint<'_> {
         }
     }
 
+    /// A part with this paint alone.
     fn part(&self, local: LazyOutline, frame: Affine, context: Context) -> Part {
         Part {
             fill: self.path.fill().filter(|_| self.of == PaintOf::Fill).cloned(),
@@ -319,7 +322,7 @@ fn clip_to_box(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     Outline { subpaths: loops.filter_map(subpath).collect() }
 }
 
-/// Closes a run of segments with a line.
+/// Closes a run of segments from `start` with a line.
 fn close(segs: &mut Vec<Seg>, start: Point) {
     if let Some(end) = segs.last().map(Seg::end).filter(|e| *e != start) {
         segs.push(Seg::Line(Line::new(end, start)));
