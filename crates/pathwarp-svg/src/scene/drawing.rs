@@ -32,6 +32,7 @@ pub(crate) struct Drawing {
     shapes: OnceLock<Vec<Shape>>,
     lines: OnceLock<Vec<TextLine>>,
     far: OnceLock<Far>,
+    /// Fonts, images and other content that were not found.
     pub(crate) missed: Missed,
     /// Size in px.
     pub(crate) page: Size,
@@ -42,8 +43,9 @@ pub(crate) struct Drawing {
     letters: Arc<lettering::Owners>,
     /// For every element, the index of its bend; empty if the drawing is not divided. Clip paths and masks are resolved once for each bend.
     division: Vec<Option<usize>>,
+    /// Resolution in px per inch.
     dpi: f64,
-    /// Turns images.
+    /// Turns images whose metadata request it.
     pub(crate) turned: Option<Turned>,
     /// Counts the work that the drawing causes.
     pub(crate) budget: Arc<Budget>,
@@ -246,10 +248,9 @@ impl Drawing {
     pub(crate) fn selected_parts(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
-        let parts = self.scene().parts.iter();
         let far = self.far();
-        let selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
-        parts.enumerate().map(|(i, p)| selected(p) && !far.holds(i)).collect()
+        let is_selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
+        self.scene().parts.iter().enumerate().map(|(i, p)| is_selected(p) && !far.holds(i)).collect()
     }
 
     /// The parts whose coordinates are out of range.

@@ -45,30 +45,31 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
         return db.clone();
     }
     let mut db = base.clone();
-    for p in paths {
-        let db = Arc::make_mut(&mut db);
-        if p.is_dir() {
-            db.load_fonts_dir(p);
-        } else {
-            // A file that is not a font leaves the database unchanged; its family is then reported as missing.
-            let _ = load_file(db, p);
-        }
+    for path in paths {
+        // A file that is not a font leaves the database unchanged; its family is then reported as missing.
+        let _ = load_fonts(Arc::make_mut(&mut db), path);
     }
     *last = Some((system, paths.to_vec(), db.clone()));
     db
 }
 
-/// Loads a font file.
-pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
-    /// Limit on the memory for listing a collection, far above that of real ones.
-    const MAX: u64 = 32_000_000;
+/// Loads a font file, or the font files in a folder.
+fn load_fonts(db: &mut Database, path: &Path) -> Result<(), String> {
+    /// Limit on the bytes of memory for listing a collection, far above that of real ones.
+    const MAX_LISTING: u64 = 32_000_000;
     let unreadable = |e: std::io::Error| format!("cannot be read: {e}");
-    let is_collection = |file: &Path| -> std::io::Result<bool> {
+    let is_collection = || -> std::io::Result<bool> {
         let mut tag = Vec::new();
-        fs::File::open(file)?.take(4).read_to_end(&mut tag)?;
+        fs::File::open(path)?.take(4).read_to_end(&mut tag)?;
         Ok(tag == b"ttcf")
     };
-    if is_collection(path).map_err(unreadable)? && size_of_listing(&fs::read(path).map_err(unreadable)?, MAX) > MAX {
+    if path.is_dir() {
+        db.load_fonts_dir(path);
+        return Ok(());
+    }
+    if is_collection().map_err(unreadable)?
+        && size_of_listing(&fs::read(path).map_err(unreadable)?, MAX_LISTING) > MAX_LISTING
+    {
         return Err("has more fonts, or longer names, than can be listed".into());
     }
     let before = db.len();
@@ -84,14 +85,14 @@ pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
 /// Loads a font without names, as subsets often are, under the name `family`. Returns `None` if it is not a font.
 pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> Option<ID> {
     let font = FontRef::new(data.as_ref().as_ref()).ok()?;
-    let about = font.attributes();
-    let style = match about.style {
+    let attributes = font.attributes();
+    let style = match attributes.style {
         skrifa::attribute::Style::Normal => fontdb::Style::Normal,
         skrifa::attribute::Style::Italic => fontdb::Style::Italic,
         skrifa::attribute::Style::Oblique(_) => fontdb::Style::Oblique,
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
-    let weight = fontdb::Weight(about.weight.value().clamp(1.0, 1000.0) as u16);
+    let weight = fontdb::Weight(attributes.weight.value().clamp(1.0, 1000.0) as u16);
     font.charmap().mappings().next()?;
     Some(db.push_face_info(fontdb::FaceInfo {
         id: ID::dummy(),
@@ -130,15 +131,15 @@ impl Chooser {
     /// A font resolver that, unlike usvg's, always finds a font, and records missing families. `pieces` are the fonts for the families that
     /// begin with [`PIECE`].
     pub(super) fn resolver(self: &Arc<Self>, pieces: Vec<PieceFonts>) -> FontResolver<'static> {
-        let (chooser, other) = (self.clone(), self.clone());
+        let (chooser, fallback_chooser) = (self.clone(), self.clone());
         let piece_fonts: HashMap<ID, ID> = pieces.iter().copied().collect();
         FontResolver {
             select_font: Box::new(move |font, db| {
-                let named = match font.families() {
+                let piece = match font.families() {
                     [FontFamily::Named(name)] => name.strip_prefix(PIECE).and_then(|n| n.parse::<usize>().ok()),
                     _ => None,
                 };
-                named.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
+                piece.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
             }),
             select_fallback: Box::new(move |c, used, db| {
                 if let Some(face) = used.first().and_then(|first| piece_fonts.get(first)) {
@@ -147,13 +148,13 @@ impl Chooser {
                 let letter = c.to_string();
                 let writing = runs(&letter).first()?.writing;
                 let look = Look::of_face(db.face(*used.first()?)?);
-                other.fallback(&Wanted { letters: &letter, writing, language: "", look }, used, db)
+                fallback_chooser.fallback(&Wanted { letters: &letter, writing, language: "", look }, used, db)
             }),
         }
     }
 
     /// The first font of a text.
-    pub(super) fn first(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Option<ID> {
+    fn first(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Option<ID> {
         let face = find_face(font, db, &self.generic, &self.missing)?;
         self.admitted(face, db)
     }
@@ -186,9 +187,9 @@ impl Chooser {
 
     /// A face held in memory, if it may be used.
     fn admitted(&self, face: ID, db: &mut Arc<Database>) -> Option<ID> {
-        let face = self.guard.admits(face, db).then(|| self.held.face(face, db))?;
-        self.guard.trust(face);
-        Some(face)
+        let held = self.guard.admits(face, db).then(|| self.held.face(face, db))?;
+        self.guard.trust(held);
+        Some(held)
     }
 }
 
@@ -319,11 +320,7 @@ pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
     for path in paths {
         let name = path.display().to_string();
         let mut db = Database::new();
-        if path.is_dir() {
-            db.load_fonts_dir(path);
-        } else {
-            load_file(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
-        }
+        load_fonts(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
         if db.is_empty() {
             return Err(Error::input(&name, if path.is_dir() { "holds no font" } else { "is not a font" }));
         }
