@@ -48,13 +48,8 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
         packages.map(|(n, v)| Ok((n, unpack(v, &limits.for_input(svg.len()))?))).collect::<Result<_, Error>>()?;
     let around =
         Surroundings { text: svg, doc: &doc, by_id: found, replaced: packages.iter().map(|(n, _)| *n).collect() };
-    let mut restoration = Restoration {
-        around,
-        taken: HashSet::new(),
-        patches: Vec::new(),
-        defs: String::new(),
-        removed: HashSet::new(),
-    };
+    let (taken, removed) = (HashSet::new(), HashSet::new());
+    let mut restoration = Restoration { around, taken, patches: Vec::new(), defs: String::new(), removed };
     let mut objects = Vec::new();
     for (n, text) in &packages {
         let package = parse(text, limits)?;
@@ -65,7 +60,7 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
             id: n.attribute("id").unwrap_or_default().to_owned(),
             recipe: n.attribute((NAMESPACE, RECIPE)).unwrap_or_default().to_owned(),
             nodes: n.attribute((NAMESPACE, NODES)).unwrap_or_default().to_owned(),
-            guides: Guides { markup: inside(text, package.guides) },
+            guides: Guides { markup: inner_markup(text, package.guides) },
         });
     }
     let Restoration { around, mut patches, defs, .. } = restoration;
@@ -76,7 +71,7 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
 }
 
 /// The text between the tags of an element.
-fn inside(text: &str, n: Node<'_, '_>) -> String {
+fn inner_markup(text: &str, n: Node<'_, '_>) -> String {
     let ends = n.first_child().zip(n.last_child());
     ends.map_or_else(String::new, |(first, last)| text[first.range().start..last.range().end].to_owned())
 }
@@ -144,12 +139,10 @@ impl<'a, 'i> Restoration<'a, 'i> {
         {
             names.insert(old.to_owned(), now.to_owned());
         }
-        for inner in package.element.descendants().skip(1).filter_map(|d| d.attribute("id")) {
-            let elsewhere =
-                self.around.by_id.get(inner).is_some_and(|o| self.around.stays(*o)) && !made.contains(inner);
-            if elsewhere || self.taken.contains(inner) {
-                let new = self.fresh(inner);
-                names.insert(inner.to_owned(), new);
+        for id in package.element.descendants().skip(1).filter_map(|d| d.attribute("id")) {
+            let stays = self.around.by_id.get(id).is_some_and(|o| self.around.stays(*o));
+            if (stays && !made.contains(id)) || self.taken.contains(id) {
+                names.insert(id.to_owned(), self.free_id(id));
             }
         }
         let mut added = Vec::new();
@@ -166,22 +159,19 @@ impl<'a, 'i> Restoration<'a, 'i> {
                     }
                 }
                 Some(_) => {
-                    let new = self.fresh(id);
-                    names.insert(id.to_owned(), new);
+                    names.insert(id.to_owned(), self.free_id(id));
                     added.push(*d);
                 }
             }
         }
+        let new_id = |id: &str| names.get(id).map_or(id, String::as_str).to_owned();
         for d in added {
-            let id = d.attribute("id").unwrap_or_default();
-            self.taken.insert(names.get(id).map_or(id, String::as_str).to_owned());
+            self.taken.insert(new_id(d.attribute("id").unwrap_or_default()));
             self.defs += &renamed(text, d, &names);
         }
         self.remove_made(&made);
-        let source = renamed(text, package.element, &names);
-        let ids = package.element.descendants().filter_map(|d| d.attribute("id"));
-        self.taken.extend(ids.map(|id| names.get(id).map_or(id, String::as_str).to_owned()));
-        self.patches.push((n.range(), source));
+        self.taken.extend(package.element.descendants().filter_map(|d| d.attribute("id")).map(new_id));
+        self.patches.push((n.range(), renamed(text, package.element, &names)));
     }
 
     /// Removes the definitions that the warp added, unless another element uses them.
@@ -196,18 +186,17 @@ impl<'a, 'i> Restoration<'a, 'i> {
     }
 
     /// An id like `id` that is not in use.
-    fn fresh(&self, id: &str) -> String {
-        let numbered = (2..).map(|n: u64| format!("{id}-{n}"));
-        let free = |new: &String| !self.around.by_id.contains_key(new.as_str()) && !self.taken.contains(new);
-        numbered.into_iter().find(free).unwrap_or_else(|| id.to_owned())
+    fn free_id(&self, id: &str) -> String {
+        let is_free = |new: &String| !self.around.by_id.contains_key(new.as_str()) && !self.taken.contains(new);
+        (2..).map(|n: u64| format!("{id}-{n}")).find(is_free).unwrap_or_else(|| id.to_owned())
     }
 }
 
-/// The text of an element with other ids.
+/// The text of an element with new ids, which `names` gives by the old ones.
 fn renamed(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> String {
     let refers = || referred(n).iter().any(|r| names.contains_key(r));
-    let has = || n.descendants().any(|d| d.attribute("id").is_some_and(|id| names.contains_key(id)));
-    if names.is_empty() || !(refers() || has()) {
+    let has_id = || n.descendants().any(|d| d.attribute("id").is_some_and(|id| names.contains_key(id)));
+    if names.is_empty() || !(refers() || has_id()) {
         return text[n.range()].to_owned();
     }
     let start = n.range().start;

@@ -144,15 +144,10 @@ impl GeometryReader<'_> {
             "svg" if el.parent.is_some() => {
                 let t = shifted()?;
                 let view = self.viewport_size(e);
-                let side = |name, dimension, full: fn(Size) -> f64| match self.length(e, name, dimension)? {
-                    Some(l) => Some(l),
-                    None => view.map(full),
-                };
-                let size = Size::new(
-                    side("width", Dimension::Width, |s| s.width)?,
-                    side("height", Dimension::Height, |s| s.height)?,
-                );
-                Some(t * self.view_box_transform(e, size))
+                // An absent side is that of the viewport around.
+                let width = self.length(e, "width", Dimension::Width)?.or_else(|| Some(view?.width))?;
+                let height = self.length(e, "height", Dimension::Height)?.or_else(|| Some(view?.height))?;
+                Some(t * self.view_box_transform(e, Size::new(width, height)))
             }
             _ => Some(t),
         }

@@ -224,6 +224,8 @@ pub(crate) fn is_mesh(tag: &str) -> bool {
 pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
     /// Limit on the patches of gradients that copy them from others.
     const MAX_COPIED: usize = 100_000;
+    /// Limit on the elements in a chain of links, which may form a circle.
+    const MAX_CHAIN: usize = 16;
     let mut out = HashMap::new();
     if !doc.input_text().contains("mesh") {
         return out;
@@ -234,8 +236,7 @@ pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
     let mut copied = 0;
     for node in &all {
         let mut chain = vec![*node];
-        // Longer chains of links are not followed.
-        while let Some(next) = chain.last().and_then(|n| by_id.get(link(*n)?)).filter(|_| chain.len() < 16) {
+        while let Some(next) = chain.last().and_then(|n| by_id.get(link(*n)?)).filter(|_| chain.len() < MAX_CHAIN) {
             chain.push(*next);
         }
         if (chain.len() == 1 || copied < MAX_COPIED)

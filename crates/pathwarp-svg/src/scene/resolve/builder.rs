@@ -186,9 +186,9 @@ fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
 fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Affine>> {
     let mut out: HashMap<[u32; 6], Option<Affine>> = HashMap::new();
     for e in 0..reader.source.elements.len() {
-        let moves = reader.source.attr(e, "transform").is_some()
+        let may_transform = reader.source.attr(e, "transform").is_some()
             || matches!(reader.source.elements[e].tag.as_ref(), "use" | "svg");
-        if moves && let Some(t) = reader.own_transform(e) {
+        if may_transform && let Some(t) = reader.own_transform(e) {
             out.entry(f32_bits(t)).and_modify(|v| *v = v.filter(|v| *v == t)).or_insert(Some(t));
         }
     }

@@ -102,9 +102,10 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
             resolve_filter_image(b, image.root());
         }
     }
-    let user = context.owner.filter(|&e| b.tag(e) == "use");
-    let marked = if user == context.owner { marked_children(b, g, user) } else { Vec::new() };
-    place_markers(b, g, user, &marked);
+    // Markers are placed outside of all owners, and inside copies.
+    let copy = context.owner.filter(|&e| b.tag(e) == "use");
+    let marked = if copy == context.owner { marked_children(b, g, copy) } else { Vec::new() };
+    place_markers(b, g, copy, &marked);
     let mut children = Vec::with_capacity(g.children().len());
     for (i, c) in g.children().iter().enumerate() {
         if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {
@@ -152,6 +153,7 @@ fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
     Some(rect(g.bounding_box()))
 }
 
+/// The address of a group, which identifies it.
 fn address(g: &usvg::Group) -> usize {
     std::ptr::from_ref(g) as usize
 }
