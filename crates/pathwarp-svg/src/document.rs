@@ -111,15 +111,15 @@ impl Document {
     pub fn moved_to_origin(&self) -> Result<Option<String>, Error> {
         /// Distance from the origin, in pages, beyond which single precision would move shapes by a hundred-thousandth of the page.
         const FAR: f64 = 64.0;
-        /// Fraction of the page that rounding may take.
-        const FINE: f64 = 1e-8;
+        /// Tolerance of the moved shapes, as a fraction of the page.
+        const TOLERANCE: f64 = 1e-8;
         let page = self.drawing.visible_area();
-        let (side, away) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
-        if away <= FAR * side || self.drawing.specified_area().is_none() {
+        let (side, distance) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
+        if distance <= FAR * side || self.drawing.specified_area().is_none() {
             return Ok(None);
         }
         let refit =
-            refit::Options::new(FINE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
+            refit::Options::new(TOLERANCE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options =
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
@@ -132,12 +132,12 @@ impl Document {
     /// # Errors
     /// [`Error::Input`] or [`Error::Geometry`] as for [`Document::warp`].
     pub fn resolved(&self) -> Result<Option<String>, Error> {
-        /// The tolerance of an outlined stroke, in px.
-        const FINE: f64 = 0.01;
+        /// Tolerance of an outlined stroke, in px.
+        const TOLERANCE: f64 = 0.01;
         if self.drawing.scene().parts.iter().all(|p| !p.differs_from_usvg) {
             return Ok(None);
         }
-        let tolerance = FINE / stretch(self.user_to_px());
+        let tolerance = TOLERANCE / stretch(self.user_to_px());
         let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options = WarpOptions::new(refit).with_on_error(OnError::Skip).with_page(PageFit::None);
         Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))

@@ -50,7 +50,7 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
     let (tree, missed) = if MAY_DIFFER.iter().any(|word| text.contains(word)) {
         let document = Document::read(data, name, options)?;
         let drawing = document.drawing();
-        (shown(&document, options)?, drawing.missed.clone().lacking(&drawing.source))
+        (shown(&document, options)?, drawing.missed.clone().with_undrawn(&drawing.source))
     } else {
         tree::parse(data, name, options)?
     };

@@ -25,9 +25,11 @@ pub(crate) fn splice(text: &str, patches: impl IntoIterator<Item = (Range<usize>
 struct Change {
     /// New values; `None` removes the attribute.
     attrs: Vec<(&'static str, Option<String>)>,
+    /// New values of properties in the style attribute.
     properties: Vec<(&'static str, String)>,
     /// Ranges of attributes to remove.
     removed: Vec<Range<usize>>,
+    /// Replaces the tag.
     tag: Option<&'static str>,
     /// Replaces the content.
     content: Option<String>,

@@ -509,6 +509,7 @@ struct Writer<'a> {
     /// Index of the next character.
     next: usize,
     pieces: &'a [Piece],
+    /// Rotation of each character, in degrees.
     rotate: &'a [f32],
     /// Start and end tags of the elements from a `textPath` inwards. usvg puts only the first piece in a `textPath` on the path, so each
     /// piece gets a new one.
@@ -614,6 +615,7 @@ impl Writer<'_> {
 
 /// A part of a piece within one element.
 struct Stretch {
+    /// Index of the piece.
     piece: usize,
     /// Indices among the characters of the text.
     chars: Range<usize>,
