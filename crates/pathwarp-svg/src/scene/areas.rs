@@ -44,7 +44,7 @@ pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
     (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
 }
 
-/// Bounding box of the counted artwork in a group, clipped to `room`. Includes only parts and bitmaps for whose box `is_kept` returns `true`.
+/// Bounding box of the counted artwork in a group, clipped to `room`. Includes only parts and bitmaps whose box `is_kept` accepts.
 fn group_box(
     scene: &Scene,
     g: &Group,

@@ -170,9 +170,9 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 /// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
 /// element, by its index.
 ///
-/// `coarsest` gives the largest step that rounding to these decimals may have, or `None` if the decimals are fixed. If they are not, handles
-/// so short that rounding would turn them get more decimals, so that smooth joints stay smooth. Whether a cubic is written as a quadratic
-/// then depends on that step alone, so that neighbours under different transforms write a shared edge equally.
+/// `coarsest` gives the largest step that rounding to these decimals may have, or `None` if the decimals are fixed. If they are not,
+/// handles so short that rounding would turn them get more decimals, so that smooth joints stay smooth. Whether a cubic is written as a
+/// quadratic then depends on that step alone, so that neighbours under different transforms write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,
