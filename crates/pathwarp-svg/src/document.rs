@@ -346,8 +346,8 @@ impl Document {
         self.counted_box(selection, &areas::Counted { strokes: true, ..self.counted(selection) })
     }
 
-    /// The box of the visible area, `seen` ([`Document::seen_box`]), extended by the areas of the shapes in it that lie off the page. `None`
-    /// if there are none.
+    /// The box of the visible area, `seen` ([`Document::seen_box`]), extended by the areas of the shapes in it that lie off the page.
+    /// `None` if there are none.
     #[must_use]
     pub fn uncut_box(&self, selection: &Selection, seen: Rect) -> Option<Rect> {
         let page = self.drawing.specified_area()?;
@@ -515,8 +515,8 @@ impl Document {
     /// it if one map bends both. For the document as a whole, such as its page, the first options count.
     ///
     /// # Errors
-    /// [`Error::Geometry`] with the name of a shape that its map cannot bend, unless the options have [`OnError::Skip`]; [`Error::Input`] if
-    /// the structure must be kept and cannot be.
+    /// [`Error::Geometry`] with the name of a shape that its map cannot bend, unless the options have [`OnError::Skip`]; [`Error::Input`]
+    /// if the structure must be kept and cannot be.
     pub fn warp_each(&self, bends: &[(&dyn Map, &WarpOptions)]) -> Result<WarpedDocument, Error> {
         let each = bends.iter().map(|(map, options)| Bend::new(*map, (*options).clone())).collect();
         bends.iter().try_for_each(|(_, options)| options.refit.check())?;
