@@ -79,7 +79,7 @@ impl Lettering {
     ///
     /// # Errors
     /// [`LetteringFrameError::NoLettering`] without lines, [`LetteringFrameError::NotLevel`] if a baseline is not horizontal,
-    /// [`LetteringFrameError::NoOutlines`] if letters have no ink, [`LetteringFrameError::NoHeight`] if the font does not specify the height.
+    /// [`LetteringFrameError::NoOutlines`] if letters have no ink, [`LetteringFrameError::NoHeight`] if the font lacks the height.
     pub fn frame(&self, kind: LetteringFrame) -> Result<Frame, LetteringFrameError> {
         if self.lines.is_empty() {
             return Err(LetteringFrameError::NoLettering);

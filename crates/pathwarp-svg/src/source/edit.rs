@@ -218,11 +218,8 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     let mut added = String::new();
     let mut attrs = c.attrs;
     if !c.properties.is_empty() {
-        let mut style = source.written_style(e);
-        for (name, value) in &c.properties {
-            style = with_declaration(&style, name, value);
-        }
-        attrs.push(("style", Some(style)));
+        let declare = |style: String, (name, value): &(&str, String)| with_declaration(&style, name, value);
+        attrs.push(("style", Some(c.properties.iter().fold(source.written_style(e), declare))));
     }
     for (name, value) in attrs {
         // `xlink:href` counts as `href`.
@@ -230,18 +227,18 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
             a.name(text) == name
                 && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
         });
-        let mut set = false;
+        let mut is_set = false;
         for a in existing {
             match &value {
-                Some(v) if !set => {
+                Some(v) if !is_set => {
                     out.push((a.value_range.start, a.value_range.end, quoted(v, text.as_bytes()[a.range.end - 1])));
-                    set = true;
+                    is_set = true;
                 }
                 Some(_) => {}
                 None => out.push(removal(text, &a.range)),
             }
         }
-        if let (Some(v), false) = (&value, set) {
+        if let (Some(v), false) = (&value, is_set) {
             added.push_str(&format!(" {name}=\"{}\"", escape(v)));
         }
     }
