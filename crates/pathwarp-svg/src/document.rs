@@ -9,7 +9,6 @@ use crate::bend::task::placed_outlines;
 use crate::scene::areas::{self, stroked};
 use crate::scene::drawing::{Drawing, NamedPath, Shape, UnreadImages, named_path};
 use crate::scene::geometry::stretch;
-use crate::scene::lettering::PlacedLetter;
 use crate::scene::model::{Bitmap, Part, PartRole};
 use crate::scene::plot::{self, Plot};
 use crate::scene::selected_lettering::{Lettering, lettering, objects};
@@ -46,8 +45,8 @@ pub struct DrawingPart {
     pub depth: usize,
 }
 
-/// Says of an element that its name and those inside are SVG's.
-const SVG_SPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\" ";
+/// Declares SVG's namespace for the names without a prefix on an element and inside it.
+const SVG_DECLARATION: &str = " xmlns=\"http://www.w3.org/2000/svg\" ";
 
 /// An SVG file.
 #[derive(Debug)]
@@ -112,15 +111,15 @@ impl Document {
     pub fn moved_to_origin(&self) -> Result<Option<String>, Error> {
         /// Distance from the origin, in pages, beyond which single precision would move shapes by a hundred-thousandth of the page.
         const FAR: f64 = 64.0;
-        /// Fraction of the page that rounding may take.
-        const FINE: f64 = 1e-8;
+        /// Tolerance of the moved shapes, as a fraction of the page.
+        const TOLERANCE: f64 = 1e-8;
         let page = self.drawing.visible_area();
-        let (side, away) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
-        if away <= FAR * side || self.drawing.specified_area().is_none() {
+        let (side, distance) = (page.width().max(page.height()), page.x0.abs().max(page.y0.abs()));
+        if distance <= FAR * side || self.drawing.specified_area().is_none() {
             return Ok(None);
         }
         let refit =
-            refit::Options::new(FINE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
+            refit::Options::new(TOLERANCE * side).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options =
             WarpOptions::new(refit).with_strokes(Strokes::Keep).with_on_error(OnError::Skip).with_page(PageFit::Origin);
         let map = AffineMap(Affine::translate(-page.origin().to_vec2()));
@@ -133,12 +132,12 @@ impl Document {
     /// # Errors
     /// [`Error::Input`] or [`Error::Geometry`] as for [`Document::warp`].
     pub fn resolved(&self) -> Result<Option<String>, Error> {
-        /// The tolerance of an outlined stroke, in px.
-        const FINE: f64 = 0.01;
+        /// Tolerance of an outlined stroke, in px.
+        const TOLERANCE: f64 = 0.01;
         if self.drawing.scene().parts.iter().all(|p| !p.differs_from_usvg) {
             return Ok(None);
         }
-        let tolerance = FINE / stretch(self.user_to_px());
+        let tolerance = TOLERANCE / stretch(self.user_to_px());
         let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(self.budget().clone());
         let options = WarpOptions::new(refit).with_on_error(OnError::Skip).with_page(PageFit::None);
         Ok(Some(self.warp(&AffineMap(Affine::IDENTITY), &options.editing(Edit::Resolve))?.svg))
@@ -249,14 +248,14 @@ impl Document {
         for &e in &painted {
             depths.extend(source.ancestors(e).filter(|&a| a > 0).map(|a| (a, source.ancestors(a).count() - 2)));
         }
-        let mut named: HashMap<String, usize> = HashMap::new();
-        for e in 0..source.elements.len() {
-            let title = source.elements[e].title.as_deref().map(Cow::Borrowed);
-            let names = [source.attr(e, "id"), source.label(e), title];
-            names.into_iter().flatten().for_each(|n| *named.entry(n.into_owned()).or_default() += 1);
+        // The number of elements with each name.
+        let mut bearers: HashMap<String, usize> = HashMap::new();
+        for (e, element) in source.elements.iter().enumerate() {
+            let names = [source.attr(e, "id"), source.label(e), element.title.as_deref().map(Cow::Borrowed)];
+            names.into_iter().flatten().for_each(|n| *bearers.entry(n.into_owned()).or_default() += 1);
         }
         let selector = |e: ElementId| match source.attr(e, "id").filter(|id| !id.is_empty()) {
-            Some(id) if named[&*id] == 1 => format!("#{id}"),
+            Some(id) if bearers[&*id] == 1 => format!("#{id}"),
             Some(id) => format!("[id={id}]"),
             None => source.display_name(e),
         };
@@ -283,43 +282,49 @@ impl Document {
         let source = &self.drawing.source;
         let root = &source.elements[0];
         let name = &source.text[root.qname.clone()];
+        // An empty root such as `<svg/>` gets an end tag.
         let (at, skipped) = root.close.as_ref().map_or((root.open_end - 2, 2), |close| (close.start, 0));
         let at = source.positions_in_file(std::iter::once(at))[0];
         let file = source.as_in_file();
         let [start, end] = if skipped > 0 { [">", &format!("</{name}>")] } else { ["", ""] };
         // Where a prefix stands for SVG, names without one mean something else.
-        let spaced = if name == "svg" { element.to_owned() } else { element.replacen(' ', SVG_SPACE, 1) };
-        [&file[..at], start, &spaced, end, &file[at + skipped..]].concat()
+        let declared = if name == "svg" { element.to_owned() } else { element.replacen(' ', SVG_DECLARATION, 1) };
+        [&file[..at], start, &declared, end, &file[at + skipped..]].concat()
     }
 
     /// Bounding box of the selected painted shapes, without stroke widths, and of pictures.
     #[must_use]
     pub fn artwork_box(&self, selection: &Selection) -> Option<Rect> {
         let shapes = self.selected(selection).filter_map(|s| s.outline.bounding_box());
-        let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection));
-        let pictures = bitmaps.filter(|b| b.1).filter_map(|b| areas::picture_box(b.0));
+        let pictures = self.selected_bitmaps(selection).filter_map(areas::picture_box);
         shapes.chain(pictures).filter(Rect::is_finite).reduce(|a, b| a.union(b))
     }
 
     /// The edges of the selected visible pictures, with a name for each.
     #[must_use]
     pub fn picture_edges(&self, selection: &Selection) -> Vec<(String, Outline)> {
-        let bitmaps = self.drawing.scene().bitmaps.iter().zip(self.selected_bitmaps(selection)).filter(|b| b.1);
-        let named = |b: &Bitmap| self.drawing.source.image_name(b.owner);
-        let edge = |b: &Bitmap| Some((named(b), Outline::from_points(&areas::picture_corners(b)?, true)));
-        bitmaps.filter_map(|b| edge(b.0)).collect()
+        let name = |b: &Bitmap| self.drawing.source.image_name(b.owner);
+        let edge = |b: &Bitmap| Some((name(b), Outline::from_points(&areas::picture_corners(b)?, true)));
+        self.selected_bitmaps(selection).filter_map(edge).collect()
+    }
+
+    /// The selected bitmaps.
+    fn selected_bitmaps(&self, selection: &Selection) -> impl Iterator<Item = &Bitmap> {
+        let all = self.drawing.scene().bitmaps.iter().zip(self.are_bitmaps_selected(selection));
+        all.filter_map(|(bitmap, is_selected)| is_selected.then_some(bitmap))
     }
 
     /// For each bitmap, `true` if it is selected.
-    fn selected_bitmaps(&self, selection: &Selection) -> Vec<bool> {
+    fn are_bitmaps_selected(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.drawing.source);
         let bitmaps = self.drawing.scene().bitmaps.iter();
         bitmaps.map(|b| b.bends && b.owner.map_or(selection.is_everything(), |e| elements[e])).collect()
     }
 
+    /// The selected artwork, without strokes.
     fn counted(&self, selection: &Selection) -> areas::Counted {
-        let parts = self.drawing.selected_parts(selection).to_vec();
-        areas::Counted { parts, bitmaps: self.selected_bitmaps(selection), strokes: false }
+        let parts = self.drawing.selected_parts(selection);
+        areas::Counted { parts, bitmaps: self.are_bitmaps_selected(selection), strokes: false }
     }
 
     /// Bounding box of the visible area of the selected shapes, without stroke widths, and pictures: without artwork that is off the page
@@ -329,6 +334,7 @@ impl Document {
         self.counted_box(selection, &self.counted(selection))
     }
 
+    /// Bounding box of the visible area of the counted artwork; if nothing is visible, of all that is selected.
     fn counted_box(&self, selection: &Selection, counted: &areas::Counted) -> Option<Rect> {
         let seen = areas::seen_box(self.drawing.scene(), self.drawing.specified_area(), counted);
         seen.or_else(|| self.artwork_box(selection))
@@ -340,8 +346,8 @@ impl Document {
         self.counted_box(selection, &areas::Counted { strokes: true, ..self.counted(selection) })
     }
 
-    /// The box of the visible area, `seen` ([`Document::seen_box`]), extended by the areas of the shapes in it that lie off the page. `None`
-    /// if there are none.
+    /// The box of the visible area, `seen` ([`Document::seen_box`]), extended by the areas of the shapes in it that lie off the page.
+    /// `None` if there are none.
     #[must_use]
     pub fn uncut_box(&self, selection: &Selection, seen: Rect) -> Option<Rect> {
         let page = self.drawing.specified_area()?;
@@ -365,7 +371,7 @@ impl Document {
     /// Returns `true` if the selection holds a painted shape or a bitmap.
     #[must_use]
     pub fn has_artwork(&self, selection: &Selection) -> bool {
-        self.selected(selection).next().is_some() || self.selected_bitmaps(selection).contains(&true)
+        self.selected(selection).next().is_some() || self.selected_bitmaps(selection).next().is_some()
     }
 
     /// Checks that every selector matches something.
@@ -417,13 +423,7 @@ impl Document {
     /// whole drawing is selected, each member of the outermost group that has several. Members whose boxes overlap are one object.
     #[must_use]
     pub fn objects(&self, selection: &Selection) -> Vec<Letter> {
-        let letter = |o: PlacedLetter| Letter {
-            name: o.name,
-            origin: o.origin,
-            advance: o.advance,
-            outline: Outline::default(),
-        };
-        objects(&self.drawing, selection).into_iter().map(letter).collect()
+        objects(&self.drawing, selection).iter().map(|o| o.with_outline(Outline::default())).collect()
     }
 
     /// For each shape of [`Document::selected`], the area that its stroke covers in root user space, to be filled by the nonzero rule,
@@ -434,8 +434,8 @@ impl Document {
     pub fn strokes(&self, selection: &Selection, tolerance: f64) -> Result<Vec<Option<Outline>>, Exceeded> {
         let (scene, selected) = (self.drawing.scene(), self.drawing.selected_parts(selection));
         let all = scene.parts.iter().zip(self.shapes()).zip(selected);
-        let chosen = all.filter(|((_, s), selected)| *selected && s.painted);
-        chosen.map(|((p, _), _)| stroked(p, scene.to_px, tolerance, self.budget())).collect()
+        let painted = all.filter(|((_, s), is_selected)| *is_selected && s.painted);
+        painted.map(|((p, _), _)| stroked(p, scene.to_px, tolerance, self.budget())).collect()
     }
 
     /// For each shape of [`Document::selected`], its outline after letters have been placed one by one; `None` if it has no placed letters.
@@ -480,22 +480,17 @@ impl Document {
         let by_id = found.iter().copied().filter(|&e| source.attr(e, "id").is_some_and(|v| v == wanted));
         let by_label = found.iter().copied().filter(|&e| source.label(e).is_some_and(|v| v == wanted));
         for e in by_id.chain(by_label).chain(found.iter().copied()) {
-            if is_shape(&source.elements[e].tag) {
-                if let Some(p) = self.named_path(e) {
-                    return Ok(p);
-                }
-                continue;
-            }
-            let inside: Vec<ElementId> = source.descendants(e).filter(|&c| is_shape(&source.elements[c].tag)).collect();
-            if let [only] = inside.as_slice()
-                && let Some(p) = self.named_path(*only)
-            {
-                return Ok(p);
+            let is_shape = |&e: &ElementId| is_shape(&source.elements[e].tag);
+            let mut shapes = source.descendants(e).filter(is_shape);
+            let only = Some(e).filter(is_shape).or_else(|| shapes.next().filter(|_| shapes.next().is_none()));
+            if let Some(path) = only.and_then(|e| self.named_path(e)) {
+                return Ok(path);
             }
         }
         Err(self.no_such_path(wanted, !found.is_empty()))
     }
 
+    /// The error for a name that stands for no path. `exists` is `true` if it is the name of something else.
     fn no_such_path(&self, wanted: &str, exists: bool) -> Error {
         let names = self.paths().into_iter().map(|p| p.label.or(p.title).unwrap_or(p.id)).collect();
         let place = format!("{}#{wanted}", self.name());
@@ -520,8 +515,8 @@ impl Document {
     /// it if one map bends both. For the document as a whole, such as its page, the first options count.
     ///
     /// # Errors
-    /// [`Error::Geometry`] with the name of a shape that its map cannot bend, unless the options have [`OnError::Skip`]; [`Error::Input`] if
-    /// the structure must be kept and cannot be.
+    /// [`Error::Geometry`] with the name of a shape that its map cannot bend, unless the options have [`OnError::Skip`]; [`Error::Input`]
+    /// if the structure must be kept and cannot be.
     pub fn warp_each(&self, bends: &[(&dyn Map, &WarpOptions)]) -> Result<WarpedDocument, Error> {
         let each = bends.iter().map(|(map, options)| Bend::new(*map, (*options).clone())).collect();
         bends.iter().try_for_each(|(_, options)| options.refit.check())?;
@@ -534,8 +529,8 @@ impl Document {
             return Ok(WarpedDocument { svg, ..WarpedDocument::default() });
         }
         let simplifies = matches!(document.edit, Some(Edit::Simplify { .. }));
-        let again = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
-        let drawing = again.as_ref().unwrap_or(&self.drawing);
+        let resolved_again = if simplifies { self.drawing.at_originals()? } else { bends.divided(&self.drawing)? };
+        let drawing = resolved_again.as_ref().unwrap_or(&self.drawing);
         match fits::with_tiles(drawing, bends)? {
             Some(tiled) => warp(&tiled, bends),
             None => warp(drawing, bends),
@@ -556,6 +551,7 @@ impl Document {
     }
 }
 
+/// Bends a drawing and writes the result.
 fn warp(drawing: &Drawing, bends: &Bends<'_>) -> Result<WarpedDocument, Error> {
     let mut out = WarpedDocument::default();
     let mut bent = bend(drawing, bends, &mut out)?;
@@ -586,7 +582,7 @@ fn similar(mut names: Vec<String>, wanted: &str, what: &str) -> String {
 
 /// Edit distance without regard to case, over at most 40 characters, so that long names take little time.
 fn distance(a: &str, b: &str) -> usize {
-    const LONGEST: usize = 40;
-    let [a, b] = [a, b].map(|s| s.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>());
+    const MAX_CHARACTERS: usize = 40;
+    let [a, b] = [a, b].map(|s| s.chars().take(MAX_CHARACTERS).flat_map(char::to_lowercase).collect::<String>());
     strsim::levenshtein(&a, &b)
 }

@@ -1,7 +1,8 @@
 //! Embeds the origin of a drawing, the recipe and the source file, in its `<metadata>`.
 
+use crate::source::edit::splice;
 use crate::source::elements::{PATHWARP as NAMESPACE, tag_end};
-use crate::source::read::{packed, text, unpacked_text};
+use crate::source::read::{self, packed, unpacked_text};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::{self, escape_content};
@@ -28,14 +29,9 @@ impl Origin {
             escape_content(&self.recipe)
         );
         let doc = parse(svg)?;
-        let mut out = String::with_capacity(svg.len() + element.len() + 30);
         // Other metadata, such as a licence, stays.
         if let Some(old) = embedded(&doc) {
-            let range = old.range();
-            out.push_str(&svg[..range.start]);
-            out.push_str(&element);
-            out.push_str(&svg[range.end..]);
-            return Ok(out);
+            return Ok(splice(svg, [(old.range(), element)]));
         }
         let root = doc.root_element().range();
         let end =
@@ -43,11 +39,7 @@ impl Origin {
         if svg[..end].ends_with("/>") {
             return Err(Error::input("the drawing", "is empty; there is nothing to embed"));
         }
-        out.push_str(&svg[..end]);
-        out.push('\n');
-        out.extend(["<metadata>", &element, "</metadata>"]);
-        out.push_str(&svg[end..]);
-        Ok(out)
+        Ok(splice(svg, [(end..end, format!("\n<metadata>{element}</metadata>"))]))
     }
 
     /// Reads the origin embedded in `svg`, if any.
@@ -63,7 +55,7 @@ impl Origin {
     /// # Errors
     /// [`Error::Input`] if the file cannot be decoded, is not XML or exceeds the limits, or the origin is damaged.
     pub fn of_file(data: &[u8], name: &str, limits: &Limits) -> Result<Option<Self>, Error> {
-        Self::read_within(&text(data, name, &Budget::new(*limits))?, limits)
+        Self::read_within(&read::text(data, name, &Budget::new(*limits))?, limits)
     }
 
     /// Reads the origin embedded in `svg`, if any, within limits.

@@ -47,17 +47,17 @@
 //! - `parallel` (default): bends shapes on all processors.
 //! - `usvg`: adds the module `usvg_tree`, which exposes types of usvg and is exempt from semantic versioning.
 
-/// Declares options, each once: its field, its default and its setter. `new` takes what has no default.
+/// Declares options, each once: its field, its default and perhaps its setter. `defaults` takes the value that has no default.
 macro_rules! options {
     (
         $(#[$about:meta])*
         pub struct $type:ident($($given:ident: $given_type:ty)?) {
-            $($(#[$doc:meta])* $seen:vis $field:ident: $value:ty = $default:expr $(, $setter:ident)?;)*
+            $($(#[$doc:meta])* $visibility:vis $field:ident: $value:ty = $default:expr $(, $setter:ident)?;)*
         }
     ) => {
         $(#[$about])*
         pub struct $type {
-            $($(#[$doc])* $seen $field: $value,)*
+            $($(#[$doc])* $visibility $field: $value,)*
         }
 
         impl $type {
@@ -104,8 +104,8 @@ pub use scene::plot::{Plot, PlotLoss, PlotShape};
 pub use source::read::ReadOptions;
 pub use source::select::{Elements, Selection};
 
-/// For the crates that stand on this one, such as pathwarp-engine, as are the modules `objects` and `sheet`: painters of what SVG cannot
-/// bend, fonts, and documents of set text. It may change in any release.
+/// Painters of what SVG cannot bend, fonts, and documents of set text, for the crates that stand on this one, such as pathwarp-engine. This
+/// module may change in any release, as may `objects` and `sheet`.
 #[doc(hidden)]
 pub mod engine {
     pub use crate::bend::options::{CutLine, LetterPlaces};

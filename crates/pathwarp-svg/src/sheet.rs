@@ -39,6 +39,8 @@ const GAP: f64 = 16.0;
 const INSET: f64 = 12.0;
 /// Height of the title's line.
 const TITLE: f64 = 34.0;
+/// Font size of the title.
+const TITLE_SIZE: f64 = 17.0;
 /// Height of a label's line.
 const LABEL: f64 = 22.0;
 /// Font size of labels; long labels are smaller.
@@ -60,16 +62,15 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     };
     let width = GAP + columns as f64 * (w + GAP);
     let height = GAP + TITLE + rows as f64 * (h + GAP);
-    let mut drawn = Vec::with_capacity(cells.len());
     let shared = shared_options(cells, read);
-    for (k, c) in cells.iter().enumerate() {
-        drawn.push(embedded(&c.svg, &c.label, &format!("s{k}-"), &shared)?);
-    }
+    let drawn = cells.iter().enumerate().map(|(k, c)| embedded(&c.svg, &c.label, &format!("s{k}-"), &shared));
+    let drawn: Vec<(Rect, String)> = drawn.collect::<Result<_, _>>()?;
     let room = ((w - 2.0 * INSET).max(1.0), (h - 2.0 * INSET - LABEL).max(1.0));
-    let fit = |b: &Rect| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9));
-    let mut fits: Vec<f64> = drawn.iter().map(|(b, _)| fit(b)).collect();
-    fits.sort_by(f64::total_cmp);
-    let common = fits.get(fits.len() / 4).copied().unwrap_or(1.0);
+    // The largest scale at which a drawing fits its cell.
+    let scale_to_fit = |b: &Rect| (room.0 / b.width().max(1e-9)).min(room.1 / b.height().max(1e-9));
+    let mut scales: Vec<f64> = drawn.iter().map(|(b, _)| scale_to_fit(b)).collect();
+    scales.sort_by(f64::total_cmp);
+    let common_scale = scales.get(scales.len() / 4).copied().unwrap_or(1.0);
 
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{width}\" \
@@ -77,14 +78,14 @@ pub fn sheet(cells: &[Cell], options: &SheetOptions, read: &ReadOptions) -> Resu
     );
     let mut labels = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"Noto Sans\">\n\
-         <text x=\"{GAP}\" y=\"{}\" font-size=\"17\" fill=\"#222\">{}</text>\n",
-        GAP + 17.0,
+         <text x=\"{GAP}\" y=\"{}\" font-size=\"{TITLE_SIZE}\" fill=\"#222\">{}</text>\n",
+        GAP + TITLE_SIZE,
         escape_content(&options.title)
     );
     for (k, (seen, content)) in drawn.iter().enumerate() {
         let (x, y) = corner(k);
         let (cx, cy) = (x + 0.5 * w, y + INSET + 0.5 * room.1);
-        let (centre, scale) = (seen.center(), common.min(fit(seen)));
+        let (centre, scale) = (seen.center(), common_scale.min(scale_to_fit(seen)));
         let _ = write!(
             out,
             "<g id=\"cell-{k}\">\n<title>{}</title>\n<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" rx=\"6\" fill=\"#f5f5f2\"/>\n\
@@ -131,7 +132,7 @@ fn shared_options(cells: &[Cell], read: &ReadOptions) -> ReadOptions {
     let sizes = || cells.iter().map(|c| c.svg.len());
     let largest = read.limits.for_input(sizes().max().unwrap_or_default());
     let counted = [Limit::Elements, Limit::Work];
-    let limits = counted.into_iter().fold(largest, |all, l| all.with(l, DRAWINGS * largest.of(l)));
+    let limits = counted.into_iter().fold(largest, |limits, l| limits.with(l, DRAWINGS * largest.of(l)));
     let limits = limits.with(Limit::Bytes, read.limits.for_input(sizes().sum()).of(Limit::Bytes));
     read.clone().with_limits(limits).begin(0)
 }

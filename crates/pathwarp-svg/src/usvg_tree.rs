@@ -50,7 +50,7 @@ pub fn read_tree(data: &[u8], name: &str, options: &ReadOptions) -> Result<ReadT
     let (tree, missed) = if MAY_DIFFER.iter().any(|word| text.contains(word)) {
         let document = Document::read(data, name, options)?;
         let drawing = document.drawing();
-        (shown(&document, options)?, drawing.missed.clone().lacking(&drawing.source))
+        (shown(&document, options)?, drawing.missed.clone().with_undrawn(&drawing.source))
     } else {
         tree::parse(data, name, options)?
     };
@@ -107,7 +107,7 @@ pub struct ExactOutlines<'d> {
 }
 
 /// Largest distance between an arc and the curves that replace it, as a fraction of the size of its outline.
-const OF_SIZE: f64 = 1e-6;
+const ARC_TOLERANCE: f64 = 1e-6;
 
 /// Coordinate from which single precision rounds to a hundredth.
 const FAR: f64 = 1e5;
@@ -121,7 +121,7 @@ impl<'d> ExactOutlines<'d> {
             let has_arcs = || part.local.segs().any(|s| matches!(s, Seg::Arc(_)));
             if part.path != 0 && (part.local.extent() > FAR || has_arcs()) {
                 let size = part.local.bounding_box().map_or(0.0, |b| b.width().max(b.height()));
-                by_address.insert(part.path, part.local.to_bez_path(OF_SIZE * size));
+                by_address.insert(part.path, part.local.to_bez_path(ARC_TOLERANCE * size));
             }
         }
         Self { by_address, _document: document }

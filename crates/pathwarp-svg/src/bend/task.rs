@@ -5,7 +5,7 @@ use super::hidden;
 use super::options::WarpOptions;
 use super::path::{self, Digits, ROUNDING, allowed, with_arcs};
 use super::seam::without_seams;
-use crate::scene::areas::reach;
+use crate::scene::areas::stroke_extent;
 use crate::scene::drawing::Drawing;
 use crate::scene::geometry::stretch;
 use crate::scene::model::Part;
@@ -216,7 +216,7 @@ pub(super) fn contour_tolerances(
             return Vec::new();
         }
         let is_text = shapes[i].element == "text";
-        suited_tolerances(&shapes[i].outline, reach(&parts[i], to_px), is_text, tolerance)
+        suited_tolerances(&shapes[i].outline, stroke_extent(&parts[i], to_px), is_text, tolerance)
     };
     let all: Vec<Vec<f64>> = (0..parts.len()).map(tolerances).collect();
     let is_small = |t: &f64| *t < tolerance;

@@ -1,11 +1,11 @@
 //! Lists the elements of a file with their ids, labels and recipes, and edits its text.
 
+use crate::source::edit::splice;
 use crate::source::elements::{INKSCAPE, SVG, is_shape, is_sodipodi};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
 use pathwarp_reader::xml::{self, escape};
 use std::collections::HashMap;
-use std::fmt::Write as _;
 use std::ops::Range;
 use usvg::roxmltree::{Document, Node};
 
@@ -43,15 +43,13 @@ pub fn objects(svg: &str, limits: &Limits) -> Result<Vec<Object>, Error> {
         let Some(id) = n.attribute("id").filter(|id| found.get(id) == Some(&n)) else { continue };
         let around = || n.ancestors().skip(1);
         let tag = n.tag_name().name();
-        let hidden = |n: Node<'_, '_>| {
-            is_definition(n.tag_name().name()) || matches!(n.tag_name().name(), "title" | "desc" | "metadata" | "style")
-        };
+        let is_hidden = is_definition(tag) || matches!(tag, "title" | "desc" | "metadata" | "style");
         out.push(Object {
             id: id.to_owned(),
             label: n.attribute((INKSCAPE, "label")).map(ToOwned::to_owned),
             element: tag.to_owned(),
             is_path: is_shape(tag) && !around().any(|a| is_definition(a.tag_name().name())),
-            is_top: n.parent() == Some(doc.root_element()) && !hidden(n),
+            is_top: n.parent() == Some(doc.root_element()) && !is_hidden,
             is_locked: n.ancestors().any(is_locked),
             inside: around().filter_map(|a| a.attribute("id")).map(ToOwned::to_owned).collect(),
             recipe: n.attribute((NAMESPACE, RECIPE)).map(ToOwned::to_owned),
@@ -60,51 +58,30 @@ pub fn objects(svg: &str, limits: &Limits) -> Result<Vec<Object>, Error> {
     Ok(out)
 }
 
+/// Parses a drawing within limits.
 pub(super) fn parse<'a>(svg: &'a str, limits: &Limits) -> Result<Document<'a>, Error> {
     xml::parse(svg, "the drawing", &Budget::new(limits.for_input(svg.len())))
 }
 
-/// The elements by id; of several with one id, the first.
-pub(super) fn by_id<'a, 'i>(doc: &'a Document<'i>) -> HashMap<&'a str, Node<'a, 'i>> {
-    let mut out = HashMap::new();
-    for n in doc.descendants() {
-        if let Some(id) = n.attribute("id") {
-            out.entry(id).or_insert(n);
-        }
-    }
-    out
-}
-
 /// Returns `true` for elements that are only drawn by reference.
 pub(super) fn is_definition(tag: &str) -> bool {
-    matches!(
-        tag,
-        "defs"
-            | "clipPath"
-            | "mask"
-            | "symbol"
-            | "pattern"
-            | "marker"
-            | "linearGradient"
-            | "radialGradient"
-            | "filter"
-            | "path-effect"
-            | "perspective"
-    )
+    const DEFINITIONS: &str =
+        "defs clipPath mask symbol pattern marker linearGradient radialGradient filter path-effect perspective";
+    DEFINITIONS.split(' ').any(|t| t == tag)
 }
 
 /// Returns `true` for elements that Inkscape's tools cannot select.
 fn is_locked(n: Node<'_, '_>) -> bool {
-    let insensitive = |a: &usvg::roxmltree::Attribute<'_, '_>| {
+    let is_insensitive = |a: &usvg::roxmltree::Attribute<'_, '_>| {
         a.name() == "insensitive" && a.namespace().is_some_and(is_sodipodi) && a.value() == "true"
     };
-    let off = |text: &str| text.split(';').any(|d| d.split_whitespace().collect::<String>() == "display:none");
-    n.attributes().any(|a| insensitive(&a))
+    let hides = |style: &str| style.split(';').any(|d| d.split_whitespace().collect::<String>() == "display:none");
+    n.attributes().any(|a| is_insensitive(&a))
         || n.attribute("display") == Some("none")
-        || n.attribute("style").is_some_and(off)
+        || n.attribute("style").is_some_and(hides)
 }
 
-pub(super) use crate::source::elements::PATHWARP as NAMESPACE;
+pub(super) use crate::source::elements::{PATHWARP as NAMESPACE, first_by_id as by_id};
 
 /// The recipe, as words of a command line.
 pub(super) const RECIPE: &str = "recipe";
@@ -126,14 +103,14 @@ pub(super) fn references(value: &str) -> impl Iterator<Item = Range<usize>> + '_
 
 /// All names to which an element and its descendants refer.
 pub(super) fn referred(n: Node<'_, '_>) -> Vec<String> {
-    let values = n.descendants().flat_map(|n| n.attributes().map(|a| a.value()).collect::<Vec<_>>());
-    values.flat_map(|v| references(v).map(|r| v[r].to_owned()).collect::<Vec<_>>()).collect()
+    let values = n.descendants().flat_map(|n| n.attributes()).map(|a| a.value());
+    values.flat_map(|v| references(v).map(move |r| v[r].to_owned())).collect()
 }
 
 /// Replacements in `text` that rename the ids of an element and its descendants, and references to such ids in them.
 pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> Vec<(Range<usize>, String)> {
     let mut out = Vec::new();
-    for a in n.descendants().flat_map(|n| n.attributes().collect::<Vec<_>>()) {
+    for a in n.descendants().flat_map(|n| n.attributes()) {
         let range = a.range_value();
         let raw = &text[range.clone()];
         if a.name() == "id" && a.namespace().is_none() {
@@ -155,18 +132,7 @@ pub(super) fn renaming(text: &str, n: Node<'_, '_>, names: &HashMap<String, Stri
 pub(super) fn apply(text: &str, mut patches: Vec<(Range<usize>, String)>) -> String {
     // Insertions at one position keep their order and precede a replacement that starts there.
     patches.sort_by_key(|(r, _)| (r.start, !r.is_empty(), std::cmp::Reverse(r.end)));
-    let mut out = String::with_capacity(text.len());
-    let mut done = 0;
-    for (range, new) in patches {
-        if range.start < done {
-            continue;
-        }
-        out.push_str(&text[done..range.start]);
-        out.push_str(&new);
-        done = range.end;
-    }
-    out.push_str(&text[done..]);
-    out
+    splice(text, patches)
 }
 
 /// Copies of paths in root user space.
@@ -203,12 +169,6 @@ impl Guides {
 
 /// An element inside groups with the transforms around it.
 fn copy(text: &str, n: Node<'_, '_>) -> String {
-    let mut out = String::new();
-    let transforms: Vec<&str> = n.ancestors().skip(1).filter_map(|a| a.attribute("transform")).collect();
-    for t in transforms.iter().rev() {
-        let _ = write!(out, "<g transform=\"{}\">", escape(t));
-    }
-    out.push_str(&text[n.range()]);
-    transforms.iter().for_each(|_| out.push_str("</g>"));
-    out
+    let transforms = n.ancestors().skip(1).filter_map(|a| a.attribute("transform"));
+    transforms.fold(text[n.range()].to_owned(), |inner, t| format!("<g transform=\"{}\">{inner}</g>", escape(t)))
 }

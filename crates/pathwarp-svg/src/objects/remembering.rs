@@ -5,8 +5,7 @@ use crate::source::elements::SVG;
 use crate::source::read::{packed, unpacked_text};
 use pathwarp::Error;
 use pathwarp::budget::{Budget, Limits};
-use pathwarp_reader::xml::escape;
-use pathwarp_reader::xml::name_end;
+use pathwarp_reader::xml::{escape, name_end};
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -72,8 +71,8 @@ fn without_declared(text: &str, n: Node<'_, '_>, attributes: String) -> String {
 
 /// The attributes in pathwarp's namespace on an element, each with the space before it.
 fn pathwarp_attributes(text: &str, n: Node<'_, '_>) -> impl Iterator<Item = Range<usize>> {
-    let ours = n.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.range()).collect::<Vec<_>>();
-    ours.into_iter().map(|r| text[..r.start].trim_end().len()..r.end)
+    let ranges = n.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.range());
+    ranges.map(|r| text[..r.start].trim_end().len()..r.end)
 }
 
 /// Returns `true` if a definition of the result has the text that it has in the source.
@@ -92,8 +91,8 @@ fn new_definitions(
     let mut open = referred(result);
     while let Some(name) = open.pop() {
         let Some(n) = news.get(name.as_str()) else { continue };
-        let defined = n.ancestors().skip(1).any(|a| is_definition(a.tag_name().name()));
-        if defined && !olds.contains_key(name.as_str()) && found.insert(name) {
+        let is_defined = n.ancestors().skip(1).any(|a| is_definition(a.tag_name().name()));
+        if is_defined && !olds.contains_key(name.as_str()) && found.insert(name) {
             open.extend(referred(*n));
         }
     }
@@ -107,38 +106,26 @@ pub(super) fn definitions<'a, 'i>(by_id: &HashMap<&'a str, Node<'a, 'i>>, n: Nod
     while let Some(n) = open.pop() {
         for name in referred(n) {
             let Some(&target) = by_id.get(name.as_str()) else { continue };
-            let defined = target.ancestors().any(|a| is_definition(a.tag_name().name()));
-            if defined && found.insert(target) {
+            let is_defined = target.ancestors().any(|a| is_definition(a.tag_name().name()));
+            if is_defined && found.insert(target) {
                 open.push(target);
             }
         }
     }
     // A definition inside another one comes with it.
-    let inner = |d: &Node<'a, 'i>| d.ancestors().skip(1).any(|a| found.contains(&a) || a == n);
-    found.iter().filter(|d| !inner(d)).copied().collect()
+    let is_inner = |d: &Node<'a, 'i>| d.ancestors().skip(1).any(|a| found.contains(&a) || a == n);
+    found.iter().filter(|d| !is_inner(d)).copied().collect()
 }
 
 /// An element of a document, packed with its definitions and guides as a small SVG file.
 pub(super) fn pack(text: &str, n: Node<'_, '_>, definitions: &[Node<'_, '_>], guides: &str) -> Result<String, Error> {
     let mut out = String::from("<svg");
-    for ns in n.namespaces() {
-        match ns.name() {
-            None => {
-                let _ = write!(out, " xmlns=\"{}\"", escape(ns.uri()));
-            }
-            Some("xml") => {}
-            Some(prefix) => {
-                let _ = write!(out, " xmlns:{prefix}=\"{}\"", escape(ns.uri()));
-            }
-        }
+    for ns in n.namespaces().filter(|ns| ns.name() != Some("xml")) {
+        let prefix = ns.name().map_or_else(String::new, |prefix| format!(":{prefix}"));
+        let _ = write!(out, " xmlns{prefix}=\"{}\"", escape(ns.uri()));
     }
-    out.push_str("><defs>");
-    definitions.iter().for_each(|d| out.push_str(&text[d.range()]));
-    out.push_str("</defs><g>");
-    out.push_str(guides);
-    out.push_str("</g>");
-    out.push_str(&text[n.range()]);
-    out.push_str("</svg>");
+    let definitions: String = definitions.iter().map(|d| &text[d.range()]).collect();
+    let _ = write!(out, "><defs>{definitions}</defs><g>{guides}</g>{}</svg>", &text[n.range()]);
     packed(out.as_bytes())
 }
 
@@ -149,6 +136,7 @@ pub(super) fn unpack(value: &str, limits: &Limits) -> Result<String, Error> {
     String::from_utf8(text).map_err(|e| Error::input(PLACE, format!("is damaged: {e}")))
 }
 
+/// The parts of an unpacked source.
 pub(super) struct Package<'a, 'i> {
     pub(super) element: Node<'a, 'i>,
     pub(super) definitions: Vec<Node<'a, 'i>>,

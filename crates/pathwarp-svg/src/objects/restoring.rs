@@ -1,6 +1,8 @@
 //! Replaces warped objects by their sources.
 
-use super::nodes::{Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, referred, renaming};
+use super::nodes::{
+    Guides, MADE, NAMESPACE, NODES, RECIPE, SOURCE, apply, by_id, parse, references, referred, renaming,
+};
 use super::remembering::{Package, unpack};
 use crate::source::elements::SVG;
 use pathwarp::Error;
@@ -44,23 +46,24 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
     let packages = targets.iter().filter_map(|n| Some((*n, n.attribute((NAMESPACE, SOURCE))?)));
     let packages: Vec<(Node<'_, '_>, String)> =
         packages.map(|(n, v)| Ok((n, unpack(v, &limits.for_input(svg.len()))?))).collect::<Result<_, Error>>()?;
-    let around = Around::new(svg, &doc, packages.iter().map(|(n, _)| *n).collect());
-    let mut work =
-        Work { around, taken: HashSet::new(), patches: Vec::new(), defs: String::new(), removed: HashSet::new() };
+    let around =
+        Surroundings { text: svg, doc: &doc, by_id: found, replaced: packages.iter().map(|(n, _)| *n).collect() };
+    let (taken, removed) = (HashSet::new(), HashSet::new());
+    let mut restoration = Restoration { around, taken, patches: Vec::new(), defs: String::new(), removed };
     let mut objects = Vec::new();
     for (n, text) in &packages {
         let package = parse(text, limits)?;
         let damaged = || Error::input("the source of a warped object", "is damaged: it has no element");
         let package = Package::find(&package).ok_or_else(damaged)?;
-        work.replace(*n, text, &package);
+        restoration.replace(*n, text, &package);
         objects.push(RestoredObject {
             id: n.attribute("id").unwrap_or_default().to_owned(),
             recipe: n.attribute((NAMESPACE, RECIPE)).unwrap_or_default().to_owned(),
             nodes: n.attribute((NAMESPACE, NODES)).unwrap_or_default().to_owned(),
-            guides: Guides { markup: inside(text, package.guides) },
+            guides: Guides { markup: inner_markup(text, package.guides) },
         });
     }
-    let Work { around, mut patches, defs, .. } = work;
+    let Restoration { around, mut patches, defs, .. } = restoration;
     if !defs.is_empty() {
         patches.push(around.insertion(defs));
     }
@@ -68,24 +71,20 @@ pub fn restore(svg: &str, ids: &[String], limits: &Limits) -> Result<Restored, E
 }
 
 /// The text between the tags of an element.
-fn inside(text: &str, n: Node<'_, '_>) -> String {
+fn inner_markup(text: &str, n: Node<'_, '_>) -> String {
     let ends = n.first_child().zip(n.last_child());
     ends.map_or_else(String::new, |(first, last)| text[first.range().start..last.range().end].to_owned())
 }
 
 /// The file around the objects to be replaced.
-struct Around<'a, 'i> {
+struct Surroundings<'a, 'i> {
     text: &'a str,
     doc: &'a Document<'i>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
     replaced: HashSet<Node<'a, 'i>>,
 }
 
-impl<'a, 'i> Around<'a, 'i> {
-    fn new(text: &'a str, doc: &'a Document<'i>, replaced: HashSet<Node<'a, 'i>>) -> Self {
-        Self { text, doc, by_id: by_id(doc), replaced }
-    }
-
+impl<'a, 'i> Surroundings<'a, 'i> {
     /// Returns `true` for an element that stays.
     fn stays(&self, n: Node<'a, 'i>) -> bool {
         !n.ancestors().any(|a| self.replaced.contains(&a))
@@ -96,10 +95,7 @@ impl<'a, 'i> Around<'a, 'i> {
         let counts = |o: &Node<'a, 'i>| {
             self.stays(*o) && !o.ancestors().any(|a| a == n || a.attribute("id").is_some_and(|id| except.contains(id)))
         };
-        let refers = |o: Node<'a, 'i>| {
-            let values = o.attributes().map(|a| a.value());
-            values.into_iter().any(|v| super::nodes::references(v).any(|r| &v[r] == name))
-        };
+        let refers = |o: Node<'a, 'i>| o.attributes().any(|a| references(a.value()).any(|r| &a.value()[r] == name));
         self.doc.descendants().filter(Node::is_element).filter(counts).any(refers)
     }
 
@@ -118,8 +114,9 @@ impl<'a, 'i> Around<'a, 'i> {
     }
 }
 
-struct Work<'a, 'i> {
-    around: Around<'a, 'i>,
+/// Edits that replace objects by their sources.
+struct Restoration<'a, 'i> {
+    around: Surroundings<'a, 'i>,
     /// Ids in the sources and definitions that have been inserted.
     taken: HashSet<String>,
     patches: Vec<(Range<usize>, String)>,
@@ -129,8 +126,10 @@ struct Work<'a, 'i> {
     removed: HashSet<String>,
 }
 
-impl<'a, 'i> Work<'a, 'i> {
+impl<'a, 'i> Restoration<'a, 'i> {
+    /// Replaces an object by the element of a package, whose text is `text`.
     fn replace(&mut self, n: Node<'a, 'i>, text: &str, package: &Package<'_, '_>) {
+        // New ids by the ids in the package.
         let mut names: HashMap<String, String> = HashMap::new();
         let made: HashSet<String> =
             n.attribute((NAMESPACE, MADE)).unwrap_or_default().split_whitespace().map(ToOwned::to_owned).collect();
@@ -140,18 +139,17 @@ impl<'a, 'i> Work<'a, 'i> {
         {
             names.insert(old.to_owned(), now.to_owned());
         }
-        for inner in package.element.descendants().skip(1).filter_map(|d| d.attribute("id")) {
-            let elsewhere =
-                self.around.by_id.get(inner).is_some_and(|o| self.around.stays(*o)) && !made.contains(inner);
-            if elsewhere || self.taken.contains(inner) {
-                let new = self.fresh(inner);
-                names.insert(inner.to_owned(), new);
+        for id in package.element.descendants().skip(1).filter_map(|d| d.attribute("id")) {
+            let stays = self.around.by_id.get(id).is_some_and(|o| self.around.stays(*o));
+            if (stays && !made.contains(id)) || self.taken.contains(id) {
+                names.insert(id.to_owned(), self.free_id(id));
             }
         }
         let mut added = Vec::new();
         for d in &package.definitions {
             let Some(id) = d.attribute("id") else { continue };
             match self.around.by_id.get(id).copied().filter(|o| self.around.stays(*o)) {
+                // Another source has brought it.
                 None if self.taken.contains(id) => {}
                 None => added.push(*d),
                 Some(old) if same_words(&self.around.text[old.range()], &text[d.range()]) => {}
@@ -161,22 +159,19 @@ impl<'a, 'i> Work<'a, 'i> {
                     }
                 }
                 Some(_) => {
-                    let new = self.fresh(id);
-                    names.insert(id.to_owned(), new);
+                    names.insert(id.to_owned(), self.free_id(id));
                     added.push(*d);
                 }
             }
         }
+        let new_id = |id: &str| names.get(id).map_or(id, String::as_str).to_owned();
         for d in added {
-            let id = d.attribute("id").unwrap_or_default();
-            self.taken.insert(names.get(id).map_or(id, String::as_str).to_owned());
+            self.taken.insert(new_id(d.attribute("id").unwrap_or_default()));
             self.defs += &renamed(text, d, &names);
         }
         self.remove_made(&made);
-        let source = renamed(text, package.element, &names);
-        let ids = package.element.descendants().filter_map(|d| d.attribute("id"));
-        self.taken.extend(ids.map(|id| names.get(id).map_or(id, String::as_str).to_owned()));
-        self.patches.push((n.range(), source));
+        self.taken.extend(package.element.descendants().filter_map(|d| d.attribute("id")).map(new_id));
+        self.patches.push((n.range(), renamed(text, package.element, &names)));
     }
 
     /// Removes the definitions that the warp added, unless another element uses them.
@@ -191,18 +186,17 @@ impl<'a, 'i> Work<'a, 'i> {
     }
 
     /// An id like `id` that is not in use.
-    fn fresh(&self, id: &str) -> String {
-        let numbered = (2..).map(|n: u64| format!("{id}-{n}"));
-        let free = |new: &String| !self.around.by_id.contains_key(new.as_str()) && !self.taken.contains(new);
-        numbered.into_iter().find(free).unwrap_or_else(|| id.to_owned())
+    fn free_id(&self, id: &str) -> String {
+        let is_free = |new: &String| !self.around.by_id.contains_key(new.as_str()) && !self.taken.contains(new);
+        (2..).map(|n: u64| format!("{id}-{n}")).find(is_free).unwrap_or_else(|| id.to_owned())
     }
 }
 
-/// The text of an element with other ids.
+/// The text of an element with new ids, which `names` gives by the old ones.
 fn renamed(text: &str, n: Node<'_, '_>, names: &HashMap<String, String>) -> String {
     let refers = || referred(n).iter().any(|r| names.contains_key(r));
-    let has = || n.descendants().any(|d| d.attribute("id").is_some_and(|id| names.contains_key(id)));
-    if names.is_empty() || !(refers() || has()) {
+    let has_id = || n.descendants().any(|d| d.attribute("id").is_some_and(|id| names.contains_key(id)));
+    if names.is_empty() || !(refers() || has_id()) {
         return text[n.range()].to_owned();
     }
     let start = n.range().start;

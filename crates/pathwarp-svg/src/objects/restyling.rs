@@ -2,39 +2,20 @@
 //! the object after another warp.
 
 use super::nodes::{apply, by_id, parse};
-use crate::scene::geometry::transform;
-use crate::source::elements::INKSCAPE;
-use crate::source::elements::{declarations, with_declaration};
+use crate::source::elements::{INKSCAPE, declarations, parse_transform, with_declaration};
 use pathwarp::Error;
 use pathwarp::budget::Limits;
 use pathwarp::engine::decimal::matrix;
 use pathwarp::kurbo::Affine;
-use pathwarp_reader::xml::escape;
-use pathwarp_reader::xml::name_end;
-use std::collections::BTreeMap;
+use pathwarp_reader::xml::{escape, name_end};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use usvg::roxmltree::Node;
 
 /// Presentation attributes that editors write.
-const PROPERTIES: [&str; 17] = [
-    "fill",
-    "fill-opacity",
-    "fill-rule",
-    "stroke",
-    "stroke-opacity",
-    "stroke-width",
-    "stroke-linecap",
-    "stroke-linejoin",
-    "stroke-miterlimit",
-    "stroke-dasharray",
-    "stroke-dashoffset",
-    "opacity",
-    "display",
-    "visibility",
-    "paint-order",
-    "color",
-    "mix-blend-mode",
-];
+const PROPERTIES: &str = "fill fill-opacity fill-rule stroke stroke-opacity stroke-width stroke-linecap stroke-linejoin \
+                          stroke-miterlimit stroke-dasharray stroke-dashoffset opacity display visibility paint-order color \
+                          mix-blend-mode";
 
 /// Copies to the object `id` of `new`, and to the elements in it, the properties and labels that differ between `then` and `now`.
 /// References to gradients, patterns and the like, and the properties in `except`, are not copied.
@@ -42,8 +23,8 @@ const PROPERTIES: [&str; 17] = [
 /// # Errors
 /// Returns [`Error::Input`] if one of the files is not XML, or takes more work than the limits allow.
 pub fn restyled([then, now, new]: [&str; 3], id: &str, except: &[&str], limits: &Limits) -> Result<String, Error> {
-    let docs = (parse(then, limits)?, parse(now, limits)?, parse(new, limits)?);
-    let (thens, nows, news) = (by_id(&docs.0), by_id(&docs.1), by_id(&docs.2));
+    let docs = [parse(then, limits)?, parse(now, limits)?, parse(new, limits)?];
+    let [thens, nows, news] = docs.each_ref().map(by_id);
     let mut patches: Vec<(Range<usize>, String)> = Vec::new();
     let inside = nows.get(id).into_iter().flat_map(Node::descendants);
     for n in inside.filter(Node::is_element) {
@@ -65,7 +46,7 @@ fn changes(
 ) -> Vec<(Range<usize>, String)> {
     let mut out = Vec::new();
     let (old, now) = (properties(before), properties(after));
-    let names = old.keys().chain(now.keys()).collect::<std::collections::BTreeSet<_>>();
+    let names: BTreeSet<&String> = old.keys().chain(now.keys()).collect();
     let refers = |v: Option<&String>| v.is_some_and(|v| v.contains("url("));
     let differs = |name: &&&String| {
         let (a, b) = (old.get(**name), now.get(**name));
@@ -73,10 +54,9 @@ fn changes(
     };
     let style = target.attribute("style").unwrap_or_default();
     // A removed property becomes inherited.
-    let set = |style: String, name: &&String| {
-        with_declaration(&style, name, now.get(*name).map_or("inherit", String::as_str))
-    };
-    let new = names.iter().filter(differs).fold(style.to_owned(), set);
+    let value = |name: &String| now.get(name).map_or("inherit", String::as_str);
+    let changed = names.iter().filter(differs);
+    let new = changed.fold(style.to_owned(), |style, name| with_declaration(&style, name, value(name)));
     if new != style {
         out.push(set_attribute(target, text, None, "style", &new));
     }
@@ -89,14 +69,14 @@ fn changes(
 
 /// The properties of an element, from its attributes and its style.
 fn properties(n: Node<'_, '_>) -> BTreeMap<String, String> {
-    let plain = PROPERTIES.iter().filter_map(|p| Some(((*p).to_owned(), n.attribute(*p)?.to_owned())));
+    let plain = PROPERTIES.split(' ').filter_map(|p| Some((p.to_owned(), n.attribute(p)?.to_owned())));
     let mut out: BTreeMap<String, String> = plain.collect();
     let style = n.attribute("style").unwrap_or_default();
     out.extend(declarations(style).map(|(name, value)| (name.to_owned(), value.to_owned())));
     out
 }
 
-/// The edit that sets an attribute.
+/// The edit that sets an attribute. Inkscape's is the only `namespace` whose prefix can be declared.
 fn set_attribute(
     n: Node<'_, '_>,
     text: &str,
@@ -125,11 +105,11 @@ pub fn moved(svg: &str, id: &str, by: Affine, limits: &Limits) -> Result<String,
     let doc = parse(svg, limits)?;
     let Some(&n) = by_id(&doc).get(id) else { return Ok(svg.to_owned()) };
     let around: Vec<Affine> = n.ancestors().skip(1).map(own_transform).collect();
-    let around = around.into_iter().rev().fold(Affine::IDENTITY, |all, t| all * t);
+    let around = around.into_iter().rev().fold(Affine::IDENTITY, std::ops::Mul::mul);
     let new = matrix(around.inverse() * by * around * own_transform(n));
     Ok(apply(svg, vec![set_attribute(n, svg, None, "transform", &new)]))
 }
 
 fn own_transform(n: Node<'_, '_>) -> Affine {
-    n.attribute("transform").and_then(transform).unwrap_or_default()
+    n.attribute("transform").and_then(parse_transform).unwrap_or_default()
 }

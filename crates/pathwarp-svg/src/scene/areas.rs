@@ -44,34 +44,34 @@ pub(crate) fn picture_corners(b: &Bitmap) -> Option<[Point; 4]> {
     (b.image.is_visible() && !b.is_unread()).then_some(corners).filter(|c| c.iter().all(|p| p.is_finite()))
 }
 
-/// Bounding box of the counted artwork in a group, clipped to `room`. Includes only parts and bitmaps whose box is `kept`.
+/// Bounding box of the counted artwork in a group, clipped to `room`. Includes only parts and bitmaps whose box `is_kept` accepts.
 fn group_box(
     scene: &Scene,
     g: &Group,
     room: Option<Rect>,
     counted: &Counted,
-    kept: &dyn Fn(Rect) -> bool,
+    is_kept: &dyn Fn(Rect) -> bool,
 ) -> Option<Rect> {
     let room = room_in(scene, g, room)?;
-    let left = |all: Rect| room.map_or(Some(all), |room| overlap(all, room)).filter(|b| kept(*b));
-    let one = |n: &Node| match n {
-        Node::Group(g) => group_box(scene, g, room, counted, kept),
-        Node::Text { content, .. } => group_box(scene, content, room, counted, kept),
+    let clipped = |all: Rect| room.map_or(Some(all), |room| overlap(all, room)).filter(|b| is_kept(*b));
+    let child_box = |n: &Node| match n {
+        Node::Group(g) => group_box(scene, g, room, counted, is_kept),
+        Node::Text { content, .. } => group_box(scene, content, room, counted, is_kept),
         Node::Part(i) => {
             let p = &scene.parts[*i];
-            let seen = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
-            let by = if counted.strokes { reach(p, scene.to_px) } else { 0.0 };
-            left(p.outline().bounding_box().filter(|b| seen && b.is_finite())?.inflate(by, by))
+            let is_counted = is_seen(p) && p.role == PartRole::Paint && counted.parts[*i];
+            let by = if counted.strokes { stroke_extent(p, scene.to_px) } else { 0.0 };
+            clipped(p.outline().bounding_box().filter(|b| is_counted && b.is_finite())?.inflate(by, by))
         }
-        Node::Image(i) => left(picture_box(&scene.bitmaps[*i]).filter(|_| counted.bitmaps[*i])?),
+        Node::Image(i) => clipped(picture_box(&scene.bitmaps[*i]).filter(|_| counted.bitmaps[*i])?),
     };
-    g.children.iter().filter_map(one).reduce(|a, b| a.union(b))
+    g.children.iter().filter_map(child_box).reduce(|a, b| a.union(b))
 }
 
 /// Distance by which a part's stroke extends from its path, in root user units: half its width.
-pub(crate) fn reach(p: &Part, to_px: Affine) -> f64 {
-    let space = if p.fixed_width { to_px.inverse() } else { p.frame };
-    p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(space))
+pub(crate) fn stroke_extent(p: &Part, to_px: Affine) -> f64 {
+    let frame = if p.fixed_width { to_px.inverse() } else { p.frame };
+    p.stroke.as_ref().filter(|_| !p.in_tile).map_or(0.0, |s| 0.5 * f64::from(s.width().get()) * stretch(frame))
 }
 
 /// Returns `true` if a part is visible and has a paint that is not transparent.
@@ -86,16 +86,16 @@ fn room_in(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>>
     if g.opacity <= 0.0 {
         return None;
     }
-    let mut room = room;
-    let clip = match g.clip {
-        Some(i) => Some(clip_box(scene, i, &|i| scene.parts[i].outline().bounding_box())?),
-        None => None,
-    };
-    let mask = g.mask.map(|i| mask_box(scene, i));
-    for bound in clip.into_iter().chain(mask) {
-        room = Some(room.map_or(Some(bound), |room| overlap(room, bound))?);
-    }
-    Some(room)
+    let room = room_in_clip(scene, g, room)?;
+    let Some(mask) = g.mask.map(|i| mask_box(scene, i)) else { return Some(room) };
+    room.map_or(Some(mask), |room| overlap(room, mask)).map(Some)
+}
+
+/// The area to which the clip path of a group clips its content: `Some(None)` if it is unbounded, `None` if nothing is left of `room`.
+pub(crate) fn room_in_clip(scene: &Scene, g: &Group, room: Option<Rect>) -> Option<Option<Rect>> {
+    let Some(i) = g.clip else { return Some(room) };
+    let clip = clip_box(scene, i, &|i| scene.parts[i].outline().bounding_box())?;
+    room.map_or(Some(clip), |room| overlap(room, clip)).map(Some)
 }
 
 /// Bounding box of a clip path, given the boxes of parts; `None` if it hides everything.
@@ -141,8 +141,8 @@ const PER_SEGMENT: f64 = 3.0 * 2.0;
 /// Segments of the outline of a segment with its round join, held three times.
 const PER_ROUND_SEGMENT: f64 = 3.0 * 4.0;
 
-/// Work of expanding a dash, in segments.
-const MEASURED: f64 = 2.0;
+/// Work of measuring a dash, in expanded segments.
+const PER_MEASURED_DASH: f64 = 2.0;
 
 /// Fraction of the tolerance for gaps between sides that are closed without a join.
 const GAP: f64 = 0.3;
@@ -153,18 +153,18 @@ pub(crate) fn stroke_outline(local: &Outline, stroke: &Stroke, tolerance: f64) -
     Outline { subpaths: each.into_iter().flat_map(|(_, o)| o.subpaths).collect() }
 }
 
-/// Expands the stroke of each subpath. `fine` gives the tolerance and the largest gap for a subpath by its index.
+/// Expands the stroke of each subpath. `tolerances` gives the tolerance and the largest gap for a subpath by its index.
 pub(crate) fn stroke_outlines(
     local: &Outline,
     stroke: &Stroke,
-    fine: impl Fn(usize) -> [f64; 2],
+    tolerances: impl Fn(usize) -> [f64; 2],
 ) -> Vec<(usize, Outline)> {
     let style = style(stroke, drawn_dashes(local, stroke) > 0.0);
-    let clipped = stroke.linejoin() == LineJoin::MiterClip;
+    let clips_miters = stroke.linejoin() == LineJoin::MiterClip;
     let outline = |(i, s): (usize, &Subpath)| {
         let one = Outline { subpaths: vec![s.clone()] };
         // Bending the path itself reports coordinates that are not finite.
-        (i, one.stroked(&style, clipped, fine(i)).unwrap_or_default())
+        (i, one.stroked(&style, clips_miters, tolerances(i)).unwrap_or_default())
     };
     local.subpaths.iter().enumerate().map(outline).collect()
 }
@@ -225,7 +225,7 @@ pub(crate) fn is_point(s: &Seg, at: Point) -> bool {
 
 /// Charges for expanding the dashes of a stroke that is only measured.
 pub(crate) fn spend_dashes(local: &Outline, stroke: &Stroke, budget: &Budget) -> Result<(), Exceeded> {
-    budget.spend(EXPANDED * MEASURED * drawn_dashes(local, stroke))
+    budget.spend(EXPANDED * PER_MEASURED_DASH * drawn_dashes(local, stroke))
 }
 
 /// Charges for an upper bound on the segments into which a stroke is expanded.
@@ -267,44 +267,44 @@ pub(crate) fn filter_box(filter: &Filter, region: Rect, content: Rect) -> Option
 }
 
 /// A bound on the area that a primitive paints, given the boxes of its inputs.
-fn primitive_box(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
+fn primitive_box(kind: &Kind, input: &dyn Fn(&Input) -> Option<Rect>, region: Rect) -> Option<Rect> {
     let either = |a: Option<Rect>, b: Option<Rect>| a.into_iter().chain(b).reduce(|a, b| a.union(b));
     let grown = |b: Rect, x: f32, y: f32| b.inflate(f64::from(x), f64::from(y));
     let blurred = |b: Rect, x: f32, y: f32| b.inflate(BLUR_REACH * f64::from(x), BLUR_REACH * f64::from(y));
     match kind {
-        Kind::GaussianBlur(b) => of(b.input()).map(|i| blurred(i, b.std_dev_x().get(), b.std_dev_y().get())),
-        Kind::DropShadow(s) => of(s.input()).map(|i| {
+        Kind::GaussianBlur(b) => input(b.input()).map(|i| blurred(i, b.std_dev_x().get(), b.std_dev_y().get())),
+        Kind::DropShadow(s) => input(s.input()).map(|i| {
             let shadow = blurred(i, s.std_dev_x().get(), s.std_dev_y().get());
             i.union(shadow + Vec2::new(s.dx().into(), s.dy().into()))
         }),
-        Kind::Offset(o) => of(o.input()).map(|i| i + Vec2::new(o.dx().into(), o.dy().into())),
-        Kind::Blend(b) => either(of(b.input1()), of(b.input2())),
+        Kind::Offset(o) => input(o.input()).map(|i| i + Vec2::new(o.dx().into(), o.dy().into())),
+        Kind::Blend(b) => either(input(b.input1()), input(b.input2())),
         Kind::Composite(c) => match c.operator() {
-            CompositeOperator::In => of(c.input1()).and_then(|a| overlap(a, of(c.input2())?)),
-            CompositeOperator::Out => of(c.input1()),
-            CompositeOperator::Atop => of(c.input2()),
+            CompositeOperator::In => input(c.input1()).and_then(|a| overlap(a, input(c.input2())?)),
+            CompositeOperator::Out => input(c.input1()),
+            CompositeOperator::Atop => input(c.input2()),
             CompositeOperator::Arithmetic { k4, .. } if k4 > 0.0 => Some(region),
             CompositeOperator::Over
             | CompositeOperator::Xor
             | CompositeOperator::Lighter
-            | CompositeOperator::Arithmetic { .. } => either(of(c.input1()), of(c.input2())),
+            | CompositeOperator::Arithmetic { .. } => either(input(c.input1()), input(c.input2())),
         },
-        Kind::Merge(m) => m.inputs().iter().filter_map(of).reduce(|a, b| a.union(b)),
-        Kind::Morphology(m) => of(m.input()).map(|i| match m.operator() {
+        Kind::Merge(m) => m.inputs().iter().filter_map(input).reduce(|a, b| a.union(b)),
+        Kind::Morphology(m) => input(m.input()).map(|i| match m.operator() {
             MorphologyOperator::Erode => i,
             MorphologyOperator::Dilate => grown(i, m.radius_x().get(), m.radius_y().get()),
         }),
-        Kind::DisplacementMap(m) => of(m.input1()).map(|i| grown(i, m.scale().abs() / 2.0, m.scale().abs() / 2.0)),
+        Kind::DisplacementMap(m) => input(m.input1()).map(|i| grown(i, m.scale().abs() / 2.0, m.scale().abs() / 2.0)),
         // The last value of a matrix's fourth row is the alpha of transparent pixels.
         Kind::ColorMatrix(m) => match m.kind() {
             ColorMatrixKind::Matrix(v) if v.get(19).is_some_and(|alpha| *alpha > 0.0) => Some(region),
             ColorMatrixKind::LuminanceToAlpha
             | ColorMatrixKind::Matrix(_)
             | ColorMatrixKind::Saturate(_)
-            | ColorMatrixKind::HueRotate(_) => of(m.input()),
+            | ColorMatrixKind::HueRotate(_) => input(m.input()),
         },
         Kind::Flood(f) if f.opacity().get() == 0.0 => None,
-        Kind::ComponentTransfer(t) if keeps_transparent(t.func_a()) => of(t.input()),
+        Kind::ComponentTransfer(t) if keeps_transparent(t.func_a()) => input(t.input()),
         Kind::ComponentTransfer(_)
         | Kind::ConvolveMatrix(_)
         | Kind::DiffuseLighting(_)
@@ -316,6 +316,7 @@ fn primitive_box(kind: &Kind, of: &dyn Fn(&Input) -> Option<Rect>, region: Rect)
     }
 }
 
+/// Returns `true` if a transfer function of alpha leaves transparent pixels transparent.
 fn keeps_transparent(alpha: &TransferFunction) -> bool {
     match alpha {
         TransferFunction::Identity => true,

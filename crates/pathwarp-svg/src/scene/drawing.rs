@@ -16,6 +16,7 @@ use pathwarp::budget::Budget;
 use pathwarp::kurbo::{Affine, Rect, Size};
 use pathwarp::{Error, Outline};
 use pathwarp_reader::LARGEST;
+use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
@@ -31,6 +32,7 @@ pub(crate) struct Drawing {
     shapes: OnceLock<Vec<Shape>>,
     lines: OnceLock<Vec<TextLine>>,
     far: OnceLock<Far>,
+    /// Fonts, images and other content that were not found.
     pub(crate) missed: Missed,
     /// Size in px.
     pub(crate) page: Size,
@@ -41,8 +43,9 @@ pub(crate) struct Drawing {
     letters: Arc<lettering::Owners>,
     /// For every element, the index of its bend; empty if the drawing is not divided. Clip paths and masks are resolved once for each bend.
     division: Vec<Option<usize>>,
+    /// Resolution in px per inch.
     dpi: f64,
-    /// Turns images.
+    /// Turns images whose metadata request it.
     pub(crate) turned: Option<Turned>,
     /// Counts the work that the drawing causes.
     pub(crate) budget: Arc<Budget>,
@@ -116,6 +119,7 @@ impl Drawing {
         }
         let mut drawing = self.resolved_again(None, self.division.clone())?;
         let Some(scene) = drawing.scene.get_mut() else { return Ok(Some(drawing)) };
+        // For each shape, its largest part with its size: a copy, or `None` if the shape itself is shown, which counts as largest.
         let mut largest: HashMap<ElementId, (f64, Option<usize>)> = HashMap::new();
         for (i, part) in scene.parts.iter().enumerate() {
             let (size, copy) = if is_use(part) { (stretch(part.frame), Some(i)) } else { (f64::INFINITY, None) };
@@ -134,13 +138,13 @@ impl Drawing {
         let mut groups: Vec<&mut Group> = masks.chain(clips).chain([&mut scene.root]).collect();
         while let Some(g) = groups.pop() {
             g.owner = g.owner.filter(|e| self.source.elements[*e].tag != "use");
-            groups.extend(
-                g.children.iter_mut().filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }),
-            );
+            let children = g.children.iter_mut();
+            groups.extend(children.filter_map(|n| if let Node::Group(g) = n { Some(&mut **g) } else { None }));
         }
         Ok(Some(drawing))
     }
 
+    /// Resolves the drawing again.
     fn resolved_again(&self, tiling: Option<Tiling<'_>>, division: Vec<Option<usize>>) -> Result<Self, Error> {
         let resolve = || Ok(resolve::build(&self.tree, &self.source, &self.letters, self.dpi, tiling, &division));
         let scene = self.with_stack(resolve)?;
@@ -170,8 +174,8 @@ impl Drawing {
     }
 
     pub(crate) fn scene(&self) -> &Scene {
-        self.scene
-            .get_or_init(|| resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None, &self.division))
+        let resolve = || resolve::build(&self.tree, &self.source, &self.letters, self.dpi, None, &self.division);
+        self.scene.get_or_init(resolve)
     }
 
     /// The shapes, one for each part of the scene.
@@ -190,6 +194,7 @@ impl Drawing {
         self.lines.get_or_init(|| lettering::lines(&self.tree, &self.reader(), self.scene()))
     }
 
+    /// A reader of geometry from the source.
     pub(crate) fn reader(&self) -> GeometryReader<'_> {
         GeometryReader { source: &self.source, dpi: self.dpi, page: self.page }
     }
@@ -243,10 +248,9 @@ impl Drawing {
     pub(crate) fn selected_parts(&self, selection: &Selection) -> Vec<bool> {
         let elements = selection.resolve(&self.source);
         let all = selection.is_everything();
-        let parts = self.scene().parts.iter();
         let far = self.far();
-        let selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
-        parts.enumerate().map(|(i, p)| selected(p) && !far.holds(i)).collect()
+        let is_selected = |p: &Part| p.element().map_or(all, |e| elements[e]);
+        self.scene().parts.iter().enumerate().map(|(i, p)| is_selected(p) && !far.holds(i)).collect()
     }
 
     /// The parts whose coordinates are out of range.
@@ -287,28 +291,25 @@ pub(crate) struct Far {
 }
 
 impl Far {
-    pub(super) fn find(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
-        let reach: Vec<bool> = shapes.iter().map(|s| !is_in_range(&s.outline)).collect();
-        if source.far.is_empty() && !reach.contains(&true) {
+    fn find(source: &SourceText, scene: &Scene, shapes: &[Shape]) -> Self {
+        let outlines: Vec<bool> = shapes.iter().map(|s| !is_in_range(&s.outline)).collect();
+        if source.far.is_empty() && !outlines.contains(&true) {
             return Self::default();
         }
-        let numbers = &source.far;
-        let named: HashSet<ElementId> = numbers.iter().map(|n| n.0).collect();
-        let inside = |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| named.contains(&a)));
-        let mut reasons: Vec<(String, String)> = numbers
-            .iter()
-            .map(|(e, n)| {
-                (source.display_name(*e), format!("its number {n} is out of range, which ends at {LARGEST:e}"))
-            })
-            .collect();
-        let (mut parts, mut reported) = (Vec::with_capacity(reach.len()), BTreeSet::new());
-        for ((p, shape), far) in scene.parts.iter().zip(shapes).zip(reach) {
-            let by_number = inside(p.source) || inside(p.owner) || inside(p.drawn);
-            if far && !by_number && reported.insert(&shape.id) {
+        let far_elements: HashSet<ElementId> = source.far.iter().map(|n| n.0).collect();
+        let has_number =
+            |e: Option<ElementId>| e.is_some_and(|e| source.ancestors(e).any(|a| far_elements.contains(&a)));
+        let by_number = |n: &str| format!("its number {n} is out of range, which ends at {LARGEST:e}");
+        let mut reasons: Vec<(String, String)> =
+            source.far.iter().map(|(e, n)| (source.display_name(*e), by_number(n))).collect();
+        let (mut parts, mut reported) = (Vec::with_capacity(outlines.len()), BTreeSet::new());
+        for ((p, shape), is_far) in scene.parts.iter().zip(shapes).zip(outlines) {
+            let has_number = has_number(p.source) || has_number(p.owner) || has_number(p.drawn);
+            if is_far && !has_number && reported.insert(&shape.id) {
                 let why = format!("it extends beyond the range of coordinates, which ends at {LARGEST:e}");
                 reasons.push((shape.id.clone(), why));
             }
-            parts.push(far || by_number);
+            parts.push(is_far || has_number);
         }
         Self { parts, reasons }
     }
@@ -377,7 +378,8 @@ fn read_outlines(scene: &Scene, source: &SourceText) {
     }
 }
 
-pub(super) fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
+/// Describes the parts of a scene.
+fn shapes(scene: &Scene, source: &SourceText) -> Vec<Shape> {
     let shape = |p: &Part| {
         let e = p.element();
         Shape {
@@ -400,15 +402,12 @@ pub(crate) fn named_path(scene: &Scene, reader: &GeometryReader<'_>, e: ElementI
     let painted = parts.iter().map(|&i| &scene.parts[i]).find(|p| p.role == PartRole::Paint);
     let outline = match painted {
         Some(p) => Arc::unwrap_or_clone(p.outline()),
-        None => {
-            let t = reader.transform_to_root(e).unwrap_or_default();
-            reader.outline(e)?.transformed(t)
-        }
+        None => reader.outline(e)?.transformed(reader.transform_to_root(e).unwrap_or_default()),
     };
     let source = reader.source;
     Some(NamedPath {
         id: source.display_name(e),
-        label: source.label(e).map(std::borrow::Cow::into_owned),
+        label: source.label(e).map(Cow::into_owned),
         title: source.elements[e].title.clone(),
         element: source.elements[e].tag.to_string(),
         outline,

@@ -3,7 +3,7 @@
 //! usvg works in f32 and approximates arcs by cubics within 0.1 units. Its result is authoritative, since it resolves CSS, fonts and
 //! units; geometry from the source is used if it agrees with usvg's up to f32 rounding.
 
-use crate::source::elements::ElementId;
+use crate::source::elements::{ElementId, parse_transform};
 use crate::source::text::SourceText;
 use pathwarp::Outline;
 use pathwarp::engine::decimal::single;
@@ -70,6 +70,7 @@ impl GeometryReader<'_> {
         }))
     }
 
+    /// The length in an attribute, 0 if it is absent; `None` if the source alone does not determine it.
     fn length_or_zero(&self, e: ElementId, name: &str, dimension: Dimension) -> Option<f64> {
         Some(self.length(e, name, dimension)?.unwrap_or(0.0))
     }
@@ -97,6 +98,7 @@ impl GeometryReader<'_> {
         self.view_box(0).map_or(self.page, |v| v.size())
     }
 
+    /// The `viewBox` of an element.
     pub(crate) fn view_box(&self, e: ElementId) -> Option<Rect> {
         let text = self.source.attr(e, "viewBox")?;
         let v = svgtypes::ViewBox::from_str(&text).ok()?;
@@ -106,8 +108,8 @@ impl GeometryReader<'_> {
     /// Returns the transform from `e`'s viewBox to a viewport of the given size.
     pub(crate) fn view_box_transform(&self, e: ElementId, size: Size) -> Affine {
         let Some(v) = self.view_box(e) else { return Affine::IDENTITY };
-        let aspect = self.source.attr(e, "preserveAspectRatio").and_then(|t| AspectRatio::from_str(&t).ok());
-        let aspect = aspect.unwrap_or_default();
+        let aspect = self.source.attr(e, "preserveAspectRatio");
+        let aspect = aspect.and_then(|t| AspectRatio::from_str(&t).ok()).unwrap_or_default();
         let (mut sx, mut sy) = (size.width / v.width(), size.height / v.height());
         if aspect.align != Align::None {
             let s = if aspect.slice { sx.max(sy) } else { sx.min(sy) };
@@ -132,29 +134,20 @@ impl GeometryReader<'_> {
     /// nested viewport or the shift of a `use`. Returns `None` if it cannot be read from the source alone.
     pub(crate) fn own_transform(&self, e: ElementId) -> Option<Affine> {
         let el = &self.source.elements[e];
-        let mut t = Affine::IDENTITY;
-        if let Some(text) = self.source.attr(e, "transform") {
-            t = transform(&text)?;
-        }
-        let shifted = |t: Affine| {
-            let shift =
-                (self.length_or_zero(e, "x", Dimension::Width)?, self.length_or_zero(e, "y", Dimension::Height)?);
-            Some(t * Affine::translate(shift))
+        let t = self.source.attr(e, "transform").map_or(Some(Affine::IDENTITY), |text| parse_transform(&text))?;
+        let shifted = || {
+            let x = self.length_or_zero(e, "x", Dimension::Width)?;
+            Some(t * Affine::translate((x, self.length_or_zero(e, "y", Dimension::Height)?)))
         };
         match el.tag.as_ref() {
-            "use" => shifted(t),
+            "use" => shifted(),
             "svg" if el.parent.is_some() => {
-                t = shifted(t)?;
+                let t = shifted()?;
                 let view = self.viewport_size(e);
-                let side = |name, dimension, full: fn(Size) -> f64| match self.length(e, name, dimension)? {
-                    Some(l) => Some(l),
-                    None => view.map(full),
-                };
-                let size = Size::new(
-                    side("width", Dimension::Width, |s| s.width)?,
-                    side("height", Dimension::Height, |s| s.height)?,
-                );
-                Some(t * self.view_box_transform(e, size))
+                // An absent side is that of the viewport around.
+                let width = self.length(e, "width", Dimension::Width)?.or_else(|| Some(view?.width))?;
+                let height = self.length(e, "height", Dimension::Height)?.or_else(|| Some(view?.height))?;
+                Some(t * self.view_box_transform(e, Size::new(width, height)))
             }
             _ => Some(t),
         }
@@ -221,12 +214,6 @@ impl GeometryReader<'_> {
     }
 }
 
-/// Parses a transform list and multiplies its transforms.
-pub(crate) fn transform(text: &str) -> Option<Affine> {
-    let t = svgtypes::Transform::from_str(text).ok()?;
-    Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
-}
-
 /// Adds an ellipse: four quarters from three o'clock, clockwise on screen, as in the SVG specification.
 pub(super) fn ellipse(b: &mut Builder, c: Point, r: Vec2) -> Option<()> {
     if !(r.x > 0.0 && r.y > 0.0) {
@@ -242,6 +229,7 @@ pub(super) fn ellipse(b: &mut Builder, c: Point, r: Vec2) -> Option<()> {
     Some(())
 }
 
+/// Adds quarter `i` of an ellipse with centre `c` and radii `r`, from the current point to `end`.
 fn quarter(b: &mut Builder, c: Point, r: Vec2, i: usize, end: Point) {
     let arc = EllipticArc::new(c, Vec2::new(r.x, 0.0), Vec2::new(0.0, r.y), i as f64 * FRAC_PI_2, FRAC_PI_2);
     b.arc(EllipticArc { p0: b.at(), p1: end, ..arc });
@@ -300,6 +288,7 @@ pub(crate) fn is_near(a: Affine, b: Affine) -> bool {
     (0..4).all(|i| (a[i] - b[i]).abs() <= 1e-6 * linear) && (4..6).all(|i| (a[i] - b[i]).abs() <= 1e-6 * shift)
 }
 
+/// The map without its shift.
 pub(crate) fn linear_part(m: Affine) -> Affine {
     let [a, b, c, d, ..] = m.as_coeffs();
     Affine::new([a, b, c, d, 0.0, 0.0])
@@ -356,7 +345,7 @@ fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
     let is_point = |s: &Seg| !matches!(s, Seg::Arc(_)) && handles(s).iter().all(|p| close(*p, s.start()));
     let mut rest: VecDeque<&Seg> = theirs.segs.iter().filter(|s| !is_point(s)).collect();
     // usvg draws an arc to the current point as a whole ellipse if the two points differ in f32.
-    let skip_turn = |rest: &mut VecDeque<&Seg>, at: Point| {
+    let skip_full_turn = |rest: &mut VecDeque<&Seg>, at: Point| {
         if rest.front().is_some_and(|s| close(s.start(), at) && matches!(s, Seg::Cubic(_)))
             && let Some(last) = rest.iter().position(|s| close(s.end(), at))
         {
@@ -368,14 +357,14 @@ fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
     for s in ours.segs.iter().filter(|s| !is_point(s)) {
         matched &= match s {
             // usvg's cubics share the arc's ends and stay within 0.1 of it.
-            Seg::Arc(arc) => match rest.iter().position(|t| close(t.end(), arc.p1)) {
-                Some(last) => rest.drain(..=last).count() > 0,
-                None => false,
-            },
+            Seg::Arc(arc) => {
+                let last = rest.iter().position(|t| close(t.end(), arc.p1));
+                last.is_some_and(|last| rest.drain(..=last).count() > 0)
+            }
             s => {
                 let same = |t: &Seg| handles(s).iter().zip(handles(t)).all(|(p, q)| close(*p, q));
                 if !rest.front().is_some_and(|t| same(t)) {
-                    skip_turn(&mut rest, at);
+                    skip_full_turn(&mut rest, at);
                 }
                 rest.pop_front().is_some_and(same)
             }
@@ -385,7 +374,7 @@ fn same_subpath(ours: &Subpath, theirs: &Subpath, tolerance: f64) -> bool {
         }
         at = s.end();
     }
-    skip_turn(&mut rest, at);
+    skip_full_turn(&mut rest, at);
     // f32 rounding may add a closing line.
     matched && rest.iter().all(|t| close(t.start(), t.end()))
 }

@@ -21,11 +21,13 @@ use crate::source::read::ReadOptions;
 use crate::source::text::SourceText;
 use crate::source::tree;
 use pathwarp::kurbo::{Affine, Point, Vec2};
+use pathwarp::param::Letter;
 use pathwarp::{Error, Outline};
 use pathwarp_reader::xml;
 use skrifa::MetadataProvider;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
+use std::borrow::Cow;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -57,6 +59,13 @@ pub(crate) struct PlacedLetter {
     pub(crate) subpaths: Vec<(usize, Range<usize>)>,
 }
 
+impl PlacedLetter {
+    /// The letter for deformations, with an outline.
+    pub(crate) fn with_outline(&self, outline: Outline) -> Letter {
+        Letter { name: self.name.clone(), origin: self.origin, advance: self.advance, outline }
+    }
+}
+
 /// Heights of a line's font above the baseline, and its descent below it, in the line's user units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Heights {
@@ -64,6 +73,13 @@ pub(crate) struct Heights {
     pub(crate) descent: f64,
     pub(crate) cap_height: f64,
     pub(crate) x_height: f64,
+}
+
+impl From<[f64; 4]> for Heights {
+    /// Ascent, descent, height of capitals and of lower-case letters.
+    fn from([ascent, descent, cap_height, x_height]: [f64; 4]) -> Self {
+        Self { ascent, descent, cap_height, x_height }
+    }
 }
 
 /// A line of lettering, in root user space.
@@ -78,7 +94,7 @@ pub(crate) struct TextLine {
     /// In root user units.
     pub(crate) heights: Heights,
     /// `true` if the baseline is horizontal and runs to the right, with upright letters.
-    pub(crate) level: bool,
+    pub(crate) is_level: bool,
     pub(crate) letters: Vec<PlacedLetter>,
 }
 
@@ -90,16 +106,11 @@ impl TextLine {
         const TILT: f64 = 1e-5;
         let (start, end) = (frame * from, frame * to);
         let [a, b, c, d, ..] = frame.as_coeffs();
-        let up = |h: f64| (Vec2::new(-c, -d) * h).hypot();
-        let heights = Heights {
-            ascent: up(heights.ascent),
-            descent: up(heights.descent),
-            cap_height: up(heights.cap_height),
-            x_height: up(heights.x_height),
-        };
+        let Heights { ascent, descent, cap_height, x_height } = heights;
+        let heights = [ascent, descent, cap_height, x_height].map(|h| (Vec2::new(-c, -d) * h).hypot()).into();
         let run = end.x - start.x;
-        let level = straight && d > 0.0 && run > 0.0 && (end.y - start.y).abs() <= TILT * run && b.abs() <= TILT * a;
-        Self { name, owner: None, start, end, heights, level, letters: Vec::new() }
+        let is_level = straight && d > 0.0 && run > 0.0 && (end.y - start.y).abs() <= TILT * run && b.abs() <= TILT * a;
+        Self { name, owner: None, start, end, heights, is_level, letters: Vec::new() }
     }
 }
 
@@ -129,17 +140,20 @@ fn texts_by_address(tree: &usvg::Tree) -> HashMap<usize, &usvg::Text> {
 /// Least distance of the baselines of different lines, in font sizes. Closer baselines are those of raised or lowered letters.
 const ANOTHER_LINE: f64 = 0.5;
 
+/// A glyph of a text, with lengths in the text's user units.
 struct Glyph {
     text: String,
     origin: Point,
     advance: f64,
     size: f64,
     heights: Heights,
+    /// Index of the part that draws it, with the range of its subpaths.
     part: usize,
     range: Range<usize>,
     /// Centre of the outline's box in x.
     centre: f64,
-    turned: bool,
+    /// `true` if it is rotated or mirrored.
+    is_turned: bool,
 }
 
 /// Finds the lines of a text whose parts are `parts[first..]`. `frame` maps the text to root user space.
@@ -155,11 +169,8 @@ fn shaped_lines(
         && text.writing_mode() == usvg::WritingMode::LeftToRight;
     let mut rows: Vec<Vec<Glyph>> = Vec::new();
     for g in glyphs {
-        let same = |row: &&mut Vec<Glyph>| {
-            !straight
-                || row.first().is_some_and(|f| (f.origin.y - g.origin.y).abs() < ANOTHER_LINE * f.size.max(g.size))
-        };
-        match rows.last_mut().filter(same) {
+        let is_near = |f: &Glyph| (f.origin.y - g.origin.y).abs() < ANOTHER_LINE * f.size.max(g.size);
+        match rows.last_mut().filter(|row| !straight || row.first().is_some_and(is_near)) {
             Some(row) => row.push(g),
             None => rows.push(vec![g]),
         }
@@ -167,6 +178,7 @@ fn shaped_lines(
     rows.into_iter().filter_map(|row| shaped_line(row, frame, straight)).collect()
 }
 
+/// Makes a line of a row of glyphs. Returns `None` if none of them has an advance.
 fn shaped_line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLine> {
     let (wide, marks): (Vec<Glyph>, Vec<Glyph>) = row.into_iter().partition(|g| g.advance > 0.0);
     // The line's baseline is the one with the largest total advance; raised letters keep their height above it.
@@ -175,12 +187,11 @@ fn shaped_line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLin
     let from = wide.iter().map(|g| g.origin.x).fold(f64::INFINITY, f64::min);
     let to = wide.iter().map(|g| g.origin.x + g.advance).fold(f64::NEG_INFINITY, f64::max);
     let largest = wide.iter().max_by(|a, b| a.size.total_cmp(&b.size))?;
-    let straight = straight && !wide.iter().any(|g| g.turned);
+    let straight = straight && !wide.iter().any(|g| g.is_turned);
     let name: String = wide.iter().map(|g| g.text.as_str()).collect();
     let mut line = TextLine::new(name, Point::new(from, y), Point::new(to, y), largest.heights, frame, straight);
     let middles: Vec<f64> = wide.iter().map(|g| g.origin.x + 0.5 * g.advance).collect();
-    let across = Point::new(1.0, 0.0).to_vec2();
-    let stretch = (frame * across.to_point() - frame * Point::ORIGIN).hypot();
+    let stretch = (frame * Point::new(1.0, 0.0) - frame * Point::ORIGIN).hypot();
     line.letters = wide
         .into_iter()
         .map(|g| PlacedLetter {
@@ -193,9 +204,9 @@ fn shaped_line(row: Vec<Glyph>, frame: Affine, straight: bool) -> Option<TextLin
         .collect();
     // Marks without an advance belong to the nearest letter.
     for m in marks {
-        let off = |i: &usize| (middles[*i] - m.centre).abs();
-        if let Some(l) = (0..middles.len()).min_by(|a, b| off(a).total_cmp(&off(b))) {
-            line.letters[l].subpaths.push((m.part, m.range));
+        let distance = |i: &usize| (middles[*i] - m.centre).abs();
+        if let Some(nearest) = (0..middles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+            line.letters[nearest].subpaths.push((m.part, m.range));
         }
     }
     Some(line)
@@ -206,6 +217,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
     let mut out = Vec::new();
     let mut part = first;
     for span in text.layouted() {
+        // usvg draws lines over and under the letters before them, and a line through them last.
         part += usize::from(span.overline.is_some()) + usize::from(span.underline.is_some());
         let mut taken = 0;
         for g in &span.positioned_glyphs {
@@ -226,7 +238,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
                 part,
                 range,
                 centre: outline.bounding_box().map_or(f64::from(t.tx), |b| b.center().x),
-                turned: t.ky != 0.0 || t.sx <= 0.0,
+                is_turned: t.ky != 0.0 || t.sx <= 0.0,
             });
         }
         if taken > 0 {
@@ -240,6 +252,7 @@ fn glyphs(text: &usvg::Text, fonts: &usvg::fontdb::Database, parts: &[Part], fir
     Some(out)
 }
 
+/// Metrics of a glyph and its font.
 struct Metrics {
     /// In font units.
     advance: f64,
@@ -252,8 +265,8 @@ fn draw_glyph(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) 
     fonts.with_face_data(g.font, |data, index| {
         let font = skrifa::FontRef::from_index(data, index).ok()?;
         let axes = font.axes();
-        let mut set: Vec<(skrifa::Tag, f32)> =
-            span.variations.iter().map(|v| (skrifa::Tag::from_be_bytes(v.tag), v.value)).collect();
+        let set = span.variations.iter().map(|v| (skrifa::Tag::from_be_bytes(v.tag), v.value));
+        let mut set: Vec<(skrifa::Tag, f32)> = set.collect();
         // The optical size defaults to the font size.
         let optical = skrifa::Tag::new(b"opsz");
         if span.font_optical_sizing == usvg::FontOpticalSizing::Auto
@@ -272,20 +285,15 @@ fn draw_glyph(g: &PositionedGlyph, span: &Span, fonts: &usvg::fontdb::Database) 
         let glyphs = font.glyph_metrics(Size::unscaled(), LocationRef::from(&location));
         let height = |c: char| font.charmap().map(c).and_then(|id| glyphs.bounds(id)).map(|b| b.y_max);
         let per_unit = f64::from(g.font_size()) / f64::from(metrics.units_per_em.max(1));
-        let scaled = |v: Option<f32>| v.map_or(0.0, |v| f64::from(v).abs() * per_unit);
-        let metrics = Metrics {
-            advance: f64::from(glyphs.advance_width(id)?),
-            heights: Heights {
-                ascent: scaled(Some(metrics.ascent)),
-                descent: scaled(Some(metrics.descent)),
-                cap_height: scaled(metrics.cap_height.filter(|h| *h > 0.0).or_else(|| height('H'))),
-                x_height: scaled(metrics.x_height.filter(|h| *h > 0.0).or_else(|| height('x'))),
-            },
-        };
-        Some((from_usvg(&path), metrics))
+        let cap_height = metrics.cap_height.filter(|h| *h > 0.0).or_else(|| height('H'));
+        let x_height = metrics.x_height.filter(|h| *h > 0.0).or_else(|| height('x'));
+        let heights = [Some(metrics.ascent), Some(metrics.descent), cap_height, x_height];
+        let heights = heights.map(|h| h.map_or(0.0, |h| f64::from(h).abs() * per_unit)).into();
+        Some((from_usvg(&path), Metrics { advance: f64::from(glyphs.advance_width(id)?), heights }))
     })?
 }
 
+/// Draws glyphs as usvg's paths.
 struct Pen(ts::PathBuilder);
 
 impl OutlinePen for Pen {
@@ -330,46 +338,33 @@ fn marked_lines(reader: &GeometryReader<'_>, scene: &Scene) -> Vec<TextLine> {
     out.into_values().collect()
 }
 
+/// Reads the line of an element with the start and end of its baseline.
 fn marked_line(reader: &GeometryReader<'_>, e: ElementId, [x0, y0, x1, y1]: [f64; 4]) -> Option<TextLine> {
     let source = reader.source;
     let frame = reader.transform_to_root(e)?;
     let label = source.ancestors(e).find_map(|a| source.attr(a, "aria-label"));
-    let name = label.map_or_else(|| source.display_name(e), std::borrow::Cow::into_owned);
-    Some(TextLine::new(name, Point::new(x0, y0), Point::new(x1, y1), heights(reader, e), frame, true))
+    let name = label.map_or_else(|| source.display_name(e), Cow::into_owned);
+    let names = ["data-ascent", "data-descent", "data-cap-height", "data-x-height"];
+    let height = |name| source.ancestors(e).find_map(|a| numbers(reader, a, name)).map_or(0.0, |[v]| v.abs());
+    let heights = names.map(height).into();
+    Some(TextLine::new(name, Point::new(x0, y0), Point::new(x1, y1), heights, frame, true))
 }
 
+/// Reads the letter of an element with the attribute `data-glyph`. Returns `None` for other elements, and if it is not painted.
 fn marked_letter(reader: &GeometryReader<'_>, scene: &Scene, e: ElementId) -> Option<PlacedLetter> {
     let parts = &scene.parts;
     let [x, y, advance] = numbers(reader, e, "data-glyph")?;
-    let painted: Vec<usize> = scene
-        .by_source
-        .get(&e)?
-        .iter()
-        .copied()
-        .filter(|&i| parts[i].role == PartRole::Paint && parts[i].painted())
-        .collect();
+    let is_painted = |i: &usize| parts[*i].role == PartRole::Paint && parts[*i].painted();
+    let painted: Vec<usize> = scene.by_source.get(&e)?.iter().copied().filter(is_painted).collect();
     let frame = parts[*painted.first()?].frame;
     let [a, b, ..] = frame.as_coeffs();
     let label = reader.source.attr(e, "aria-label");
     Some(PlacedLetter {
-        name: label.map_or_else(|| reader.source.display_name(e), std::borrow::Cow::into_owned),
+        name: label.map_or_else(|| reader.source.display_name(e), Cow::into_owned),
         origin: frame * Point::new(x, y),
         advance: (Vec2::new(a, b) * advance).hypot(),
         subpaths: painted.into_iter().map(|i| (i, 0..parts[i].local.subpaths.len())).collect(),
     })
-}
-
-fn heights(reader: &GeometryReader<'_>, e: ElementId) -> Heights {
-    let height = |name: &str| {
-        let found = reader.source.ancestors(e).find_map(|a| numbers::<1>(reader, a, name));
-        found.map_or(0.0, |[v]| v.abs())
-    };
-    Heights {
-        ascent: height("data-ascent"),
-        descent: height("data-descent"),
-        cap_height: height("data-cap-height"),
-        x_height: height("data-x-height"),
-    }
 }
 
 /// Parses an attribute of exactly `N` finite numbers.
@@ -393,35 +388,35 @@ pub(crate) fn owners(source: &SourceText, name: &str, options: &ReadOptions) -> 
     let texts = (0..source.elements.len()).filter(|&e| source.elements[e].tag == "text");
     let words = |e: ElementId| source.words.get(e);
     let depends = |e: ElementId| words(e).is_some_and(|words| words.depends());
-    let themed = |t| text_content(source, t).any(|e| words(e) != words(t) && (depends(e) || depends(t)));
-    let named: Vec<ElementId> =
-        texts.filter(|&t| themed(t) || text_content(source, t).any(|e| is_named(source, e))).collect();
-    if named.is_empty() {
+    let is_themed = |t| text_content(source, t).any(|e| words(e) != words(t) && (depends(e) || depends(t)));
+    let holds_name = |t| text_content(source, t).any(|e| is_named(source, e));
+    let texts: Vec<ElementId> = texts.filter(|&t| is_themed(t) || holds_name(t)).collect();
+    if texts.is_empty() {
         return Ok(out);
     }
-    let painted: Vec<ElementId> =
-        named.iter().flat_map(|&t| std::iter::once(t).chain(text_content(source, t))).collect();
-    let styles = painted.iter().filter_map(|&e| Some((e, format!("fill:{};stroke:none", colour_code(e)?))));
+    let elements = texts.iter().flat_map(|&t| std::iter::once(t).chain(text_content(source, t)));
+    let styles = elements.filter_map(|e| Some((e, format!("fill:{};stroke:none", color_code(e)?))));
     let Some(painted) = source.instrumented(styles).0 else { return Ok(out) };
     let (tree, _) = tree::tree(&xml::parse_checked(&painted, name)?, name, &options.begin_again())?;
-    collect(tree.root(), source, &mut out);
+    collect_owners(tree.root(), source, &mut out);
     Ok(out)
 }
 
-/// Encodes an element's index as a colour.
-fn colour_code(e: ElementId) -> Option<String> {
+/// Encodes an element's index as a colour. Returns `None` if it is too large.
+fn color_code(e: ElementId) -> Option<String> {
     (e < 1 << 24).then(|| format!("#{e:06x}"))
 }
 
 /// Decodes an element's index from a colour.
-fn element(c: Color) -> ElementId {
+fn coded_element(c: Color) -> ElementId {
     (usize::from(c.red) << 16) | (usize::from(c.green) << 8) | usize::from(c.blue)
 }
 
-fn collect(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
+/// Reads the owners of letters from the colours of the texts in a group.
+fn collect_owners(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
     for n in g.children() {
         match n {
-            Node::Group(g) => collect(g, source, out),
+            Node::Group(g) => collect_owners(g, source, out),
             Node::Text(t) => {
                 let Some(&[text]) = source.by_tree_id().get(t.id()).map(Vec::as_slice) else { continue };
                 let end = source.elements[text].range.end;
@@ -430,10 +425,10 @@ fn collect(g: &usvg::Group, source: &SourceText, out: &mut Owners) {
                     // Glyphs of a colour font belong to the element of their neighbours.
                     if let Node::Path(p) = n
                         && let Some(Paint::Color(c)) = p.fill().map(Fill::paint)
-                        && (text..source.elements.len()).contains(&element(*c))
-                        && source.elements[element(*c)].range.start < end
+                        && (text..source.elements.len()).contains(&coded_element(*c))
+                        && source.elements[coded_element(*c)].range.start < end
                     {
-                        last = element(*c);
+                        last = coded_element(*c);
                     }
                     last
                 });

@@ -11,7 +11,7 @@ use std::ops::{Deref, Range};
 use std::sync::{Arc, LazyLock};
 use usvg::{BlendMode, Fill, PaintOrder, ShapeRendering, Stroke};
 
-/// Role of a shape in the picture.
+/// Role of a part in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PartRole {
     Paint,
@@ -44,6 +44,7 @@ pub(crate) struct Part {
     pub(crate) fixed_width: bool,
     /// `true` if usvg draws the part differently from browsers, which the scene follows.
     pub(crate) differs_from_usvg: bool,
+    /// Index of the innermost [`Slot`] around the part.
     pub(crate) slot: Option<usize>,
     /// Address of usvg's path, which the document keeps alive; 0 if there is none.
     #[cfg_attr(not(feature = "usvg"), expect(dead_code, reason = "for the module of that feature"))]
@@ -67,8 +68,8 @@ impl Part {
             frame,
             fill: None,
             stroke: None,
-            paint_order: PaintOrder::FillAndStroke,
-            rendering: ShapeRendering::GeometricPrecision,
+            paint_order: PaintOrder::default(),
+            rendering: ShapeRendering::default(),
             visible: true,
             fixed_width: false,
             differs_from_usvg: false,
@@ -107,18 +108,14 @@ pub(crate) struct Tiles {
 pub(crate) struct LazyOutline(LazyLock<Arc<Outline>, Box<dyn FnOnce() -> Arc<Outline> + Send>>);
 
 impl LazyOutline {
-    pub(crate) fn new(f: impl FnOnce() -> Outline + Send + 'static) -> Self {
-        Self::shared(|| Arc::new(f()))
-    }
-
-    pub(crate) fn shared(f: impl FnOnce() -> Arc<Outline> + Send + 'static) -> Self {
+    pub(crate) fn new(f: impl FnOnce() -> Arc<Outline> + Send + 'static) -> Self {
         Self(LazyLock::new(Box::new(f)))
     }
 }
 
 impl From<Outline> for LazyOutline {
     fn from(o: Outline) -> Self {
-        Self::new(move || o)
+        Self::new(move || Arc::new(o))
     }
 }
 
@@ -136,11 +133,13 @@ impl fmt::Debug for LazyOutline {
     }
 }
 
+/// A member of a group.
 #[derive(Debug)]
 pub(crate) enum Node {
     Group(Box<Group>),
+    /// Index in [`Scene::parts`].
     Part(usize),
-    /// Index of a bitmap.
+    /// Index in [`Scene::bitmaps`].
     Image(usize),
     Text {
         element: Option<ElementId>,
@@ -150,14 +149,19 @@ pub(crate) enum Node {
     },
 }
 
+/// Members that are painted together.
 #[derive(Debug)]
 pub(crate) struct Group {
+    /// The element with the group's id.
     pub(crate) source: Option<ElementId>,
+    /// The element to replace as a whole if something inside changes.
     pub(crate) owner: Option<ElementId>,
+    /// From the group's space to the space around it.
     pub(crate) transform: Affine,
     pub(crate) opacity: f32,
     pub(crate) blend: BlendMode,
     pub(crate) isolate: bool,
+    /// Indices in [`Scene::clips`] and [`Scene::masks`].
     pub(crate) clip: Option<usize>,
     pub(crate) mask: Option<usize>,
     pub(crate) filters: Vec<Arc<usvg::filter::Filter>>,
@@ -174,7 +178,7 @@ impl Group {
             owner,
             transform,
             opacity: 1.0,
-            blend: BlendMode::Normal,
+            blend: BlendMode::default(),
             isolate: false,
             clip: None,
             mask: None,
@@ -182,6 +186,12 @@ impl Group {
             slot: None,
             children,
         }
+    }
+}
+
+impl Default for Group {
+    fn default() -> Self {
+        Self::plain(None, Affine::IDENTITY, Vec::new())
     }
 }
 
@@ -196,7 +206,7 @@ pub(crate) struct Slot {
     /// Area to fit, in the slot's coordinates.
     pub(crate) area: Rect,
     /// `true` if the fit is applied outside of the group's transform, `false` if inside.
-    pub(crate) before: bool,
+    pub(crate) fits_outside: bool,
     /// The element whose `transform` takes the fit.
     pub(crate) element: Option<ElementId>,
     pub(crate) owner: Option<ElementId>,
@@ -233,6 +243,7 @@ impl Bitmap {
 pub(crate) struct Clip {
     pub(crate) id: String,
     pub(crate) transform: Affine,
+    /// Index of the clip path that clips this one.
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
     pub(crate) referrers: Vec<Referrer>,
@@ -264,8 +275,10 @@ impl Clip {
 #[derive(Debug)]
 pub(crate) struct Mask {
     pub(crate) id: String,
+    /// Area outside which the mask hides everything, in the frame's coordinates.
     pub(crate) rect: Rect,
     pub(crate) kind: usvg::MaskType,
+    /// Index of the mask that masks this one.
     pub(crate) mask: Option<usize>,
     pub(crate) root: Group,
     /// From the referrers' user space to root user space.
@@ -308,7 +321,7 @@ pub(crate) struct SceneNote {
 /// A painted text.
 #[derive(Debug)]
 pub(crate) struct PlacedText {
-    /// Address of usvg's text (which the document keeps alive).
+    /// Address of usvg's text, which the document keeps alive.
     pub(crate) text: usize,
     /// The element of the whole text, if any.
     pub(crate) owner: Option<ElementId>,
@@ -318,7 +331,8 @@ pub(crate) struct PlacedText {
     pub(crate) first: usize,
 }
 
-#[derive(Debug)]
+/// A resolved drawing.
+#[derive(Debug, Default)]
 pub(crate) struct Scene {
     pub(crate) root: Group,
     pub(crate) parts: Vec<Part>,
@@ -332,31 +346,11 @@ pub(crate) struct Scene {
     pub(crate) foreign: HashSet<usize>,
     pub(crate) slots: Vec<Slot>,
     pub(crate) texts: Vec<PlacedText>,
+    /// Indices of the parts written to each element.
     pub(crate) by_source: HashMap<ElementId, Vec<usize>>,
     /// Root user space to px.
     pub(crate) to_px: Affine,
     /// Reason why the source cannot be patched in place, regardless of the map.
     pub(crate) unpatchable: Option<Unpatchable>,
     pub(crate) notes: Vec<SceneNote>,
-}
-
-impl Scene {
-    pub(crate) fn empty(unpatchable: Option<Unpatchable>) -> Self {
-        Self {
-            root: Group::plain(None, Affine::IDENTITY, Vec::new()),
-            parts: Vec::new(),
-            clips: Vec::new(),
-            masks: Vec::new(),
-            tiles: Vec::new(),
-            pictures: HashMap::new(),
-            bitmaps: Vec::new(),
-            foreign: HashSet::new(),
-            slots: Vec::new(),
-            texts: Vec::new(),
-            by_source: HashMap::new(),
-            to_px: Affine::IDENTITY,
-            unpatchable,
-            notes: Vec::new(),
-        }
-    }
 }

@@ -3,10 +3,10 @@
 //! A plotter knows neither areas nor transparency, so an outline is drawn once, be it filled, stroked or both. Strokes are
 //! drawn along their centre lines.
 
-use super::areas::{clip_box, is_seen, overlap};
+use super::areas::{is_seen, overlap, room_in_clip};
 use super::geometry::stretch;
 use super::model::{Group, Node, Scene};
-use crate::source::elements::{ElementId, Namespace};
+use crate::source::elements::{ElementId, Namespace, is_shape};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Line, Rect};
 use pathwarp::{Outline, Seg};
@@ -57,12 +57,14 @@ pub struct PlotLoss {
     pub patterns: usize,
 }
 
+/// Lists the outlines of a drawing.
 pub(crate) fn plot(scene: &Scene, source: &SourceText) -> Plot {
     let mut walk = Walk { scene, source, layers: Layers::find(source), out: Plot::default() };
     walk.add_group(&scene.root, None);
     walk.out
 }
 
+/// State of the walk over the scene.
 struct Walk<'a> {
     scene: &'a Scene,
     source: &'a SourceText,
@@ -76,15 +78,8 @@ impl Walk<'_> {
         if g.opacity <= 0.0 {
             return;
         }
-        let mut room = room;
         self.out.lost.filters += usize::from(!g.filters.is_empty());
-        if let Some(clip) = g.clip {
-            let Some(left) = clip_box(self.scene, clip, &|i| self.scene.parts[i].outline().bounding_box()) else {
-                return;
-            };
-            let Some(left) = room.map_or(Some(left), |room| overlap(room, left)) else { return };
-            room = Some(left);
-        }
+        let Some(room) = room_in_clip(self.scene, g, room) else { return };
         let (shapes, bitmaps) = (self.out.shapes.len(), self.out.lost.bitmaps);
         for child in &g.children {
             match child {
@@ -99,8 +94,8 @@ impl Walk<'_> {
             let all = drawn.iter().filter_map(|s| s.outline.bounding_box()).reduce(|a, b| a.union(b));
             self.out.lost.bitmaps == bitmaps && all.is_none_or(|b| overlap(area, b) == Some(b))
         };
-        let cuts = g.clip.is_some_and(|i| !self.clip_area(i).is_some_and(holds_all));
-        if (cuts || g.mask.is_some()) && !drawn.is_empty() {
+        let is_cut = g.clip.is_some_and(|i| !self.clip_area(i).is_some_and(holds_all));
+        if (is_cut || g.mask.is_some()) && !drawn.is_empty() {
             self.out.lost.hidden += 1;
         }
     }
@@ -113,6 +108,7 @@ impl Walk<'_> {
         rectangle(&only)
     }
 
+    /// Adds a part, unless it is invisible or outside of `room`.
     fn add_part(&mut self, i: usize, room: Option<Rect>) {
         let p = &self.scene.parts[i];
         let outline = p.outline();
@@ -150,12 +146,12 @@ fn closed(outline: Arc<Outline>, filled: bool) -> Arc<Outline> {
     let mut out = Arc::unwrap_or_clone(outline);
     for s in out.subpaths.iter_mut().filter(|s| !s.closed) {
         let (start, end) = (s.start, s.end());
-        let meets = start.distance(end) <= SLACK * s.diagonal();
-        let area = !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
-        if area && filled && !meets {
+        let ends_meet = start.distance(end) <= SLACK * s.diagonal();
+        let has_area = !matches!(s.segs.as_slice(), [] | [Seg::Line(_)]);
+        if has_area && filled && !ends_meet {
             s.segs.push(Seg::Line(Line::new(end, start)));
         }
-        s.closed = area && (filled || meets);
+        s.closed = has_area && (filled || ends_meet);
     }
     Arc::new(out)
 }
@@ -168,10 +164,8 @@ fn color(paint: &Paint) -> Option<[u8; 3]> {
         Paint::RadialGradient(g) => g.stops(),
         Paint::Pattern(_) => return None,
     };
-    let sum = stops
-        .iter()
-        .map(usvg::Stop::color)
-        .fold([0; 3], |[r, g, b], c| [r + usize::from(c.red), g + usize::from(c.green), b + usize::from(c.blue)]);
+    let colors = stops.iter().map(usvg::Stop::color).map(|c| [c.red, c.green, c.blue].map(usize::from));
+    let sum = colors.fold([0; 3], |[r, g, b], c| [r + c[0], g + c[1], b + c[2]]);
     Some(sum.map(|v| (v / stops.len().max(1)) as u8))
 }
 
@@ -181,6 +175,7 @@ fn rectangle(o: &Outline) -> Option<Rect> {
     const SLACK: f64 = 1e-6;
     let bounds = o.bounding_box()?;
     let [only] = o.subpaths.as_slice() else { return None };
+    // The shoelace formula: of all outlines with this bounding box, only the rectangle has its area.
     let mut area = 0.0;
     for seg in &only.segs {
         let Seg::Line(l) = seg else { return None };
@@ -191,6 +186,7 @@ fn rectangle(o: &Outline) -> Option<Rect> {
     ((area.abs() - bounds.area()).abs() <= SLACK * bounds.area()).then_some(bounds)
 }
 
+/// The layers of a drawing.
 struct Layers {
     elements: HashSet<ElementId>,
     /// The layer of all other elements.
@@ -199,10 +195,9 @@ struct Layers {
 
 impl Layers {
     fn find(source: &SourceText) -> Self {
+        let mode = |e: &ElementId| source.attr_in(*e, Namespace::Inkscape, "groupmode");
         let all = 0..source.elements.len();
-        let is_layer =
-            |e: &ElementId| source.attr_in(*e, Namespace::Inkscape, "groupmode").is_some_and(|mode| mode == "layer");
-        let elements: HashSet<ElementId> = all.filter(is_layer).collect();
+        let elements: HashSet<ElementId> = all.filter(|e| mode(e).is_some_and(|mode| mode == "layer")).collect();
         // The layer of a cutting line does not count, so that named groups are layers beside it.
         if elements.iter().all(|e| source.attr(*e, "data-contour").is_some()) {
             Self::from_groups(source)
@@ -231,6 +226,7 @@ impl Layers {
         Self { elements: groups.into_iter().filter(is_layer).collect(), rest }
     }
 
+    /// The name of an element's layer.
     fn layer(&self, source: &SourceText, e: ElementId) -> Option<Arc<str>> {
         let layer = source.ancestors(e).find(|a| self.elements.contains(a));
         layer.and_then(|a| name(source, a)).or_else(|| self.rest.clone())
@@ -249,5 +245,5 @@ fn is_group(tag: &str) -> bool {
 
 /// Returns `true` if elements with this tag are drawn where they stand.
 fn is_drawn(tag: &str) -> bool {
-    is_group(tag) || crate::source::elements::is_shape(tag) || matches!(tag, "use" | "text" | "image")
+    is_group(tag) || is_shape(tag) || matches!(tag, "use" | "text" | "image")
 }

@@ -65,7 +65,7 @@ impl Lettering {
     /// Returns `true` if there is lettering and every baseline is horizontal, so that frames can be made.
     #[must_use]
     pub fn is_level(&self) -> bool {
-        !self.lines.is_empty() && self.lines.iter().all(|l| l.level)
+        !self.lines.is_empty() && self.lines.iter().all(|l| l.is_level)
     }
 
     /// Returns `true` if the selected artwork consists of lettering only.
@@ -79,12 +79,12 @@ impl Lettering {
     ///
     /// # Errors
     /// [`LetteringFrameError::NoLettering`] without lines, [`LetteringFrameError::NotLevel`] if a baseline is not horizontal,
-    /// [`LetteringFrameError::NoOutlines`] if letters have no ink, [`LetteringFrameError::NoHeight`] if the font does not specify the height.
+    /// [`LetteringFrameError::NoOutlines`] if letters have no ink, [`LetteringFrameError::NoHeight`] if the font lacks the height.
     pub fn frame(&self, kind: LetteringFrame) -> Result<Frame, LetteringFrameError> {
         if self.lines.is_empty() {
             return Err(LetteringFrameError::NoLettering);
         }
-        if let Some(l) = self.lines.iter().find(|l| !l.level) {
+        if let Some(l) = self.lines.iter().find(|l| !l.is_level) {
             return Err(LetteringFrameError::NotLevel { line: l.name.clone() });
         }
         let min = |y: &dyn Fn(&TextLine) -> f64| self.lines.iter().map(y).fold(f64::INFINITY, f64::min);
@@ -117,6 +117,7 @@ pub(crate) struct LetterSubpaths {
     pub(crate) range: Range<usize>,
 }
 
+/// The lettering among the painted and selected shapes.
 pub(crate) fn lettering(drawing: &Drawing, selection: &Selection) -> Lettering {
     let selected = drawing.selected_parts(selection);
     let shapes = drawing.shapes();
@@ -125,22 +126,15 @@ pub(crate) fn lettering(drawing: &Drawing, selection: &Selection) -> Lettering {
         let pieces = l.subpaths.iter().flat_map(|(i, r)| shapes[*i].outline.subpaths.get(r.clone()));
         Outline { subpaths: pieces.flatten().cloned().collect() }
     };
-    let letters = lines.iter().flat_map(|l| &l.letters);
-    let letters = letters.map(|l| param::Letter {
-        name: l.name.clone(),
-        origin: l.origin,
-        advance: l.advance,
-        outline: outline(l),
-    });
-    let letters = letters.collect();
-    let mut lettered = vec![false; shapes.len()];
-    for (i, _) in lines.iter().flat_map(|l| &l.letters).flat_map(|l| &l.subpaths) {
-        lettered[*i] = true;
-    }
+    let placed = || lines.iter().flat_map(|l| &l.letters);
+    let letter = |l: &PlacedLetter| l.with_outline(outline(l));
+    let letters = placed().map(letter).collect();
+    let mut draws_letters = vec![false; shapes.len()];
+    placed().flat_map(|l| &l.subpaths).for_each(|(i, _)| draws_letters[*i] = true);
     let scene = drawing.scene();
     let owners: Vec<ElementId> = lines.iter().filter_map(|l| l.owner).collect();
-    let belongs = |i: usize| lettered[i] || scene.parts[i].owner.is_some_and(|o| owners.contains(&o));
-    let is_all = (0..lettered.len()).all(|i| belongs(i) || !selected[i] || !shapes[i].painted)
+    let belongs = |i: usize| draws_letters[i] || scene.parts[i].owner.is_some_and(|o| owners.contains(&o));
+    let is_all = (0..shapes.len()).all(|i| belongs(i) || !selected[i] || !shapes[i].painted)
         && scene.bitmaps.is_empty()
         && !lines.is_empty();
     Lettering { lines, letters, is_all }
@@ -149,16 +143,14 @@ pub(crate) fn lettering(drawing: &Drawing, selection: &Selection) -> Lettering {
 /// The lines, with the letters whose parts are all painted and selected.
 fn selected_lines(drawing: &Drawing, selected: &[bool]) -> Vec<TextLine> {
     let shapes = drawing.shapes();
-    let whole = |l: &PlacedLetter| l.subpaths.iter().all(|(i, _)| selected[*i] && shapes[*i].painted);
-    let lines = drawing
-        .lines()
-        .iter()
-        .map(|line| TextLine { letters: line.letters.iter().filter(|l| whole(l)).cloned().collect(), ..line.clone() });
+    let is_whole = |l: &&PlacedLetter| l.subpaths.iter().all(|(i, _)| selected[*i] && shapes[*i].painted);
+    let letters = |line: &TextLine| line.letters.iter().filter(is_whole).cloned().collect();
+    let lines = drawing.lines().iter().map(|line| TextLine { letters: letters(line), ..line.clone() });
     lines.filter(|l| !l.letters.is_empty()).collect()
 }
 
 /// Limit on objects, since more members of one group are hardly meant as objects.
-const MOST_OBJECTS: usize = 10_000;
+const MAX_OBJECTS: usize = 10_000;
 
 /// Finds the objects among the painted and selected shapes, from left to right: each selected element or, if the whole drawing is selected,
 /// each member of the outermost group that has several. Members whose boxes overlap are one object.
@@ -177,24 +169,25 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
         .collect();
     let elements = selection.resolve(source);
     let is_whole = elements.first() == Some(&true);
+    // The outermost level on which the paths of two parts differ.
     let differs = |k: usize| paths.windows(2).any(|w| w[0].1.get(k) != w[1].1.get(k));
     let longest = paths.iter().map(|p| p.1.len()).max().unwrap_or_default();
     let level = (0..longest).find(|k| differs(*k)).unwrap_or(longest);
     let mut found: BTreeMap<ElementId, (Rect, Vec<usize>)> = BTreeMap::new();
     for (i, path) in &paths {
         let Some(bounds) = shapes[*i].outline.bounding_box().filter(Rect::is_finite) else { continue };
-        let named = path.iter().find(|e| !is_whole && elements[**e]);
-        let object = named.copied().unwrap_or(path[level.min(path.len() - 1)]);
+        let selected = path.iter().find(|e| !is_whole && elements[**e]);
+        let object = selected.copied().unwrap_or(path[level.min(path.len() - 1)]);
         let (all, parts) = found.entry(object).or_insert((bounds, Vec::new()));
         *all = all.union(bounds);
         parts.push(*i);
     }
-    let mut found: Vec<(Rect, Vec<usize>, ElementId)> =
-        found.into_iter().map(|(e, (b, parts))| (b, parts, e)).collect();
-    if found.len() > MOST_OBJECTS {
+    let mut found: Vec<_> = found.into_iter().map(|(e, (bounds, parts))| (bounds, parts, e)).collect();
+    if found.len() > MAX_OBJECTS {
         return Vec::new();
     }
     found.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
+    // Objects whose boxes do not overlap.
     let mut apart: Vec<(Rect, Vec<usize>, ElementId)> = Vec::new();
     for mut next in found {
         while let Some(k) = apart.iter().rposition(|o| is_whole && o.0.overlaps(next.0)) {
@@ -213,7 +206,7 @@ pub(crate) fn objects(drawing: &Drawing, selection: &Selection) -> Vec<PlacedLet
     apart.into_iter().map(object).collect()
 }
 
-/// For every part, its letters, or its `objects`.
+/// For every part, its letters or, if `objects` is `true`, the objects that it belongs to.
 pub(crate) fn letters_by_part(drawing: &Drawing, selection: &Selection, objects: bool) -> Vec<Vec<LetterSubpaths>> {
     let mut out = vec![Vec::new(); drawing.scene().parts.len()];
     let letters: Vec<PlacedLetter> = if objects {

@@ -1,6 +1,6 @@
 //! Bounds the size of a drawing before usvg resolves it, including all that references, style sheets and text add to it.
 
-use super::elements::is_shape;
+use super::elements::{first_by_id, is_shape};
 use memchr::{memchr2, memmem};
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp::{Error, Outline, Seg};
@@ -61,11 +61,11 @@ pub(super) fn check_drawing(xml: &roxmltree::Document<'_>, name: &str, budget: &
 /// usvg needs quadratic time for markers on markers.
 const MAX_DEPTH: usize = 2_000;
 /// Number of references up to which a drawing cannot expand to much.
-const FEW: usize = 16;
+const FEW_REFERENCES: usize = 16;
 /// Length of a text in bytes up to which one marker at all vertices stays small.
-const SMALL: usize = 4096;
+const SMALL_TEXT: usize = 4096;
 /// Product of the bytes and references of a text up to which it cannot expand to much.
-const LARGE: usize = 1 << 22;
+const SMALL_PRODUCT: usize = 1 << 22;
 
 /// Returns `true` if a drawing could expand to a large number of elements: it has more than a few references, and either markers, which
 /// are drawn at every vertex, or other elements that show others by reference (`referring`).
@@ -73,8 +73,8 @@ fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) 
     let text = doc.input_text();
     // Entities may contain references.
     let references = || text.bytes().filter(|b| matches!(b, b'#' | b'&')).count();
-    let large = |references: usize| references > FEW || references.saturating_mul(text.len()) > LARGE;
-    markers > 1 || (markers == 1 && text.len() > SMALL) || ((referring || markers > 0) && large(references()))
+    let large = |count: usize| count > FEW_REFERENCES || count.saturating_mul(text.len()) > SMALL_PRODUCT;
+    markers > 1 || (markers == 1 && text.len() > SMALL_TEXT) || ((referring || markers > 0) && large(references()))
 }
 
 /// Counts a drawing that cannot expand to much, and returns the number of its segments.
@@ -84,7 +84,7 @@ fn may_be_large(doc: &roxmltree::Document<'_>, markers: usize, referring: bool) 
 fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
     let sizes = doc.descendants().filter(Node::is_element).map(Size::of_element);
     let sum = sizes.fold(Size::default(), Size::plus);
-    sum.exceeded(budget).map_err(|e| Error::limit(name, "it takes", e))?;
+    sum.check(budget).map_err(|e| Error::limit(name, "it takes", e))?;
     sum.spend(budget).map_err(|e| Error::limit(name, "with its images, it takes", e))?;
     Ok(sum.segments)
 }
@@ -93,7 +93,7 @@ fn count_plain(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Re
 ///
 /// # Errors
 /// [`Error::Input`] with the element that expands to too much.
-pub(crate) fn count_expanded(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
+fn count_expanded(doc: &roxmltree::Document<'_>, name: &str, budget: &Budget) -> Result<u64, Error> {
     let (size, _) = Unfolding::new(doc).count(budget).map_err(|(node, why)| {
         let line = doc.text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
@@ -116,6 +116,7 @@ pub(crate) fn count_expanded(doc: &roxmltree::Document<'_>, name: &str, budget: 
     Ok(size.segments)
 }
 
+/// The reason why a drawing expands to too much.
 enum TooMuch {
     Work(Exceeded),
     Depth,
@@ -142,32 +143,30 @@ impl Size {
     }
 
     fn plus(self, o: Self) -> Self {
+        self.plus_times(o, 1)
+    }
+
+    fn plus_times(self, o: Self, n: u64) -> Self {
         Self {
-            elements: self.elements.saturating_add(o.elements),
-            segments: self.segments.saturating_add(o.segments),
-            letters: self.letters.saturating_add(o.letters),
+            elements: self.elements.saturating_add(o.elements.saturating_mul(n)),
+            segments: self.segments.saturating_add(o.segments.saturating_mul(n)),
+            letters: self.letters.saturating_add(o.letters.saturating_mul(n)),
         }
     }
 
-    fn times(self, n: u64) -> Self {
-        Self {
-            elements: self.elements.saturating_mul(n),
-            segments: self.segments.saturating_mul(n),
-            letters: self.letters.saturating_mul(n),
-        }
-    }
-
+    /// The work of resolving it.
     fn work(self) -> f64 {
         let Self { elements, segments, letters } = self;
         cost::ELEMENT * elements as f64 + cost::SEGMENT * segments as f64 + cost::LETTER * letters as f64
     }
 
     /// Compares with the limits, regardless of the work done so far.
-    fn exceeded(self, budget: &Budget) -> Result<(), Exceeded> {
+    fn check(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.check(Limit::Elements, self.elements as f64)?;
         budget.check(Limit::Work, self.work()).map_err(Exceeded::cut_short)
     }
 
+    /// Charges for it.
     fn spend(self, budget: &Budget) -> Result<(), Exceeded> {
         budget.take(Limit::Elements, self.elements as f64)?;
         budget.spend(self.work())
@@ -189,12 +188,13 @@ enum Reference {
     Unset,
     /// Set to a value without a reference.
     Plain,
+    /// Set to a reference to this element.
     Shows(NodeId),
     /// The fill (0) or stroke (1) of the context element: the `use`, or the shape with the marker.
     Context(usize),
 }
 
-/// Targets of the inherited properties.
+/// The elements to which the inherited [`PROPERTIES`] refer.
 type Inherited = [Option<NodeId>; INHERITED];
 
 /// A subtree to show, with all that affects its content.
@@ -207,13 +207,15 @@ struct Body {
     context: [Option<NodeId>; PAINTS],
 }
 
+/// The content of a body, as far as it has been counted.
 struct Content {
     size: Size,
     depth: usize,
-    /// Bodies shown inside, each with the number of times and the depth.
+    /// Bodies shown inside that are not counted yet, each with the number of times and the depth at which it is shown.
     shown: Vec<(Body, u64, usize)>,
 }
 
+/// Counts a drawing with all that its references show.
 struct Unfolding<'a, 'i> {
     doc: &'a roxmltree::Document<'i>,
     by_id: HashMap<&'a str, Node<'a, 'i>>,
@@ -223,13 +225,7 @@ struct Unfolding<'a, 'i> {
 
 impl<'a, 'i> Unfolding<'a, 'i> {
     fn new(doc: &'a roxmltree::Document<'i>) -> Self {
-        let mut by_id = HashMap::new();
-        for node in doc.descendants().filter(Node::is_element) {
-            if let Some(id) = node.attribute("id") {
-                by_id.entry(id).or_insert(node);
-            }
-        }
-        Self { doc, by_id, known: HashMap::new() }
+        Self { doc, by_id: first_by_id(doc), known: HashMap::new() }
     }
 
     /// The size of the drawing with all repetitions, and the depth of the deepest nesting.
@@ -238,21 +234,22 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         let first = self.content(root);
         // Visiting elements takes time, too, so bound it as well.
         let mut visited = first.size;
+        // The body being counted, after the ones that show it.
         let mut open = vec![(root, first)];
         self.known.insert(root, None);
         let (mut last, mut first_over) = ((Size::default(), 0), None);
-        while let Some((body, inside)) = open.last_mut() {
-            if let Some(next) = inside.shown.pop() {
-                let (other, times, at) = next;
+        while let Some((body, content)) = open.last_mut() {
+            if let Some(next) = content.shown.pop() {
+                let (other, times, around) = next;
                 match self.known.get(&other) {
                     Some(Some((size, depth))) => {
-                        inside.size = inside.size.plus(size.times(times));
-                        inside.depth = inside.depth.max(at + depth);
+                        content.size = content.size.plus_times(*size, times);
+                        content.depth = content.depth.max(around + depth);
                     }
                     // usvg breaks the cycle here.
                     Some(None) => {}
                     None => {
-                        inside.shown.push(next);
+                        content.shown.push(next);
                         let new = self.content(other);
                         visited.elements += new.size.elements + new.shown.len() as u64;
                         self.known.insert(other, None);
@@ -262,19 +259,19 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                 continue;
             }
             let node = self.doc.get_node(body.node).unwrap_or(self.doc.root_element());
-            last = (inside.size, inside.depth);
+            last = (content.size, content.depth);
             self.known.insert(*body, Some(last));
             open.pop();
-            if last.0.exceeded(budget).is_err() {
+            if last.0.check(budget).is_err() {
                 first_over.get_or_insert(node);
             }
-            visited.exceeded(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
+            visited.check(budget).map_err(|e| (node, TooMuch::Work(e.cut_short())))?;
             if last.1.max(open.len()) > MAX_DEPTH {
                 return Err((node, TooMuch::Depth));
             }
         }
         // Report the size of the whole drawing, but name the first element that exceeds the limits.
-        let counted = last.0.exceeded(budget);
+        let counted = last.0.check(budget);
         counted.map(|()| last).map_err(|e| (first_over.unwrap_or(self.doc.root_element()), TooMuch::Work(e)))
     }
 
@@ -282,43 +279,43 @@ impl<'a, 'i> Unfolding<'a, 'i> {
     fn content(&self, body: Body) -> Content {
         let mut out = Content { size: Size::default(), depth: 0, shown: Vec::new() };
         let Some(top) = self.doc.get_node(body.node) else { return out };
-        let placed = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
+        let in_place = |node: NodeId| Body { node, inherited: None, context: [None; PAINTS] };
         let mut todo = vec![(top, body.inherited.unwrap_or_else(|| self.inherited(top)), 1)];
         while let Some((node, mut inherited, depth)) = todo.pop() {
             out.size = out.size.plus(Size::of_element(node));
             out.depth = out.depth.max(depth);
             let tag = node.tag_name().name();
-            if node != top && is_defined(tag) {
+            if node != top && is_hidden(tag) {
                 continue;
             }
             let (references, filters) = self.references(node);
-            for (slot, reference) in inherited.iter_mut().zip(references) {
+            for (value, reference) in inherited.iter_mut().zip(references) {
                 match reference {
-                    Reference::Shows(id) => *slot = Some(id),
-                    Reference::Plain => *slot = None,
-                    Reference::Context(paint) => *slot = body.context[paint],
+                    Reference::Shows(id) => *value = Some(id),
+                    Reference::Plain => *value = None,
+                    Reference::Context(paint) => *value = body.context[paint],
                     Reference::Unset => {}
                 }
             }
             let [fill, stroke, start, middle, end] = inherited;
             let mut show = |target: Option<Body>, times| out.shown.extend(target.map(|t| (t, times, depth)));
             if is_painted(tag) {
-                show(fill.map(placed), 1);
-                show(stroke.map(placed), 1);
+                show(fill.map(in_place), 1);
+                show(stroke.map(in_place), 1);
             }
             if start.or(middle).or(end).is_some() && matches!(tag, "path" | "line" | "polyline" | "polygon") {
-                let on = |marker: NodeId| Body { context: [fill, stroke], ..placed(marker) };
+                let on = |marker: NodeId| Body { context: [fill, stroke], ..in_place(marker) };
                 show(start.map(on), 1);
                 show(middle.map(on), vertices(node));
                 show(end.map(on), 1);
             }
             for reference in &references[INHERITED..] {
                 if let Reference::Shows(target) = reference {
-                    show(Some(placed(*target)), 1);
+                    show(Some(in_place(*target)), 1);
                 }
             }
             for filter in filters {
-                show(Some(placed(filter)), 1);
+                show(Some(in_place(filter)), 1);
             }
             let linked = || self.linked(node).map(|n| n.id());
             match tag {
@@ -326,8 +323,8 @@ impl<'a, 'i> Unfolding<'a, 'i> {
                     let copy = |node| Body { node, inherited: Some(inherited), context: [fill, stroke] };
                     show(linked().map(copy), 1);
                 }
-                "feImage" => show(linked().map(placed), 1),
-                "pattern" if node.first_element_child().is_none() => show(linked().map(placed), 1),
+                "feImage" => show(linked().map(in_place), 1),
+                "pattern" if node.first_element_child().is_none() => show(linked().map(in_place), 1),
                 _ => {}
             }
             let children = node.children().filter(Node::is_element);
@@ -354,9 +351,10 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         out
     }
 
-    /// Resolves the properties of an element from attributes and the style attribute. Filters are listed from all
+    /// Resolves the [`PROPERTIES`] of an element from attributes and the style attribute. Filters are listed from all
     /// declarations, as each may hold several.
     fn references(&self, node: Node<'a, 'i>) -> ([Reference; PROPERTIES.len()], Vec<NodeId>) {
+        // The second value is `true` for an important declaration, which later ones do not replace.
         let mut out = [(Reference::Unset, false); PROPERTIES.len()];
         let mut filters = Vec::new();
         let mut set = |name: &str, value: &str, important: bool| match name {
@@ -364,7 +362,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
             "fill" | "stroke" | "mask" | "clip-path" | "marker" | "marker-start" | "marker-mid" | "marker-end" => {
                 for (i, p) in PROPERTIES.iter().enumerate() {
                     if (*p == name || (name == "marker" && p.starts_with("marker-"))) && !out[i].1 {
-                        out[i] = (self.value(value), important);
+                        out[i] = (self.reference(value), important);
                     }
                 }
             }
@@ -379,7 +377,8 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         (out.map(|o| o.0), filters)
     }
 
-    fn value(&self, value: &str) -> Reference {
+    /// The reference in the value of a property.
+    fn reference(&self, value: &str) -> Reference {
         match value.trim() {
             "inherit" => Reference::Unset,
             "context-fill" => Reference::Context(0),
@@ -388,6 +387,7 @@ impl<'a, 'i> Unfolding<'a, 'i> {
         }
     }
 
+    /// The element to which `href` refers, or else `xlink:href`.
     fn linked(&self, node: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
         let links = || node.attributes().filter(|a| a.name() == "href");
         let link = links().find(|a| a.namespace().is_none()).or_else(|| links().next())?;
@@ -396,12 +396,12 @@ impl<'a, 'i> Unfolding<'a, 'i> {
 }
 
 /// The number of letters of a text node; 0 for other nodes.
-pub(super) fn letters(n: Node<'_, '_>) -> u64 {
+fn letters(n: Node<'_, '_>) -> u64 {
     n.text().filter(|_| n.is_text()).map_or(0, |t| t.chars().count()) as u64
 }
 
-/// Returns `true` if elements with this tag are drawn only by reference.
-fn is_defined(tag: &str) -> bool {
+/// Returns `true` if elements with this tag are drawn only by reference, or never.
+fn is_hidden(tag: &str) -> bool {
     matches!(tag, "pattern" | "marker" | "clipPath" | "mask" | "filter" | "symbol" | "defs" | "style" | "metadata")
 }
 
@@ -410,6 +410,7 @@ fn is_painted(tag: &str) -> bool {
     is_shape(tag) || matches!(tag, "text" | "tspan" | "textPath")
 }
 
+/// The ids in the `url(#…)` of a value.
 fn urls(value: &str) -> impl Iterator<Item = &str> {
     value.split("url(").skip(1).filter_map(|rest| {
         let inside = rest.split(')').next()?;
@@ -448,6 +449,7 @@ fn spend_text_paths(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<()
     })
 }
 
+/// The id to which an element refers.
 fn href<'a>(n: Node<'a, '_>) -> Option<&'a str> {
     let link = n.attributes().find(|a| a.name() == "href")?.value();
     link.trim().strip_prefix('#')
@@ -463,11 +465,11 @@ fn spend_wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget
     const ERROR: f64 = 1.1163;
     /// The error that usvg allows.
     const ALLOWED: f64 = 0.1;
-    /// Comparisons for an arc, divided by the square of the number of its cubics.
-    const MOVED: f64 = 0.0125;
+    /// Comparisons for an arc, divided by the square of the number of its cubics; measured.
+    const PER_SQUARE: f64 = 0.0125;
     // Path data is parsed again only if its numbers may describe such an arc.
     let arcs = |d: &str| {
-        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && is_uneven(d);
+        let suspected = memchr2(b'a', b'A', d.as_bytes()).is_some() && has_extreme_numbers(d);
         suspected.then(|| Outline::from_svg_lossy(d))
     };
     let radius = |s: &Seg| if let Seg::Arc(a) = s { a.a.hypot().max(a.b.hypot()) } else { 0.0 };
@@ -479,12 +481,12 @@ fn spend_wide_arcs(xml: &roxmltree::Document<'_>, segments: u64, budget: &Budget
     }
     let cubics = (ERROR * radius / ALLOWED).powf(1.0 / 6.0);
     // Any segment may be such an arc.
-    budget.spend(cost::COMPARISON * segments as f64 * MOVED * cubics * cubics)
+    budget.spend(cost::COMPARISON * segments as f64 * PER_SQUARE * cubics * cubics)
 }
 
 /// Returns `false` if all numbers of path data are certainly below 10⁴ and either zero or at least 10⁻³: no exponent, no five
 /// digits before a point, no three zeros after it.
-fn is_uneven(data: &str) -> bool {
+fn has_extreme_numbers(data: &str) -> bool {
     let (mut digits, mut zeros, mut fraction) = (0, 0, false);
     for byte in data.bytes() {
         match byte {
@@ -508,7 +510,7 @@ fn is_uneven(data: &str) -> bool {
 fn spend_wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
     /// Width up to which strokes take a negligible time.
     const WIDE: f64 = 2e6;
-    /// Comparisons for each shape and unit of width.
+    /// Comparisons for each shape and unit of width; measured.
     const UNIT: f64 = 350e-6;
     let text = xml.input_text();
     let widths = memmem::find_iter(text.as_bytes(), "stroke-width").filter_map(|at| {
@@ -525,7 +527,7 @@ fn spend_wide_strokes(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<
 }
 
 /// Charges for texts: every letter is compared with every span, and with every other letter.
-pub(super) fn spend_spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
+fn spend_spans(xml: &roxmltree::Document<'_>, budget: &Budget) -> Result<(), Exceeded> {
     /// Number of letters that are compared in the time of one comparison.
     const AT_A_TIME: f64 = 64.0;
     let texts = xml.descendants().filter(|n| n.tag_name().name() == "text");

@@ -6,14 +6,30 @@ use pathwarp_reader::xml::escape;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+/// A text with some of its ranges replaced. The ranges ascend; one that begins inside an earlier one is skipped.
+pub(crate) fn splice(text: &str, patches: impl IntoIterator<Item = (Range<usize>, String)>) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut done = 0;
+    for (range, new) in patches {
+        if range.start >= done {
+            out.push_str(&text[done..range.start]);
+            out.push_str(&new);
+            done = range.end;
+        }
+    }
+    out + &text[done..]
+}
+
 /// Edits of one element.
 #[derive(Debug, Default)]
 struct Change {
     /// New values; `None` removes the attribute.
     attrs: Vec<(&'static str, Option<String>)>,
+    /// New values of properties in the style attribute.
     properties: Vec<(&'static str, String)>,
     /// Ranges of attributes to remove.
     removed: Vec<Range<usize>>,
+    /// Replaces the tag.
     tag: Option<&'static str>,
     /// Replaces the content.
     content: Option<String>,
@@ -27,11 +43,18 @@ struct Change {
 }
 
 impl Change {
-    /// Returns `true` if the change determines an attribute. If path data is also declared (`has_data`), setting `d` changes `style`, too.
-    fn sets(&self, name: &str, has_data: bool) -> bool {
-        let styled =
-            !self.properties.is_empty() || (has_data && self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some()));
-        self.attrs.iter().any(|a| a.0 == name) || (name == "style" && styled)
+    /// Returns `true` if the change determines an attribute. If path data is also declared (`declares_data`), setting `d` changes `style`,
+    /// too.
+    fn sets(&self, name: &str, declares_data: bool) -> bool {
+        let sets_data = || self.attrs.iter().any(|a| a.0 == "d" && a.1.is_some());
+        let sets_style = !self.properties.is_empty() || (declares_data && sets_data());
+        self.attrs.iter().any(|a| a.0 == name) || (name == "style" && sets_style)
+    }
+
+    /// Sets an attribute, or with `None` removes it.
+    fn put_attr(&mut self, name: &'static str, value: Option<String>) {
+        self.attrs.retain(|a| a.0 != name);
+        self.attrs.push((name, value));
     }
 }
 
@@ -56,22 +79,18 @@ impl<'a> Edits<'a> {
     }
 
     pub(crate) fn set_attr(&mut self, e: ElementId, name: &'static str, value: String) {
-        let attrs = &mut self.change(e).attrs;
-        attrs.retain(|a| a.0 != name);
-        attrs.push((name, Some(value)));
+        self.change(e).put_attr(name, Some(value));
     }
 
     pub(crate) fn remove_attr(&mut self, e: ElementId, name: &'static str) {
-        let attrs = &mut self.change(e).attrs;
-        attrs.retain(|a| a.0 != name);
-        attrs.push((name, None));
+        self.change(e).put_attr(name, None);
     }
 
+    /// Removes all attributes that meet a condition.
     pub(crate) fn remove_attrs(&mut self, e: ElementId, mut condition: impl FnMut(&Attr) -> bool) {
-        let hits: Vec<_> =
-            self.source.elements[e].attrs.iter().filter(|a| condition(a)).map(|a| a.range.clone()).collect();
-        if !hits.is_empty() {
-            self.change(e).removed.extend(hits);
+        let source = self.source;
+        for a in source.elements[e].attrs.iter().filter(|a| condition(a)) {
+            self.change(e).removed.push(a.range.clone());
         }
     }
 
@@ -102,11 +121,9 @@ impl<'a> Edits<'a> {
     /// Sets a presentation property so that it takes effect: in the style attribute if that or a style sheet declares the
     /// property, or else as an attribute.
     pub(crate) fn set_property(&mut self, e: ElementId, name: &'static str, value: String) {
-        let styled = self.source.attr(e, "style").is_some_and(|s| declared(&s, name).is_some());
-        if styled || self.source.css_declares(name) {
-            let properties = &mut self.change(e).properties;
-            properties.retain(|p| p.0 != name);
-            properties.push((name, value));
+        let is_styled = self.source.attr(e, "style").is_some_and(|s| declared(&s, name).is_some());
+        if is_styled || self.source.css_declares(name) {
+            self.set_style(e, name, value);
         } else {
             self.set_attr(e, name, value);
         }
@@ -134,11 +151,11 @@ impl<'a> Edits<'a> {
         let source = self.source;
         let mut patches: Vec<(usize, usize, String)> = Vec::new();
         let changes = &self.changes;
-        let has_data = |e| source.css_declares("d") || declared(&source.written_style(e), "d").is_some();
-        let decided = |o: &pathwarp_reader::Change| {
-            changes.get(&o.element).is_some_and(|c| c.sets(o.name, o.name == "style" && has_data(o.element)))
+        let is_set = |o: &pathwarp_reader::Change| {
+            let declares_data = || o.name == "style" && declares_data(source, o.element);
+            changes.get(&o.element).is_some_and(|c| c.sets(o.name, declares_data()))
         };
-        let kept = source.originals.iter().filter(|o| !decided(o));
+        let kept = source.originals.iter().filter(|o| !is_set(o));
         let kept: Vec<_> = kept.map(|o| (o.range.start, o.range.end, o.kept.clone())).collect();
         for (e, c) in self.changes {
             patch(source, e, c, &mut patches);
@@ -169,17 +186,18 @@ impl<'a> Edits<'a> {
     }
 }
 
-/// Declares new path data if a declaration would override the attribute.
-fn declare_data(source: &SourceText, e: ElementId, c: &mut Change) {
+/// Returns `true` if a declaration would override the attribute `d`.
+fn declares_data(source: &SourceText, e: ElementId) -> bool {
+    source.css_declares("d") || declared(&source.written_style(e), "d").is_some()
+}
+
+/// Adds the patches that make a change: start, end and new text.
+fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize, usize, String)>) {
     if let Some((_, Some(data))) = c.attrs.iter().find(|a| a.0 == "d")
-        && (source.css_declares("d") || declared(&source.written_style(e), "d").is_some())
+        && declares_data(source, e)
     {
         c.properties.push(("d", format!("path('{data}')")));
     }
-}
-
-fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize, usize, String)>) {
-    declare_data(source, e, &mut c);
     let text = &source.text;
     let el = &source.elements[e];
     let beside = [(el.range.start, c.before), (el.range.end, c.after)].into_iter().filter(|(_, new)| !new.is_empty());
@@ -200,11 +218,8 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
     let mut added = String::new();
     let mut attrs = c.attrs;
     if !c.properties.is_empty() {
-        let mut style = source.written_style(e);
-        for (name, value) in &c.properties {
-            style = with_declaration(&style, name, value);
-        }
-        attrs.push(("style", Some(style)));
+        let declare = |style: String, (name, value): &(&str, String)| with_declaration(&style, name, value);
+        attrs.push(("style", Some(c.properties.iter().fold(source.written_style(e), declare))));
     }
     for (name, value) in attrs {
         // `xlink:href` counts as `href`.
@@ -212,26 +227,25 @@ fn patch(source: &SourceText, e: ElementId, mut c: Change, out: &mut Vec<(usize,
             a.name(text) == name
                 && (a.namespace == Namespace::None || (name == "href" && a.namespace == Namespace::Xlink))
         });
-        let mut set = false;
+        let mut is_set = false;
         for a in existing {
             match &value {
-                Some(v) => {
-                    if !set {
-                        out.push((a.value_range.start, a.value_range.end, quoted(v, text.as_bytes()[a.range.end - 1])));
-                        set = true;
-                    }
+                Some(v) if !is_set => {
+                    out.push((a.value_range.start, a.value_range.end, quoted(v, text.as_bytes()[a.range.end - 1])));
+                    is_set = true;
                 }
+                Some(_) => {}
                 None => out.push(removal(text, &a.range)),
             }
         }
-        if let (Some(v), false) = (&value, set) {
+        if let (Some(v), false) = (&value, is_set) {
             added.push_str(&format!(" {name}=\"{}\"", escape(v)));
         }
     }
     out.extend(c.removed.iter().map(|r| removal(text, r)));
-    let slash = usize::from(text.as_bytes().get(el.open_end.wrapping_sub(2)) == Some(&b'/'));
-    let end = text[..el.open_end - 1 - slash].trim_end().len();
     if !added.is_empty() {
+        let slash = usize::from(text.as_bytes().get(el.open_end.wrapping_sub(2)) == Some(&b'/'));
+        let end = text[..el.open_end - 1 - slash].trim_end().len();
         out.push((end, end, added));
     }
     let name = qname.as_deref().unwrap_or(&text[el.qname.clone()]);

@@ -1,8 +1,11 @@
 //! The elements of a document, with the positions of their tags and attributes in the source text.
 
 use memchr::memrchr;
+use pathwarp::kurbo::Affine;
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Range;
+use std::str::FromStr as _;
 use usvg::roxmltree;
 
 pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
@@ -60,6 +63,7 @@ pub(crate) fn is_animation(tag: &str) -> bool {
     matches!(tag, "animate" | "set" | "animateTransform" | "animateMotion" | "animateColor")
 }
 
+/// An attribute of an element.
 #[derive(Debug)]
 pub(crate) struct Attr {
     /// Range of the local name in the text.
@@ -87,7 +91,8 @@ impl Attr {
     }
 }
 
-#[derive(Debug)]
+/// An element of the source, with its positions.
+#[derive(Debug, Default)]
 pub(crate) struct Element {
     pub(crate) parent: Option<ElementId>,
     /// Local name; empty for elements outside the SVG namespace.
@@ -105,10 +110,12 @@ pub(crate) struct Element {
 }
 
 impl Element {
+    /// The attribute without a namespace that has this name.
     pub(crate) fn find(&self, text: &str, name: &str) -> Option<&Attr> {
         self.attrs.iter().find(|a| a.namespace == Namespace::None && a.name(text) == name)
     }
 
+    /// The value of the attribute without a namespace that has this name.
     pub(crate) fn attr<'a>(&'a self, text: &'a str, name: &str) -> Option<Cow<'a, str>> {
         self.find(text, name).map(|a| a.value(text))
     }
@@ -121,46 +128,12 @@ impl Element {
 }
 
 /// Live attributes (see [`is_live`]) in Sodipodi's namespace: the kind of shape and its parameters, and the kinds of a path's nodes.
-const LIVE_SODIPODI: [&str; 23] = [
-    "type",
-    "cx",
-    "cy",
-    "rx",
-    "ry",
-    "start",
-    "end",
-    "open",
-    "arc-type",
-    "sides",
-    "r1",
-    "r2",
-    "arg1",
-    "arg2",
-    "expansion",
-    "revolution",
-    "radius",
-    "argument",
-    "t0",
-    "original",
-    "href",
-    "nodetypes",
-    "linespacing",
-];
+const LIVE_SODIPODI: &str = "type cx cy rx ry start end open arc-type sides r1 r2 arg1 arg2 expansion revolution radius argument \
+                             t0 original href nodetypes linespacing";
 
-const LIVE_INKSCAPE: [&str; 12] = [
-    "flatsided",
-    "rounded",
-    "randomized",
-    "radius",
-    "original",
-    "original-d",
-    "href",
-    "path-effect",
-    "perspectiveID",
-    "box3dsidetype",
-    "corner0",
-    "corner7",
-];
+/// Live attributes in Inkscape's namespace: parameters of stars, path effects and boxes.
+const LIVE_INKSCAPE: &str = "flatsided rounded randomized radius original original-d href path-effect perspectiveID box3dsidetype \
+                             corner0 corner7";
 
 /// Prefixes of further live attributes in Inkscape's namespace: of connectors, centres of rotation, and positions of tiled clones.
 const LIVE_FAMILIES: [&str; 5] = ["connector-", "connection-", "transform-center-", "tiled-clone-", "tile-"];
@@ -168,15 +141,17 @@ const LIVE_FAMILIES: [&str; 5] = ["connector-", "connection-", "transform-center
 /// Returns `true` if an attribute is out of date once its element has been warped.
 pub(crate) fn is_live(a: &Attr, text: &str) -> bool {
     let name = a.name(text);
+    let is_among = |names: &str| names.split(' ').any(|n| n == name);
     match a.namespace {
-        Namespace::Sodipodi => LIVE_SODIPODI.contains(&name),
-        Namespace::Inkscape => LIVE_INKSCAPE.contains(&name) || LIVE_FAMILIES.iter().any(|f| name.starts_with(f)),
+        Namespace::Sodipodi => is_among(LIVE_SODIPODI),
+        Namespace::Inkscape => is_among(LIVE_INKSCAPE) || LIVE_FAMILIES.iter().any(|f| name.starts_with(f)),
         // The source and the recipe of an earlier warp.
         Namespace::Pathwarp => true,
         Namespace::None | Namespace::Xlink | Namespace::Xml | Namespace::Other => false,
     }
 }
 
+/// The elements of a document, with the text of its style sheets.
 pub(crate) struct Table {
     pub(crate) elements: Vec<Element>,
     /// Text of all style sheets.
@@ -208,16 +183,7 @@ impl Table {
             let element = (node.range().start >= start).then(|| element(doc.input_text(), node, parent)).flatten();
             out.elements.push(element.unwrap_or_else(|| {
                 out.unpatchable.get_or_insert(Unpatchable::Entities);
-                Element {
-                    parent: None,
-                    tag: Cow::Borrowed(""),
-                    qname: 0..0,
-                    range: 0..0,
-                    open_end: 0,
-                    close: None,
-                    attrs: Vec::new(),
-                    title: None,
-                }
+                Element::default()
             }));
             if out.elements.last().is_some_and(|e| e.tag == "style") {
                 out.css.push_str(node.text().unwrap_or_default());
@@ -243,46 +209,36 @@ fn element(text: &str, node: roxmltree::Node<'_, '_>, parent: Option<ElementId>)
     }
     let attributes = node.attributes();
     let mut attrs = Vec::with_capacity(attributes.len());
-    let mut last = qname.end;
+    let mut attrs_end = qname.end;
     for a in attributes {
-        let (r, v) = (a.range(), a.range_value());
-        let raw = text.get(v.clone())?;
-        if r.start < last || r.end > range.end || !text.as_bytes().get(r.clone())?.contains(&b'=') {
+        let (whole, value_range) = (a.range(), a.range_value());
+        let raw = text.get(value_range.clone())?;
+        // In the text of an entity, positions may be those of another tag.
+        if whole.start < attrs_end || whole.end > range.end || !text.as_bytes().get(whole.clone())?.contains(&b'=') {
             return None;
         }
-        last = last.max(r.end);
-        let full = a.range_qname();
+        attrs_end = attrs_end.max(whole.end);
+        let name_end = a.range_qname().end;
         attrs.push(Attr {
-            name: full.end.checked_sub(a.name().len())?..full.end,
+            name: name_end.checked_sub(a.name().len())?..name_end,
             namespace: Namespace::from_uri(a.namespace()),
-            range: r,
+            range: whole,
             value: (raw != a.value()).then(|| a.value().to_owned()),
-            value_range: v,
+            value_range,
         });
     }
     // The parser does not list namespace declarations as attributes; their quoted values may contain `>`.
-    let open_end = tag_end(text, last, range.end)?;
+    let open_end = tag_end(text, attrs_end, range.end)?;
     let close =
         if open_end < range.end { Some(memrchr(b'<', text.as_bytes().get(..range.end)?)?..range.end) } else { None };
-    let svg = matches!(name.namespace(), Some(SVG) | None);
-    let title = node
-        .children()
-        .find(|c| c.is_element() && c.tag_name().name() == "title")
-        .and_then(|t| t.text())
-        .map(|t| t.trim().to_owned())
-        .filter(|t| !t.is_empty());
-    let tag =
-        if svg { common_tag(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed) } else { "".into() };
-    Some(Element {
-        parent,
-        tag,
-        qname,
-        range: range.start..close.as_ref().map_or(open_end, |c| c.end),
-        open_end,
-        close,
-        attrs,
-        title,
-    })
+    let title = node.children().find(|c| c.is_element() && c.tag_name().name() == "title");
+    let title = title.and_then(|t| t.text()).map(str::trim).filter(|t| !t.is_empty()).map(ToOwned::to_owned);
+    let tag = match name.namespace() {
+        Some(SVG) | None => common_tag(local).map_or_else(|| Cow::Owned(local.to_owned()), Cow::Borrowed),
+        Some(_) => Cow::Borrowed(""),
+    };
+    let range = range.start..close.as_ref().map_or(open_end, |c| c.end);
+    Some(Element { parent, tag, qname, range, open_end, close, attrs, title })
 }
 
 /// Interns common tags to avoid allocating them.
@@ -322,6 +278,23 @@ pub(crate) fn tag_end(text: &str, from: usize, to: usize) -> Option<usize> {
         }
     }
     None
+}
+
+/// The elements of a document by id; of several with one id, the first.
+pub(crate) fn first_by_id<'a, 'i>(doc: &'a roxmltree::Document<'i>) -> HashMap<&'a str, roxmltree::Node<'a, 'i>> {
+    let mut out = HashMap::new();
+    for n in doc.descendants() {
+        if let Some(id) = n.attribute("id") {
+            out.entry(id).or_insert(n);
+        }
+    }
+    out
+}
+
+/// Parses a transform list and multiplies its transforms.
+pub(crate) fn parse_transform(text: &str) -> Option<Affine> {
+    let t = svgtypes::Transform::from_str(text).ok()?;
+    Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
 }
 
 /// The reason why a source text cannot be patched in place.

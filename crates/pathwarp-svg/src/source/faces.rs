@@ -46,6 +46,7 @@ impl Look {
         Self { weight: fontdb::Weight(weight), stretch: fontdb::Stretch::Normal, style }
     }
 
+    /// The look that a text requests.
     pub(super) fn of_text(font: &usvg::Font) -> Self {
         let weight = fontdb::Weight(font.weight());
         Self { weight, stretch: font.stretch().into(), style: font.style().into() }
@@ -55,6 +56,7 @@ impl Look {
         Self { weight: face.weight, stretch: face.stretch, style: face.style }
     }
 
+    /// The face of a family that is nearest to the look.
     pub(super) fn face_of(self, family: &str, db: &Database) -> Option<ID> {
         let Self { weight, stretch, style } = self;
         db.query(&fontdb::Query { families: &[Family::Name(family)], weight, stretch, style })
@@ -76,8 +78,12 @@ impl Look {
     /// Finds a face of a family whose letters are as wide as those of a missing one.
     pub(super) fn face_with_metrics_of(self, missing: &str, db: &Database) -> Option<ID> {
         let (families, weight, style) = substitutes(&METRIC_COMPATIBLE, missing)?;
-        let look = self.or(weight, style, fontdb::Stretch::Normal);
-        families.iter().find_map(|f| look.face_of(f, db))
+        self.or(weight, style, fontdb::Stretch::Normal).first_of(families, db)
+    }
+
+    /// The face of the first of some families that is there.
+    fn first_of(self, families: &[&str], db: &Database) -> Option<ID> {
+        families.iter().find_map(|f| self.face_of(f, db))
     }
 
     /// Finds the face that Chromium uses if no family is found or specified: its standard one or one with equal metrics, or else a
@@ -85,23 +91,21 @@ impl Look {
     pub(super) fn standard_face(self, set: &GenericFamilies, db: &Database) -> Option<ID> {
         const STANDARD: &str = "Times New Roman";
         let configured = set.serif.as_deref().and_then(|name| self.face_of(name, db));
-        let found =
-            configured.or_else(|| self.face_of(STANDARD, db)).or_else(|| self.face_with_metrics_of(STANDARD, db));
-        found.or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
+        let standard = || self.face_of(STANDARD, db).or_else(|| self.face_with_metrics_of(STANDARD, db));
+        configured.or_else(standard).or_else(|| self.face_of_kind(&FontFamily::SansSerif, set, db))
     }
 
     /// Finds a face of a family similar to one of the missing families, or of its generic family.
     pub(super) fn face_like(self, missing: &[String], set: &GenericFamilies, db: &Database) -> Option<ID> {
         let alike = |name: &String| {
             let (families, weight, style) = substitutes(&ALIKE, name)?;
-            let look = self.or(weight, style, fontdb::Stretch::Normal);
-            families.iter().find_map(|f| look.face_of(f, db))
+            self.or(weight, style, fontdb::Stretch::Normal).first_of(families, db)
         };
         let of_kind = |name: &String| {
             let words = plain(name);
             let weight = if words.contains("bold") { fontdb::Weight::BOLD } else { fontdb::Weight::NORMAL };
-            let slanted = words.contains("italic") || words.contains("oblique");
-            let style = if slanted { fontdb::Style::Italic } else { fontdb::Style::Normal };
+            let is_slanted = words.contains("italic") || words.contains("oblique");
+            let style = if is_slanted { fontdb::Style::Italic } else { fontdb::Style::Normal };
             self.or(weight, style, fontdb::Stretch::Normal).face_of_kind(&kind_of(name)?, set, db)
         };
         missing.iter().find_map(|name| alike(name).or_else(|| of_kind(name)))
@@ -153,104 +157,28 @@ const MONOSPACED: &[&str] = &[
     "Courier New",
 ];
 
-/// Prefixes of [`plain`] family names, by generic family (fontconfig's `45-latin.conf`, and others).
-const KINDS: [(FontFamily, &[&str]); 4] = [
-    (
-        FontFamily::Monospace,
-        &["andalemono", "consol", "courier", "lucidaconsole", "menlo", "monaco", "sfmono", "terminal", "lettergothic"],
-    ),
+/// Beginnings of [`plain`] family names, by generic family (fontconfig's `45-latin.conf`, and others).
+const KINDS: [(FontFamily, &str); 4] = [
+    (FontFamily::Monospace, "andalemono consol courier lucidaconsole menlo monaco sfmono terminal lettergothic"),
     (
         FontFamily::Serif,
-        &[
-            "antiqua",
-            "baskerville",
-            "bodoni",
-            "bookantiqua",
-            "bookman",
-            "cambria",
-            "caslon",
-            "century",
-            "charter",
-            "cochin",
-            "constantia",
-            "didot",
-            "elephant",
-            "garamond",
-            "georgia",
-            "goudy",
-            "lora",
-            "merriweather",
-            "minion",
-            "newyork",
-            "nimbusroman",
-            "palatino",
-            "perpetua",
-            "playfair",
-            "rockwell",
-            "times",
-            "utopia",
-        ],
+        "antiqua baskerville bodoni bookantiqua bookman cambria caslon century charter cochin constantia didot elephant garamond \
+         georgia goudy lora merriweather minion newyork nimbusroman palatino perpetua playfair rockwell times utopia",
     ),
-    (FontFamily::Cursive, &["brush", "chalkboard", "comic", "lucidahandwriting", "snell", "zapfchancery", "zapfino"]),
+    (FontFamily::Cursive, "brush chalkboard comic lucidahandwriting snell zapfchancery zapfino"),
     (
         FontFamily::SansSerif,
-        &[
-            "albany",
-            "arial",
-            "avantgarde",
-            "avenir",
-            "bahnschrift",
-            "britannic",
-            "calibri",
-            "candara",
-            "centurygothic",
-            "corbel",
-            "dmsans",
-            "droidsans",
-            "firasans",
-            "franklin",
-            "frutiger",
-            "futura",
-            "geneva",
-            "gillsans",
-            "haettenschweiler",
-            "helvetica",
-            "ibmplexsans",
-            "impact",
-            "inter",
-            "lato",
-            "lucida",
-            "luxisans",
-            "microsoftsans",
-            "montserrat",
-            "mssans",
-            "myriad",
-            "nimbussans",
-            "nunito",
-            "opensans",
-            "optima",
-            "poppins",
-            "proximanova",
-            "quicksand",
-            "raleway",
-            "roboto",
-            "segoeui",
-            "sourcesans",
-            "sfpro",
-            "tahoma",
-            "trebuchet",
-            "ubuntu",
-            "univers",
-            "verdana",
-            "worksans",
-        ],
+        "albany arial avantgarde avenir bahnschrift britannic calibri candara centurygothic corbel dmsans droidsans firasans franklin \
+         frutiger futura geneva gillsans haettenschweiler helvetica ibmplexsans impact inter lato lucida luxisans microsoftsans \
+         montserrat mssans myriad nimbussans nunito opensans optima poppins proximanova quicksand raleway roboto segoeui sourcesans \
+         sfpro tahoma trebuchet ubuntu univers verdana worksans",
     ),
 ];
 
 /// Guesses the generic family of a missing one from its name.
 fn kind_of(missing: &str) -> Option<FontFamily> {
     let name = plain(missing);
-    // A word anywhere in the name counts for more than a known prefix.
+    // A word anywhere in the name counts for more than a known beginning, but for less than a known name.
     let words = [
         ("mono", FontFamily::Monospace),
         ("typewriter", FontFamily::Monospace),
@@ -263,9 +191,9 @@ fn kind_of(missing: &str) -> Option<FontFamily> {
         ("handwriting", FontFamily::Cursive),
     ];
     let by_word = || words.iter().find(|(word, _)| name.contains(word)).map(|(_, kind)| kind.clone());
-    let known = KINDS.iter().find(|(_, names)| names.iter().any(|n| name.starts_with(n)));
-    let specific = known.filter(|(_, names)| names.iter().any(|n| *n == name)).map(|k| k.0.clone());
-    specific.or_else(by_word).or_else(|| known.map(|k| k.0.clone()))
+    let known = KINDS.iter().find(|(_, names)| names.split(' ').any(|n| name.starts_with(n)));
+    let whole = known.filter(|(_, names)| names.split(' ').any(|n| n == name));
+    whole.map(|k| k.0.clone()).or_else(by_word).or_else(|| known.map(|k| k.0.clone()))
 }
 
 /// A name reduced to lowercase letters and digits, without `regular` at its end.
@@ -323,6 +251,7 @@ fn substitutes(
     })
 }
 
+/// Returns `true` for the face of [`BUNDLED`].
 fn is_bundled(face: ID, db: &Database) -> bool {
     db.face(face).is_some_and(|f| matches!(&f.source, Source::Binary(data) if data.as_ref().as_ref() == BUNDLED))
 }

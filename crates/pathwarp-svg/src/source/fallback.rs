@@ -23,19 +23,20 @@ pub(super) struct Wanted<'a> {
 /// family, the face that looks most like the text.
 pub(super) fn fallback(wanted: &Wanted<'_>, used: &[ID], db: &Database) -> Option<ID> {
     let look = wanted.look;
-    let off = |f: &FaceInfo| {
+    let difference = |f: &FaceInfo| {
         (f.style != look.style, f.stretch != look.stretch, f.weight.0.abs_diff(look.weight.0), f.weight.0)
     };
     let (script, region) = (wanted.writing.name(), region(wanted.language));
     let specific = [format!("Noto Sans {script}"), format!("Noto Sans CJK {region}"), format!("Noto Sans {region}")];
     let emoji = wanted.writing == Writing::Emoji;
-    let ranked = |f: &FaceInfo| if is_bundled(f) { LAST } else { rank(family(f), &specific, emoji) };
+    let rank = |f: &FaceInfo| if is_bundled(f) { LAST } else { rank(family(f), &specific, emoji) };
     let mut all: Vec<&FaceInfo> = db.faces().filter(|f| !used.contains(&f.id)).collect();
     // The sort is stable, so the first of several equal faces wins.
-    all.sort_by(|a, b| (ranked(a), family(a), off(a)).cmp(&(ranked(b), family(b), off(b))));
+    all.sort_by(|a, b| (rank(a), family(a), difference(a)).cmp(&(rank(b), family(b), difference(b))));
     all.into_iter().map(|f| f.id).find(|id| wanted.letters.chars().all(|c| has_letter(*id, c, db)))
 }
 
+/// The first family name of a face.
 fn family(face: &FaceInfo) -> &str {
     face.families.first().map_or("", |(name, _)| name)
 }
@@ -43,7 +44,8 @@ fn family(face: &FaceInfo) -> &str {
 /// The rank of the bundled fonts, after all others.
 const LAST: usize = 100;
 
-/// The rank of a family for a writing with `specific` families (fontconfig's `60-latin.conf`; names of the Noto families).
+/// The rank of a family for a writing with `specific` families (fontconfig's `60-latin.conf`; names of the Noto families): the lower, the
+/// sooner it is tried.
 fn rank(family: &str, specific: &[String; 3], emoji: bool) -> usize {
     const GENERAL: [&str; 7] =
         ["Noto Sans", "DejaVu Sans", "Verdana", "Arial", "Liberation Sans", "Helvetica", "Tahoma"];
@@ -52,14 +54,12 @@ fn rank(family: &str, specific: &[String; 3], emoji: bool) -> usize {
         return 0;
     }
     let known = GENERAL.into_iter().chain(specific.iter().map(String::as_str)).position(|f| f == family);
-    known.map_or_else(
-        || match () {
-            () if is_kind(&["Mono", "Math", "Symbols", "Serif", "UI"]) => 60,
-            () if family.starts_with("Noto Sans") => 40,
-            () => 50,
-        },
-        |position| 1 + position,
-    )
+    match known {
+        Some(position) => 1 + position,
+        None if is_kind(&["Mono", "Math", "Symbols", "Serif", "UI"]) => 60,
+        None if family.starts_with("Noto Sans") => 40,
+        None => 50,
+    }
 }
 
 /// The suffix of Noto's families for the Chinese characters of a language; without a language, Japanese, as in fontconfig.
@@ -75,6 +75,7 @@ fn region(language: &str) -> &'static str {
     }
 }
 
+/// Returns `true` for the bundled fonts.
 fn is_bundled(face: &FaceInfo) -> bool {
     matches!(&face.source, Source::Binary(data) if [BUNDLED, DISPLAY].contains(&data.as_ref().as_ref()))
 }
@@ -82,6 +83,7 @@ fn is_bundled(face: &FaceInfo) -> bool {
 /// The letters of a font, as sorted ranges.
 type Letters = Vec<RangeInclusive<u32>>;
 
+/// Returns `true` if a font can show a letter.
 fn has_letter(face: ID, letter: char, db: &Database) -> bool {
     // Joiners, direction marks and variation selectors need no glyph.
     if matches!(letter, '\u{200c}'..='\u{200f}' | '\u{fe00}'..='\u{fe0f}') {
@@ -106,6 +108,7 @@ fn letters_of(path: &Path, index: u32, read: impl FnOnce() -> Letters) -> Arc<Le
     known.entry((path.to_owned(), index)).or_insert_with(|| Arc::new(read())).clone()
 }
 
+/// The letters of a font file.
 fn letters_in(data: &[u8], index: u32) -> Letters {
     let Ok(font) = FontRef::from_index(data, index) else { return Letters::new() };
     let mut all: Vec<u32> = font.charmap().mappings().map(|(letter, _)| letter).collect();

@@ -2,7 +2,7 @@
 //! TrueType, OpenType or WOFF 1.0 font.
 
 use super::elements::declarations;
-use super::fonts::{self, listing, load_unnamed};
+use super::fonts::{Bytes, load_unnamed, set_browser_metrics, size_of_listing};
 use base64::Engine as _;
 use pathwarp::budget::{Budget, Exceeded, Limit, cost};
 use pathwarp_text::GlyphWork;
@@ -12,6 +12,7 @@ use std::sync::Arc;
 use usvg::fontdb::{Database, FaceInfo, Language, Source, Style, Weight};
 use usvg::roxmltree::{Document, Node};
 
+/// An embedded font with the properties that its rule gives it.
 #[derive(Debug)]
 struct Face {
     family: String,
@@ -37,8 +38,8 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
     taken.into_iter().for_each(|id| all.remove_face(id));
     for face in faces {
         let mut data = face.data;
-        fonts::adjust(&mut data, 0);
-        let data: Arc<dyn AsRef<[u8]> + Send + Sync> = Arc::new(data);
+        set_browser_metrics(&mut data, 0);
+        let data: Bytes = Arc::new(data);
         let mut ids = all.load_font_source(Source::Binary(data.clone())).to_vec();
         if ids.is_empty() {
             ids.extend(load_unnamed(all, &data, face.family.clone()));
@@ -61,9 +62,8 @@ pub(crate) fn add(mut db: Arc<Database>, xml: &Document<'_>, budget: &Budget) ->
 fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<(), Exceeded> {
     let mut letters: BTreeMap<char, u64> = BTreeMap::new();
     let shown = xml.descendants().filter(|n| n.is_element() && n.tag_name().name() == "text");
-    for text in shown.flat_map(|n| n.descendants()).filter(Node::is_text).filter_map(|n| n.text()) {
-        text.chars().for_each(|c| *letters.entry(c).or_default() += 1);
-    }
+    let texts = shown.flat_map(|n| n.descendants()).filter(Node::is_text).filter_map(|n| n.text());
+    texts.flat_map(str::chars).for_each(|c| *letters.entry(c).or_default() += 1);
     for face in faces {
         let Some(mut work) = GlyphWork::new(&face.data, 0) else { continue };
         let total: u64 = letters.iter().map(|(c, n)| n * work.of_letter(*c)).sum();
@@ -72,6 +72,7 @@ fn count_letters(xml: &Document<'_>, faces: &[Face], budget: &Budget) -> Result<
     Ok(())
 }
 
+/// Reads the fonts of all rules in a text.
 fn faces(text: &str, budget: &Budget) -> Result<Vec<Face>, Exceeded> {
     let mut out = Vec::new();
     let mut rest = text;
@@ -117,9 +118,8 @@ fn font(url: &str, budget: &Budget) -> Result<Option<Vec<u8>>, Exceeded> {
             Ok(unpacked(&data))
         }
         Some(b"ttcf") => {
-            budget
-                .take(Limit::Bytes, listing(&data, budget.room(Limit::Bytes) as u64) as f64)
-                .map_err(Exceeded::cut_short)?;
+            let size = size_of_listing(&data, budget.room(Limit::Bytes) as u64);
+            budget.take(Limit::Bytes, size as f64).map_err(Exceeded::cut_short)?;
             Ok(Some(data))
         }
         Some(b"wOF2") | None => Ok(None),
@@ -143,11 +143,12 @@ const HEADER: usize = 44;
 /// Size in bytes of an entry in a WOFF's table directory.
 const ENTRY: usize = 20;
 
-/// Reads a 32-bit number of a WOFF.
+/// Reads a big-endian number of 32 bits.
 fn long(woff: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_be_bytes(woff.get(at..at.checked_add(4)?)?.try_into().ok()?))
 }
 
+/// The number of tables in a WOFF.
 fn table_count(woff: &[u8]) -> Option<u16> {
     Some(u16::from_be_bytes(woff.get(12..14)?.try_into().ok()?))
 }
@@ -165,19 +166,20 @@ fn unpacked(woff: &[u8]) -> Option<Vec<u8>> {
     let count = table_count(woff)?;
     let mut out = long(4)?.to_be_bytes().to_vec();
     // Search parameters of the table directory, required by some readers.
-    let halves = u16::try_from(count.checked_ilog2()?).ok()?;
-    let range = 16_u16.checked_mul(1 << halves)?;
-    for v in [count, range, halves, count.checked_mul(16)? - range] {
+    let selector = u16::try_from(count.checked_ilog2()?).ok()?;
+    let range = 16_u16.checked_mul(1 << selector)?;
+    for v in [count, range, selector, count.checked_mul(16)? - range] {
         out.extend(v.to_be_bytes());
     }
     let mut tables = Vec::new();
     let start = out.len() + 16 * usize::from(count);
     for i in 0..usize::from(count) {
-        let at = HEADER + i * ENTRY;
-        let (from, packed, length) = (size(at + 4)?, size(at + 8)?, size(at + 12)?);
+        let entry = HEADER + i * ENTRY;
+        let (from, packed, length) = (size(entry + 4)?, size(entry + 8)?, size(entry + 12)?);
         let data = woff.get(from..from.checked_add(packed)?)?;
-        out.extend(woff.get(at..at + 4)?);
-        for v in [long(at + 16)?, u32::try_from(start + tables.len()).ok()?, long(at + 12)?] {
+        // The tag, the checksum, and position and length in the new file.
+        out.extend(woff.get(entry..entry + 4)?);
+        for v in [long(entry + 16)?, u32::try_from(start + tables.len()).ok()?, long(entry + 12)?] {
             out.extend(v.to_be_bytes());
         }
         if packed < length {

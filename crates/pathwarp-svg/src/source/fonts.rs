@@ -16,10 +16,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use usvg::fontdb::{self, Database, ID, Source};
 use usvg::{FontFamily, FontResolver};
 
-/// The files and folders last loaded, with their fonts, so that a batch reads them once.
+/// The arguments of the last call of [`database`] with its fonts, so that a batch reads them once.
 type Loaded = (bool, Vec<PathBuf>, Arc<Database>);
 
-/// Loads the fonts. The installed ones are read once per process.
+/// Loads the bundled fonts, the files and folders at `paths`, and, if `system` is `true`, the installed fonts, which are read once per
+/// process.
 pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
     static SYSTEM: OnceLock<Arc<Database>> = OnceLock::new();
     static BARE: OnceLock<Arc<Database>> = OnceLock::new();
@@ -44,30 +45,31 @@ pub(crate) fn database(system: bool, paths: &[PathBuf]) -> Arc<Database> {
         return db.clone();
     }
     let mut db = base.clone();
-    for p in paths {
-        let db = Arc::make_mut(&mut db);
-        if p.is_dir() {
-            db.load_fonts_dir(p);
-        } else {
-            // A file that is not a font leaves the database unchanged; its family is then reported as missing.
-            let _ = load_file(db, p);
-        }
+    for path in paths {
+        // A file that is not a font leaves the database unchanged; its family is then reported as missing.
+        let _ = load_fonts(Arc::make_mut(&mut db), path);
     }
     *last = Some((system, paths.to_vec(), db.clone()));
     db
 }
 
-/// Loads a font file.
-pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
-    /// Limit on the memory for listing a collection, far above that of real ones.
-    const MAX: u64 = 32_000_000;
+/// Loads a font file, or the font files in a folder.
+fn load_fonts(db: &mut Database, path: &Path) -> Result<(), String> {
+    /// Limit on the bytes of memory for listing a collection, far above that of real ones.
+    const MAX_LISTING: u64 = 32_000_000;
     let unreadable = |e: std::io::Error| format!("cannot be read: {e}");
-    let is_collection = |file: &Path| -> std::io::Result<bool> {
+    let is_collection = || -> std::io::Result<bool> {
         let mut tag = Vec::new();
-        fs::File::open(file)?.take(4).read_to_end(&mut tag)?;
+        fs::File::open(path)?.take(4).read_to_end(&mut tag)?;
         Ok(tag == b"ttcf")
     };
-    if is_collection(path).map_err(unreadable)? && listing(&fs::read(path).map_err(unreadable)?, MAX) > MAX {
+    if path.is_dir() {
+        db.load_fonts_dir(path);
+        return Ok(());
+    }
+    if is_collection().map_err(unreadable)?
+        && size_of_listing(&fs::read(path).map_err(unreadable)?, MAX_LISTING) > MAX_LISTING
+    {
         return Err("has more fonts, or longer names, than can be listed".into());
     }
     let before = db.len();
@@ -83,14 +85,14 @@ pub(super) fn load_file(db: &mut Database, path: &Path) -> Result<(), String> {
 /// Loads a font without names, as subsets often are, under the name `family`. Returns `None` if it is not a font.
 pub(super) fn load_unnamed(db: &mut Database, data: &Bytes, family: String) -> Option<ID> {
     let font = FontRef::new(data.as_ref().as_ref()).ok()?;
-    let about = font.attributes();
-    let style = match about.style {
+    let attributes = font.attributes();
+    let style = match attributes.style {
         skrifa::attribute::Style::Normal => fontdb::Style::Normal,
         skrifa::attribute::Style::Italic => fontdb::Style::Italic,
         skrifa::attribute::Style::Oblique(_) => fontdb::Style::Oblique,
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
-    let weight = fontdb::Weight(about.weight.value().clamp(1.0, 1000.0) as u16);
+    let weight = fontdb::Weight(attributes.weight.value().clamp(1.0, 1000.0) as u16);
     font.charmap().mappings().next()?;
     Some(db.push_face_info(fontdb::FaceInfo {
         id: ID::dummy(),
@@ -129,15 +131,15 @@ impl Chooser {
     /// A font resolver that, unlike usvg's, always finds a font, and records missing families. `pieces` are the fonts for the families that
     /// begin with [`PIECE`].
     pub(super) fn resolver(self: &Arc<Self>, pieces: Vec<PieceFonts>) -> FontResolver<'static> {
-        let (chooser, other) = (self.clone(), self.clone());
+        let (chooser, fallback_chooser) = (self.clone(), self.clone());
         let piece_fonts: HashMap<ID, ID> = pieces.iter().copied().collect();
         FontResolver {
             select_font: Box::new(move |font, db| {
-                let named = match font.families() {
+                let piece = match font.families() {
                     [FontFamily::Named(name)] => name.strip_prefix(PIECE).and_then(|n| n.parse::<usize>().ok()),
                     _ => None,
                 };
-                named.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
+                piece.and_then(|n| Some(pieces.get(n)?.0)).or_else(|| chooser.first(font, db))
             }),
             select_fallback: Box::new(move |c, used, db| {
                 if let Some(face) = used.first().and_then(|first| piece_fonts.get(first)) {
@@ -146,14 +148,14 @@ impl Chooser {
                 let letter = c.to_string();
                 let writing = runs(&letter).first()?.writing;
                 let look = Look::of_face(db.face(*used.first()?)?);
-                other.fallback(&Wanted { letters: &letter, writing, language: "", look }, used, db)
+                fallback_chooser.fallback(&Wanted { letters: &letter, writing, language: "", look }, used, db)
             }),
         }
     }
 
     /// The first font of a text.
-    pub(super) fn first(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Option<ID> {
-        let face = select(font, db, &self.generic, &self.missing)?;
+    fn first(&self, font: &usvg::Font, db: &mut Arc<Database>) -> Option<ID> {
+        let face = find_face(font, db, &self.generic, &self.missing)?;
         self.admitted(face, db)
     }
 
@@ -185,12 +187,13 @@ impl Chooser {
 
     /// A face held in memory, if it may be used.
     fn admitted(&self, face: ID, db: &mut Arc<Database>) -> Option<ID> {
-        let face = self.guard.admits(face, db).then(|| self.held.face(face, db))?;
-        self.guard.trust(face);
-        Some(face)
+        let held = self.guard.admits(face, db).then(|| self.held.face(face, db))?;
+        self.guard.trust(held);
+        Some(held)
     }
 }
 
+/// Content of a font file, as fontdb holds it.
 pub(super) type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
 /// Font files held in memory, since usvg would read a file up to four times for each letter. Each has its faces in the database
@@ -205,7 +208,7 @@ impl Held {
         let mut files = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if !files.contains_key(&path) {
             let Ok(mut data) = fs::read(&path) else { return id };
-            adjust(&mut data, index);
+            set_browser_metrics(&mut data, index);
             files.insert(path.clone(), (Arc::new(data), Vec::new()));
         }
         let Some((data, faces)) = files.get_mut(&path) else { return id };
@@ -220,11 +223,11 @@ impl Held {
     }
 }
 
-/// Family of text that specifies none.
+/// The family that text without one is given, which no font has.
 pub(super) const NO_FAMILY: &str = "a family";
 
-/// Finds the face for a font of the drawing.
-fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
+/// Finds the face for a font of the drawing, and records its missing families.
+fn find_face(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: &Missing) -> Option<ID> {
     let look = Look::of_text(font);
     let (mut absent, mut similar) = (Vec::new(), None);
     for family in font.families() {
@@ -239,12 +242,11 @@ fn select(font: &usvg::Font, db: &Database, generic: &GenericFamilies, missing: 
             break;
         }
     }
-    if let Ok(mut m) = missing.lock() {
-        m.extend(absent.iter().cloned());
+    if let Ok(mut missing) = missing.lock() {
+        missing.extend(absent.iter().cloned());
     }
-    let last = similar.or_else(|| look.face_like(&absent, generic, db));
-    let last = last.or_else(|| look.standard_face(generic, db));
-    last.or_else(|| look.face_of(BUNDLED_FAMILY, db)).or_else(|| db.faces().next().map(|f| f.id))
+    let found = similar.or_else(|| look.face_like(&absent, generic, db)).or_else(|| look.standard_face(generic, db));
+    found.or_else(|| look.face_of(BUNDLED_FAMILY, db)).or_else(|| db.faces().next().map(|f| f.id))
 }
 
 /// The face of a family, given by any of its names or as a generic family.
@@ -318,11 +320,7 @@ pub fn check_fonts(paths: &[PathBuf]) -> Result<(), Error> {
     for path in paths {
         let name = path.display().to_string();
         let mut db = Database::new();
-        if path.is_dir() {
-            db.load_fonts_dir(path);
-        } else {
-            load_file(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
-        }
+        load_fonts(&mut db, path).map_err(|problem| Error::input(&name, problem))?;
         if db.is_empty() {
             return Err(Error::input(&name, if path.is_dir() { "holds no font" } else { "is not a font" }));
         }
@@ -336,7 +334,7 @@ fn similar(family: &str, db: &Database) -> String {
     const ALIKE: f64 = 0.85;
     const MAX_SUGGESTIONS: usize = 6;
     let wanted: Vec<String> = family.split_whitespace().map(str::to_lowercase).collect();
-    let likeness = |name: &str| {
+    let similarity = |name: &str| {
         let name = name.to_lowercase();
         let best = |w: &String| name.split_whitespace().map(|n| strsim::jaro_winkler(w, n)).fold(0.0, f64::max);
         wanted.iter().map(best).sum::<f64>() / wanted.len().max(1) as f64
@@ -345,7 +343,7 @@ fn similar(family: &str, db: &Database) -> String {
     names.sort_unstable();
     names.dedup();
     let mut names: Vec<(f64, &str)> =
-        names.into_iter().map(|n| (likeness(n), n)).filter(|(l, _)| *l >= ALIKE).collect();
+        names.into_iter().map(|n| (similarity(n), n)).filter(|(s, _)| *s >= ALIKE).collect();
     names.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.len().cmp(&b.1.len())).then(a.1.cmp(b.1)));
     if names.is_empty() {
         return format!("the bundled families are {BUNDLED_FAMILY} and {DISPLAY_FAMILY}");
@@ -356,13 +354,11 @@ fn similar(family: &str, db: &Database) -> String {
 
 /// The memory needed to list the faces of a font file, in bytes. Counts no further than `max`. A file may have thousands of faces
 /// that share one long list of names.
-pub(super) fn listing(data: &[u8], max: u64) -> u64 {
+pub(super) fn size_of_listing(data: &[u8], max: u64) -> u64 {
     /// Bytes of a face without names.
     const FACE: u64 = 1000;
-    let names = |font: &FontRef<'_>| {
-        let Ok(names) = font.name() else { return 0 };
-        names.name_record().iter().map(|r| u64::from(r.length())).sum()
-    };
+    let size_of_names =
+        |font: FontRef<'_>| font.name().map_or(0, |n| n.name_record().iter().map(|r| u64::from(r.length())).sum());
     let announced = data.get(8..12).and_then(|n| n.try_into().ok()).map_or(0, u32::from_be_bytes);
     if data.starts_with(b"ttcf") && announced as usize > data.len() / size_of::<u32>() {
         return u64::MAX;
@@ -370,7 +366,7 @@ pub(super) fn listing(data: &[u8], max: u64) -> u64 {
     let Ok(FileRef::Collection(all)) = FileRef::new(data) else { return 0 };
     let mut total = 0;
     for index in 0..all.len() {
-        total += FACE + all.get(index).map_or(0, |font| names(&font));
+        total += FACE + all.get(index).map_or(0, size_of_names);
         if total > max {
             break;
         }
@@ -406,11 +402,9 @@ impl FontGuard {
             _ => true,
         };
         let name = || info.families.first().map_or("", |(name, _)| name.as_str());
-        let found = if is_given {
-            db.with_face_data(face, |data, index| self.checked(data, index, name())).unwrap_or(Ok(()))
-        } else {
-            Ok(())
-        };
+        // Installed fonts are trusted.
+        let check = || db.with_face_data(face, |data, index| self.check(data, index, name())).unwrap_or(Ok(()));
+        let found = if is_given { check() } else { Ok(()) };
         let is_good = found.is_ok();
         if let (Err(e), Ok(mut r)) = (found, self.rejected.lock()) {
             r.get_or_insert(e);
@@ -419,7 +413,8 @@ impl FontGuard {
         is_good
     }
 
-    fn checked(&self, data: &[u8], index: u32, name: &str) -> Result<(), Error> {
+    /// Checks that the glyphs of a font take a bounded time.
+    fn check(&self, data: &[u8], index: u32, name: &str) -> Result<(), Error> {
         if data == BUNDLED {
             return Ok(());
         }
@@ -436,8 +431,7 @@ impl FontGuard {
         let spans: BTreeSet<_> = records.map(|r| (r.svg_doc_offset(), r.svg_doc_length())).collect();
         for (start, length) in spans {
             let end = u64::from(start) + u64::from(length);
-            let drawing = list.offset_data().as_bytes().get(start as usize..end as usize);
-            if let Some(drawing) = drawing {
+            if let Some(drawing) = list.offset_data().as_bytes().get(start as usize..end as usize) {
                 images::checked(images::SVG, Arc::new(drawing.to_vec()), &place, &options)?;
             }
         }
@@ -455,16 +449,16 @@ const THROUGH: f64 = 1.0 / 3.0;
 const SHIFT: f64 = 0.5;
 
 /// Sets the metrics of lines, subscripts and superscripts in a font file to the ones of browsers, for the face at `index`.
-pub(super) fn adjust(data: &mut [u8], index: u32) {
-    for (at, value) in changes(data, index).unwrap_or_default() {
+pub(super) fn set_browser_metrics(data: &mut [u8], index: u32) {
+    for (at, value) in browser_metrics(data, index).unwrap_or_default() {
         if let Some(bytes) = data.get_mut(at..at + 2) {
             bytes.copy_from_slice(&value.to_be_bytes());
         }
     }
 }
 
-/// Lists the numbers to write, with their positions in the file.
-fn changes(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
+/// The metrics of browsers, with their positions in a font file.
+fn browser_metrics(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
     let font = FontRef::from_index(data, index).ok()?;
     let em = f64::from(font.head().ok()?.units_per_em());
     let hhea = font.hhea().ok()?;
@@ -477,14 +471,10 @@ fn changes(data: &[u8], index: u32) -> Option<Vec<(usize, i16)>> {
     };
     let (thickness, below) = (rounded(THICKNESS * em), rounded(-BELOW * em));
     let shift = rounded(SHIFT * (ascent - descent));
-    let mut out = Vec::new();
     // `post`: underlinePosition and underlineThickness.
-    out.extend(table(b"post").into_iter().flat_map(|at| [(at + 8, below), (at + 10, thickness)]));
-    out.extend(
-        // `OS/2`: ySubscriptYOffset, ySuperscriptYOffset and yStrikeoutPosition.
-        table(b"OS/2")
-            .into_iter()
-            .flat_map(|at| [(at + 16, shift), (at + 24, shift), (at + 28, rounded(THROUGH * ascent))]),
-    );
-    Some(out)
+    let post = table(b"post").into_iter().flat_map(|at| [(at + 8, below), (at + 10, thickness)]);
+    // `OS/2`: ySubscriptYOffset, ySuperscriptYOffset and yStrikeoutPosition.
+    let through = rounded(THROUGH * ascent);
+    let os2 = table(b"OS/2").into_iter().flat_map(|at| [(at + 16, shift), (at + 24, shift), (at + 28, through)]);
+    Some(post.chain(os2).collect())
 }

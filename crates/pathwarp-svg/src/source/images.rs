@@ -48,6 +48,7 @@ pub(crate) fn is_unread(image: &usvg::ImageKind) -> bool {
     matches!(image, usvg::ImageKind::PNG(data) if data.as_slice() == NOTHING)
 }
 
+/// The placeholder for an image that was not read.
 fn nothing() -> usvg::ImageKind {
     usvg::ImageKind::PNG(Arc::new(NOTHING.to_vec()))
 }
@@ -64,8 +65,8 @@ pub(super) fn resolver<'a>(
 ) -> usvg::ImageHrefResolver<'a> {
     let [unread_data, unread_files] = [unread.clone(), unread.clone()];
     let record = |unread: &Missing, link: String| {
-        if let Ok(mut u) = unread.lock() {
-            u.insert(link);
+        if let Ok(mut links) = unread.lock() {
+            links.insert(link);
         }
     };
     let rejected = rejected.clone();
@@ -114,6 +115,7 @@ pub(super) fn resolver<'a>(
     }
 }
 
+/// Media type of drawings.
 pub(super) const SVG: &str = "image/svg+xml";
 
 /// Charges an image to the budget, and returns it; a drawing is resolved into plain SVG for usvg. Returns `None` for damaged images.
@@ -183,11 +185,11 @@ pub(crate) fn is_same_link(link: &str, recorded: &str) -> bool {
         return true;
     }
     let Some((head, _)) = recorded.split_once(BASE64).filter(|_| recorded.starts_with(DATA)) else { return false };
-    match link.contains(BASE64) {
-        true => link.split_ascii_whitespace().collect::<String>() == recorded,
-        // Other encodings have many forms, so only the type is compared. That says too little about drawings, which often use them.
-        false => link.starts_with(head) && !head.ends_with(SVG),
+    if link.contains(BASE64) {
+        return link.split_ascii_whitespace().collect::<String>() == recorded;
     }
+    // Other encodings have many forms, so only the type is compared. That says too little about drawings, which often use them.
+    link.starts_with(head) && !head.ends_with(SVG)
 }
 
 /// A link shortened for messages: embedded data to its type.
@@ -201,6 +203,7 @@ const HEAD: usize = 8;
 /// Bytes of a chunk's checksum.
 const CHECKSUM: usize = 4;
 
+/// A chunk of a PNG.
 struct Chunk<'a> {
     name: [u8; 4],
     content: &'a [u8],
@@ -217,6 +220,7 @@ impl Chunk<'_> {
     }
 }
 
+/// The chunks of a PNG, of which the last may be incomplete; none of other data.
 fn chunks(png: &[u8]) -> impl Iterator<Item = Chunk<'_>> {
     let mut rest = png.strip_prefix(SIGNATURE).unwrap_or_default();
     std::iter::from_fn(move || {
@@ -236,17 +240,22 @@ pub(super) fn unpacked_profile(png: &[u8], max: u64) -> u64 {
     let Some(Chunk { content, .. }) = before_pixels.find(|c| &c.name == b"iCCP") else { return 0 };
     // The name, a zero byte and the compression method precede the data.
     let Some(end) = content.iter().position(|b| *b == 0) else { return 0 };
-    let packed = content.get(end + 2..).unwrap_or_default();
-    let mut counted = Counted(0);
-    let _ = io::copy(&mut ZlibDecoder::new(packed).take(max.saturating_add(1)), &mut counted);
-    counted.0
+    unpacked_size(content.get(end + 2..).unwrap_or_default(), max.saturating_add(1))
+}
+
+/// The number of bytes that can be unpacked before an error or the end, up to `max`.
+fn unpacked_size(packed: &[u8], max: u64) -> u64 {
+    let mut unpacked = ZlibDecoder::new(packed).take(max);
+    let _ = io::copy(&mut unpacked, &mut io::sink());
+    max - unpacked.limit()
 }
 
 /// Returns `true` if a PNG is damaged or lacks pixels, or the first frame of a GIF is larger than its page. The renderer silently shows
 /// nothing of these. Takes time in proportion to the number of pixels that the header states.
 pub(super) fn is_unreadable(data: &[u8]) -> bool {
     let is_damaged = || chunks(data).any(|c| matches!(&c.name, b"IHDR" | b"PLTE" | b"IDAT") && !c.is_intact());
-    let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_pixels(data, needed) < needed);
+    let pixels = || chunks(data).filter(|c| &c.name == b"IDAT").flat_map(|c| c.content).copied().collect::<Vec<u8>>();
+    let lacks_pixels = || pixel_bytes(data).is_some_and(|needed| unpacked_size(&pixels(), needed) < needed);
     (data.starts_with(SIGNATURE) && (is_damaged() || cuts_colors(data) || lacks_pixels()))
         || is_beyond_page(data).unwrap_or(false)
 }
@@ -263,8 +272,8 @@ fn pixel_bytes(png: &[u8]) -> Option<u64> {
     let header = chunks(png).find(|c| &c.name == b"IHDR")?.content;
     let (width, rest) = header.split_first_chunk::<4>()?;
     let (height, rest) = rest.split_first_chunk::<4>()?;
-    let [depth, kind, ..] = *rest else { return None };
-    let channels = match kind {
+    let [depth, color_type, ..] = *rest else { return None };
+    let channels = match color_type {
         0 | 3 => 1,
         4 => 2,
         2 => 3,
@@ -275,19 +284,12 @@ fn pixel_bytes(png: &[u8]) -> Option<u64> {
     Some(width.checked_mul(height)?.checked_mul(u64::from(depth) * channels)? / 8)
 }
 
-/// The number of bytes of a PNG's pixels that can be unpacked, up to `max`.
-fn unpacked_pixels(png: &[u8], max: u64) -> u64 {
-    let packed: Vec<u8> = chunks(png).filter(|c| &c.name == b"IDAT").flat_map(|c| c.content).copied().collect();
-    let mut counted = Counted(0);
-    let _ = io::copy(&mut ZlibDecoder::new(&packed[..]).take(max), &mut counted);
-    counted.0
-}
-
 /// Returns `true` if the first frame of a GIF is larger than its page; `None` for other files, and if there is no frame.
 fn is_beyond_page(gif: &[u8]) -> Option<bool> {
     let size = |at: &[u8]| Some([0, 2].map(|i| u16::from_le_bytes([at[i], at[i + 1]]))).filter(|_| at.len() >= 4);
     let (head, mut rest) = gif.strip_prefix(b"GIF8")?.get(2..)?.split_at_checked(7)?;
     let page = size(head)?;
+    // A palette follows, with its size in the flags.
     if head[4] & 0x80 != 0 {
         rest = rest.get(3 << ((head[4] & 7) + 1)..)?;
     }
@@ -301,20 +303,6 @@ fn is_beyond_page(gif: &[u8]) -> Option<bool> {
     }
     let frame = size(rest.strip_prefix(b",")?.get(4..8)?)?;
     Some(frame[0] > page[0] || frame[1] > page[1])
-}
-
-/// Counts the bytes written, even if an error follows.
-struct Counted(u64);
-
-impl io::Write for Counted {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 += bytes.len() as u64;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Follows the links of a drawing to files, as far as the user allows it, and rewrites them for drawings in another folder.
 
+use super::edit::splice;
 use super::images::{self, ANY, SVG, embedded};
 use super::read::{self, GZIP, ReadOptions};
 use pathwarp::Error;
@@ -19,6 +20,7 @@ pub(super) enum Target {
     File(PathBuf),
     /// A file that must not be read.
     Outside,
+    /// No file, or links are not followed.
     Nowhere,
 }
 
@@ -40,7 +42,7 @@ fn find_file(base: &Path, link: &Path, external: bool) -> Target {
         return if file.exists() { Target::File(file) } else { Target::Nowhere };
     }
     // A path that leads elsewhere is refused without touching the file system.
-    if link.has_root() || link.is_absolute() || leaves(link) {
+    if link.has_root() || link.is_absolute() || climbs_out(link) {
         return Target::Outside;
     }
     match (file.canonicalize(), base.canonicalize()) {
@@ -62,7 +64,7 @@ fn is_through_symlink(base: &Path, link: &Path) -> bool {
 }
 
 /// Returns `true` if a relative link goes above the folder where it starts.
-fn leaves(link: &Path) -> bool {
+fn climbs_out(link: &Path) -> bool {
     let mut depth = 0_i32;
     link.components().any(|c| {
         depth += match c {
@@ -109,8 +111,8 @@ impl Relinking {
     /// # Errors
     /// [`Error::Input`] if the pictures exceed the limits.
     pub fn of(&self, svg: &str, options: &ReadOptions) -> Result<Option<String>, Error> {
-        let is_still = self.way.is_empty() && !self.embed;
-        if is_still || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
+        let keeps_links = self.way.is_empty() && !self.embed;
+        if keeps_links || !["href", "src", "url("].iter().any(|word| svg.contains(word)) {
             return Ok(None);
         }
         let options = options.begin(svg.len());
@@ -122,13 +124,7 @@ impl Relinking {
         if new.is_empty() {
             return Ok(None);
         }
-        let (mut out, mut done) = (String::new(), 0);
-        for (start, (end, text)) in new {
-            out.push_str(&svg[done..start]);
-            out.push_str(&text);
-            done = end;
-        }
-        Ok(Some(out + &svg[done..]))
+        Ok(Some(splice(svg, new.into_iter().map(|(start, (end, link))| (start..end, link)))))
     }
 
     /// Adds the new links of a node, by the start of the text that they replace, with its end and the new text. The map keeps links of an
@@ -141,7 +137,7 @@ impl Relinking {
         new: &mut BTreeMap<usize, (usize, String)>,
     ) -> Result<(), Error> {
         let mut starts = Vec::new();
-        if node.is_pi() || node.is_text() && node.parent().is_some_and(|p| p.tag_name().name() == "style") {
+        if node.is_pi() || (node.is_text() && node.parent().is_some_and(|p| p.tag_name().name() == "style")) {
             starts.extend(link_starts(svg, node.range(), if node.is_pi() { "href=" } else { "url(" }));
         }
         let is_picture = matches!(node.tag_name().name(), "image" | "feImage" | "img");

@@ -16,6 +16,7 @@ impl Tag {
         Self { out: format!("<{name}"), name }
     }
 
+    /// Adds an attribute.
     pub(crate) fn with(mut self, name: &str, value: &str) -> Self {
         let _ = write!(self.out, " {name}=\"{}\"", escape(value));
         self

@@ -7,7 +7,7 @@
 //! where Q interpolates the four corners bilinearly. Any rectangle cut out of a patch along lines of constant u and v is the Coons patch
 //! over its four sides.
 
-use super::elements::{XLINK, declared};
+use super::elements::{XLINK, declared, parse_transform};
 use pathwarp::kurbo::{Affine, CubicBez, ParamCurve as _, ParamCurveDeriv as _, Point, Rect, Vec2};
 use std::collections::HashMap;
 use std::str::FromStr as _;
@@ -55,8 +55,8 @@ impl MeshGradient {
 
     /// The image of the mesh under an affine map.
     pub(crate) fn transformed(&self, by: Affine) -> Self {
-        let moved = |edges: &[Vec<CubicBez>]| edges.iter().map(|row| row.iter().map(|e| by * *e).collect()).collect();
-        Self { across: moved(&self.across), down: moved(&self.down), colors: self.colors.clone(), ..*self }
+        let image = |sides: &[Vec<CubicBez>]| sides.iter().map(|row| row.iter().map(|s| by * *s).collect()).collect();
+        Self { across: image(&self.across), down: image(&self.down), colors: self.colors.clone(), ..*self }
     }
 
     /// The mesh in the user space of a shape with the box `bounds`.
@@ -78,13 +78,18 @@ impl MeshGradient {
     /// The point with the parameters `u` and `v` of the whole mesh, in which each patch has length 1, with the derivatives in the patch
     /// that contains the parameters `column` and `row`: those of neighbours differ on their common side.
     pub(crate) fn point(&self, u: f64, v: f64, [column, row]: [f64; 2]) -> PatchPoint {
-        let within = |t: f64, count: usize| (t as usize).min(count - 1);
-        let (column, row) = (within(column, self.columns()), within(row, self.rows()));
+        let [column, row] = self.patch_at(column, row);
         self.point_in_patch(row, column, u - column as f64, v - row as f64)
     }
 
-    /// The mesh cut at these parameters, with bilinear colours. `image` maps points with vectors at them.
+    /// The column and row of the patch that contains the parameters `u` and `v` of the whole mesh.
+    fn patch_at(&self, u: f64, v: f64) -> [usize; 2] {
+        [(u as usize).min(self.columns() - 1), (v as usize).min(self.rows() - 1)]
+    }
+
+    /// The image of the mesh cut at these parameters, with bilinear colours. `image` maps points with vectors at them.
     pub(crate) fn cut(&self, u: &[f64], v: &[f64], image: impl Fn(&[(Point, Vec2)]) -> Vec<(Point, Vec2)>) -> Self {
+        // The ends of each side with the vectors from them to its handles, up to sign: first of the sides along u, then along v.
         let mut ends: Vec<(Point, Vec2)> = Vec::new();
         for v in v {
             for pair in u.windows(2) {
@@ -106,9 +111,10 @@ impl MeshGradient {
             CubicBez::new(from.0, from.0 + from.1, to.0 - to.1, to.0)
         };
         let (columns, rows) = (u.len() - 1, v.len() - 1);
-        let first = columns * (rows + 1);
-        let across = (0..=rows).map(|i| (i * columns..(i + 1) * columns).map(side).collect()).collect();
-        let down = (0..rows).map(|i| (i * (columns + 1)..(i + 1) * (columns + 1)).map(|k| side(first + k)).collect());
+        let row_of_sides = |first: usize, count: usize| (first..first + count).map(side).collect();
+        let across = (0..=rows).map(|i| row_of_sides(i * columns, columns)).collect();
+        let first_down = columns * (rows + 1);
+        let down = (0..rows).map(|i| row_of_sides(first_down + i * (columns + 1), columns + 1));
         let colors = v.iter().map(|v| u.iter().map(|u| self.color(*u, *v)).collect()).collect();
         Self { across, down: down.collect(), colors, smooth: false, in_box: false }
     }
@@ -134,16 +140,16 @@ impl MeshGradient {
     /// The colour at the parameters `u` and `v` of the whole mesh, in which each patch has length 1: bilinear between the corners of a
     /// patch, or bicubic as in Inkscape, in Hermite form with mixed derivatives of zero. Opacity is always bilinear.
     pub(crate) fn color(&self, u: f64, v: f64) -> Rgba {
-        let within = |t: f64, count: usize| (t as usize).min(count - 1);
-        let (row, column) = (within(v, self.rows()), within(u, self.columns()));
+        let [column, row] = self.patch_at(u, v);
         let (s, t) = (u - column as f64, v - row as f64);
         let linear = ([1.0 - s, s, 0.0, 0.0], [1.0 - t, t, 0.0, 0.0]);
         let (along_u, along_v) = if self.smooth { (hermite(s), hermite(t)) } else { linear };
         let mut out = [0.0; 4];
+        // The corner in row `row` + i and column `column` + k.
         for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (r, c) = (row + i, column + k);
             let (wide, high) = (length(self.across[r][column]), length(self.down[row][c]));
-            let add = |by: f64, color: Rgba, out: &mut Rgba| (0..3).for_each(|n| out[n] += by * color[n]);
+            let add = |weight: f64, color: Rgba, out: &mut Rgba| (0..3).for_each(|n| out[n] += weight * color[n]);
             out[3] += linear.0[k] * linear.1[i] * self.colors[r][c][3];
             add(along_u[k] * along_v[i], self.colors[r][c], &mut out);
             if self.smooth {
@@ -190,10 +196,9 @@ fn slope(last: usize, i: usize, color: impl Fn(usize) -> Rgba, length: impl Fn(u
 
 /// The point of a Coons patch with the sides top, right, bottom and left, of which the first and third lead to the right, the others down.
 pub(crate) fn coons([top, right, bottom, left]: [CubicBez; 4], u: f64, v: f64) -> PatchPoint {
-    let vec = |p: Point| p.to_vec2();
-    let at = |c: CubicBez, t: f64| vec(c.eval(t));
-    let slope = |c: CubicBez, t: f64| vec(c.deriv().eval(t));
-    let corners = [top.p0, top.p3, bottom.p0, bottom.p3].map(vec);
+    let at = |c: CubicBez, t: f64| c.eval(t).to_vec2();
+    let slope = |c: CubicBez, t: f64| c.deriv().eval(t).to_vec2();
+    let corners = [top.p0, top.p3, bottom.p0, bottom.p3].map(Point::to_vec2);
     let q = |u: f64, v: f64| corners[0].lerp(corners[1], u).lerp(corners[2].lerp(corners[3], u), v);
     let s = at(top, u).lerp(at(bottom, u), v) + at(left, v).lerp(at(right, v), u) - q(u, v);
     let du = slope(top, u).lerp(slope(bottom, u), v) + at(right, v) - at(left, v) - (q(1.0, v) - q(0.0, v));
@@ -210,6 +215,7 @@ fn monotone(before: f64, after: f64) -> f64 {
     (0.5 * (before + after)).clamp(-most, most)
 }
 
+/// Returns `true` for the tag of a mesh gradient, which has been spelled in several ways.
 pub(crate) fn is_mesh(tag: &str) -> bool {
     matches!(tag, "meshgradient" | "meshGradient" | "mesh")
 }
@@ -218,18 +224,19 @@ pub(crate) fn is_mesh(tag: &str) -> bool {
 pub(super) fn read(doc: &Document<'_>) -> HashMap<String, MeshGradient> {
     /// Limit on the patches of gradients that copy them from others.
     const MAX_COPIED: usize = 100_000;
+    /// Limit on the elements in a chain of links, which may form a circle.
+    const MAX_CHAIN: usize = 16;
     let mut out = HashMap::new();
     if !doc.input_text().contains("mesh") {
         return out;
     }
-    let named = |n: &Node<'_, '_>| n.is_element() && n.attribute("id").is_some_and(|id| !id.is_empty());
-    let all: Vec<Node<'_, '_>> = doc.descendants().filter(|n| is_mesh(n.tag_name().name()) && named(n)).collect();
+    let has_id = |n: &Node<'_, '_>| n.attribute("id").is_some_and(|id| !id.is_empty());
+    let all: Vec<Node<'_, '_>> = doc.descendants().filter(|n| is_mesh(n.tag_name().name()) && has_id(n)).collect();
     let by_id: HashMap<&str, Node<'_, '_>> = all.iter().filter_map(|n| Some((n.attribute("id")?, *n))).collect();
     let mut copied = 0;
     for node in &all {
         let mut chain = vec![*node];
-        // Longer chains of links are not followed.
-        while let Some(next) = chain.last().and_then(|n| by_id.get(link(*n)?)).filter(|_| chain.len() < 16) {
+        while let Some(next) = chain.last().and_then(|n| by_id.get(link(*n)?)).filter(|_| chain.len() < MAX_CHAIN) {
             chain.push(*next);
         }
         if (chain.len() == 1 || copied < MAX_COPIED)
@@ -253,13 +260,7 @@ fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
     let first = *chain.first()?;
     // As in Inkscape, only patches and units come from elements to which the first one refers.
     let length = |name: &str| first.attribute(name).map_or(Some(0.0), |v| v.trim().parse::<f64>().ok());
-    let transform = match first.attribute("gradientTransform") {
-        None => Affine::IDENTITY,
-        Some(t) => {
-            let t = svgtypes::Transform::from_str(t).ok()?;
-            Affine::new([t.a, t.b, t.c, t.d, t.e, t.f])
-        }
-    };
+    let transform = first.attribute("gradientTransform").map_or(Some(Affine::IDENTITY), parse_transform)?;
     let units = chain.iter().find_map(|n| n.attribute("gradientUnits"));
     let rows = chain.iter().map(|n| children(*n, "meshrow")).find(|rows| !rows.is_empty())?;
     let mut mesh = MeshGradient {
@@ -274,9 +275,9 @@ fn gradient(chain: &[Node<'_, '_>]) -> Option<MeshGradient> {
         start = push_row(&mut mesh, &children(row, "meshpatch"), start)?;
     }
     let columns = mesh.columns();
-    let whole = columns > 0 && mesh.across.iter().all(|row| row.len() == columns);
-    let whole = whole && mesh.across.iter().chain(&mesh.down).flatten().all(CubicBez::is_finite);
-    whole.then(|| mesh.transformed(transform))
+    let is_grid = columns > 0 && mesh.across.iter().all(|row| row.len() == columns);
+    let is_finite = mesh.across.iter().chain(&mesh.down).flatten().all(CubicBez::is_finite);
+    (is_grid && is_finite).then(|| mesh.transformed(transform))
 }
 
 /// The children with a tag, whose letters may be of either case.
@@ -331,13 +332,14 @@ fn push_row(mesh: &mut MeshGradient, patches: &[Node<'_, '_>], start: Point) -> 
     Some(next)
 }
 
+/// The cubic run through backwards.
 pub(crate) fn reversed(c: CubicBez) -> CubicBez {
     CubicBez::new(c.p3, c.p2, c.p1, c.p0)
 }
 
 /// Reads the side that a stop describes: a line or a cubic from `from`. The path may omit its end if that is known (`end`).
 fn side(stop: Node<'_, '_>, from: Point, end: Option<Point>) -> Option<CubicBez> {
-    /// Numbers of a cubic.
+    /// Numbers of a cubic, the longest command.
     const LONGEST: usize = 6;
     let path = stop.attribute("path")?.trim();
     let kind = path.chars().next()?;
@@ -373,6 +375,7 @@ fn color(stop: Node<'_, '_>) -> Option<Rgba> {
     Some([level(c.red), level(c.green), level(c.blue), level(c.alpha) * opacity.clamp(0.0, 1.0)])
 }
 
+/// The value of a property that an element declares.
 fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let style = node.attribute("style").and_then(|s| declared(s, name));
     style.or_else(|| node.attribute(name)).map(str::trim)

@@ -1,6 +1,6 @@
 //! Writes numbers and path data, rounded once and in the shortest form.
 
-use pathwarp::engine::decimal::{push_trimmed, together};
+use pathwarp::engine::decimal::{decimals, push_trimmed, together, trimmed};
 use pathwarp::kurbo::{BezPath, CubicBez, PathEl, Point, Rect, Vec2};
 use pathwarp::outline::{EllipticArc, Subpath};
 use pathwarp::{Outline, Seg};
@@ -24,11 +24,7 @@ fn push_bytes(out: &mut Vec<u8>, v: f64, decimals: u8) {
     let decimals = usize::from(decimals.min(MAX_DECIMALS));
     match Digits::new().write(v, decimals) {
         Some(text) => out.extend_from_slice(text),
-        None => {
-            let mut text = String::new();
-            push_trimmed(&mut text, v, decimals);
-            out.extend_from_slice(text.as_bytes());
-        }
+        None => out.extend_from_slice(trimmed(v, decimals).as_bytes()),
     }
 }
 
@@ -40,65 +36,67 @@ impl Digits {
         Self([b'0'; 32])
     }
 
-    /// Writes `v` rounded to `decimals`, by way of an integer, for speed. Returns `None` if the integer would not be exact in f64.
+    /// Writes `v` rounded to `decimals`, by way of an integer, for speed, and from the last digit to the first. Returns `None` if the
+    /// integer would not be exact in f64.
     fn write(&mut self, v: f64, decimals: usize) -> Option<&[u8]> {
+        /// Just below 2⁵³, up to which all integers are exact.
         const MAX_EXACT: f64 = 9e15;
         let scaled = (v * POWERS[decimals]).abs();
         if scaled.is_nan() || scaled >= MAX_EXACT - 1.0 {
             return None;
         }
         // Rounds half away from zero; the difference is exact.
-        let whole = scaled as u64;
-        let n = whole + u64::from(scaled - whole as f64 >= 0.5);
+        let floor = scaled as u64;
+        let n = floor + u64::from(scaled - floor as f64 >= 0.5);
         if n == 0 {
             return Some(b"0");
         }
-        let unit = UNITS[decimals];
-        let (mut before, mut after) = (n / unit, n % unit);
-        let mut at = self.0.len();
-        if after > 0 {
+        let unit = POWERS[decimals] as u64;
+        let (mut whole, mut fraction) = (n / unit, n % unit);
+        let mut start = self.0.len();
+        if fraction > 0 {
             // Drop the trailing zeros.
             let mut kept = decimals;
-            while after % 10 == 0 {
-                after /= 10;
+            while fraction % 10 == 0 {
+                fraction /= 10;
                 kept -= 1;
             }
             while kept > 1 {
-                at -= 2;
-                self.pair(at, after % 100);
-                after /= 100;
+                start -= 2;
+                self.write_pair(start, fraction % 100);
+                fraction /= 100;
                 kept -= 2;
             }
             if kept == 1 {
-                at -= 1;
-                self.0[at] = b'0' + after as u8;
+                start -= 1;
+                self.0[start] = b'0' + fraction as u8;
             }
-            at -= 1;
-            self.0[at] = b'.';
+            start -= 1;
+            self.0[start] = b'.';
         }
-        while before >= 100 {
-            at -= 2;
-            self.pair(at, before % 100);
-            before /= 100;
+        while whole >= 100 {
+            start -= 2;
+            self.write_pair(start, whole % 100);
+            whole /= 100;
         }
-        if before >= 10 {
-            at -= 2;
-            self.pair(at, before);
+        if whole >= 10 {
+            start -= 2;
+            self.write_pair(start, whole);
         } else {
-            at -= 1;
-            self.0[at] = b'0' + before as u8;
+            start -= 1;
+            self.0[start] = b'0' + whole as u8;
         }
         if v < 0.0 {
-            at -= 1;
-            self.0[at] = b'-';
+            start -= 1;
+            self.0[start] = b'-';
         }
-        Some(&self.0[at..])
+        Some(&self.0[start..])
     }
 
     /// Writes the two digits of a number below 100.
-    fn pair(&mut self, at: usize, n: u64) {
+    fn write_pair(&mut self, start: usize, n: u64) {
         let n = n as usize * 2;
-        self.0[at..at + 2].copy_from_slice(&PAIRS[n..n + 2]);
+        self.0[start..start + 2].copy_from_slice(&PAIRS[n..n + 2]);
     }
 }
 
@@ -114,20 +112,11 @@ const PAIRS: [u8; 200] = {
     out
 };
 
-const UNITS: [u64; MAX_DECIMALS as usize + 1] = {
-    let mut out = [1; MAX_DECIMALS as usize + 1];
-    let mut i = 1;
-    while i < out.len() {
-        out[i] = out[i - 1] * 10;
-        i += 1;
-    }
-    out
-};
-
+/// Powers of ten by their exponent.
 const POWERS: [f64; MAX_DECIMALS as usize + 1] =
     [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14];
 
-/// Significant digits of lengths and offsets.
+/// Significant digits of lengths and offsets, far more than renderers in single precision resolve.
 const SHORT: i32 = 9;
 /// Significant digits of single precision.
 const SINGLE: i32 = 7;
@@ -142,27 +131,16 @@ pub(crate) fn single(v: f64) -> String {
     significant(v, SINGLE)
 }
 
-/// Formats `v` with `digits` significant digits.
+/// Formats `v` with `digits` significant digits; a number that is not finite as 0.
 fn significant(v: f64, digits: i32) -> String {
     let mut out = String::new();
-    push_significant(&mut out, v, digits);
+    let decimals = decimals([v], digits);
+    match u8::try_from(decimals) {
+        _ if !v.is_finite() => out.push('0'),
+        Ok(few) if few <= MAX_DECIMALS => push(&mut out, v, few),
+        _ => push_trimmed(&mut out, v, decimals),
+    }
     out
-}
-
-fn push_significant(out: &mut String, v: f64, digits: i32) {
-    if v == 0.0 || !v.is_finite() {
-        return out.push('0');
-    }
-    // Small integers, the common case, need no logarithm.
-    if v.fract() == 0.0 && v.abs() < 1e6 {
-        return push(out, v, 0);
-    }
-    let size = v.abs().log10().floor() as i32 + 1;
-    match u8::try_from((digits - size).max(0)) {
-        Ok(d) if d <= MAX_DECIMALS => push(out, v, d),
-        // Thirty decimals resolve all numbers that can occur in a drawing.
-        _ => push_trimmed(out, v, (digits - size).clamp(0, 30) as usize),
-    }
 }
 
 /// Formats numbers with the decimals of the largest, which gets nine significant digits.
@@ -177,6 +155,7 @@ pub(crate) fn singles(values: &[f32]) -> Vec<String> {
     together(&values, SINGLE, 1).collect()
 }
 
+/// The attributes of a rectangle, with their names.
 pub(crate) fn rectangle(r: Rect) -> [(&'static str, String); 4] {
     let values = [r.x0, r.y0, r.width(), r.height()];
     let mut sides = shorts(&values);
@@ -189,24 +168,29 @@ pub(crate) fn path_data(path: &BezPath, decimals: u8) -> String {
 }
 
 /// Formats a path as a `d` attribute with absolute commands. `decimals` gives the numbers of decimals for the handles and the end of each
-/// element, by its index, and `coarsest` the largest step between coordinates that rounding may have, if decimals are free. Then handles so
-/// short that rounding would turn them get more decimals, so that smooth joints stay smooth, and the choice of quadratics depends on that
-/// step alone, so that neighbours under different transforms write a shared edge equally.
+/// element, by its index.
+///
+/// `coarsest` gives the largest step that rounding to these decimals may have, or `None` if the decimals are fixed. If they are not,
+/// handles so short that rounding would turn them get more decimals, so that smooth joints stay smooth. Whether a cubic is written as a
+/// quadratic then depends on that step alone, so that neighbours under different transforms write a shared edge equally.
 pub(crate) fn path_data_by(
     path: &BezPath,
     coarsest: impl Fn(usize) -> Option<f64>,
     decimals: impl Fn(usize) -> [u8; 2],
 ) -> String {
-    let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * 48);
+    /// Usual length of an element of path data in bytes: a letter and three points.
+    const ELEMENT: usize = 48;
+    let mut out: Vec<u8> = Vec::with_capacity(path.elements().len() * ELEMENT);
     let point = |out: &mut Vec<u8>, p: Point, decimals: u8| {
         push_bytes(out, p.x, decimals);
         out.push(b',');
         push_bytes(out, p.y, decimals);
     };
-    let (mut at, mut from) = (Point::ORIGIN, Point::ORIGIN);
+    // The last point, and the point that will be read from its text.
+    let (mut last, mut last_read) = (Point::ORIGIN, Point::ORIGIN);
     for (i, el) in path.elements().iter().enumerate() {
         let [handle, node] = decimals(i);
-        let to = el.end_point().map_or(from, |p| rounded(p, node));
+        let end_read = el.end_point().map_or(last_read, |p| rounded(p, node));
         if !out.is_empty() {
             out.push(b' ');
         }
@@ -228,17 +212,19 @@ pub(crate) fn path_data_by(
             PathEl::CurveTo(a, b, p) => {
                 // A quadratic is written if it differs by less than the rounding and its handles keep their directions.
                 let coarsest = coarsest(i);
-                let written = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
-                let quad = quadratic(at, a, b, p).filter(|(q, off)| match coarsest {
-                    // Written units are usually between a tenth of the coarsest and the coarsest.
-                    Some(unit) => {
-                        let long = LASTING * unit.max(written);
-                        let lasts = |exact, v: Vec2| exact == Vec2::ZERO || is_kept(exact, v) && v.hypot() >= long;
-                        *off < NEAR * written.min(0.1 * unit) && lasts(a - at, *q - at) && lasts(b - p, *q - p)
+                let step = POWERS[usize::from(handle.min(MAX_DECIMALS))].recip();
+                let quad = quadratic(last, a, b, p).filter(|(q, gap)| match coarsest {
+                    // Steps are usually between a tenth of the coarsest and the coarsest.
+                    Some(coarsest) => {
+                        let least = STEADY * coarsest.max(step);
+                        let steady = |exact, v: Vec2| exact == Vec2::ZERO || (is_kept(exact, v) && v.hypot() >= least);
+                        *gap < MAX_GAP * step.min(0.1 * coarsest)
+                            && steady(a - last, *q - last)
+                            && steady(b - p, *q - p)
                     }
                     None => {
                         let q = rounded(*q, handle);
-                        *off < NEAR * written && is_kept(a - at, q - from) && is_kept(b - p, q - to)
+                        *gap < MAX_GAP * step && is_kept(a - last, q - last_read) && is_kept(b - p, q - end_read)
                     }
                 });
                 let quad = quad.map(|(q, _)| q);
@@ -246,7 +232,10 @@ pub(crate) fn path_data_by(
                 let handles = match quad {
                     Some(q) => [Some((q, handle)), None],
                     None if coarsest.is_none() => [Some((a, handle)), Some((b, handle))],
-                    None => [Some(keep_direction(a, (at, from), handle)), Some(keep_direction(b, (p, to), handle))],
+                    None => [
+                        Some(keep_direction(a, (last, last_read), handle)),
+                        Some(keep_direction(b, (p, end_read), handle)),
+                    ],
                 };
                 for (q, decimals) in handles.into_iter().flatten() {
                     point(&mut out, q, decimals);
@@ -256,7 +245,7 @@ pub(crate) fn path_data_by(
             }
             PathEl::ClosePath => out.push(b'Z'),
         }
-        (at, from) = (el.end_point().unwrap_or(at), to);
+        (last, last_read) = (el.end_point().unwrap_or(last), end_read);
     }
     // The bytes are ASCII, so this cannot fail.
     String::from_utf8(out).unwrap_or_default()
@@ -264,10 +253,10 @@ pub(crate) fn path_data_by(
 
 /// Largest distance between the two handles that a cubic's ends give for a quadratic, in units of the last decimal. The curves differ by
 /// a tenth of it.
-const NEAR: f64 = 3.0;
+const MAX_GAP: f64 = 3.0;
 
 /// Length of a handle, in units of the last decimal, from which on rounding turns it by less than [`is_kept`] allows.
-const LASTING: f64 = 600.0;
+const STEADY: f64 = 600.0;
 
 /// The point that will be read from a point's text.
 fn rounded(p: Point, decimals: u8) -> Point {
@@ -282,17 +271,17 @@ fn is_kept(exact: Vec2, v: Vec2) -> bool {
     exact == Vec2::ZERO || (along > 0.0 && exact.cross(v).abs() <= TURN * along)
 }
 
-/// A handle with enough decimals to keep its direction from `node`, which is written as `written`.
-fn keep_direction(handle: Point, (node, written): (Point, Point), decimals: u8) -> (Point, u8) {
+/// A handle and enough decimals to keep its direction from `node`, which will be read as `read`.
+fn keep_direction(handle: Point, (node, read): (Point, Point), decimals: u8) -> (Point, u8) {
     /// Most additional decimals. Handles that would need more are far too short to be visible.
     const MAX_MORE: u8 = 6;
     let v = handle - node;
-    if is_kept(v, rounded(handle, decimals) - written) {
+    if is_kept(v, rounded(handle, decimals) - read) {
         return (handle, decimals);
     }
-    let more = (1..=MAX_MORE).map(|n| decimals.saturating_add(n).min(MAX_DECIMALS));
-    let fine = more.into_iter().find(|d| is_kept(v, rounded(written + v, *d) - written));
-    fine.map_or((handle, decimals), |d| (written + v, d))
+    let mut more = (1..=MAX_MORE).map(|n| decimals.saturating_add(n).min(MAX_DECIMALS));
+    let enough = more.find(|d| is_kept(v, rounded(read + v, *d) - read));
+    enough.map_or((handle, decimals), |d| (read + v, d))
 }
 
 /// Appends `v` in the shortest form that reads back unchanged; as an f32 if `v` is one.
@@ -303,9 +292,9 @@ fn push_exact(out: &mut String, v: f64) {
     const MAX: f64 = 1e6;
     let scale = POWERS[usize::from(DECIMALS)];
     let n = (v * scale).round();
-    let near = n / scale;
-    if n != 0.0 && n.abs() < MAX && (near == v || f64::from(single) == v && near as f32 == single) {
-        return push(out, near, DECIMALS);
+    let rounded = n / scale;
+    if n != 0.0 && n.abs() < MAX && (rounded == v || (f64::from(single) == v && rounded as f32 == single)) {
+        return push(out, rounded, DECIMALS);
     }
     // Writing to a String cannot fail.
     let _ = if f64::from(single) == v { write!(out, "{single}") } else { write!(out, "{v}") };
@@ -324,27 +313,28 @@ pub(crate) fn outline_data(outline: &Outline) -> String {
         }
     };
     let arc = |a: &EllipticArc| {
-        let [rx, ry, turn] = radii(a)?;
+        let [rx, ry, turn] = written_axes(a)?;
         let large = a.sweep.abs() > std::f64::consts::PI;
         Some([rx, ry, turn, flag(large), flag(a.sweep > 0.0), a.p1.x, a.p1.y])
     };
     for s in &outline.subpaths {
-        commands(s, &mut add, arc, |a| a.major() * FINE);
+        commands(s, &mut add, arc, |a| a.major() * TOLERANCE);
     }
     out
 }
 
+/// A flag of an arc as a number.
 fn flag(yes: bool) -> f64 {
     f64::from(u8::from(yes))
 }
 
 /// Lists the commands of a subpath with their numbers. `arc` gives the numbers of an arc; if it returns `None`, the arc becomes cubics
-/// within `fine`.
+/// within `tolerance`.
 fn commands(
     s: &Subpath,
     add: &mut impl FnMut(char, &[f64]),
     arc: impl Fn(&EllipticArc) -> Option<[f64; 7]>,
-    fine: impl Fn(&EllipticArc) -> f64,
+    tolerance: impl Fn(&EllipticArc) -> f64,
 ) {
     let cubic = |add: &mut dyn FnMut(char, &[f64]), c: &CubicBez| {
         add('C', &[c.p1.x, c.p1.y, c.p2.x, c.p2.y, c.p3.x, c.p3.y]);
@@ -358,7 +348,7 @@ fn commands(
             Seg::Cubic(c) => cubic(add, c),
             Seg::Arc(a) => match arc(a) {
                 Some(numbers) => add('A', &numbers),
-                None => a.to_cubics(fine(a)).for_each(|c| cubic(add, &c)),
+                None => a.to_cubics(tolerance(a)).for_each(|c| cubic(add, &c)),
             },
         }
     }
@@ -368,8 +358,8 @@ fn commands(
 }
 
 /// Formats an outline with arcs as a `d` attribute, with the accuracy of the decimals that `decimals` gives for each subpath. The centre
-/// of an arc follows from its ends and radii, which takes more decimals: one more or, for flat ellipses, up to `more`. If these do not
-/// suffice, an arc is written as cubics.
+/// of an arc follows from its ends and radii, which takes more decimals: one more or, for flat ellipses, up to `more` beyond that. If
+/// these do not suffice, an arc is written as cubics.
 pub(crate) fn arcs_data(outline: &Outline, more: u8, decimals: impl Fn(usize) -> u8) -> String {
     let mut out = String::new();
     for (i, s) in outline.subpaths.iter().enumerate() {
@@ -392,9 +382,9 @@ fn subpath_with_arcs(
     holds: impl Fn(&EllipticArc, Point, u8) -> bool,
 ) {
     // The numbers of an arc are its radii and turn, two flags, and its end.
-    let arc_decimals = |i: usize| match i {
-        0..3 => finer(decimals),
-        3..5 => 0,
+    let decimals_of = |command: char, i: usize| match (command, i) {
+        ('A', 0..3) => finer(decimals),
+        ('A', 3..5) => 0,
         _ => decimals,
     };
     let mut add = |command: char, numbers: &[f64]| {
@@ -406,7 +396,7 @@ fn subpath_with_arcs(
             if i > 0 {
                 out.push(if i % 2 == 1 && command != 'A' { ',' } else { ' ' });
             }
-            push(out, *v, if command == 'A' { arc_decimals(i) } else { decimals });
+            push(out, *v, decimals_of(command, i));
         }
     };
     let arc = |a: &EllipticArc| {
@@ -427,8 +417,10 @@ struct ArcText {
     radii: [f64; 2],
     /// Rotation of the ellipse, in degrees.
     turn: f64,
+    /// The flags of the `A` command.
     large: bool,
     sweep: bool,
+    /// The end as it will be read.
     to: Point,
     /// Decimals of radii and turn.
     finer: u8,
@@ -450,9 +442,8 @@ impl ArcText {
         let Some(read) = EllipticArc::from_svg(from, radii, round(self.turn), self.large, self.sweep, self.to) else {
             return a.p0.distance(from) + a.p1.distance(self.to);
         };
-        let off =
-            |i: u32| read.eval(f64::from(i) / f64::from(SAMPLES)).distance(a.eval(f64::from(i) / f64::from(SAMPLES)));
-        (0..=SAMPLES).map(off).fold(0.0, f64::max)
+        let parameters = (0..=SAMPLES).map(|i| f64::from(i) / f64::from(SAMPLES));
+        parameters.map(|t| read.eval(t).distance(a.eval(t))).fold(0.0, f64::max)
     }
 }
 
@@ -462,21 +453,18 @@ fn axes(a: &EllipticArc) -> ([f64; 2], f64) {
     let sum = Vec2::new(0.5 * (u.x + v.y), 0.5 * (u.y - v.x));
     let difference = Vec2::new(0.5 * (u.x - v.y), 0.5 * (u.y + v.x));
     let (q, r) = (sum.hypot(), difference.hypot());
-    let least = 1e-12 * q.max(r);
-    let turn = match (q > least, r > least) {
-        (true, true) => 0.5 * (sum.atan2() + difference.atan2()),
-        // A circle.
-        _ => 0.0,
-    };
+    // One of the two vanishes for a circle, up to rounding.
+    let is_circle = q.min(r) <= 1e-12 * q.max(r);
+    let turn = if is_circle { 0.0 } else { 0.5 * (sum.atan2() + difference.atan2()) };
     ([q + r, (q - r).abs()], turn.to_degrees())
 }
 
 /// Tolerance of the cubics that replace an arc whose vectors are no principal axes, relative to its major semi-axis; far below a pixel.
-const FINE: f64 = 1e-5;
+const TOLERANCE: f64 = 1e-5;
 
 /// The radii of an arc and the rotation of its ellipse in degrees, for the `A` command. Returns `None` for a sheared or mirrored arc, and
 /// for an arc that ends at its start.
-fn radii(a: &EllipticArc) -> Option<[f64; 3]> {
+fn written_axes(a: &EllipticArc) -> Option<[f64; 3]> {
     let (rx, ry) = (a.a.hypot(), a.b.hypot());
     let right = a.a.dot(a.b).abs() <= 1e-12 * rx * ry && a.a.cross(a.b) > 0.0;
     (right && a.p0 != a.p1).then(|| [rx, ry, a.a.y.atan2(a.a.x).to_degrees()])

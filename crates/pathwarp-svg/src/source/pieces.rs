@@ -3,7 +3,10 @@
 //! If the font of a line lacks a letter, usvg shapes the whole line with another font, and gives up if that yields another number of
 //! glyphs. It shapes all letters of one direction by the script of the first letter. Therefore, each text that needs several fonts or
 //! scripts is rewritten: every piece is a `tspan` with a position, and with a name for its font that [`Chooser`] knows.
+//!
+//! A chunk is a stretch of a text that begins at a given position, and a span is a stretch of a chunk in one style.
 
+use super::edit::splice;
 use super::elements::{SVG, tag_end};
 use super::faces::Look;
 use super::fonts::{Chooser, PIECE, PieceFonts};
@@ -33,9 +36,9 @@ pub(super) struct Divided {
 struct Letter {
     /// Bytes of the chunk.
     bytes: Range<usize>,
-    /// Advance as shaped.
+    /// Advance as shaped, in the text's user units.
     natural: f64,
-    /// Advance with spacing.
+    /// Advance with spacing, in the text's user units.
     advance: f64,
     /// Index of the part of the chunk.
     part: usize,
@@ -43,12 +46,14 @@ struct Letter {
 
 /// Part of a chunk in one font.
 struct Part {
+    /// Index of the chunk's span.
     span: usize,
     run: Run,
     /// The face, unless it is the span's.
     face: Option<ID>,
     /// `true` if its letters are drawn as small capitals.
     small: bool,
+    /// `true` if no font has its letters.
     missing: bool,
 }
 
@@ -70,10 +75,10 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
     let texts = xml.descendants().filter(|n| n.has_tag_name((SVG, "text")));
     let by_id: HashMap<&str, Node<'_, '_>> = texts.filter_map(|n| Some((n.attribute("id")?, n))).collect();
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    let mut named: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
+    let mut fonts: HashMap<(usvg::Font, String), Vec<TextFont>> = HashMap::new();
     each_text(tree.root(), &mut |text| {
         let Some(node) = by_id.get(text.id()) else { return };
-        let mut divider = Divider { text, chooser, language: language(*node), named: &mut named, out: &mut out };
+        let mut divider = Divider { text, chooser, language: language(*node), fonts: &mut fonts, out: &mut out };
         let Some(pieces) = divider.pieces() else { return };
         let shown: Vec<char> = text.chunks().iter().flat_map(|c| c.text().chars()).collect();
         let mut writer = Writer {
@@ -89,33 +94,26 @@ pub(super) fn divided(xml: &Document<'_>, tree: &usvg::Tree, chooser: &Chooser) 
         edits.extend(writer.element(*node).filter(|_| !known).map(|text| (node.range(), text)));
     });
     edits.sort_by_key(|(range, _)| range.start);
-    if !edits.is_empty() {
-        let (mut text, mut at) = (String::new(), 0);
-        for (range, new) in edits {
-            text += &xml.input_text()[at..range.start];
-            text += &new;
-            at = range.end;
-        }
-        out.text = Some(text + &xml.input_text()[at..]);
-    }
+    out.text = (!edits.is_empty()).then(|| splice(xml.input_text(), edits));
     out
 }
 
+/// The language that an element or one around it declares; empty if none does.
 fn language(node: Node<'_, '_>) -> String {
     let declared = |n: Node<'_, '_>| n.attributes().find(|a| a.name() == "lang").map(|a| a.value().to_owned());
     node.ancestors().find_map(declared).unwrap_or_default()
 }
 
 /// Visits all texts except the ones in images, which are separate drawings.
-fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
+fn each_text(group: &usvg::Group, visit: &mut dyn FnMut(&Text)) {
     for node in group.children() {
         match node {
-            usvg::Node::Group(g) => each_text(g, see),
-            usvg::Node::Text(t) => see(t),
+            usvg::Node::Group(g) => each_text(g, visit),
+            usvg::Node::Text(t) => visit(t),
             _ => {}
         }
         if !matches!(node, usvg::Node::Image(_)) {
-            node.subroots(|g| each_text(g, see));
+            node.subroots(|g| each_text(g, visit));
         }
     }
 }
@@ -123,27 +121,27 @@ fn each_text(group: &usvg::Group, see: &mut dyn FnMut(&Text)) {
 /// The drawing with an id for each text, by which [`divided`] finds it. Returns `None` if all texts have one.
 pub(super) fn with_ids(xml: &Document<'_>) -> Option<String> {
     let source = xml.input_text();
-    let (mut out, mut at) = (String::new(), 0);
     let lacks_id = |n: &Node<'_, '_>| n.has_tag_name((SVG, "text")) && n.attribute("id").is_none_or(str::is_empty);
-    for (i, node) in xml.descendants().filter(lacks_id).enumerate() {
+    let insertion = |(i, node): (usize, Node<'_, '_>)| {
         let start = node.range().start;
-        let name = source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
-        out += source.get(at..start + name)?;
-        let _ = write!(out, " id=\"{PIECE}text-{i}\"");
-        at = start + name;
-    }
-    (at > 0).then(|| out + &source[at..])
+        let at = start + source[start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/')?;
+        Some((at..at, format!(" id=\"{PIECE}text-{i}\"")))
+    };
+    let insertions: Vec<_> = xml.descendants().filter(lacks_id).enumerate().map(insertion).collect::<Option<_>>()?;
+    (!insertions.is_empty()).then(|| splice(source, insertions))
 }
 
+/// Divides one text.
 struct Divider<'a> {
     text: &'a Text,
     chooser: &'a Chooser,
     language: String,
     /// The fonts of texts, by their requested font and language.
-    named: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
+    fonts: &'a mut HashMap<(usvg::Font, String), Vec<TextFont>>,
     out: &'a mut Divided,
 }
 
+/// The positions of the letters of a chunk. The line runs to the right, or down in vertical text.
 struct Layout {
     /// The position of each letter along the line and across it.
     positions: Vec<(f64, f64)>,
@@ -169,8 +167,8 @@ impl Divider<'_> {
             return None;
         }
         let vertical = text.writing_mode() == WritingMode::TopToBottom;
-        let (mut out, mut offset) = (Vec::new(), 0);
-        let mut last = Some((0.0, 0.0));
+        // The number of characters in the chunks before, and the end of the last chunk, unless it is on a path.
+        let (mut out, mut offset, mut last) = (Vec::new(), 0, Some((0.0, 0.0)));
         for (chunk, (parts, mut letters)) in text.chunks().iter().zip(chunks) {
             let on_path = matches!(chunk.text_flow(), TextFlow::Path(_));
             if on_path && vertical {
@@ -183,23 +181,16 @@ impl Divider<'_> {
                 (false, (Some(x), Some(y))) => (x, y),
                 (false, (x, y)) => (x.unwrap_or(last?.0), y.unwrap_or(last?.1)),
             };
-            space(chunk, &mut letters);
-            let Some(layout) = self.layout(chunk, &letters, offset, vertical) else {
-                offset += count;
-                continue;
-            };
-            let along =
-                |(a, b): (f64, f64)| if vertical { (start.0 - b, start.1 + a) } else { (start.0 + a, start.1 + b) };
-            self.cut(
-                chunk,
-                &parts,
-                &letters,
-                &layout,
-                &|position| if on_path { (start.0 + position.0, position.1) } else { along(position) },
-                offset,
-                &mut out,
-            );
-            last = (!on_path).then(|| along(layout.end));
+            add_spacing(chunk, &mut letters);
+            if let Some(layout) = self.layout(chunk, &letters, offset, vertical) {
+                let place = |(along, across): (f64, f64)| match (on_path, vertical) {
+                    (true, _) => (start.0 + along, across),
+                    (false, true) => (start.0 - across, start.1 + along),
+                    (false, false) => (start.0 + along, start.1 + across),
+                };
+                self.cut(chunk, &parts, &letters, &layout, &place, offset, &mut out);
+                last = (!on_path).then(|| place(layout.end));
+            }
             offset += count;
         }
         out.sort_by_key(|p: &Piece| p.chars.start);
@@ -245,39 +236,33 @@ impl Divider<'_> {
         let features = features.join(",");
         let mut style = ShapingStyle { size: f64::from(size), features, variations, language: language.clone() };
         let db = &mut self.out.db;
-        let fonts = self.named.entry((span.font().clone(), language)).or_insert_with(|| {
+        let fonts = self.fonts.entry((span.font().clone(), language)).or_insert_with(|| {
             let faces = self.chooser.candidates(span.font(), db);
             faces.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
         });
         let look = Look::of_text(span.font());
         let is_small = span.small_caps() && fonts.first().is_some_and(|f| !f.has_small_capitals());
-        let whole = &chunk.text()[run.range.clone()];
-        let lower = |c: char| is_small && c.is_lowercase();
-        let mut at = run.range.start;
+        // Stretches of letters with their bytes, and `true` for those drawn as small capitals.
         let mut stretches: Vec<(bool, Range<usize>)> = Vec::new();
-        for c in whole.chars() {
-            let range = at..at + c.len_utf8();
-            at = range.end;
+        for (i, c) in chunk.text()[run.range.clone()].char_indices() {
+            let (start, small) = (run.range.start + i, is_small && c.is_lowercase());
             match stretches.last_mut() {
-                Some((small, before)) if *small == lower(c) => before.end = range.end,
-                _ => stretches.push((lower(c), range)),
+                Some((same, stretch)) if *same == small => stretch.end = start + c.len_utf8(),
+                _ => stretches.push((small, start..start + c.len_utf8())),
             }
         }
         if run.rtl {
             stretches.reverse();
         }
         for (small, range) in stretches {
-            style.size = f64::from(size) * if small { SMALL } else { 1.0 };
+            style.size = f64::from(size) * if small { SMALL_CAPITALS } else { 1.0 };
             let run = Run { range, ..run.clone() };
             // Capitals may have another number of bytes.
-            let (line, origins) = if small { capitals(chunk.text(), &run.range) } else { Default::default() };
-            let (line, set) = if small {
-                (line.as_str(), Run { range: 0..line.len(), ..run.clone() })
-            } else {
-                (chunk.text(), run.clone())
-            };
+            let (capitals, origins) = if small { capitals(chunk.text(), &run.range) } else { Default::default() };
+            let (line, range) = if small { (&*capitals, 0..capitals.len()) } else { (chunk.text(), run.range.clone()) };
+            let shown = Run { range, ..run.clone() };
             let origin = |b: usize| if small { origins[b] } else { b };
-            for found in shape_with_fallback(line, &set, fonts, (&style, look), (self.chooser, db)) {
+            for found in shape_with_fallback(line, &shown, fonts, (&style, look), (self.chooser, db)) {
                 let face = fonts[found.font].face.filter(|_| found.font > 0);
                 let part = parts.len();
                 letters.extend(found.clusters.into_iter().map(|(bytes, advance)| Letter {
@@ -325,7 +310,8 @@ impl Divider<'_> {
         Some(Layout { positions, end: (before + advance + shifts[last].0, shifts[last].1) })
     }
 
-    /// Cuts a chunk into pieces.
+    /// Cuts a chunk into pieces. `place` maps a position along and across the line to coordinates, and `offset` is the number of characters
+    /// before the chunk.
     #[expect(clippy::too_many_arguments, reason = "the properties of one chunk")]
     fn cut(
         &mut self,
@@ -333,7 +319,7 @@ impl Divider<'_> {
         parts: &[Part],
         letters: &[Letter],
         layout: &Layout,
-        placed: &dyn Fn((f64, f64)) -> (f64, f64),
+        place: &dyn Fn((f64, f64)) -> (f64, f64),
         offset: usize,
         out: &mut Vec<Piece>,
     ) {
@@ -345,10 +331,12 @@ impl Divider<'_> {
         let mut start = 0;
         for end in 1..=letters.len() {
             let part = &parts[letters[start].part];
-            let turned = before_letters(&chunk.text()[part.run.range.clone()], part.run.rtl);
+            let mark = direction_mark(&chunk.text()[part.run.range.clone()], part.run.rtl);
             let span = &chunk.spans()[part.span];
-            let spaced = !turned.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some());
-            let goes_on = |next: &Letter| next.part == letters[start].part && near(shift(end), shift(start)) && !spaced;
+            // Spacing would add to the mark, too, so each letter is placed by itself.
+            let is_apart = !mark.is_empty() && (span.letter_spacing() != 0.0 || span.text_length().is_some());
+            let goes_on =
+                |next: &Letter| next.part == letters[start].part && near(shift(end), shift(start)) && !is_apart;
             if letters.get(end).is_some_and(goes_on) {
                 continue;
             }
@@ -356,18 +344,18 @@ impl Divider<'_> {
             let bytes = group.iter().map(|l| l.bytes.start).min().unwrap_or(0)
                 ..group.iter().map(|l| l.bytes.end).max().unwrap_or(0);
             let chars = |b: usize| offset + chunk.text()[..b].chars().count();
-            let (x, y) = placed(layout.positions[start]);
+            let (x, y) = place(layout.positions[start]);
             let mut attributes = match chunk.text_flow() {
                 TextFlow::Linear => format!(" x=\"{x}\" y=\"{y}\""),
                 TextFlow::Path(_) if y == 0.0 => format!(" x=\"{x}\""),
                 TextFlow::Path(_) => format!(" x=\"{x}\" dy=\"{y}\""),
             };
-            attributes += &self.style(span, part, group, spaced);
+            attributes += &self.style(span, part, group, is_apart);
             // usvg adds no space after the last letter, where an underline would lack it, so an invisible character follows.
             let around = match part.run.rtl {
                 // The mark at the end keeps white space in the direction of the line.
-                true if !turned.is_empty() => [turned, "\u{200f}"],
-                _ if span.letter_spacing() == 0.0 || spaced => [turned, ""],
+                true if !mark.is_empty() => [mark, "\u{200f}"],
+                _ if span.letter_spacing() == 0.0 || is_apart => [mark, ""],
                 true => ["\u{200f}", ""],
                 false => ["", "\u{200e}"],
             };
@@ -376,32 +364,31 @@ impl Divider<'_> {
         }
     }
 
-    /// The attributes of a piece except its position.
-    fn style(&mut self, span: &TextSpan, part: &Part, letters: &[Letter], spaced: bool) -> String {
+    /// The attributes of a piece except its position. `is_apart` is `true` for a piece of one letter, placed without spacing.
+    fn style(&mut self, span: &TextSpan, part: &Part, letters: &[Letter], is_apart: bool) -> String {
         let mut style = " style=\"text-anchor:start".to_owned();
         if let Some(face) = part.face
             && let Some(n) = self.font(span, face, part.run.writing)
         {
             let _ = write!(style, ";font-family:{PIECE}{n}");
         }
-        if spaced {
+        if is_apart {
             style += ";letter-spacing:0";
         }
         if part.small {
-            let _ = write!(style, ";font-size:{}px", f64::from(span.font_size().get()) * SMALL);
+            let _ = write!(style, ";font-size:{}px", f64::from(span.font_size().get()) * SMALL_CAPITALS);
         }
         style.push('"');
         let natural: f64 = letters.iter().map(|l| l.natural).sum();
-        let hung = hangs(part.run.writing) && span.letter_spacing() != 0.0;
+        let advance: f64 = letters.iter().map(|l| l.advance).sum();
+        let is_ignored = ignores_spacing(part.run.writing) && span.letter_spacing() != 0.0;
         match (span.text_length(), span.length_adjust()) {
-            (length, LengthAdjust::Spacing) if (length.is_some() || hung) && !spaced && letters.len() > 1 => {
-                let all: f64 = letters.iter().map(|l| l.advance).sum();
-                let last = letters.last().map_or(0.0, |l| l.advance - l.natural);
-                let _ = write!(style, " textLength=\"{}\"", all - last);
+            (length, LengthAdjust::Spacing) if (length.is_some() || is_ignored) && !is_apart && letters.len() > 1 => {
+                let after_last = letters.last().map_or(0.0, |l| l.advance - l.natural);
+                let _ = write!(style, " textLength=\"{}\"", advance - after_last);
             }
             (Some(_), LengthAdjust::SpacingAndGlyphs) if natural > 0.0 => {
-                let all: f64 = letters.iter().map(|l| l.advance).sum();
-                let _ = write!(style, " textLength=\"{all}\" lengthAdjust=\"spacingAndGlyphs\"");
+                let _ = write!(style, " textLength=\"{advance}\" lengthAdjust=\"spacingAndGlyphs\"");
             }
             _ => {}
         }
@@ -411,11 +398,11 @@ impl Divider<'_> {
     /// The index in [`Divided::fonts`] of a piece's fonts. For each font that replaces the text's face, that face is in the database once
     /// more.
     fn font(&mut self, span: &TextSpan, face: ID, writing: Writing) -> Option<usize> {
-        let first = self.named.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
+        let first = self.fonts.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
         // A font without colours may have letters for emoji, so usvg must not look into it.
-        let of_text = if writing == Writing::Emoji { face } else { first };
+        let for_heights = if writing == Writing::Emoji { face } else { first };
         let db = Arc::make_mut(&mut self.out.db);
-        let info = db.face(of_text)?.clone();
+        let info = db.face(for_heights)?.clone();
         let known = self.out.fonts.iter().position(|(a, b)| {
             *b == face
                 && db.face(*a).is_some_and(|a| a.post_script_name == info.post_script_name && a.index == info.index)
@@ -428,7 +415,7 @@ impl Divider<'_> {
 }
 
 /// The size of synthetic small capitals as a fraction of the font size, as in browsers (CSS Fonts 4, section 6.6, leaves it open).
-const SMALL: f64 = 0.7;
+const SMALL_CAPITALS: f64 = 0.7;
 
 /// Letters of a text as capitals, and the position in the text of each of their bytes and of the end.
 fn capitals(text: &str, range: &Range<usize>) -> (String, Vec<usize>) {
@@ -450,16 +437,17 @@ fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
 
 /// Returns `true` if usvg would shape a chunk differently from its parts.
 fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
-    let spaced = |p: &Part| hangs(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
+    let lacks_spacing = |p: &Part| ignores_spacing(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
     let mixed = |a: &Part, b: &Part| {
         let (x, y) = (&a.run, &b.run);
         x.level_run == y.level_run && x.writing != y.writing && !(x.writing.is_plain() && y.writing.is_plain())
     };
-    parts.iter().any(|p| p.face.is_some() || p.small || spaced(p)) || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
+    parts.iter().any(|p| p.face.is_some() || p.small || lacks_spacing(p))
+        || parts.windows(2).any(|w| mixed(&w[0], &w[1]))
 }
 
 /// Adds the spacing of a chunk to its letters, as usvg does.
-fn space(chunk: &TextChunk, letters: &mut [Letter]) {
+fn add_spacing(chunk: &TextChunk, letters: &mut [Letter]) {
     let count = letters.len();
     let span = |at: usize| chunk.spans().iter().find(|s| (s.start()..s.end()).contains(&at));
     for (i, l) in letters.iter_mut().enumerate() {
@@ -475,10 +463,10 @@ fn space(chunk: &TextChunk, letters: &mut [Letter]) {
     }
     for span in chunk.spans() {
         let Some(target) = span.text_length().map(f64::from) else { continue };
-        let within = |l: &&mut Letter| (span.start()..span.end()).contains(&l.bytes.start);
-        let natural: Vec<f64> = letters.iter_mut().filter(within).map(|l| l.natural).collect();
+        let is_in_span = |l: &&mut Letter| (span.start()..span.end()).contains(&l.bytes.start);
+        let natural: Vec<f64> = letters.iter_mut().filter(is_in_span).map(|l| l.natural).collect();
         let (width, gaps) = (natural.iter().sum::<f64>(), natural.len().saturating_sub(1) as f64);
-        for l in letters.iter_mut().filter(within) {
+        for l in letters.iter_mut().filter(is_in_span) {
             l.advance = match span.length_adjust() {
                 LengthAdjust::Spacing if gaps > 0.0 => l.natural + (target - width) / gaps,
                 LengthAdjust::Spacing => l.natural,
@@ -497,14 +485,14 @@ fn takes_spacing(script: Script) -> bool {
 }
 
 /// Returns `true` if usvg ignores letter spacing for a script, unlike browsers.
-fn hangs(writing: Writing) -> bool {
+fn ignores_spacing(writing: Writing) -> bool {
     use Script as S;
-    let hung = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
-    matches!(writing, Writing::Script(script) if hung.contains(&script))
+    let scripts = [S::Devanagari, S::Bengali, S::Gurmukhi, S::Modi, S::Sharada, S::Syloti_Nagri, S::Tirhuta, S::Ogham];
+    matches!(writing, Writing::Script(script) if scripts.contains(&script))
 }
 
 /// The direction mark before a piece whose letters would not run in one direction by themselves.
-fn before_letters(text: &str, rtl: bool) -> &'static str {
+fn direction_mark(text: &str, rtl: bool) -> &'static str {
     let goes_left = |c: char| matches!(c, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{fefc}' | '\u{10800}'..='\u{10fff}' | '\u{1e800}'..='\u{1efff}');
     match rtl {
         true if !text.chars().all(char::is_alphabetic) => "\u{202e}",
@@ -513,6 +501,7 @@ fn before_letters(text: &str, rtl: bool) -> &'static str {
     }
 }
 
+/// Writes one text with its pieces.
 struct Writer<'a> {
     source: &'a str,
     /// The characters that usvg shows.
@@ -520,6 +509,7 @@ struct Writer<'a> {
     /// Index of the next character.
     next: usize,
     pieces: &'a [Piece],
+    /// Rotation of each character, in degrees.
     rotate: &'a [f32],
     /// Start and end tags of the elements from a `textPath` inwards. usvg puts only the first piece in a `textPath` on the path, so each
     /// piece gets a new one.
@@ -536,11 +526,10 @@ impl Writer<'_> {
         }
         let mut out = String::new();
         let mut at = 0;
+        let tag_start = node.range().start;
         for a in node.attributes().filter(|a| matches!(a.name(), "x" | "y" | "dx" | "dy" | "rotate" | "space")) {
-            let range =
-                a.range().start.checked_sub(node.range().start)?..a.range().end.checked_sub(node.range().start)?;
-            out += tag.get(at..range.start)?;
-            at = range.end;
+            out += tag.get(at..a.range().start.checked_sub(tag_start)?)?;
+            at = a.range().end.checked_sub(tag_start)?;
         }
         out += tag.get(at..)?.strip_suffix('>')?;
         out += if node.has_tag_name((SVG, "text")) { " xml:space=\"preserve\">" } else { ">" };
@@ -573,7 +562,7 @@ impl Writer<'_> {
         for c in text.chars() {
             let is_space = |c: char| matches!(c, ' ' | '\t' | '\n' | '\r');
             match self.shown.get(self.next) {
-                Some(shown) if *shown == c || is_space(*shown) && is_space(c) => {}
+                Some(shown) if *shown == c || (is_space(*shown) && is_space(c)) => {}
                 _ if is_space(c) => continue,
                 _ => return None,
             }
@@ -599,19 +588,20 @@ impl Writer<'_> {
         Some(stretches.into_iter().filter(|s| !is_empty(s)).map(|s| self.stretch(s)).collect())
     }
 
+    /// Writes a stretch as a `tspan`.
     fn stretch(&self, stretch: Stretch) -> String {
         let Piece { chars, attributes, small, around: [before, after] } = &self.pieces[stretch.piece];
         let Stretch { chars: written, letters, mut turns, .. } = stretch;
-        let starts = written.start == chars.start;
+        let is_start = written.start == chars.start;
         let mut out = String::new();
-        if starts {
+        if is_start {
             self.on_path.iter().rev().for_each(|(_, end)| out += end);
             self.on_path.iter().for_each(|(start, _)| out += start);
         }
         // A piece that continues in the next element gets no position there.
         let style = attributes.find(" style=").unwrap_or(0);
-        let _ = write!(out, "<tspan{}", if starts { attributes } else { &attributes[style..] });
-        let before = if starts { before } else { "" };
+        let _ = write!(out, "<tspan{}", if is_start { attributes } else { &attributes[style..] });
+        let before = if is_start { before } else { "" };
         if self.rotate.iter().any(|r| *r != 0.0) {
             turns.splice(..0, before.chars().map(|_| 0.0));
             let _ = write!(out, " rotate=\"{}\"", turns.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
@@ -625,6 +615,7 @@ impl Writer<'_> {
 
 /// A part of a piece within one element.
 struct Stretch {
+    /// Index of the piece.
     piece: usize,
     /// Indices among the characters of the text.
     chars: Range<usize>,

@@ -79,13 +79,11 @@ impl ReadOptions {
 
 /// Decodes an SVG or svgz file. `name` identifies it in errors.
 pub(crate) fn text(data: &[u8], name: &str, budget: &Budget) -> Result<String, Error> {
-    let bytes = match unpacked(data, name, budget)? {
-        Some(unpacked) => Cow::Owned(unpacked),
-        None => {
-            let counted = budget.take(Limit::Bytes, data.len() as f64);
-            counted.map_err(|e| Error::limit(name, "its text takes", e))?;
-            Cow::Borrowed(data)
-        }
+    let bytes = if let Some(unpacked) = unpacked(data, name, budget)? {
+        Cow::Owned(unpacked)
+    } else {
+        budget.take(Limit::Bytes, data.len() as f64).map_err(|e| Error::limit(name, "its text takes", e))?;
+        Cow::Borrowed(data)
     };
     decoded(bytes).map_err(|(at, problem)| Error::input(format!("{name}: byte {at}"), problem))
 }
@@ -131,6 +129,7 @@ pub fn compressed(text: &str) -> std::io::Result<Vec<u8>> {
     gzipped(text.as_bytes())
 }
 
+/// Packs data with gzip.
 fn gzipped(data: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     out.write_all(data)?;
@@ -138,7 +137,7 @@ fn gzipped(data: &[u8]) -> std::io::Result<Vec<u8>> {
 }
 
 /// Number of bytes within which the XML declaration must end.
-const DECLARATION: usize = 256;
+const MAX_DECLARATION: usize = 256;
 
 /// Decodes `bytes`. If they are not UTF-8, the declaration in the text is changed to UTF-8.
 ///
@@ -153,13 +152,11 @@ pub(super) fn decoded(bytes: Cow<'_, [u8]>) -> Result<String, (usize, String)> {
     };
     let (text, malformed) = encoding.decode_with_bom_removal(&bytes);
     if malformed {
-        return Err((
-            malformed_at(encoding, &bytes),
-            format!("this is not {} text; save it as UTF-8", encoding.name()),
-        ));
+        let problem = format!("this is not {} text; save it as UTF-8", encoding.name());
+        return Err((malformed_at(encoding, &bytes), problem));
     }
     let mut text = text.into_owned();
-    if let Some(name) = declared(text.as_bytes()) {
+    if let Some(name) = declared_encoding(text.as_bytes()) {
         text.replace_range(name, "UTF-8");
     }
     Ok(text)
@@ -172,7 +169,7 @@ fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, S
         [0xfe, 0xff, ..] | [0, b'<', ..] => return Ok(Some(UTF_16BE)),
         _ => {}
     }
-    let Some(range) = declared(bytes) else { return Ok(None) };
+    let Some(range) = declared_encoding(bytes) else { return Ok(None) };
     let label = &bytes[range.clone()];
     let encoding = Encoding::for_label(label).ok_or_else(|| {
         (range.start, format!("the encoding `{}` is unknown; save the file as UTF-8", String::from_utf8_lossy(label)))
@@ -182,10 +179,12 @@ fn foreign_encoding(bytes: &[u8]) -> Result<Option<&'static Encoding>, (usize, S
 }
 
 /// The range of the encoding's name in the XML declaration.
-fn declared(bytes: &[u8]) -> Option<Range<usize>> {
-    let head = &bytes[..bytes.len().min(DECLARATION)];
+fn declared_encoding(bytes: &[u8]) -> Option<Range<usize>> {
+    const BEGIN: &[u8] = b"<?xml";
+    let head = &bytes[..bytes.len().min(MAX_DECLARATION)];
+    // A byte order mark may precede the declaration.
     let start = head.strip_prefix(b"\xef\xbb\xbf").map_or(0, |_| 3);
-    let end = start + memchr::memmem::find(head.get(start..)?.strip_prefix(b"<?xml")?, b"?>")? + 5;
+    let end = start + memchr::memmem::find(head.get(start..)?.strip_prefix(BEGIN)?, b"?>")? + BEGIN.len();
     let key = start + memchr::memmem::find(&head[start..end], b"encoding")? + b"encoding".len();
     let rest = &head[key..end];
     let open = rest.iter().position(|b| matches!(b, b'"' | b'\''))?;
@@ -196,6 +195,7 @@ fn declared(bytes: &[u8]) -> Option<Range<usize>> {
     Some(key + open + 1..key + open + 1 + length)
 }
 
+/// The position of the first malformed byte.
 fn malformed_at(encoding: &'static Encoding, bytes: &[u8]) -> usize {
     let mut decoder = encoding.new_decoder_with_bom_removal();
     let mut out = String::with_capacity(decoder.max_utf8_buffer_length(bytes.len()).unwrap_or_default());

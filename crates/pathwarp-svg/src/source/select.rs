@@ -2,6 +2,7 @@
 
 use super::elements::ElementId;
 use super::text::SourceText;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
@@ -59,6 +60,7 @@ impl Selection {
         self.part.is_none() && self.select.is_empty() && self.exclude.is_empty() && self.guides.is_empty()
     }
 
+    /// The union of selections, with the guides of the last.
     pub(crate) fn union<'a>(source: &SourceText, all: impl Iterator<Item = &'a Self>) -> Self {
         let mut sum = Self { part: Some(Elements(vec![false; source.elements.len()].into())), ..Self::default() };
         for one in all {
@@ -78,15 +80,16 @@ impl Selection {
         let mut excluded: Vec<bool> = Vec::with_capacity(source.elements.len());
         for (e, el) in source.elements.iter().enumerate() {
             // In document order, parents precede their children.
-            let (inside_selected, inside_excluded) = el.parent.map_or((false, false), |p| (selected[p], excluded[p]));
-            selected.push(inside_selected || self.select.is_empty() || hits(&self.select, e));
+            let is_in = |set: &[bool]| el.parent.is_some_and(|p| set[p]);
+            selected.push(is_in(&selected) || self.select.is_empty() || hits(&self.select, e));
             let is_guide = || e > 0 && self.guides.iter().any(|g| is_named(source, e, g));
-            excluded.push(inside_excluded || hits(&self.exclude, e) || is_guide());
+            excluded.push(is_in(&excluded) || hits(&self.exclude, e) || is_guide());
         }
         selected.iter().zip(&excluded).map(|(s, x)| *s && !*x).collect()
     }
 }
 
+/// Returns `true` if a selector matches an element.
 pub(crate) fn matches_any(source: &SourceText, selector: &str) -> bool {
     (0..source.elements.len()).any(|e| matches(source, e, selector))
 }
@@ -100,8 +103,8 @@ pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
             out.extend(classes.split_ascii_whitespace().map(|c| format!(".{c}")));
         } else {
             let mark = if selector.starts_with('#') { "#" } else { "" };
-            let names = [source.attr(e, "id"), source.label(e)].into_iter().flatten().map(|n| n.to_string());
-            let names = names.chain(source.elements[e].title.iter().map(ToString::to_string));
+            let title = source.elements[e].title.as_deref().map(Cow::Borrowed);
+            let names = [source.attr(e, "id"), source.label(e), title].into_iter().flatten();
             out.extend(names.filter(|n| !n.trim().is_empty()).map(|n| format!("{mark}{n}")));
         }
     }
@@ -110,6 +113,7 @@ pub(crate) fn candidates(source: &SourceText, selector: &str) -> Vec<String> {
     out
 }
 
+/// Returns `true` if a selector matches an element.
 fn matches(source: &SourceText, e: ElementId, selector: &str) -> bool {
     if let Some(id) = selector.strip_prefix("[id=").and_then(|s| s.strip_suffix(']')) {
         return source.attr(e, "id").is_some_and(|v| v == id);

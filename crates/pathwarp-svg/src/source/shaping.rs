@@ -2,8 +2,7 @@
 
 use super::faces::Look;
 use super::fallback::Wanted;
-use super::fonts::{self, Bytes, Chooser};
-use super::fonts::{FontFile, FontGuard};
+use super::fonts::{self, Bytes, Chooser, FontFile, FontGuard};
 use super::images::{Missing, Rejected};
 use super::read::ReadOptions;
 use pathwarp_text::{Error, Font, FontRun, Run, Variation, Writing, features, runs, shape_run};
@@ -12,13 +11,14 @@ use skrifa::{FontRef, Tag};
 use std::sync::Arc;
 use usvg::fontdb::{Database, ID, Source};
 
+/// A font of a text.
 pub(super) struct TextFont {
     /// The face in the database; `None` for a file that a user gave.
     pub(super) face: Option<ID>,
-    pub(super) data: Bytes,
-    pub(super) index: u32,
+    data: Bytes,
+    index: u32,
     /// The writing for which it was found; `None` if the text names it.
-    pub(super) only: Option<Writing>,
+    only: Option<Writing>,
 }
 
 impl TextFont {
@@ -31,12 +31,14 @@ impl TextFont {
         Some(Self { face: Some(face), data, index: info.index, only })
     }
 
+    /// Returns `true` if the font draws small capitals (OpenType's feature `smcp`).
     pub(super) fn has_small_capitals(&self) -> bool {
         let font = FontRef::from_index((*self.data).as_ref(), self.index).ok();
         let features = font.and_then(|f| f.gsub().ok()?.feature_list().ok());
         features.is_some_and(|all| all.feature_records().iter().any(|r| r.feature_tag() == Tag::new(b"smcp")))
     }
 
+    /// The font at the style's positions on axes. Returns `None` if it is damaged.
     fn font(&self, style: &ShapingStyle) -> Option<Font<'_>> {
         let font = Font::for_shaping((*self.data).as_ref(), self.index).ok()?;
         let axes = font.axes();
@@ -45,10 +47,7 @@ impl TextFont {
             Variation::new(tag, f64::from(*value).clamp(axis.min, axis.max)).ok()
         };
         let font = font.with_variations(&style.variations.iter().filter_map(position).collect::<Vec<_>>()).ok()?;
-        Some(match self.only {
-            Some(writing) => font.only_for(writing),
-            None => font,
-        })
+        Some(if let Some(writing) = self.only { font.only_for(writing) } else { font })
     }
 }
 
@@ -73,7 +72,7 @@ pub(super) fn shape_with_fallback(
     (chooser, db): (&Chooser, &mut Arc<Database>),
 ) -> Vec<FontRun> {
     /// Limit on rounds that add a font for a run. Real texts need one or two.
-    const MOST: usize = 8;
+    const MAX_ROUNDS: usize = 8;
     let features = features(&style.features).unwrap_or_default();
     let mut add = |letters: &str, fonts: &mut Vec<TextFont>| {
         let tried = |f: &&TextFont| f.only.is_none_or(|w| w == run.writing);
@@ -90,8 +89,9 @@ pub(super) fn shape_with_fallback(
     if run.writing == Writing::Emoji && !fonts.iter().any(|f| f.only == Some(Writing::Emoji)) {
         add(&line[run.range.clone()], fonts);
     }
+    // Clusters that no font has.
     let mut absent: Vec<std::ops::Range<usize>> = Vec::new();
-    for _ in 0..MOST {
+    for _ in 0..MAX_ROUNDS {
         // Unreadable fonts are skipped, but keep their indices.
         let read: Vec<Option<Font<'_>>> = fonts.iter().map(|f| f.font(style)).collect();
         let indices: Vec<usize> = (0..read.len()).filter(|i| read[*i].is_some()).collect();

@@ -1,5 +1,6 @@
 //! The source text with its elements, for looking up names and attributes. Patches refer to positions in it.
 
+use super::edit::splice;
 use super::elements::{
     Attr, Element, ElementId, INKSCAPE, Namespace, SVG, Table, Unpatchable, XLINK, declared, is_animation, is_tracked,
 };
@@ -11,7 +12,6 @@ use pathwarp_reader::xml::{self, escape};
 use pathwarp_reader::{Change, Linked, Plain, Words, resolve};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use usvg::roxmltree;
@@ -28,6 +28,7 @@ pub(crate) struct SourceText {
     pub(crate) css: String,
     /// The properties that the style sheets declare.
     declared: BTreeSet<String>,
+    /// `true` if the drawing has animations.
     pub(crate) animated: bool,
     /// Reason why the text cannot be patched in place.
     pub(crate) unpatchable: Option<Unpatchable>,
@@ -47,6 +48,7 @@ pub(crate) struct SourceText {
     pub(crate) foreign: Vec<(ElementId, ElementId)>,
     /// Mesh gradients by id.
     pub(crate) meshes: HashMap<String, MeshGradient>,
+    /// Temporary ids in the document that usvg reads.
     marks: Marks,
     /// Outlines of `path` elements, read ahead for large drawings.
     pub(crate) ahead: Ahead,
@@ -91,11 +93,9 @@ impl SourceText {
     pub(crate) fn from_plain(doc: &roxmltree::Document<'_>, plain: Plain, name: &str) -> Result<Self, Error> {
         let root = doc.root_element();
         let Some(Table { elements, css, unpatchable }) = Table::read(doc) else {
-            let at = doc.text_pos_at(root.range().start);
-            return Err(Error::input(
-                format!("{name}:{}:{}", at.row, at.col),
-                format!("the root element is <{}>, not <svg>", root.tag_name().name()),
-            ));
+            let start = doc.text_pos_at(root.range().start);
+            let place = format!("{name}:{}:{}", start.row, start.col);
+            return Err(Error::input(place, format!("the root element is <{}>, not <svg>", root.tag_name().name())));
         };
         Ok(Self {
             text: doc.input_text().to_owned(),
@@ -139,12 +139,8 @@ impl SourceText {
         if self.text.len() < WORTH_THREADS {
             return f();
         }
-        let read = || {
-            // Don't read inside `get_or_init`: a thread waiting for others may run a task that needs the outlines, too.
-            let outlines = read_outlines(&self.text, &self.elements);
-            let _ = self.ahead.set(outlines);
-        };
-        both(f, read).0
+        // Don't read inside `get_or_init`: a thread waiting for others may run a task that needs the outlines, too.
+        both(f, || self.ahead.set(read_outlines(&self.text, &self.elements))).0
     }
 
     /// The element's style attribute as results have it, unless a warp changes it.
@@ -161,6 +157,7 @@ impl SourceText {
         self.originals.get(next).is_none_or(|o| e.range.start < o.range.start)
     }
 
+    /// The whole text as it is in the file.
     pub(crate) fn as_in_file(&self) -> Cow<'_, str> {
         self.part_in_file(0..self.text.len())
     }
@@ -198,8 +195,8 @@ impl SourceText {
         self.by_id.get_or_init(|| {
             let mut out: HashMap<String, Vec<ElementId>> = HashMap::new();
             for (i, e) in self.elements.iter().enumerate() {
-                if let Some(v) = e.attr(&self.text, "id").filter(|v| !v.is_empty()) {
-                    out.entry(v.into_owned()).or_default().push(i);
+                if let Some(id) = e.attr(&self.text, "id").filter(|id| !id.is_empty()) {
+                    out.entry(id.into_owned()).or_default().push(i);
                 }
             }
             out
@@ -213,6 +210,7 @@ impl SourceText {
         self.by_id().get(id)?.first().copied()
     }
 
+    /// The mesh gradient that an element defines.
     pub(crate) fn mesh(&self, e: ElementId) -> Option<&MeshGradient> {
         self.meshes.get(&*self.attr(e, "id")?).filter(|_| mesh::is_mesh(&self.elements[e].tag))
     }
@@ -267,6 +265,7 @@ impl SourceText {
         known.get(block).map_or(0, |before| before + count(block * STEP, at))
     }
 
+    /// The value of an attribute without a namespace.
     pub(crate) fn attr(&self, e: ElementId, name: &str) -> Option<Cow<'_, str>> {
         self.elements.get(e)?.attr(&self.text, name)
     }
@@ -297,6 +296,7 @@ impl SourceText {
     /// Returns `true` if an attribute such as `filterUnits`, on the element or the chain of its references, specifies user space; `None` if
     /// it is not given.
     pub(crate) fn in_user_space(&self, e: ElementId, units: &str) -> Option<bool> {
+        /// Number of references that are followed, far more than files have, in case they form a circle.
         const MAX_LINKS: usize = 16;
         let mut chain = std::iter::successors(Some(e), |&e| self.target(e)).take(MAX_LINKS);
         chain.find_map(|e| self.attr(e, units)).map(|u| u.trim() == "userSpaceOnUse")
@@ -312,6 +312,7 @@ impl SourceText {
         std::iter::successors(Some(e), |&e| self.elements.get(e).and_then(|e| e.parent))
     }
 
+    /// The elements inside an element, in document order.
     pub(crate) fn descendants(&self, e: ElementId) -> impl Iterator<Item = ElementId> + '_ {
         let end = self.elements[e].range.end;
         (e + 1..self.elements.len()).take_while(move |&d| self.elements[d].range.start < end)
@@ -322,6 +323,7 @@ impl SourceText {
         self.ancestors(e).skip(1).find(|&a| self.elements[a].tag == "svg")
     }
 
+    /// Inkscape's label of an element.
     pub(crate) fn label(&self, e: ElementId) -> Option<Cow<'_, str>> {
         self.attr_in(e, Namespace::Inkscape, "label")
     }
@@ -347,28 +349,22 @@ impl SourceText {
 
     /// The text with an id for every graphics element that has none: its [name](Self::display_name).
     pub(crate) fn with_ids(&self) -> String {
-        let nameless = |e: &ElementId| {
-            let element = &self.elements[*e];
-            is_tracked(&element.tag) && element.find(&self.text, "id").is_none()
+        let lacks_id = |e: &&Element| is_tracked(&e.tag) && e.find(&self.text, "id").is_none();
+        let insertion = |(e, element): (ElementId, &Element)| {
+            let at = element.qname.end;
+            lacks_id(&element).then(|| (at..at, format!(" id=\"{}\"", escape(&self.display_name(e)))))
         };
-        let (mut out, mut done) = (String::with_capacity(self.text.len()), 0);
-        for e in (0..self.elements.len()).filter(nameless) {
-            let at = self.elements[e].qname.end;
-            // Elements from the same entity share their positions.
-            if at > done {
-                out.push_str(&self.text[done..at]);
-                let _ = write!(out, " id=\"{}\"", escape(&self.display_name(e)));
-                done = at;
-            }
-        }
-        out.push_str(&self.text[done..]);
-        out
+        let mut insertions: Vec<_> = self.elements.iter().enumerate().filter_map(insertion).collect();
+        // Elements from the same entity share their positions.
+        insertions.dedup_by_key(|(at, _)| at.start);
+        splice(&self.text, insertions)
     }
 
     pub(crate) fn has_css(&self) -> bool {
         !self.css.trim().is_empty()
     }
 
+    /// Returns `true` if a style sheet declares a property.
     pub(crate) fn css_declares(&self, property: &str) -> bool {
         self.declared.contains(property)
     }
@@ -384,7 +380,7 @@ impl SourceText {
     /// attributes; `None` if that changes nothing. Also returns the temporary ids.
     pub(crate) fn instrumented(&self, styles: impl Iterator<Item = (ElementId, String)>) -> (Option<String>, Marks) {
         let mut marks = Marks { stem: stem(&self.text), elements: Vec::new() };
-        let links = links(&self.text); // Doubled ids stay if something may refer to them.
+        let links = links(&self.text);
         let mut patches: Vec<(Range<usize>, String)> = Vec::new();
         for (i, e) in self.elements.iter().enumerate() {
             if !is_tracked(&e.tag) {
@@ -392,8 +388,9 @@ impl SourceText {
             }
             let id: Option<&Attr> = e.id_attr(&self.text);
             let value = id.map(|a| a.value(&self.text));
-            let shared = |id: &str| self.by_id().get(id).is_some_and(|v| v.len() > 1);
-            if value.is_none_or(|id| id.is_empty() || shared(&id) && !links.contains(&*id)) {
+            let is_shared = |id: &str| self.by_id().get(id).is_some_and(|v| v.len() > 1);
+            // A shared id stays if something may refer to it.
+            if value.is_none_or(|id| id.is_empty() || (is_shared(&id) && !links.contains(&*id))) {
                 let temporary = format!("{}{i}", marks.stem);
                 patches.push(match id {
                     Some(a) => (a.value_range.clone(), temporary),
@@ -418,18 +415,7 @@ impl SourceText {
             return (None, marks);
         }
         patches.sort_by_key(|(at, _)| at.start);
-        let mut out = String::with_capacity(self.text.len() + patches.len() * 16);
-        let mut done = 0;
-        for (at, new) in patches {
-            // Elements from the same entity share a position; mark only the first.
-            if at.start >= done {
-                out.push_str(&self.text[done..at.start]);
-                out.push_str(&new);
-                done = at.end;
-            }
-        }
-        out.push_str(&self.text[done..]);
-        (Some(out), marks)
+        (Some(splice(&self.text, patches)), marks)
     }
 }
 
@@ -455,12 +441,12 @@ pub(super) fn plain<T>(
             }
             Err(why) => why,
         };
-        let known = undeclared.as_mut().filter(|u| u.len() < MAX_PREFIXES);
-        if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(known)) = (&why, known)
-            && let Some(mended) = with_prefix(&text, prefix)
+        let added = undeclared.as_mut().filter(|added| added.len() < MAX_PREFIXES);
+        if let (roxmltree::Error::UnknownNamespace(prefix, _), Some(added)) = (&why, added)
+            && let Some(declared) = with_prefix(&text, prefix)
         {
-            known.push(prefix.clone());
-            text = mended;
+            added.push(prefix.clone());
+            text = declared;
             continue;
         }
         xml::parse_checked(&text, name)?;
@@ -485,18 +471,15 @@ fn stem(text: &str) -> String {
     stem
 }
 
-/// Collects all that looks like a reference. False positives do no harm.
+/// Collects the ids in all that looks like a reference. False positives do no harm.
 pub(crate) fn links(text: &str) -> HashSet<&str> {
-    text.match_indices('#')
-        .map(|(i, _)| {
-            let rest = &text[i + 1..];
-            &rest[..rest.find(|c: char| !(c.is_alphanumeric() || "-_.:".contains(c))).unwrap_or(rest.len())]
-        })
-        .collect()
+    let is_end = |c: char| !(c.is_alphanumeric() || "-_.:".contains(c));
+    let rests = text.match_indices('#').map(|(i, _)| &text[i + 1..]);
+    rests.map(|rest| rest.split(is_end).next().unwrap_or_default()).collect()
 }
 
 /// Prefixes that Inkscape knows without a declaration.
-const KNOWN: [(&str, &str); 8] = [
+const KNOWN_PREFIXES: [(&str, &str); 8] = [
     ("inkscape", INKSCAPE),
     ("sodipodi", "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"),
     ("svg", SVG),
@@ -509,10 +492,9 @@ const KNOWN: [(&str, &str); 8] = [
 
 /// Declares a prefix in the root element. Returns `None` if the root element cannot be found.
 fn with_prefix(text: &str, prefix: &str) -> Option<String> {
-    let known = KNOWN.iter().find(|k| k.0 == prefix).map(|k| Cow::Borrowed(k.1));
-    let uri = known.unwrap_or_else(|| Cow::Owned(format!("urn:undeclared:{prefix}")));
-    let at = root_name_end(text)?;
-    let (before, after) = text.split_at_checked(at)?;
+    let known = KNOWN_PREFIXES.iter().find(|k| k.0 == prefix).map(|k| k.1.to_owned());
+    let uri = known.unwrap_or_else(|| format!("urn:undeclared:{prefix}"));
+    let (before, after) = text.split_at_checked(root_name_end(text)?)?;
     Some(format!("{before} xmlns:{prefix}=\"{uri}\"{after}"))
 }
 

@@ -26,10 +26,10 @@ pub(crate) struct Missed {
     pub(crate) images: Vec<String>,
     /// The links among `images` that lead out of the folder of the drawing.
     pub(crate) outside: Vec<String>,
-    /// Sentences about content and style that are not drawn. Only [`lacking`](Self::lacking) adds them.
+    /// Sentences about content and style that are not drawn. Only [`with_undrawn`](Self::with_undrawn) adds them.
     #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) undrawn: Vec<String>,
-    /// The reader's notes on small differences from browsers. Only [`lacking`](Self::lacking) adds them.
+    /// The reader's notes on small differences from browsers. Only [`with_undrawn`](Self::with_undrawn) adds them.
     #[cfg_attr(not(feature = "usvg"), allow(dead_code))]
     pub(crate) notes: BTreeSet<(&'static str, String)>,
 }
@@ -37,7 +37,9 @@ pub(crate) struct Missed {
 impl Missed {
     /// Sentences about letters that no font has.
     pub(crate) fn without_font(&self) -> Vec<String> {
-        let shortened = |text: &str| match text.char_indices().nth(40) {
+        /// Letters shown of a text.
+        const MAX_SHOWN: usize = 40;
+        let shortened = |text: &str| match text.char_indices().nth(MAX_SHOWN) {
             Some((end, _)) => format!("{}…", &text[..end]),
             None => text.to_owned(),
         };
@@ -49,14 +51,14 @@ impl Missed {
     }
 
     /// Adds the content and style that a picture of the drawing lacks, and the reader's notes.
-    pub(crate) fn lacking(self, source: &SourceText) -> Self {
+    pub(crate) fn with_undrawn(self, source: &SourceText) -> Self {
         let undrawn = undrawn(source).into_iter().chain(undrawn_meshes(source)).chain(self.without_font()).collect();
         Self { undrawn, notes: source.notes.clone(), ..self }
     }
 }
 
 /// The initial font size, in px, as in browsers.
-const MEDIUM: f32 = 16.0;
+const INITIAL_FONT_SIZE: f32 = 16.0;
 
 /// Resolves a drawing with usvg. `name` identifies it in errors.
 pub(crate) fn tree(
@@ -78,10 +80,10 @@ pub(crate) fn tree(
             .map_err(|e| Error::limit(name, "with its text, its fonts take", e))?;
         let guard = FontGuard::new(options, &rejected);
         let chooser = Chooser::new(options.generic_families.clone(), missing.clone(), guard);
-        usvg.font_size = MEDIUM;
+        usvg.font_size = INITIAL_FONT_SIZE;
         fonts::NO_FAMILY.clone_into(&mut usvg.font_family);
-        let (tree, without) = with_letters(xml, name, &mut usvg, &chooser)?;
-        letters = without;
+        let (tree, missing) = tree_with_texts(xml, name, &mut usvg, &chooser)?;
+        letters = missing;
         tree
     } else {
         usvg_tree(xml, name, &usvg)?
@@ -96,7 +98,7 @@ pub(crate) fn tree(
 
 /// Resolves a drawing with texts, which are divided into pieces where usvg would shape them differently from browsers. Also returns the
 /// letters that no font has, each with the text around it.
-fn with_letters(
+fn tree_with_texts(
     xml: &roxmltree::Document<'_>,
     name: &str,
     usvg: &mut usvg::Options<'_>,
@@ -114,21 +116,20 @@ fn with_letters(
     Ok((usvg_tree(&xml::parse_checked(&text, name)?, name, usvg)?, missing))
 }
 
+/// Runs usvg, which panics on some damaged fonts and images.
 fn usvg_tree(xml: &roxmltree::Document<'_>, name: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree, Error> {
     let resolved = catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(xml, options)));
     let failed = |_| Error::input(name, "the library that reads SVG fails on it; please report it");
-    resolved.map_err(failed)?.map_err(|e| {
-        let problem = match e {
-            usvg::Error::InvalidSize => {
-                "the root <svg> has no valid size; give it a viewBox, or width and height".into()
-            }
-            usvg::Error::ElementsLimitReached => "it has more than a million elements".into(),
-            usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
-                "with its references expanded, it has more than a million elements or nests deeper than 1024".into()
-            }
-            other => other.to_string(),
-        };
-        Error::input(name, problem)
+    resolved.map_err(failed)?.map_err(|e| match e {
+        usvg::Error::InvalidSize => {
+            Error::input(name, "the root <svg> has no valid size; give it a viewBox, or width and height")
+        }
+        usvg::Error::ElementsLimitReached => Error::input(name, "it has more than a million elements"),
+        usvg::Error::ParsingFailed(roxmltree::Error::NodesLimitReached) => {
+            let problem = "with its references expanded, it has more than a million elements or nests deeper than 1024";
+            Error::input(name, problem)
+        }
+        other => Error::input(name, other.to_string()),
     })
 }
 
@@ -147,7 +148,7 @@ pub(crate) fn parse_counted(
     let linked = |link: &str| images::linked_drawing(link, options);
     plain(text, name, &options.budget, None, &linked, |plain, doc, _| {
         let (tree, missed) = with_stack(name, || tree(doc, name, options))?;
-        Ok((Arc::new(tree), missed.lacking(&SourceText::from_plain(doc, plain, name)?)))
+        Ok((Arc::new(tree), missed.with_undrawn(&SourceText::from_plain(doc, plain, name)?)))
     })
 }
 

@@ -101,7 +101,7 @@ const SEEN: f64 = 1e-4;
 /// are measured in the filters' user space, which follows the affine fit of the map.
 pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
     let slot = g.slot.filter(|_| !g.filters.is_empty()).map(|i| &input.scene.slots[i]);
-    let Some(slot) = slot.filter(|s| !s.before && input.changes(s.parts.clone())) else { return Insets::ZERO };
+    let Some(slot) = slot.filter(|s| !s.fits_outside && input.changes(s.parts.clone())) else { return Insets::ZERO };
     let from = slot.frame.inverse();
     let to = input.written(g.slot, slot.frame).inverse();
     let painted = slot.parts.clone().filter(|&i| {

@@ -154,7 +154,7 @@ impl<'a> Writer<'a> {
         }
         let mut head = g.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
         head.push_str(extra);
-        let transform = match g.slot.map(|s| (self.input.slots[s].fit, self.input.scene.slots[s].before)) {
+        let transform = match g.slot.map(|s| (self.input.slots[s].fit, self.input.scene.slots[s].fits_outside)) {
             Some((fit, true)) => fit * g.transform,
             Some((fit, false)) => g.transform * fit,
             None => g.transform,

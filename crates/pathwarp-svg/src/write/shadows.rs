@@ -63,7 +63,7 @@ fn outcome(
     let always = bend.options.filters == Filters::Picture;
     let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
     let unfit = nests(group) || displaces(group) || !takes_pictures(input, slot);
-    if bend.is_identity() || s.before || repeated || unfit {
+    if bend.is_identity() || s.fits_outside || repeated || unfit {
         return None;
     }
     let content = content(original, group, s.frame.inverse())?;

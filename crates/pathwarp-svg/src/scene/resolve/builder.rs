@@ -28,13 +28,14 @@ pub(super) struct SceneBuilder<'a> {
     /// Transforms in the source by their f32 values; `None` for a value to which two different transforms round.
     exact: HashMap<[u32; 6], Option<Affine>>,
     /// Shapes in the source by their approximate start, to find the originals of copies, which have no id. Filled on first use.
-    pub(super) starts: Option<HashMap<[i64; 2], Vec<ElementId>>>,
+    starts: Option<HashMap<[i64; 2], Vec<ElementId>>>,
     /// Outlines of the elements in `starts`.
-    pub(super) outlines: HashMap<ElementId, Outline>,
+    outlines: HashMap<ElementId, Outline>,
+    /// Indices of the clip paths and masks resolved so far.
     pub(super) clip_index: HashMap<DefKey, usize>,
     pub(super) mask_index: HashMap<DefKey, usize>,
     /// Elements with a shared id that have been assigned to a part.
-    pub(super) taken: HashSet<ElementId>,
+    taken: HashSet<ElementId>,
     /// `true` if the source may set a page background.
     pub(super) may_have_background: bool,
     /// The group whose content is in root user space, and whose transform leads from there to px.
@@ -52,8 +53,10 @@ pub(super) struct SceneBuilder<'a> {
 /// Properties inherited in the walk.
 #[derive(Clone, Copy)]
 pub(super) struct Context {
+    /// The enclosing element that is replaced as a whole if something inside changes.
     pub(super) owner: Option<ElementId>,
     pub(super) role: PartRole,
+    /// Index of the innermost slot.
     pub(super) slot: Option<usize>,
     /// The enclosing `image` element.
     pub(super) image: Option<ElementId>,
@@ -79,7 +82,7 @@ impl<'a> SceneBuilder<'a> {
     ) -> Self {
         let source = reader.source;
         Self {
-            scene: Scene::empty(source.unpatchable.clone()),
+            scene: Scene { unpatchable: source.unpatchable.clone(), ..Scene::default() },
             reader,
             letters,
             tiling,
@@ -109,7 +112,7 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// The source elements with an id of usvg's tree.
-    pub(super) fn elements(&self, id: &str) -> &'a [ElementId] {
+    fn elements(&self, id: &str) -> &'a [ElementId] {
         self.ids.get(id).filter(|_| self.foreign_depth == 0).map_or(&[][..], Vec::as_slice)
     }
 
@@ -134,7 +137,8 @@ impl<'a> SceneBuilder<'a> {
     /// Returns `true` if anything inside a group has an id of the source.
     pub(super) fn has_ids(&self, g: &usvg::Group) -> bool {
         g.children().iter().any(|c| {
-            self.ids.contains_key(c.id()) && !c.id().is_empty() || matches!(c, usvg::Node::Group(g) if self.has_ids(g))
+            (self.ids.contains_key(c.id()) && !c.id().is_empty())
+                || matches!(c, usvg::Node::Group(g) if self.has_ids(g))
         })
     }
 
@@ -162,12 +166,14 @@ impl<'a> SceneBuilder<'a> {
         self.scene.unpatchable.get_or_insert(why);
     }
 
+    /// Adds a clip path. Returns its index.
     pub(super) fn push_clip(&mut self, clip: Clip) -> usize {
         self.scene.clips.push(clip);
         self.scene.clips.len() - 1
     }
 }
 
+/// Finds the elements whose stroke width is in px.
 fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
     const FIXED: &str = "non-scaling-stroke";
     if !source.text.contains(FIXED) {
@@ -180,9 +186,9 @@ fn fixed_widths(source: &SourceText) -> HashSet<ElementId> {
 fn exact_transforms(reader: &GeometryReader<'_>) -> HashMap<[u32; 6], Option<Affine>> {
     let mut out: HashMap<[u32; 6], Option<Affine>> = HashMap::new();
     for e in 0..reader.source.elements.len() {
-        let moves = reader.source.attr(e, "transform").is_some()
+        let may_transform = reader.source.attr(e, "transform").is_some()
             || matches!(reader.source.elements[e].tag.as_ref(), "use" | "svg");
-        if moves && let Some(t) = reader.own_transform(e) {
+        if may_transform && let Some(t) = reader.own_transform(e) {
             out.entry(f32_bits(t)).and_modify(|v| *v = v.filter(|v| *v == t)).or_insert(Some(t));
         }
     }
@@ -196,7 +202,7 @@ const MAX_SEGMENTS: usize = 250_000;
 pub(crate) struct Tiling<'a> {
     /// Returns `true` if the pattern over an area must be laid out. The arguments are the element that is painted, the area in its
     /// user space, and the transform from there to root user space.
-    pub(super) needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync),
+    pub(super) is_needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync),
     /// `true` if patterns on strokes are laid out, too.
     pub(super) strokes: bool,
     /// Remaining number of segments.
@@ -214,8 +220,8 @@ pub(crate) enum Painted {
 }
 
 impl<'a> Tiling<'a> {
-    pub(crate) fn new(needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync), strokes: bool) -> Self {
-        Self { needed, strokes, budget: MAX_SEGMENTS, notes: Vec::new() }
+    pub(crate) fn new(is_needed: &'a (dyn Fn(Painted, Rect, Affine) -> bool + Sync), strokes: bool) -> Self {
+        Self { is_needed, strokes, budget: MAX_SEGMENTS, notes: Vec::new() }
     }
 }
 
@@ -237,6 +243,7 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
     if let Some((e, outline)) = only.and_then(|e| Some((e, path_outline(b, e)?))) {
         return Traced { source: Some(e), copied: None, drawn: Some(e), outline };
     }
+    // Of several elements with the id, the outline decides.
     let shared = candidates.len() > 1;
     for &e in candidates {
         if !is_shape(b.tag(e)) || (shared && b.taken.contains(&e)) {
@@ -260,9 +267,9 @@ pub(super) fn trace(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Traced {
 /// The outline of a `path` element; computed on first use.
 fn path_outline(b: &SceneBuilder<'_>, e: ElementId) -> Option<LazyOutline> {
     let d = b.reader.source.attr(e, "d")?.into_owned();
-    let ahead = Arc::clone(&b.reader.source.ahead);
-    Some(LazyOutline::shared(move || {
-        let known = ahead.get().and_then(|known| known.get(&e).cloned());
+    let read_ahead = Arc::clone(&b.reader.source.ahead);
+    Some(LazyOutline::new(move || {
+        let known = read_ahead.get().and_then(|known| known.get(&e).cloned());
         known.unwrap_or_else(|| Arc::new(Outline::from_svg_lossy(&d)))
     }))
 }
@@ -270,10 +277,8 @@ fn path_outline(b: &SceneBuilder<'_>, e: ElementId) -> Option<LazyOutline> {
 /// A path's outline, read from the source if possible.
 pub(super) fn known_outline(b: &mut SceneBuilder<'_>, p: &usvg::Path) -> Outline {
     let source = b.element(p.id()).filter(|&e| is_shape(b.tag(e)));
-    source
-        .and_then(|e| b.reader.outline(e))
-        .or_else(|| original(b, p.data()).map(|c| c.1))
-        .unwrap_or_else(|| from_usvg(p.data()))
+    let outline = source.and_then(|e| b.reader.outline(e)).or_else(|| Some(original(b, p.data())?.1));
+    outline.unwrap_or_else(|| from_usvg(p.data()))
 }
 
 /// Finds the original of a copied path (in a `use`, in a marker), with its outline.
@@ -327,10 +332,10 @@ pub(super) struct GroupAt<'g> {
 pub(super) fn add_slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Context) -> Option<usize> {
     let g = at.group;
     let image = at.element.filter(|&e| b.tag(e) == "image");
-    let vector = holds_drawing(g);
-    let raster = !vector && g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
+    let is_drawing = holds_drawing(g);
+    let has_bitmap = !is_drawing && g.children().iter().any(|c| matches!(c, usvg::Node::Image(_)));
     // The root has no transform that could take the fit, but a single image in it has.
-    if g.filters().is_empty() && (b.is_top(g) || vector || image.is_none() && !raster)
+    if (g.filters().is_empty() && (b.is_top(g) || is_drawing || (image.is_none() && !has_bitmap)))
         || matches!(context.role, PartRole::Clip | PartRole::Pattern)
         || context.slot.is_some_and(|s| image.is_some() && b.scene.slots[s].element == at.element)
     {
@@ -341,20 +346,14 @@ pub(super) fn add_slot(b: &mut SceneBuilder<'_>, at: &GroupAt<'_>, context: Cont
         return None;
     }
     // The group of an image holds its placing, which is not the element's transform.
-    let before = (image.is_some() && at.source == image) || (image.is_none() && raster);
-    let corners = rect(g.bounding_box());
-    let (frame, area) =
-        if before { (at.parent, affine(g.transform()).transform_rect_bbox(corners)) } else { (at.frame, corners) };
+    let fits_outside = (image.is_some() && at.source == image) || (image.is_none() && has_bitmap);
+    let content = rect(g.bounding_box());
+    let outside = || (at.parent, affine(g.transform()).transform_rect_bbox(content));
+    let (frame, area) = if fits_outside { outside() } else { (at.frame, content) };
+    // The walk sets the end once it has seen all parts inside.
     let parts = b.scene.parts.len()..b.scene.parts.len();
-    b.scene.slots.push(Slot {
-        outer: context.slot,
-        frame,
-        area,
-        before,
-        element: at.element,
-        owner: context.owner,
-        parts,
-    });
+    let (outer, element, owner) = (context.slot, at.element, context.owner);
+    b.scene.slots.push(Slot { outer, frame, area, fits_outside, element, owner, parts });
     Some(b.scene.slots.len() - 1)
 }
 
@@ -369,7 +368,7 @@ fn takes_fit(b: &SceneBuilder<'_>, at: &GroupAt<'_>, is_image: bool) -> bool {
     };
     at.element.is_some_and(|e| {
         only_transform_attribute(e)
-            && (at.source == Some(e) && is_image
+            && ((at.source == Some(e) && is_image)
                 || b.reader.own_transform(e).is_some_and(|t| is_near(t, affine(at.group.transform()))))
     })
 }

@@ -9,17 +9,17 @@ use std::f64::consts::PI;
 use usvg::tiny_skia_path::{Path, PathSegment};
 
 /// Finds the children of a group that belong to shapes with markers: the shape and the group of marker instances next to it.
-/// Returns their indices with the shape's element. `user` is the `use` element that the group belongs to.
+/// Returns their indices with the shape's element. `copy` is the `use` element that the group belongs to.
 pub(super) fn marked_children(
     b: &SceneBuilder<'_>,
     g: &usvg::Group,
-    user: Option<ElementId>,
+    copy: Option<ElementId>,
 ) -> Vec<(usize, ElementId)> {
     let mut out = Vec::new();
-    let used = user.and_then(|e| b.element(b.reader.source.link(e)?.strip_prefix('#')?));
+    let original = copy.and_then(|e| b.element(b.reader.source.link(e)?.strip_prefix('#')?));
     let shape = |i: usize| match g.children().get(i) {
         Some(usvg::Node::Path(p)) => {
-            if user.is_some() { used } else { b.element(p.id()) }.filter(|&e| is_shape(b.tag(e)))
+            if copy.is_some() { original } else { b.element(p.id()) }.filter(|&e| is_shape(b.tag(e)))
         }
         _ => None,
     };
@@ -34,23 +34,20 @@ pub(super) fn marked_children(
         if !instances || b.has_ids(c) {
             continue;
         }
-        for j in [i.wrapping_sub(1), i + 1] {
-            if let Some(e) = shape(j) {
-                out.push((i, e));
-                out.push((j, e));
-                break;
-            }
+        // Paint order decides on which side of the markers the shape is.
+        if let Some((j, e)) = [i.wrapping_sub(1), i + 1].into_iter().find_map(|j| Some((j, shape(j)?))) {
+            out.extend([(i, e), (j, e)]);
         }
     }
     out
 }
 
 /// Places the markers of shapes as browsers do. usvg orients markers at the ends of a closed subpath as if it were open, and adds markers
-/// within arcs. `user` is the `use` element that the group belongs to.
+/// within arcs. `copy` is the `use` element that the group belongs to, and `marked` what [`marked_children`] found.
 pub(super) fn place_markers(
     b: &mut SceneBuilder<'_>,
     g: &usvg::Group,
-    user: Option<ElementId>,
+    copy: Option<ElementId>,
     marked: &[(usize, ElementId)],
 ) {
     for &(i, e) in marked {
@@ -59,21 +56,16 @@ pub(super) fn place_markers(
             Some(usvg::Node::Path(p)) if marked.contains(&(j, e)) => Some(p),
             _ => None,
         });
-        let instances: Vec<&usvg::Group> = instances.children().iter().filter_map(group_of).collect();
+        let instances = instances.children().iter();
+        let instances = instances.filter_map(|n| if let usvg::Node::Group(g) = n { Some(g.as_ref()) } else { None });
+        let instances: Vec<&usvg::Group> = instances.collect();
         if let Some(placed) = shape.and_then(|p| marker_transforms(b, e, p.data(), &instances)) {
             let same = |(m, t): (&&usvg::Group, &Option<Affine>)| t.is_some_and(|t| is_near(t, affine(m.transform())));
             if !instances.iter().zip(&placed).all(same) {
-                b.marked.insert(user.unwrap_or(e));
+                b.marked.insert(copy.unwrap_or(e));
             }
             b.markers.extend(instances.iter().map(|m| std::ptr::from_ref(*m) as usize).zip(placed));
         }
-    }
-}
-
-fn group_of(n: &usvg::Node) -> Option<&usvg::Group> {
-    match n {
-        usvg::Node::Group(g) => Some(g),
-        _ => None,
     }
 }
 
@@ -93,8 +85,8 @@ fn marker_transforms(
         let id = value.trim().strip_prefix("url(#")?.split(')').next()?.to_owned();
         b.definition(&id, "marker")
     };
-    let (last, is_node) = (vertices.len() - 1, |k: &usize| !matches!(vertices[*k].0, Element::Close));
-    let middle = (1..last).filter(is_node);
+    let last = vertices.len() - 1;
+    let middle = (1..last).filter(|k| vertices[*k].0 != Command::Close);
     let kinds = [("marker-start", vec![0]), ("marker-mid", middle.collect()), ("marker-end", vec![last])];
     let expected = kinds.into_iter().filter_map(|(name, at)| Some((marker(name)?, at)));
     let expected: Vec<(ElementId, usize)> = expected.flat_map(|(m, at)| at.into_iter().map(move |k| (m, k))).collect();
@@ -102,58 +94,50 @@ fn marker_transforms(
         return None;
     }
     let transform = |(&(marker, k), instance): (&(ElementId, usize), &&usvg::Group)| {
-        let (_, at, number) = vertices[k];
+        let (_, at, step) = vertices[k];
         let placed = affine(instance.transform());
         let orient = source.attr(marker, "orient");
-        let turned = match orient.as_deref().map(str::trim) {
-            Some("auto") => 0.0,
-            Some("auto-start-reverse") => {
-                if k == 0 {
-                    PI
-                } else {
-                    0.0
-                }
-            }
-            _ => return number.map(|_| placed),
+        let turn = match orient.as_deref().map(str::trim) {
+            Some("auto-start-reverse") if k == 0 => PI,
+            Some("auto" | "auto-start-reverse") => 0.0,
+            _ => return step.map(|_| placed),
         };
         let [x, y, ..] = placed.as_coeffs();
-        Some(Affine::rotate_about(angles[number?] + turned - y.atan2(x), at) * placed)
+        Some(Affine::rotate_about(angles[step?] + turn - y.atan2(x), at) * placed)
     };
     Some(expected.iter().zip(instances).map(transform).collect())
 }
 
+/// A command of path data.
 #[derive(Clone, Copy, PartialEq)]
-enum Element {
+enum Command {
     Move,
     Draw,
     Close,
 }
 
-/// The elements of usvg's path with their end points and the index of the step that ends there, which is `None` within an arc. Returns
+/// The commands of usvg's path with their end points and the index of the step that ends there, which is `None` within an arc. Returns
 /// `None` if the path has other steps.
-fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Element, Point, Option<usize>)>> {
+fn vertices(steps: &[Vec<Step<'_>>], data: &Path) -> Option<Vec<(Command, Point, Option<usize>)>> {
     let mut expected = steps.iter().flatten().enumerate().peekable();
     let (mut out, mut start) = (Vec::new(), Point::ZERO);
     for segment in data.segments() {
-        let (kind, at) = match segment {
-            PathSegment::MoveTo(p) => (Element::Move, point(p)),
+        let (command, end) = match segment {
+            PathSegment::MoveTo(p) => (Command::Move, point(p)),
             PathSegment::LineTo(p) | PathSegment::QuadTo(_, p) | PathSegment::CubicTo(.., p) => {
-                (Element::Draw, point(p))
+                (Command::Draw, point(p))
             }
-            PathSegment::Close => (Element::Close, start),
+            PathSegment::Close => (Command::Close, start),
         };
-        if kind == Element::Move {
-            start = at;
+        if command == Command::Move {
+            start = end;
         }
-        let (number, step) = expected.peek()?;
-        let reached = step.1.is_none_or(|seg| seg.eval(1.0).distance(at) <= NEAR * (1.0 + at.to_vec2().hypot()));
-        if step.0 != kind || (!reached && !matches!(step.1, Some(Seg::Arc(_)))) {
+        let (index, step) = *expected.peek()?;
+        let is_reached = step.1.is_none_or(|seg| seg.eval(1.0).distance(end) <= NEAR * (1.0 + end.to_vec2().hypot()));
+        if step.0 != command || (!is_reached && !matches!(step.1, Some(Seg::Arc(_)))) {
             return None;
         }
-        out.push((kind, at, reached.then_some(*number)));
-        if reached {
-            expected.next();
-        }
+        out.push((command, end, expected.next_if(|_| is_reached).map(|_| index)));
     }
     (expected.next().is_none() && !out.is_empty()).then_some(out)
 }
@@ -165,30 +149,32 @@ fn point(p: usvg::tiny_skia_path::Point) -> Point {
     Point::new(f64::from(p.x), f64::from(p.y))
 }
 
-/// An element of path data, and the segment that it draws.
-type Step<'a> = (Element, Option<&'a Seg>);
+/// A command of path data, and the segment that it draws.
+type Step<'a> = (Command, Option<&'a Seg>);
 
-/// The elements of path data by subpath. An outline lacks closing lines without length, which are taken from `data`.
+/// The commands of path data by subpath. An outline lacks closing lines without length, which are taken from `data`.
 fn steps<'a>(outline: &'a Outline, data: &Path) -> Vec<Vec<Step<'a>>> {
-    let (mut explicit, mut start, mut last) = (Vec::new(), None, None);
+    // For each subpath, `true` if it has come back to its start when it closes, so that closing draws a line without length.
+    let mut returned = Vec::new();
+    let (mut start, mut last) = (None, None);
     for segment in data.segments() {
         match segment {
             PathSegment::MoveTo(p) => {
                 start = Some(p);
                 last = start;
-                explicit.push(false);
+                returned.push(false);
             }
             PathSegment::LineTo(p) | PathSegment::QuadTo(_, p) | PathSegment::CubicTo(.., p) => last = Some(p),
-            PathSegment::Close => explicit.last_mut().into_iter().for_each(|e| *e = last == start),
+            PathSegment::Close => returned.last_mut().into_iter().for_each(|r| *r = last == start),
         }
     }
     let subpaths = outline.subpaths.iter().enumerate();
     let all = subpaths.map(|(k, s)| {
-        let mut out = vec![(Element::Move, None)];
-        out.extend(s.segs.iter().map(|seg| (Element::Draw, Some(seg))));
+        let mut out = vec![(Command::Move, None)];
+        out.extend(s.segs.iter().map(|seg| (Command::Draw, Some(seg))));
         match out.last_mut() {
-            Some(closing) if s.closed && !explicit.get(k).unwrap_or(&true) => closing.0 = Element::Close,
-            _ => out.extend(s.closed.then_some((Element::Close, None))),
+            Some(closing) if s.closed && !returned.get(k).unwrap_or(&true) => closing.0 = Command::Close,
+            _ => out.extend(s.closed.then_some((Command::Close, None))),
         }
         out
     });
@@ -201,7 +187,7 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
     /// Parameter distance over which to measure the direction at an end, since handles may coincide with their nodes.
     const STEP: f64 = 1e-4;
     let angle = |v: Vec2| v.y.atan2(v.x);
-    let between = |a: Vec2, b: Vec2| {
+    let bisector = |a: Vec2, b: Vec2| {
         let (a, b) = (angle(a), angle(b));
         // A half turn goes to the left.
         a.midpoint(a + (b - a + PI).rem_euclid(2.0 * PI) - PI)
@@ -217,12 +203,12 @@ fn directions(steps: &[Vec<Step<'_>>]) -> Vec<f64> {
             out.push(0.0);
             continue;
         };
-        let closed = subpath.last().is_some_and(|s| s.0 == Element::Close);
+        let closed = subpath.last().is_some_and(|s| s.0 == Command::Close);
         // A closing line without length takes the direction in which the subpath begins.
-        let out_of = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
-        let at_start = if closed { between(out_of(last[1]), first[0]) } else { angle(first[0]) };
+        let or_first = |v: Vec2| if v == Vec2::ZERO { first[0] } else { v };
+        let at_start = if closed { bisector(or_first(last[1]), first[0]) } else { angle(first[0]) };
         out.push(at_start);
-        out.extend(ends.windows(2).map(|w| between(w[0][1], out_of(w[1][0]))));
+        out.extend(ends.windows(2).map(|w| bisector(w[0][1], or_first(w[1][0]))));
         out.push(if closed { at_start } else { angle(last[1]) });
     }
     out

@@ -9,19 +9,18 @@ use super::lettering::Owners;
 use super::model::{Bitmap, Clip, Group, Mask, Node, Part, PartRole, PatternTile, PlacedText, Referrer, Scene};
 use super::resolve::builder::{Context, GroupAt, SceneBuilder, add_slot, holds_drawing, trace};
 use super::resolve::markers::{marked_children, place_markers};
-use super::resolve::tiles::{PaintOf, blends, lay_out_tiles, tile_context};
+use super::resolve::tiles::{PaintOf, blends, lay_out_tiles};
 use crate::source::elements::{ElementId, Unpatchable};
 use crate::source::text::SourceText;
 use pathwarp::Outline;
-use pathwarp::kurbo::{Affine, Point, Rect, Size};
-use std::collections::HashMap;
+use pathwarp::kurbo::{Affine, Point, Rect, Size, Vec2};
 use std::sync::Arc;
 use usvg::{Fill, Stroke};
 
 pub(crate) use builder::{Painted, Tiling};
 
-/// Resolves the drawing. Patterns become geometry where `tiling` requests it. Clip paths and masks are resolved once for each bend that
-/// their referrers have in `division`.
+/// Resolves the drawing. `letters` are the elements of letters in texts. Patterns become geometry where `tiling` requests it. Clip paths
+/// and masks are resolved once for each bend that their referrers have in `division`, which has an index for every element, or is empty.
 pub(crate) fn build(
     tree: &usvg::Tree,
     source: &SourceText,
@@ -40,13 +39,11 @@ pub(crate) fn build(
     scene.root = root;
     scene.to_px = to_px;
     scene.notes = tiling.map(|t| t.notes).unwrap_or_default();
-    let mut by_source: HashMap<_, Vec<_>> = HashMap::new();
     for (i, p) in scene.parts.iter().enumerate() {
         if let Some(e) = p.source {
-            by_source.entry(e).or_default().push(i);
+            scene.by_source.entry(e).or_default().push(i);
         }
     }
-    scene.by_source = by_source;
     scene
 }
 
@@ -56,27 +53,26 @@ fn root_group<'t>(b: &SceneBuilder<'_>, tree: &'t usvg::Tree, page: Size) -> (&'
     let [usvg::Node::Group(g)] = tree.root().children() else { return (tree.root(), by_source) };
     // usvg wraps everything in a group exactly if the root has a transform or a background.
     let has_transform = b.reader.source.attr(0, "transform").is_some();
-    let moved = f32_bits(by_source) != f32_bits(Affine::IDENTITY) || has_transform;
-    let background = b.may_have_background
+    let is_transformed = f32_bits(by_source) != f32_bits(Affine::IDENTITY) || has_transform;
+    let has_background = b.may_have_background
         && g.id().is_empty()
         && g.transform().is_identity()
         && matches!(g.children().first(), Some(usvg::Node::Path(p)) if p.id().is_empty());
-    if !moved && !background {
+    if !is_transformed && !has_background {
         return (tree.root(), by_source);
     }
-    let t = affine(g.transform());
-    let (u, v) = (by_source.as_coeffs(), t.as_coeffs());
+    let by_usvg = affine(g.transform());
+    let shift = by_source.translation();
     // usvg centres the drawing in f32, where differences of numbers as large as the page are rounded, and shifts it by any distance.
-    let slack = 1e-6 * (page.width + page.height + 1.0) + 3e-7 * u[4].abs().max(u[5].abs());
-    let agree =
-        is_near(linear_part(by_source), linear_part(t)) && (u[4] - v[4]).abs() <= slack && (u[5] - v[5]).abs() <= slack;
+    let slack = 1e-6 * (page.width + page.height + 1.0) + 3e-7 * shift.x.abs().max(shift.y.abs());
+    let is_rounding = |v: Vec2| v.x.abs() <= slack && v.y.abs() <= slack;
+    let agree = is_near(linear_part(by_source), linear_part(by_usvg)) && is_rounding(shift - by_usvg.translation());
     // If the page equals its viewBox up to rounding, there is no such group.
-    let [.., x, y] = u;
-    let rounding = is_near(linear_part(by_source), Affine::IDENTITY) && x.abs().max(y.abs()) <= slack && !has_transform;
-    if rounding && !agree && !background {
+    let is_identity = is_near(linear_part(by_source), Affine::IDENTITY) && is_rounding(shift) && !has_transform;
+    if is_identity && !agree && !has_background {
         return (tree.root(), by_source);
     }
-    (g, if agree { by_source } else { t })
+    (g, if agree { by_source } else { by_usvg })
 }
 
 /// Resolves a group. `parent` maps the space around it to root user space.
@@ -84,20 +80,20 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
     let source = b.element(g.id());
     let element = source.or_else(|| only_child(b, g));
     let transform = match b.markers.get(&address(g)) {
-        Some(Some(placed)) => *placed,
+        Some(Some(placed_marker)) => *placed_marker,
         _ if b.is_top(g) => Affine::IDENTITY,
         _ => b.exact_transform(g.transform(), element),
     };
     let frame = parent * transform;
-    let vector = holds_drawing(g);
-    let owner = context.owner.or(source.filter(|&e| b.tag(e) == "use" || (vector && b.tag(e) == "image")));
+    let is_owner = |&e: &ElementId| b.tag(e) == "use" || (b.tag(e) == "image" && holds_drawing(g));
+    let owner = context.owner.or(source.filter(is_owner));
     let at = GroupAt { group: g, source, element, parent, frame };
     let slot = add_slot(b, &at, Context { owner, ..context });
     context.slot = slot.or(context.slot);
     let referrer = Referrer { element, owner: context.owner };
-    let bent = Context { bend: b.bend_of(referrer, context), ..context };
-    let clip = g.clip_path().map(|c| clip(b, c, frame, referrer, bent));
-    let mask = g.mask().map(|m| add_mask(b, m, frame, referrer, bent));
+    let outside = Context { bend: b.bend_of(referrer, context), ..context };
+    let clip = g.clip_path().map(|c| add_clip(b, c, frame, referrer, outside));
+    let mask = g.mask().map(|m| add_mask(b, m, frame, referrer, outside));
     context.owner = owner;
     context.image = source.filter(|&e| b.tag(e) == "image").or(context.image);
     context.viewport = sliced_viewport(g).or(context.viewport);
@@ -106,9 +102,10 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
             resolve_filter_image(b, image.root());
         }
     }
-    let user = context.owner.filter(|&e| b.tag(e) == "use");
-    let marked = if user == context.owner { marked_children(b, g, user) } else { Vec::new() };
-    place_markers(b, g, user, &marked);
+    // Markers are placed outside of all owners, and inside copies.
+    let copy = context.owner.filter(|&e| b.tag(e) == "use");
+    let marked = if copy == context.owner { marked_children(b, g, copy) } else { Vec::new() };
+    place_markers(b, g, copy, &marked);
     let mut children = Vec::with_capacity(g.children().len());
     for (i, c) in g.children().iter().enumerate() {
         if matches!(c, usvg::Node::Group(m) if matches!(b.markers.get(&address(m)), Some(None))) {
@@ -119,8 +116,8 @@ fn resolve_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, parent: Affine, mut 
         children.push(match c {
             usvg::Node::Group(c) => Node::Group(Box::new(resolve_group(b, c, frame, context))),
             usvg::Node::Path(p) => Node::Part(add_part(b, p, frame, context)),
-            usvg::Node::Image(i) => image(b, i, element, Placing { transform, frame }, context),
-            usvg::Node::Text(t) => text(b, t, frame, context),
+            usvg::Node::Image(i) => resolve_image(b, i, element, transform, frame, context),
+            usvg::Node::Text(t) => resolve_text(b, t, frame, context),
         });
     }
     if let Some(s) = slot {
@@ -156,6 +153,7 @@ fn sliced_viewport(g: &usvg::Group) -> Option<Rect> {
     Some(rect(g.bounding_box()))
 }
 
+/// The address of a group, which identifies it.
 fn address(g: &usvg::Group) -> usize {
     std::ptr::from_ref(g) as usize
 }
@@ -178,7 +176,8 @@ fn only_child(b: &SceneBuilder<'_>, g: &usvg::Group) -> Option<ElementId> {
     found
 }
 
-fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Context) -> Node {
+/// Resolves a text as its outlines.
+fn resolve_text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Context) -> Node {
     let element = b.element(t.id());
     if element.is_none() && context.owner.is_none() {
         b.unpatchable(Unpatchable::AmbiguousText);
@@ -197,12 +196,10 @@ fn text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context: Contex
 /// Adds the part of a path. Returns its index.
 fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Context) -> usize {
     let traced = trace(b, p);
-    if traced.source.is_none() {
-        // The first path may be the page's background, which is not artwork.
-        let background = b.scene.parts.is_empty() && b.may_have_background;
-        if context.owner.is_none() && p.is_visible() && !background {
-            b.unpatchable(Unpatchable::UntracedPath);
-        }
+    // The first path may be the page's background, which is not artwork.
+    let is_background = b.scene.parts.is_empty() && b.may_have_background;
+    if traced.source.is_none() && context.owner.is_none() && p.is_visible() && !is_background {
+        b.unpatchable(Unpatchable::UntracedPath);
     }
     for paint in [p.fill().map(Fill::paint), p.stroke().map(Stroke::paint)] {
         if let Some(usvg::Paint::Pattern(pattern)) = paint {
@@ -210,7 +207,7 @@ fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Co
         }
     }
     let fixed_width = traced.source.or(traced.copied).is_some_and(|e| b.fixed_widths.contains(&e));
-    let tile_context = tile_context(context, traced.source);
+    let tile_context = Context { owner: context.owner.or(traced.source), ..context };
     let fill_tiles = lay_out_tiles(b, p, PaintOf::Fill, frame, tile_context);
     let stroke_tiles = if fixed_width { None } else { lay_out_tiles(b, p, PaintOf::Stroke, frame, tile_context) };
     b.scene.parts.push(Part {
@@ -222,7 +219,8 @@ fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Co
         rendering: p.rendering_mode(),
         visible: p.is_visible(),
         fixed_width,
-        differs_from_usvg: fixed_width && p.stroke().is_some() || context.owner.is_some_and(|e| b.marked.contains(&e)),
+        differs_from_usvg: (fixed_width && p.stroke().is_some())
+            || context.owner.is_some_and(|e| b.marked.contains(&e)),
         slot: context.slot,
         path: std::ptr::from_ref(p) as usize,
         fill_tiles,
@@ -232,43 +230,42 @@ fn add_part(b: &mut SceneBuilder<'_>, p: &usvg::Path, frame: Affine, context: Co
     b.scene.parts.len() - 1
 }
 
-/// Transforms of an image's group.
-#[derive(Clone, Copy)]
-struct Placing {
-    /// From pixels to outside the group.
-    transform: Affine,
-    /// From pixels to root user space.
-    frame: Affine,
-}
-
-/// Resolves an image in a group that belongs to `element`.
-fn image(
+/// Resolves an image in a group that belongs to `element`. From pixels, `placing` leads to outside the group, and `frame` to root user
+/// space.
+fn resolve_image(
     b: &mut SceneBuilder<'_>,
     image: &usvg::Image,
     element: Option<ElementId>,
-    placing: Placing,
+    placing: Affine,
+    frame: Affine,
     context: Context,
 ) -> Node {
     let source = element.filter(|&e| b.tag(e) == "image");
     if let usvg::ImageKind::SVG(tree) = image.kind() {
         let context = Context { owner: context.owner.or(source), viewport: None, ..context };
-        return Node::Group(Box::new(drawing(b, image, tree, placing.frame, context)));
+        return Node::Group(Box::new(resolve_drawing(b, image, tree, frame, context)));
     }
     b.scene.bitmaps.push(Bitmap {
         image: Box::new(image.clone()),
-        frame: placing.frame,
-        placing: placing.transform,
+        frame,
+        placing,
         slot: context.slot,
         owner: context.owner.or(source).or(context.image),
         bends: context.role != PartRole::Pattern,
-        crop: context.viewport.map(|v| placing.transform.inverse().transform_rect_bbox(v)),
+        crop: context.viewport.map(|v| placing.inverse().transform_rect_bbox(v)),
     });
     Node::Image(b.scene.bitmaps.len() - 1)
 }
 
 /// Resolves a drawing shown as an image: its content can be warped, and is clipped to the image. `frame` leads from the drawing's px to
 /// root user space.
-fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, frame: Affine, context: Context) -> Group {
+fn resolve_drawing(
+    b: &mut SceneBuilder<'_>,
+    image: &usvg::Image,
+    tree: &usvg::Tree,
+    frame: Affine,
+    context: Context,
+) -> Group {
     if context.owner.is_none() {
         b.unpatchable(Unpatchable::AmbiguousImage);
     }
@@ -278,20 +275,20 @@ fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, fra
     if !image.is_visible() {
         return out;
     }
-    let gradients = tree.linear_gradients().iter().map(|g| Arc::as_ptr(g) as usize);
-    let gradients = gradients.chain(tree.radial_gradients().iter().map(|g| Arc::as_ptr(g) as usize));
-    let filters = tree.filters().iter().map(|f| Arc::as_ptr(f) as usize);
-    b.scene.foreign.extend(gradients.chain(filters));
+    b.scene.foreign.extend(tree.linear_gradients().iter().map(|g| Arc::as_ptr(g) as usize));
+    b.scene.foreign.extend(tree.radial_gradients().iter().map(|g| Arc::as_ptr(g) as usize));
+    b.scene.foreign.extend(tree.filters().iter().map(|f| Arc::as_ptr(f) as usize));
     b.foreign_depth += 1;
-    let size = tree.size();
-    let (w, h) = (f64::from(size.width()), f64::from(size.height()));
-    let r = tree.root().abs_layer_bounding_box();
+    let (width, height) = (tree.size().width(), tree.size().height());
+    let content = tree.root().abs_layer_bounding_box();
     // Content within this distance of the edge overflows by rounding only.
-    let slack = 1e-4 * (w + h) as f32;
-    let overflows =
-        r.left() < -slack || r.top() < -slack || r.right() > w as f32 + slack || r.bottom() > h as f32 + slack;
-    if overflows && !matches!(context.role, PartRole::Pattern) {
-        out.clip = Some(add_image_edge(b, w, h, frame, context));
+    let slack = 1e-4 * (f64::from(width) + f64::from(height)) as f32;
+    let overflows = content.left() < -slack
+        || content.top() < -slack
+        || content.right() > width + slack
+        || content.bottom() > height + slack;
+    if overflows && context.role != PartRole::Pattern {
+        out.clip = Some(add_image_edge(b, Size::new(width.into(), height.into()), frame, context));
     }
     let inner = resolve_group(b, tree.root(), frame, context);
     b.foreign_depth -= 1;
@@ -299,8 +296,9 @@ fn drawing(b: &mut SceneBuilder<'_>, image: &usvg::Image, tree: &usvg::Tree, fra
     out
 }
 
-/// Adds the edge of an image as a clip path.
-fn add_image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, context: Context) -> usize {
+/// Adds the edge of an image as a clip path. Returns its index.
+fn add_image_edge(b: &mut SceneBuilder<'_>, size: Size, frame: Affine, context: Context) -> usize {
+    let Size { width: w, height: h } = size;
     let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)].map(Point::from);
     let outline = Outline::from_points(&corners, true).into();
     let first = b.scene.parts.len();
@@ -311,7 +309,13 @@ fn add_image_edge(b: &mut SceneBuilder<'_>, w: f64, h: f64, frame: Affine, conte
 }
 
 /// Resolves a clip path in the frame of its referrer, once for each frame, slot and bend. Returns its index.
-fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: Referrer, outside: Context) -> usize {
+fn add_clip(
+    b: &mut SceneBuilder<'_>,
+    c: &usvg::ClipPath,
+    frame: Affine,
+    referrer: Referrer,
+    outside: Context,
+) -> usize {
     let Context { slot, bend, .. } = outside;
     let key = (std::ptr::from_ref(c) as usize, bits(frame), slot, bend);
     if let Some(&i) = b.clip_index.get(&key) {
@@ -319,12 +323,12 @@ fn clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, frame: Affine, referrer: R
         return i;
     }
     let first = b.scene.parts.len();
-    let def = b.definition(c.id(), "clipPath");
-    let transform = b.exact_transform(c.transform(), def);
-    let chained = Referrer { element: def, owner: None };
-    let clip = c.clip_path().map(|c| clip(b, c, frame, chained, outside));
-    let root =
-        resolve_definition(b, c.root(), frame * transform, Context { slot, bend, ..Context::top(PartRole::Clip) });
+    let definition = b.definition(c.id(), "clipPath");
+    let transform = b.exact_transform(c.transform(), definition);
+    let chained = Referrer { element: definition, owner: None };
+    let clip = c.clip_path().map(|c| add_clip(b, c, frame, chained, outside));
+    let context = Context { slot, bend, ..Context::top(PartRole::Clip) };
+    let root = resolve_definition(b, c.root(), frame * transform, context);
     let i = b.push_clip(Clip {
         id: c.id().to_owned(),
         transform,

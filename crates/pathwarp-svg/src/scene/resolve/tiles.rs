@@ -7,21 +7,22 @@ use super::builder::{Context, Painted, SceneBuilder, known_outline};
 use crate::scene::areas::stroke_outline;
 use crate::scene::geometry::{affine, is_invertible, rect, stretch};
 use crate::scene::model::{Clip, Group, LazyOutline, Node, Part, PartRole, SceneNote, Tiles};
-use crate::source::elements::ElementId;
 use pathwarp::Outline;
 use pathwarp::kurbo::common::{solve_cubic, solve_quadratic};
 use pathwarp::kurbo::{Affine, Line, Point, Rect, Vec2};
 use pathwarp::outline::{Seg, Subpath};
+use std::borrow::Cow;
 use std::sync::Arc;
 use usvg::{BlendMode, Paint, PaintOrder};
 
 /// Limit on the cells over one shape. More cells make a texture in which single tiles cannot be told apart.
 const MAX_CELLS: f64 = 5_000.0;
 /// Tolerance for clipped arcs and expanded strokes, as a fraction of a tile's side.
-const FINE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-6;
 /// Margin around a shape's box as a fraction of its size, so that rounding does not show at its edge.
 const MARGIN: f64 = 0.01;
 
+/// Notes for the user on patterns that cannot be laid out.
 const TOO_MANY: &str = "a pattern follows the warp as a whole, as it has too many tiles to bend one by one";
 const NOT_BENT: &str =
     "a pattern follows the warp as a whole, as tiles with masks, filters or bitmaps cannot be bent one by one";
@@ -52,15 +53,13 @@ impl Layout<'_> {
     /// Repeats an outline over all cells, as one outline in the shape's user space. It is clipped first, so that coincident corners stay
     /// coincident to the last bit.
     fn repeat(&self, outline: &Outline) -> Outline {
-        let inside = clip_to_box(outline, self.cell, FINE * self.cell.width());
-        let all = self
-            .cells
-            .iter()
-            .flat_map(|c| inside.transformed(Affine::translate(*c)).transformed(self.to_shape).subpaths);
-        let all = Outline { subpaths: all.collect() };
-        clip_to_box(&all, self.area, FINE * self.area.width().max(self.area.height()))
+        let inside = clip_to_box(outline, self.cell, TOLERANCE * self.cell.width());
+        let copy = |corner: &Vec2| inside.transformed(Affine::translate(*corner)).transformed(self.to_shape);
+        let all = Outline { subpaths: self.cells.iter().flat_map(|corner| copy(corner).subpaths).collect() };
+        clip_to_box(&all, self.area, TOLERANCE * self.area.width().max(self.area.height()))
     }
 
+    /// A group of the shape's tiles that only transforms its content.
     fn group(&self, transform: Affine, children: Vec<Node>) -> Group {
         Group::plain(self.context.owner, transform, children)
     }
@@ -74,7 +73,7 @@ pub(super) fn lay_out_tiles(
     frame: Affine,
     context: Context,
 ) -> Option<Tiles> {
-    let (paint, opacity, r) = match paint_of {
+    let (paint, opacity, bounds) = match paint_of {
         PaintOf::Stroke => p.stroke().map(|s| (s.paint(), s.opacity(), p.stroke_bounding_box()))?,
         PaintOf::Fill => p.fill().map(|f| (f.paint(), f.opacity(), p.bounding_box()))?,
     };
@@ -86,12 +85,12 @@ pub(super) fn lay_out_tiles(
     {
         return None;
     }
-    let area = rect(r);
+    let area = rect(bounds);
     let margin = MARGIN * area.width().max(area.height());
     let area = area.inflate(margin, margin);
     let is_mask = context.role == PartRole::Mask;
     let painted = if is_mask { Painted::Mask(context.bend) } else { Painted::Element(context.owner) };
-    if !(tiling.needed)(painted, area, frame) {
+    if !(tiling.is_needed)(painted, area, frame) {
         return None;
     }
     match tiles_over(b, pattern, area, frame, context) {
@@ -117,8 +116,8 @@ fn tiles_over(
     if !is_invertible(to_shape) {
         return Err(TOO_MANY);
     }
-    let r = pattern.rect();
-    let cells = cells(r, to_shape, area)?;
+    let tile = pattern.rect();
+    let cells = cells(tile, to_shape, area)?;
     let work = count_segments(pattern.root())?.saturating_mul(cells.len());
     let budget = b.tiling.as_ref().map_or(0, |t| t.budget);
     if cells.len() as f64 > MAX_CELLS || work > budget {
@@ -127,7 +126,7 @@ fn tiles_over(
     if let Some(t) = &mut b.tiling {
         t.budget -= work;
     }
-    let cell = Rect::new(0.0, 0.0, f64::from(r.width()), f64::from(r.height()));
+    let cell = Rect::new(0.0, 0.0, f64::from(tile.width()), f64::from(tile.height()));
     let layout = Layout { cells: &cells, to_shape, cell, area, frame, context };
     let to_cell = affine(pattern.root().transform());
     let mut out = tile_group(b, pattern.root(), to_cell, &layout);
@@ -136,13 +135,14 @@ fn tiles_over(
     Ok(out)
 }
 
-/// Corners of the cells that touch `area`.
-fn cells(r: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Vec2>, &'static str> {
+/// Corners of the cells that touch `area`. The cell at the pattern's origin is `tile`.
+fn cells(tile: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Vec2>, &'static str> {
     /// Factor on the limit for cells in the box of a rotated shape, of which the shape touches fewer. The exact number is checked later.
     const SPARE: f64 = 4.0;
-    let (x, y) = (f64::from(r.x()), f64::from(r.y()));
-    let (w, h) = (f64::from(r.width()), f64::from(r.height()));
+    let (x, y) = (f64::from(tile.x()), f64::from(tile.y()));
+    let (w, h) = (f64::from(tile.width()), f64::from(tile.height()));
     let needed = to_shape.inverse().transform_rect_bbox(area);
+    // The first column and row, and the ones after the last.
     let columns = (((needed.x0 - x) / w).floor(), ((needed.x1 - x) / w).ceil());
     let rows = (((needed.y0 - y) / h).floor(), ((needed.y1 - y) / h).ceil());
     let count = (columns.1 - columns.0) * (rows.1 - rows.0);
@@ -154,8 +154,8 @@ fn cells(r: usvg::NonZeroRect, to_shape: Affine, area: Rect) -> Result<Vec<Vec2>
     for j in 0..(rows.1 - rows.0) as u32 {
         for i in 0..(columns.1 - columns.0) as u32 {
             let corner = Vec2::new(x + (columns.0 + f64::from(i)) * w, y + (rows.0 + f64::from(j)) * h);
-            let seen = to_shape.transform_rect_bbox(cell + corner).intersect(area);
-            if seen.width() > 0.0 && seen.height() > 0.0 {
+            let common = to_shape.transform_rect_bbox(cell + corner).intersect(area);
+            if common.width() > 0.0 && common.height() > 0.0 {
                 cells.push(corner);
             }
         }
@@ -168,24 +168,23 @@ fn tile_group(b: &mut SceneBuilder<'_>, g: &usvg::Group, to_cell: Affine, layout
     let clip = g.clip_path().map(|c| tile_clip(b, c, to_cell, layout));
     let mut children = Vec::new();
     for c in g.children() {
-        match c {
-            usvg::Node::Group(c) => {
-                let inner = tile_group(b, c, to_cell * affine(c.transform()), layout);
-                children.push(Node::Group(Box::new(inner)));
+        let inner = match c {
+            usvg::Node::Group(c) => c,
+            usvg::Node::Text(t) => t.flattened(),
+            usvg::Node::Path(p) => {
+                tile_path(b, p, to_cell, layout, &mut children);
+                continue;
             }
-            usvg::Node::Text(t) => {
-                let t = t.flattened();
-                let inner = tile_group(b, t, to_cell * affine(t.transform()), layout);
-                children.push(Node::Group(Box::new(inner)));
-            }
-            usvg::Node::Path(p) if p.is_visible() => tile_path(b, p, to_cell, layout, &mut children),
-            usvg::Node::Path(_) | usvg::Node::Image(_) => {}
-        }
+            usvg::Node::Image(_) => continue,
+        };
+        let inner = tile_group(b, inner, to_cell * affine(inner.transform()), layout);
+        children.push(Node::Group(Box::new(inner)));
     }
     let group = layout.group(Affine::IDENTITY, children);
     Group { opacity: g.opacity().get(), blend: g.blend_mode(), isolate: g.isolate(), clip, ..group }
 }
 
+/// Lays out a clip path in a tile. Returns its index.
 fn tile_clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, to_cell: Affine, layout: &Layout<'_>) -> usize {
     let first = b.scene.parts.len();
     let clip = c.clip_path().map(|c| tile_clip(b, c, to_cell, layout));
@@ -196,30 +195,28 @@ fn tile_clip(b: &mut SceneBuilder<'_>, c: &usvg::ClipPath, to_cell: Affine, layo
     b.push_clip(Clip { clip, ..Clip::foreign(c.id(), root, layout.context.owner, parts) })
 }
 
+/// Lays out a path in a tile and adds its nodes to `out`.
 fn tile_path(b: &mut SceneBuilder<'_>, p: &usvg::Path, to_cell: Affine, layout: &Layout<'_>, out: &mut Vec<Node>) {
-    if !is_invertible(to_cell) {
+    if !p.is_visible() || !is_invertible(to_cell) {
         return;
     }
     let outline = known_outline(b, p);
     let is_clip = layout.context.role == PartRole::Clip;
-    let fill = |b: &mut SceneBuilder<'_>, out: &mut Vec<Node>| {
-        if let Some(f) = p.fill() {
-            let plain = matches!(f.paint(), Paint::Color(_)) || is_clip;
-            TilePaint { path: p, of: PaintOf::Fill, plain }.lay_out(b, &outline, to_cell, layout, out);
-        }
+    let order = match p.paint_order() {
+        PaintOrder::FillAndStroke => [PaintOf::Fill, PaintOf::Stroke],
+        PaintOrder::StrokeAndFill => [PaintOf::Stroke, PaintOf::Fill],
     };
-    let stroke_first = p.paint_order() == PaintOrder::StrokeAndFill;
-    if !stroke_first {
-        fill(b, out);
-    }
-    if let Some(s) = p.stroke().filter(|_| !is_clip) {
-        let fine = FINE * layout.cell.width() / stretch(to_cell);
-        let expanded = stroke_outline(&outline, s, fine);
-        let plain = matches!(s.paint(), Paint::Color(_));
-        TilePaint { path: p, of: PaintOf::Stroke, plain }.lay_out(b, &expanded, to_cell, layout, out);
-    }
-    if stroke_first {
-        fill(b, out);
+    for of in order {
+        let (paint, painted) = match (of, p.fill(), p.stroke().filter(|_| !is_clip)) {
+            (PaintOf::Fill, Some(f), _) => (f.paint(), Cow::Borrowed(&outline)),
+            (PaintOf::Stroke, _, Some(s)) => {
+                let tolerance = TOLERANCE * layout.cell.width() / stretch(to_cell);
+                (s.paint(), Cow::Owned(stroke_outline(&outline, s, tolerance)))
+            }
+            _ => continue,
+        };
+        let is_plain = is_clip || matches!(paint, Paint::Color(_));
+        TilePaint { path: p, of, is_plain }.lay_out(b, &painted, to_cell, layout, out);
     }
 }
 
@@ -228,7 +225,7 @@ struct TilePaint<'p> {
     path: &'p usvg::Path,
     of: PaintOf,
     /// `true` for a single colour, so that one path serves all cells.
-    plain: bool,
+    is_plain: bool,
 }
 
 impl TilePaint<'_> {
@@ -242,7 +239,7 @@ impl TilePaint<'_> {
         out: &mut Vec<Node>,
     ) {
         let in_cell = outline.transformed(to_cell);
-        if self.plain {
+        if self.is_plain {
             let all = layout.repeat(&in_cell);
             if !all.is_empty() {
                 b.scene.parts.push(self.part(all.into(), layout.frame, layout.context));
@@ -250,7 +247,7 @@ impl TilePaint<'_> {
             }
             return;
         }
-        let inside = clip_to_box(&in_cell, layout.cell, FINE * layout.cell.width()).transformed(to_cell.inverse());
+        let inside = clip_to_box(&in_cell, layout.cell, TOLERANCE * layout.cell.width()).transformed(to_cell.inverse());
         if inside.is_empty() {
             return;
         }
@@ -269,6 +266,7 @@ impl TilePaint<'_> {
         }
     }
 
+    /// A part with this paint alone.
     fn part(&self, local: LazyOutline, frame: Affine, context: Context) -> Part {
         Part {
             fill: self.path.fill().filter(|_| self.of == PaintOf::Fill).cloned(),
@@ -304,21 +302,16 @@ pub(super) fn blends(g: &usvg::Group) -> bool {
     g.children().iter().any(|c| matches!(c, usvg::Node::Group(g) if g.blend_mode() != BlendMode::Normal || blends(g)))
 }
 
-/// The context of a shape's tiles. Their owner is the enclosing owner, or else the shape's element.
-pub(super) fn tile_context(context: Context, element: Option<ElementId>) -> Context {
-    Context { owner: context.owner.or(element), ..context }
-}
-
 /// Clips a filled outline to a box. Arcs across its border become cubics within `tolerance`.
 fn clip_to_box(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     if outline.bounding_box().is_none_or(|b| area.union(b) == area) {
         return outline.clone();
     }
     let borders = [
-        Border { across: 0, at: area.x0, side: 1.0 },
-        Border { across: 0, at: area.x1, side: -1.0 },
-        Border { across: 1, at: area.y0, side: 1.0 },
-        Border { across: 1, at: area.y1, side: -1.0 },
+        Border { axis: 0, position: area.x0, inwards: 1.0 },
+        Border { axis: 0, position: area.x1, inwards: -1.0 },
+        Border { axis: 1, position: area.y0, inwards: 1.0 },
+        Border { axis: 1, position: area.y1, inwards: -1.0 },
     ];
     let loops = outline.subpaths.iter().map(|s| {
         let mut segs = s.segs.clone();
@@ -329,7 +322,7 @@ fn clip_to_box(outline: &Outline, area: Rect, tolerance: f64) -> Outline {
     Outline { subpaths: loops.filter_map(subpath).collect() }
 }
 
-/// Closes a run of segments with a line.
+/// Closes a run of segments from `start` with a line.
 fn close(segs: &mut Vec<Seg>, start: Point) {
     if let Some(end) = segs.last().map(Seg::end).filter(|e| *e != start) {
         segs.push(Seg::Line(Line::new(end, start)));
@@ -339,46 +332,35 @@ fn close(segs: &mut Vec<Seg>, start: Point) {
 /// A line parallel to an axis, with the side to keep.
 #[derive(Debug, Clone, Copy)]
 struct Border {
-    /// 0 for a vertical border at an x, 1 for a horizontal one at a y.
-    across: usize,
-    at: f64,
+    /// The coordinate that the border fixes: 0 for x, 1 for y.
+    axis: usize,
+    position: f64,
     /// 1 to keep larger coordinates, −1 to keep smaller ones.
-    side: f64,
+    inwards: f64,
 }
 
 impl Border {
-    fn coordinate(self, p: Point) -> f64 {
-        if self.across == 0 { p.x } else { p.y }
-    }
-
     /// Signed distance of a point from the border, positive inside.
     fn distance(self, p: Point) -> f64 {
-        (self.coordinate(p) - self.at) * self.side
+        ([p.x, p.y][self.axis] - self.position) * self.inwards
     }
 
     /// The projection of a point onto the border.
     fn project(self, p: Point) -> Point {
-        if self.across == 0 { Point::new(self.at, p.y) } else { Point::new(p.x, self.at) }
+        if self.axis == 0 { Point::new(self.position, p.y) } else { Point::new(p.x, self.position) }
     }
 
     /// Clips a closed run of segments to the inside.
     fn cut(self, segs: Vec<Seg>, tolerance: f64) -> Vec<Seg> {
-        let extent = |s: &Seg| {
-            let b = s.bounding_box();
-            let (p, q) = (Point::new(b.x0, b.y0), Point::new(b.x1, b.y1));
-            (self.distance(p).min(self.distance(q)), self.distance(p).max(self.distance(q)))
-        };
         let mut kept: Vec<Seg> = Vec::with_capacity(segs.len());
         for s in segs {
-            match (extent(&s), s) {
-                ((least, _), s) if least >= 0.0 => kept.push(s),
-                ((_, most), _) if most <= 0.0 => {}
-                (_, Seg::Arc(arc)) => {
-                    for c in arc.to_cubics(tolerance) {
-                        self.split(Seg::Cubic(c), &mut kept);
-                    }
-                }
-                (_, s) => self.split(s, &mut kept),
+            let b = s.bounding_box();
+            let [p, q] = [(b.x0, b.y0), (b.x1, b.y1)].map(|corner| self.distance(corner.into()));
+            match s {
+                s if p.min(q) >= 0.0 => kept.push(s),
+                _ if p.max(q) <= 0.0 => {}
+                Seg::Arc(arc) => arc.to_cubics(tolerance).for_each(|c| self.split(Seg::Cubic(c), &mut kept)),
+                s => self.split(s, &mut kept),
             }
         }
         // Lines along the border replace the parts outside.
@@ -401,6 +383,7 @@ impl Border {
         const NEGLIGIBLE: f64 = 1e-11;
         let c = s.to_cubic();
         let [a, b, c, d] = [c.p0, c.p1, c.p2, c.p3].map(|p| self.distance(p));
+        // Coefficients of the distance as a polynomial in the parameter, beside the constant a.
         let [linear, square, cubic] = [3.0 * (b - a), 3.0 * (a - 2.0 * b + c), d - a + 3.0 * (b - c)];
         match s {
             // Exact for lines.
@@ -425,13 +408,12 @@ impl Border {
             if self.distance(s.eval(0.5 * (from + to))) >= 0.0
                 && let Some(mut piece) = s.part(from, to)
             {
+                let [start, end] = ends_mut(&mut piece);
                 if from > 0.0 {
-                    let p = self.project(piece.start());
-                    move_end(&mut piece, true, p);
+                    *start = self.project(*start);
                 }
                 if to < 1.0 {
-                    let p = self.project(piece.end());
-                    move_end(&mut piece, false, p);
+                    *end = self.project(*end);
                 }
                 kept.push(piece);
             }
@@ -440,15 +422,14 @@ impl Border {
     }
 }
 
-fn move_end(s: &mut Seg, start: bool, p: Point) {
-    let end = match s {
+/// The start and the end of a segment.
+fn ends_mut(s: &mut Seg) -> [&mut Point; 2] {
+    match s {
         Seg::Line(l) => [&mut l.p0, &mut l.p1],
         Seg::Quad(q) => [&mut q.p0, &mut q.p2],
         Seg::Cubic(c) => [&mut c.p0, &mut c.p3],
         Seg::Arc(a) => [&mut a.p0, &mut a.p1],
-    };
-    let [first, last] = end;
-    *(if start { first } else { last }) = p;
+    }
 }
 
 #[cfg(test)]
