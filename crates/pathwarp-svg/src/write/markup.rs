@@ -4,7 +4,7 @@ use crate::bend::outcome::WarpedPart;
 use crate::bend::pictures::BentImage;
 use crate::scene::model::Part;
 use crate::source::markup::Tag;
-use crate::source::number::{outline_data, rectangle, single};
+use crate::source::number::{outline_data, push, rectangle, single};
 use crate::source::text::SourceText;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -28,7 +28,7 @@ pub(super) struct Markup<'a> {
     pub(super) in_source: bool,
     /// `true` if properties are written to style attributes, which style sheets cannot override.
     pub(super) styled: bool,
-    /// Cache: properties that occur in the source.
+    /// Cache: for a property, `true` if its name occurs in the source.
     mentioned: RefCell<HashMap<&'static str, bool>>,
 }
 
@@ -49,6 +49,7 @@ impl<'a> Markup<'a> {
         self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(is_mentioned)
     }
 
+    /// Begins an element.
     pub(super) fn element(&self, name: &str) -> Tag {
         Tag::new(format!("{}{name}", self.prefix))
     }
@@ -64,11 +65,12 @@ impl<'a> Markup<'a> {
         self.element("title").around(&escape(text))
     }
 
-    /// Wraps content in a group with an id attribute, if there is one.
+    /// Wraps content in a group with the attribute `id`, unless that is empty.
     pub(super) fn named_group(&self, id: &str, content: String) -> String {
         if id.is_empty() { content } else { self.element("g").raw(id).around(&content) }
     }
 
+    /// Properties as attributes, or as a style attribute if style sheets could override those.
     pub(super) fn attributes(&self, properties: &Properties) -> String {
         let mut out = String::new();
         self.push_attributes(properties, &mut out);
@@ -87,7 +89,7 @@ impl<'a> Markup<'a> {
                 if matches!(*n, "mix-blend-mode" | "isolation") {
                     let _ = write!(out, " style=\"{n}:{v}\"");
                 } else {
-                    push_all(out, [" ", n, "=\"", &escape(v), "\""]);
+                    out.extend([" ", n, "=\"", &escape(v), "\""]);
                 }
             }
         }
@@ -98,16 +100,10 @@ impl<'a> Markup<'a> {
         /// Typical length of the attributes, for the capacity.
         const USUAL: usize = 64;
         let mut out = String::with_capacity(d.len() + id.len() + USUAL);
-        push_all(&mut out, ["<", &self.prefix, "path", id, " d=\"", d, "\""]);
+        out.extend(["<", &self.prefix, "path", id, " d=\"", d, "\""]);
         self.push_attributes(properties, &mut out);
         out.push_str("/>");
         out
-    }
-}
-
-pub(super) fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
-    for p in parts {
-        out.push_str(p);
     }
 }
 
@@ -124,7 +120,7 @@ pub(super) struct CssPaints {
     pub(super) stroke: Option<CssPaint>,
 }
 
-/// Properties common to the fill and the expanded stroke of a part.
+/// Properties common to a part and its expanded stroke. Defaults are left out unless an ancestor may set the property.
 fn shared(markup: &Markup<'_>, p: &Part) -> Properties {
     let mut out = Properties::new();
     if !p.visible {
@@ -225,9 +221,9 @@ fn is_default(name: &str, value: &str) -> bool {
     value == default
 }
 
-/// Position of a bent bitmap as attributes of its element.
-pub(super) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {
-    let [x, y, width, height] = rectangle(to.transform_rect_bbox(bent.area));
+/// Position of a bent bitmap as attributes of its element, whose user space `to_user` leads to.
+pub(super) fn bent_attributes(bent: &BentImage, to_user: Affine) -> [(&'static str, String); 5] {
+    let [x, y, width, height] = rectangle(to_user.transform_rect_bbox(bent.area));
     [x, y, width, height, ("preserveAspectRatio", "none".into())]
 }
 
@@ -251,12 +247,11 @@ pub(super) fn part_box(p: &Part, warped: Option<&WarpedPart>) -> Rect {
 
 /// Path data of a part. If it is unchanged, its original text is used where possible.
 pub(super) fn part_data(p: &Part, warped: Option<&WarpedPart>, source: &SourceText) -> String {
-    let original = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
-    match (warped, p.drawn.and_then(original)) {
-        (Some(w), _) => w.data.clone().unwrap_or_else(|| w.text(&w.path)),
-        (None, Some(d)) => escape(&d),
-        (None, None) => outline_data(&p.local),
+    if let Some(w) = warped {
+        return w.data.clone().unwrap_or_else(|| w.text(&w.path));
     }
+    let original = p.drawn.and_then(|e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path"));
+    original.map_or_else(|| outline_data(&p.local), |d| escape(&d))
 }
 
 /// Factor for the width and dashes of a part's stroke.
@@ -264,9 +259,24 @@ pub(super) fn stroke_scale(warped: Option<&WarpedPart>) -> f64 {
     warped.map_or(1.0, |w| w.stroke.scale())
 }
 
+/// The dashes of a stroke multiplied by `scale`, as the value of `stroke-dasharray`.
 pub(super) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
-    s.dasharray()
-        .map_or("none".into(), |list| list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
+    let Some(list) = s.dasharray() else { return "none".into() };
+    list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(",")
+}
+
+/// Begins an SVG drawing of an area.
+pub(super) fn svg(view: Rect) -> Tag {
+    let tag = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
+    let tag = tag.with("xmlns:xlink", "http://www.w3.org/1999/xlink");
+    tag.with("viewBox", &rectangle(view).map(|side| side.1).join(" "))
+}
+
+/// A number rounded to decimals.
+pub(super) fn number(v: f64, decimals: u8) -> String {
+    let mut out = String::new();
+    push(&mut out, v, decimals);
+    out
 }
 
 /// A colour as `#rrggbb`.
