@@ -22,13 +22,16 @@ pub(crate) const MAX_COORDINATE: f32 = 1e8;
 /// The renderer's layers extend up to twice the picture's size past it on every side.
 const LAYER_REACH: f32 = 2.0;
 
-// Work for a pixel, by operation.
+/// Work for a pixel of a layer.
 const LAYER: f64 = 4.0;
+/// Work for a pixel of a gradient, and for each stop, since the renderer checks them all for each pixel.
 const GRADIENT: f64 = 2.0;
-/// Work for each stop of a gradient, since the renderer checks them all for each pixel.
 const STOP: f64 = 0.03;
+/// Work for a pixel of an interpolated picture, and for one that is decoded.
 const BICUBIC: f64 = 8.0;
 const DECODED: f64 = 4.0;
+/// Work for a pixel of a filter's primitive, and more for a blur, lighting, an octave of turbulence, and a pixel in the window of
+/// `feMorphology`.
 const PRIMITIVE: f64 = 6.0;
 const BLURRED: f64 = 20.0;
 const LIT: f64 = 20.0;
@@ -104,7 +107,7 @@ impl Load {
         Ok(self.limits.check(Limit::Work, cost::PIXEL * self.work).map_err(Exceeded::cut_short)?)
     }
 
-    /// Adds a surface of `area` pixels to those held. A mask takes one byte for a pixel, so that it counts as a quarter of its area.
+    /// Adds a surface of `area` pixels to those held. Callers count a mask, which takes one byte for a pixel, as a quarter of its area.
     fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
         let held = canvas.held + area;
         self.limits.check(Limit::Memory, PIXEL_BYTES * held)?;
@@ -183,6 +186,7 @@ impl Load {
         self.group(pattern.root(), Transform::from_scale(sx, sy), &Canvas { width, height, held })
     }
 
+    /// Adds an image: a drawing, or a picture that is decoded.
     fn image(&mut self, kind: &ImageKind, bounds: Rect, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
         let data = match kind {
             ImageKind::SVG(tree) => {
@@ -301,17 +305,16 @@ fn is_near(area: &Rect) -> bool {
 /// Estimates the number of dashes along a path.
 fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
     let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
-    let legs = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1])));
-    let length: f64 = legs.sum();
+    let length: f64 = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1]))).sum();
     if period > 0.0 { (length / period) * dashes.len() as f64 } else { 0.0 }
 }
 
 /// Work for a row of pixels that an edge crosses, in four scan lines.
-const CROSSING: f64 = 4.0;
+const CROSSED_ROW: f64 = 4.0;
 /// Work for two edges in the same row, since they may cross.
-const BESIDE: f64 = 0.4;
+const EDGE_PAIR: f64 = 0.4;
 /// Work for an edge.
-const SEGMENT: f64 = 10.0;
+const EDGE: f64 = 10.0;
 
 /// Edges of an outline, with the rows and columns that they cross.
 struct Edges {
@@ -365,21 +368,21 @@ impl Edges {
     /// the stroke is wide.
     fn stroked(&self, nodes: usize, stroke: &Stroke, width: f64, picture: [f32; 2]) -> Self {
         let nodes = nodes as f64;
-        let round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
-        let (edges, sides) = if round { (8.0, 4.0) } else { (2.0, 2.0) };
-        let around = |size: f32| sides * width.min(f64::from(size)) * nodes;
+        let is_round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
+        let (edges, crossings) = if is_round { (8.0, 4.0) } else { (2.0, 2.0) };
+        let at_nodes = |size: f32| crossings * width.min(f64::from(size)) * nodes;
         Self {
             count: 2.0 * self.count + edges * nodes,
-            rows: 2.0 * self.rows + around(picture[1]),
-            columns: 2.0 * self.columns + around(picture[0]),
+            rows: 2.0 * self.rows + at_nodes(picture[1]),
+            columns: 2.0 * self.columns + at_nodes(picture[0]),
         }
     }
 
     /// The work of filling the outline, whose visible part has this width and height.
     fn work(&self, [width, height]: [f64; 2]) -> f64 {
-        let beside = self.rows / height.max(1.0);
+        let edges_per_row = self.rows / height.max(1.0);
         // Two edges cross at most once, and only in a row that both reach, where their columns overlap.
         let overlap = (2.0 * self.columns / (self.count.max(1.0) * width.max(1.0))).min(1.0);
-        SEGMENT * self.count + CROSSING * self.rows + BESIDE * self.count.min(self.rows) * beside * overlap
+        EDGE * self.count + CROSSED_ROW * self.rows + EDGE_PAIR * self.count.min(self.rows) * edges_per_row * overlap
     }
 }

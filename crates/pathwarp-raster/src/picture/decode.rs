@@ -31,9 +31,10 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Dec
     let limits = &limits.for_pixels(f64::from(width) * f64::from(height));
     let mut pixmap = new_pixmap(f64::from(width), f64::from(height), limits)?;
     bitmap.decode(&mut pixmap)?;
-    let end = if upright && Kind::sniff(bytes) == Some(Kind::Jpeg) { early_end(bytes, &mut pixmap) } else { None };
+    let is_jpeg = Kind::sniff(bytes) == Some(Kind::Jpeg);
+    let early_end = if upright && is_jpeg { early_end(bytes, &mut pixmap) } else { None };
     let orientation = exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif);
-    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end: end })
+    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end })
 }
 
 /// Reads the orientation from the metadata of a picture; upright if there is none.
@@ -56,12 +57,12 @@ pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
 /// animation, which may be larger than the picture.
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Box<dyn Bitmap + 'a>, Error> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let max = limits.of(Limit::Bytes) as usize;
+    let max_bytes = limits.of(Limit::Bytes) as usize;
     match Kind::sniff(bytes) {
-        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max)?)),
+        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max_bytes)?)),
         Some(Kind::Jpeg) => Ok(Box::new(Jpeg::open(bytes)?)),
         Some(Kind::WebP) => Ok(Box::new(WebP::open(bytes)?)),
-        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, max)?)),
+        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, max_bytes)?)),
         None => Err(Error::Decode("neither a PNG nor a JPEG nor a WebP nor a GIF".to_owned())),
     }
 }

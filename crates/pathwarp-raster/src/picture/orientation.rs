@@ -35,11 +35,11 @@ impl Orientation {
             return Ok(stored);
         }
         let [width, height] = [stored.width(), stored.height()];
-        let (across, down) = if self.transpose { (height, width) } else { (width, height) };
-        let mut upright = new_pixmap(f64::from(across), f64::from(down), limits)?;
+        let (columns, rows) = if self.transpose { (height, width) } else { (width, height) };
+        let mut upright = new_pixmap(f64::from(columns), f64::from(rows), limits)?;
         let [width, height] = [width, height].map(|n| n as usize);
         let pixels = stored.pixels();
-        for (y, row) in upright.pixels_mut().chunks_exact_mut(across as usize).enumerate() {
+        for (y, row) in upright.pixels_mut().chunks_exact_mut(columns as usize).enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {
                 let (x, y) = if self.transpose { (y, x) } else { (x, y) };
                 let x = if self.mirror_x { width - 1 - x } else { x };

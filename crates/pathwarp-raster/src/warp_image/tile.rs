@@ -135,9 +135,11 @@ pub(super) enum ChannelOrder {
 /// A part of a bitmap.
 #[derive(Debug, Default)]
 pub(super) struct SourceBlock {
+    /// The channels of the pixels, 0 to 255, row by row.
     values: Vec<f32>,
     /// First column and row.
     pub(super) corner: [usize; 2],
+    /// Number of columns and of rows.
     size: [usize; 2],
 }
 
@@ -152,10 +154,10 @@ impl SourceBlock {
             low = [low[0].min(p.x), low[1].min(p.y)];
             high = [high[0].max(p.x), high[1].max(p.y)];
         }
-        for (k, size) in [source.width, source.height].into_iter().enumerate() {
-            let from = (low[k] - margin).floor().clamp(0.0, size as f64);
-            let to = (high[k] + margin).ceil().clamp(from, size as f64);
-            (self.corner[k], self.size[k]) = (from as usize, (to - from) as usize);
+        for (axis, size) in [source.width, source.height].into_iter().enumerate() {
+            let start = (low[axis] - margin).floor().clamp(0.0, size as f64);
+            let end = (high[axis] + margin).ceil().clamp(start, size as f64);
+            (self.corner[axis], self.size[axis]) = (start as usize, (end - start) as usize);
         }
         let [width, height] = self.size;
         if width == 0 || height == 0 || width > MAX_BLOCK || height > MAX_BLOCK {
@@ -163,17 +165,17 @@ impl SourceBlock {
         }
         self.values.resize(width * height * BYTES, 0.0);
         let rows = self.values.chunks_exact_mut(width * BYTES).zip(self.corner[1]..);
-        for (to, row) in rows {
-            let from = &source.data[(row * source.width + self.corner[0]) * BYTES..][..width * BYTES];
+        for (values, row) in rows {
+            let bytes = &source.data[(row * source.width + self.corner[0]) * BYTES..][..width * BYTES];
             match layout {
                 ChannelOrder::Interleaved => {
-                    for (value, byte) in to.iter_mut().zip(from) {
+                    for (value, byte) in values.iter_mut().zip(bytes) {
                         *value = f32::from(*byte);
                     }
                 }
                 ChannelOrder::Planar => {
-                    for (c, channel) in to.chunks_exact_mut(width).enumerate() {
-                        for (value, pixel) in channel.iter_mut().zip(from.as_chunks::<BYTES>().0) {
+                    for (c, channel) in values.chunks_exact_mut(width).enumerate() {
+                        for (value, pixel) in channel.iter_mut().zip(bytes.as_chunks::<BYTES>().0) {
                             *value = f32::from(pixel[c]);
                         }
                     }
