@@ -74,20 +74,11 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Width and height of the visible part of a box, in pixels.
-    fn visible_size(&self, r: Rect) -> [f64; 2] {
-        self.clipped_size(r, 0.0)
-    }
-
-    /// Width and height of a layer for a box, which may extend past the canvas.
-    fn layer_size(&self, r: Rect) -> [f64; 2] {
-        self.clipped_size(r, LAYER_REACH)
-    }
-
+    /// Width and height, in pixels, of the part of a box on the canvas and up to `reach` times its size past it on every side.
     fn clipped_size(&self, r: Rect, reach: f32) -> [f64; 2] {
-        let side = |from: f32, to: f32, size: f32| {
+        let side = |start: f32, end: f32, size: f32| {
             let (min, max) = (-reach * size, (1.0 + reach) * size);
-            f64::from(to.min(max) - from.max(min)).max(0.0)
+            f64::from(end.min(max) - start.max(min)).max(0.0)
         };
         [side(r.left(), r.right(), self.width), side(r.top(), r.bottom(), self.height)]
     }
@@ -120,7 +111,7 @@ impl Load {
             return group.children().iter().try_for_each(|node| self.node(node, transform, canvas));
         }
         let Some(bounds) = group.layer_bounding_box().to_rect().transform(transform) else { return Ok(()) };
-        let [w, h] = canvas.layer_size(bounds);
+        let [w, h] = canvas.clipped_size(bounds, LAYER_REACH);
         let area = w * h;
         self.add(LAYER * area)?;
         let layer = self.hold(canvas, area)?;
@@ -152,7 +143,7 @@ impl Load {
             return Ok(());
         }
         let bounds = path.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
-        let ([w, h], picture) = (canvas.visible_size(bounds), [canvas.width, canvas.height]);
+        let ([w, h], picture) = (canvas.clipped_size(bounds, 0.0), [canvas.width, canvas.height]);
         let edges = Edges::of_fill(path.data(), transform, picture);
         if let Some(fill) = path.fill() {
             self.add(w * h * paint_work(fill.paint()) + edges.work([w, h]))?;
@@ -207,7 +198,7 @@ impl Load {
         });
         // The decoder's buffer becomes the picture, or is copied to it.
         self.hold(canvas, 2.0 * pixels)?;
-        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.visible_size(b));
+        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.clipped_size(b, 0.0));
         self.add(DECODED * pixels + BICUBIC * w * h)
     }
 

@@ -29,8 +29,8 @@ pub fn guarded(
     let (old_doc, new_doc) =
         (xml::document(before).map_err(ReadError::Xml)?, xml::document(after).map_err(ReadError::Xml)?);
     let (old_nodes, new_nodes) = (xml::elements(&old_doc), xml::elements(&new_doc));
-    let (old_rules, ..) = rules(&old_nodes, budget)?;
-    let (new_rules, ..) = rules(&new_nodes, budget)?;
+    let (old_rules, _) = rules(&old_nodes, budget)?;
+    let (new_rules, _) = rules(&new_nodes, budget)?;
     if new_rules.is_empty() {
         return Ok(None);
     }

@@ -4,7 +4,7 @@ use crate::foreign::{self, Foreign};
 use crate::ids::{attribute, attribute_node};
 use crate::sheet::{Declaration, declarations};
 use crate::text::{Letters, Rewritten, elements_touch, rewritten};
-use crate::tree::{Styled, Tree, styled};
+use crate::tree::{BYTES_PER_COMPARISON, Styled, Tree, styled};
 use crate::value::{length, percent_decoded, safe_id};
 use crate::words::Words;
 use crate::xml::{self, escape, name_end};
@@ -22,9 +22,6 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Bytes of style that take as long to write as one comparison.
-const BYTES_PER_COMPARISON: usize = 16;
 
 const KERNED: &str = "letters of different elements of a text are kerned, which browsers do not do";
 

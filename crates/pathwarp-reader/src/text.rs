@@ -20,27 +20,16 @@ const FONT: [(&str, &str); 7] = [
 ];
 
 /// Widths in percent, with their keywords.
+#[rustfmt::skip]
 const WIDTHS: [(f64, &str); 9] = [
-    (50.0, "ultra-condensed"),
-    (62.5, "extra-condensed"),
-    (75.0, "condensed"),
-    (87.5, "semi-condensed"),
-    (100.0, "normal"),
-    (112.5, "semi-expanded"),
-    (125.0, "expanded"),
-    (150.0, "extra-expanded"),
-    (200.0, "ultra-expanded"),
+    (50.0, "ultra-condensed"), (62.5, "extra-condensed"), (75.0, "condensed"), (87.5, "semi-condensed"), (100.0, "normal"),
+    (112.5, "semi-expanded"), (125.0, "expanded"), (150.0, "extra-expanded"), (200.0, "ultra-expanded"),
 ];
 
 /// Sizes by keyword, in px, as in browsers (CSS Fonts 4, section 2.5.1).
+#[rustfmt::skip]
 const SIZES: [(&str, f64); 8] = [
-    ("xx-small", 9.0),
-    ("x-small", 10.0),
-    ("small", 13.0),
-    ("medium", 16.0),
-    ("large", 18.0),
-    ("x-large", 24.0),
-    ("xx-large", 32.0),
+    ("xx-small", 9.0), ("x-small", 10.0), ("small", 13.0), ("medium", 16.0), ("large", 18.0), ("x-large", 24.0), ("xx-large", 32.0),
     ("xxx-large", 48.0),
 ];
 
@@ -80,14 +69,6 @@ pub(super) enum Case {
     Capitalized,
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Anchor {
-    #[default]
-    Start,
-    Middle,
-    End,
-}
-
 /// Inherited style of text.
 #[derive(Debug, Clone)]
 pub(super) struct TextStyle {
@@ -95,7 +76,8 @@ pub(super) struct TextStyle {
     /// `true` if white space is kept, `false` if it is collapsed; `None` leaves it to `xml:space`.
     keeps_space: Option<bool>,
     rtl: bool,
-    anchor: Anchor,
+    /// The value of `text-anchor`: `start`, `middle` or `end`.
+    anchor: &'static str,
     /// Opacities of the fill and the stroke.
     opacities: [f64; 2],
     /// Product of the opacities of the elements from below the text to this one. `None` outside of texts.
@@ -113,7 +95,7 @@ impl Default for TextStyle {
             weight: 400,
             keeps_space: None,
             rtl: false,
-            anchor: Anchor::Start,
+            anchor: "start",
             opacities: [1.0; 2],
             part_opacity: None,
             case: Case::AsTyped,
@@ -172,9 +154,9 @@ impl TextStyle {
             set("font-stretch", keyword.to_owned());
         }
         self.anchor = value("text-anchor").map_or(self.anchor, |v| match v {
-            "middle" => Anchor::Middle,
-            "end" => Anchor::End,
-            _ => Anchor::Start,
+            "middle" => "middle",
+            "end" => "end",
+            _ => "start",
         });
         self.rtl = value("direction").map_or(self.rtl, |v| v == "rtl");
         self.case = value("text-transform").map_or(self.case, case);
@@ -190,9 +172,9 @@ impl TextStyle {
         if is_content && self.rtl {
             // CSS starts at the right, usvg at the left.
             let anchor = match self.anchor {
-                Anchor::Start => "end",
-                Anchor::Middle => "middle",
-                Anchor::End => "start",
+                "start" => "end",
+                "end" => "start",
+                middle => middle,
             };
             set("text-anchor", anchor.to_owned());
         }
@@ -211,7 +193,7 @@ impl TextStyle {
         let has_overline = value("text-decoration").is_some_and(|v| v.contains("overline"));
         let changes_spaces =
             is_part && keeps_space(self.keeps_space, Some(node)) != keeps_space(parent_keeps_space, node.parent());
-        let begins_lower = is_part && self.anchor != Anchor::Start && begins_lower(node);
+        let begins_lower = is_part && self.anchor != "start" && begins_lower(node);
         let is_path = tag == "textPath" && is_part;
         let has_words = |n: Node<'_, '_>| n.text().is_some_and(|t| !t.trim().is_empty()) || n.has_tag_name("tspan");
         let is_vertical = value("writing-mode").is_some_and(|v| v.starts_with("tb") || v.starts_with("vertical"));

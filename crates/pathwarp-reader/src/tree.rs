@@ -21,8 +21,8 @@ const DEFAULT_SIZE: (f64, f64) = (300.0, 150.0);
 
 const MOVING: &str = "animations of style sheets (@keyframes) go the same ways as before";
 
-/// Bytes of a style sheet that take as long to parse as one comparison.
-const BYTES_PER_COMPARISON: usize = 16;
+/// Bytes of style that take as long to parse or to write as one comparison.
+pub(super) const BYTES_PER_COMPARISON: usize = 16;
 
 /// Bytes that a variable takes besides its value.
 const VARIABLE: usize = 64;
@@ -58,7 +58,7 @@ pub(super) struct Tree<'a> {
 /// # Errors
 /// [`Exceeded`] when this takes more work than the budget allows.
 pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Tree<'a>, Exceeded> {
-    let (rules, sheets, unsupported) = rules(nodes, budget)?;
+    let (rules, sheets) = rules(nodes, budget)?;
     let counter = ComparisonCounter::new(budget);
     let mut caches = SelectorCaches::default();
     let ids = Ids::new(doc);
@@ -111,7 +111,7 @@ pub(super) fn styled<'a>(doc: &'a Document<'_>, nodes: &[Node<'a, '_>], budget: 
     let all = out.into_iter().zip(matrices).map(|((computed, units), matrix)| Styled { computed, units, matrix });
     let declared = rules.blocks.iter().flat_map(|b| &b.declarations).map(|d| d.name.to_string()).collect();
     let notes = rules.moving.into_iter().map(|name| (MOVING, name)).collect();
-    Ok(Tree { styles: all.collect(), sheets, unsupported, declared, notes })
+    Ok(Tree { styles: all.collect(), sheets, unsupported: rules.unsupported, declared, notes })
 }
 
 /// The state that the root element inherits.
@@ -128,11 +128,8 @@ fn root_inherited(doc: &Document<'_>) -> Inherited {
     }
 }
 
-/// The rules of a drawing, the indices of the elements that are sheets, and their unsupported features.
-pub(super) type Sheets<'a> = (Rules<'a>, BTreeSet<usize>, BTreeSet<String>);
-
-/// Reads the style sheets of a drawing.
-pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheets<'a>, Exceeded> {
+/// Reads the style sheets of a drawing. Returns the rules, and the indices of the elements that are sheets.
+pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<(Rules<'a>, BTreeSet<usize>), Exceeded> {
     let mut rules = Rules::default();
     let mut sheets = BTreeSet::new();
     for (e, node) in nodes.iter().enumerate().filter(|(_, n)| is_sheet(n)) {
@@ -151,13 +148,12 @@ pub(super) fn rules<'a>(nodes: &[Node<'a, '_>], budget: &Budget) -> Result<Sheet
             rules.add(text);
         }
     }
-    let mut unsupported = std::mem::take(&mut rules.unsupported);
     let instructions = nodes.iter().take(1).flat_map(|root| root.document().root().children()).filter_map(|n| n.pi());
-    unsupported.extend(instructions.filter(|pi| pi.target == "xml-stylesheet").map(|pi| {
+    rules.unsupported.extend(instructions.filter(|pi| pi.target == "xml-stylesheet").map(|pi| {
         let link = pi.value.unwrap_or_default().split("href=").nth(1).unwrap_or_default();
         format!("the style sheet {} is not read", link.split(' ').next().unwrap_or_default())
     }));
-    Ok((rules, sheets, unsupported))
+    Ok((rules, sheets))
 }
 
 fn is_sheet(node: &Node<'_, '_>) -> bool {

@@ -12,7 +12,6 @@ mod webp;
 
 use crate::error::Error;
 use crate::picture::bitmap::Kind;
-use crate::picture::decode::Decoded;
 use crate::picture::jpeg::Compression;
 use crate::picture::orientation::Orientation;
 use pathwarp::budget::Limits;
@@ -66,7 +65,7 @@ impl Picture {
         if !Self::sniff(bytes) {
             return Err(Error::Decode("neither a PNG nor a JPEG nor a WebP".to_owned()));
         }
-        Self::decode(bytes, true, limits)
+        decode::decode(bytes, true, limits)
     }
 
     /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) as it is stored, without applying its orientation. Takes the first image of an
@@ -83,7 +82,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_stored_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        Self::decode(bytes, false, limits)
+        decode::decode(bytes, false, limits)
     }
 
     /// Returns `true` if the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes no pixels.
@@ -125,12 +124,7 @@ impl Picture {
         if Kind::sniff(bytes) != Some(Kind::Jpeg) || !Self::is_turned(bytes, limits) {
             return Self::read_stored_within(bytes, limits);
         }
-        Self::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
-    }
-
-    fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
-        let Decoded { pixmap, profile, exif, early_end } = decode::decode(bytes, upright, limits)?;
-        Ok(Self { pixmap, profile, exif, early_end })
+        decode::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
     }
 
     /// A picture of new pixels made from this one, with its colour profile, if that fits, and its EXIF metadata, if they are sound,

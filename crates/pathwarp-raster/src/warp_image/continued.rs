@@ -3,7 +3,6 @@
 use kurbo::{Point, Rect};
 use pathwarp::engine::{Batches, Cost};
 use pathwarp::map::{Creases, Jet, Map};
-use std::fmt;
 
 /// The corners of a box divided into cells, of which `cells` lie along each side.
 pub(crate) fn lattice(r: Rect, cells: usize) -> impl Iterator<Item = Point> {
@@ -15,16 +14,11 @@ pub(crate) fn lattice(r: Rect, cells: usize) -> impl Iterator<Item = Point> {
 /// A map, continued beyond a box by its tangents if it folds there or is not defined.
 ///
 /// Deformations are made for the box of the artwork; its shadows lie around it.
+#[derive(Debug)]
 pub struct Continued<'a> {
     map: &'a dyn Map,
     /// The box beyond which tangents continue the map; `None` if the map itself does.
     inner: Option<Rect>,
-}
-
-impl fmt::Debug for Continued<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Continued").field("map", &self.map).field("inner", &self.inner).finish()
-    }
 }
 
 impl<'a> Continued<'a> {

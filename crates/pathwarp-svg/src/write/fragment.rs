@@ -7,8 +7,8 @@ use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
 use super::layers::Layer;
 use super::markup::{
-    self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
-    svg,
+    self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, fill_rule, part_data,
+    stroke_scale, svg,
 };
 use super::surroundings::Surroundings;
 use super::{boxes, filter, mesh};
@@ -233,10 +233,7 @@ impl<'a> Writer<'a> {
         let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| warped.text(a));
         match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
             (None, _) => String::new(),
-            (Some(f), Some(content)) => {
-                let rule = if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" };
-                self.clipped_to(&area, rule, &content, i)
-            }
+            (Some(f), Some(content)) => self.clipped_to(&area, fill_rule(f.rule()), &content, i),
             (Some(_), None) => {
                 let fill = self.fill(i);
                 let paints = CssPaints { fill, stroke: None };
@@ -273,9 +270,7 @@ impl<'a> Writer<'a> {
         let name = p.source.or(p.owner).and_then(|e| self.input.source.attr(e, "id")).filter(|n| !n.is_empty());
         let id = self.defs.new_id(&name.map_or_else(|| "shape-edge".to_owned(), |n| format!("{n}-edge")));
         let mut properties = Properties::new();
-        if rule != "nonzero" || self.markup.may_inherit("clip-rule") {
-            properties.push(("clip-rule", rule.into()));
-        }
+        self.markup.push_unless_default("clip-rule", rule, "nonzero", &mut properties);
         let path = self.markup.path(d, "", &properties);
         self.defs.push(&self.markup.element("clipPath").with("id", &id).around(&path));
         let mut properties = vec![("clip-path", format!("url(#{id})"))];
@@ -523,12 +518,8 @@ impl<'a> Writer<'a> {
     fn clip_part(&mut self, i: usize, to_clip: Affine, clip: Option<(usize, Affine)>) -> String {
         let p = self.input.part(i);
         let mut properties = Properties::new();
-        let rule = p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule);
-        if rule == FillRule::EvenOdd {
-            properties.push(("clip-rule", "evenodd".into()));
-        } else if self.markup.may_inherit("clip-rule") {
-            properties.push(("clip-rule", "nonzero".into()));
-        }
+        let rule = fill_rule(p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule));
+        self.markup.push_unless_default("clip-rule", rule, "nonzero", &mut properties);
         let mut transform = to_clip;
         if let Some((i, from_group)) = clip {
             let id = self.clip_id(i);
@@ -588,8 +579,15 @@ impl<'a> Writer<'a> {
     pub(super) fn filters(&mut self, g: &Group) -> String {
         self.note_filters(g);
         let growth = boxes::growth(&self.input, g);
-        let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, boxes::grown(f, growth))).collect();
-        list.join(" ")
+        let url = |f: &Arc<Filter>| {
+            let region = boxes::grown(f, growth);
+            if self.keeps_filter(f) {
+                self.defs.grow(f, region);
+                return format!("url(#{})", f.id());
+            }
+            format!("url(#{})", self.filter_id(f, region))
+        };
+        g.filters.iter().map(url).collect::<Vec<_>>().join(" ")
     }
 
     /// Notes that the filters of a group do not look right.
@@ -597,14 +595,6 @@ impl<'a> Writer<'a> {
         if self.input.filter_outcome(g).is_none() {
             g.filters.iter().for_each(|f| self.notes.add(FILTERS, f.id()));
         }
-    }
-
-    fn filter(&mut self, f: &Arc<Filter>, region: Rect) -> String {
-        if self.keeps_filter(f) {
-            self.defs.grow(f, region);
-            return format!("url(#{})", f.id());
-        }
-        format!("url(#{})", self.filter_id(f, region))
     }
 
     /// Returns `true` if a filter of the source remains in use.

@@ -49,6 +49,13 @@ impl<'a> Markup<'a> {
         self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(is_mentioned)
     }
 
+    /// Adds a property, unless it has its default and no ancestor in the source may set it.
+    pub(super) fn push_unless_default(&self, name: &'static str, value: &str, default: &str, out: &mut Properties) {
+        if value != default || self.may_inherit(name) {
+            out.push((name, value.to_owned()));
+        }
+    }
+
     /// Begins an element.
     pub(super) fn element(&self, name: &str) -> Tag {
         Tag::new(format!("{}{name}", self.prefix))
@@ -123,20 +130,13 @@ pub(super) struct CssPaints {
 /// Properties common to a part and its expanded stroke. Defaults are left out unless an ancestor may set the property.
 fn shared(markup: &Markup<'_>, p: &Part) -> Properties {
     let mut out = Properties::new();
-    if !p.visible {
-        out.push(("visibility", "hidden".into()));
-    } else if markup.may_inherit("visibility") {
-        out.push(("visibility", "visible".into()));
-    }
-    match p.rendering {
-        ShapeRendering::GeometricPrecision => {
-            if markup.may_inherit("shape-rendering") {
-                out.push(("shape-rendering", "auto".into()));
-            }
-        }
-        ShapeRendering::OptimizeSpeed => out.push(("shape-rendering", "optimizeSpeed".into())),
-        ShapeRendering::CrispEdges => out.push(("shape-rendering", "crispEdges".into())),
-    }
+    markup.push_unless_default("visibility", if p.visible { "visible" } else { "hidden" }, "visible", &mut out);
+    let rendering = match p.rendering {
+        ShapeRendering::GeometricPrecision => "auto",
+        ShapeRendering::OptimizeSpeed => "optimizeSpeed",
+        ShapeRendering::CrispEdges => "crispEdges",
+    };
+    markup.push_unless_default("shape-rendering", rendering, "auto", &mut out);
     if markup.may_inherit("marker") {
         out.extend(["marker-start", "marker-mid", "marker-end"].map(|n| (n, "none".to_owned())));
     }
@@ -161,7 +161,7 @@ pub(super) fn part_style(markup: &Markup<'_>, p: &Part, paints: CssPaints, scale
         (Some(f), Some(css)) => {
             all.extend(css.paint.map(|v| ("fill", v)));
             all.extend(css.opacity.map(|v| ("fill-opacity", v)));
-            all.push(("fill-rule", if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" }.into()));
+            all.push(("fill-rule", fill_rule(f.rule()).into()));
         }
         _ => all.push(("fill", "none".into())),
     }
@@ -277,6 +277,11 @@ pub(super) fn number(v: f64, decimals: u8) -> String {
     let mut out = String::new();
     push(&mut out, v, decimals);
     out
+}
+
+/// A fill rule as a CSS value.
+pub(super) fn fill_rule(rule: FillRule) -> &'static str {
+    if rule == FillRule::EvenOdd { "evenodd" } else { "nonzero" }
 }
 
 /// A colour as `#rrggbb`.

@@ -378,16 +378,12 @@ pub(super) fn patch_masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
         let def = k.definition(&m.id, "mask");
         // A mask in box units hides a box without area completely. The result's box may have an area, so write a new mask.
         let in_box_units = def.is_none_or(|d| k.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
-        if in_box_units && m.root.children.is_empty() {
-            let id = k.writer.mask_id(i);
-            redirect(k, &m.referrers, "mask", &id)?;
-            continue;
-        }
-        if !k.input.changes(m.parts.clone()) {
+        let hides_all = in_box_units && m.root.children.is_empty();
+        if !hides_all && !k.input.changes(m.parts.clone()) {
             k.writer.defs.mask_ids[i] = def.map(|_| m.id.clone());
             continue;
         }
-        match def {
+        match def.filter(|_| !hides_all) {
             Some(def) if patched.insert(def) => patch_mask(k, i, m, def),
             _ => {
                 let id = k.writer.mask_id(i);

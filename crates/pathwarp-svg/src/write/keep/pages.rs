@@ -2,8 +2,7 @@
 
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
-use crate::source::elements::ElementId;
-use crate::source::elements::declared;
+use crate::source::elements::{ElementId, declared};
 use crate::source::number::{rectangle, short};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Rect, Size, Vec2};
@@ -33,7 +32,6 @@ pub(super) fn fix_percentages(k: &mut Keeper<'_, '_>, after: Size) {
     for e in 1..k.source.elements.len() {
         if has_percentages(k.source, e) && refers_to_root(k.source, e) && is_in_user_space(k.source, e) {
             fix_lengths(k, e, before);
-            fix_defaults(k, e, before);
         }
     }
     if k.source.text.contains('%') {
@@ -88,14 +86,6 @@ fn numbers(text: &str, full: f64) -> Option<String> {
     })
 }
 
-fn fix_lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
-    for &(name, dimension) in LENGTHS {
-        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, dimension.in_view(view))) {
-            k.edits.set_attr(e, name, new);
-        }
-    }
-}
-
 /// Replaces percentages of a property in attributes and styles, and overrides those of style sheets.
 fn fix_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     if !k.source.text.contains(name) {
@@ -116,10 +106,10 @@ fn fix_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     }
 }
 
-/// Writes numbers for lengths that are not given and whose default is a percentage.
-fn fix_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+/// Writes numbers for lengths that are percentages, or that are not given and whose default is one.
+fn fix_lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
     let target = || k.source.target(e);
-    let missing: &[(&str, &str)] = match k.tag(e) {
+    let defaults: &[(&str, &str)] = match k.tag(e) {
         "svg" => &[("width", "100%"), ("height", "100%")],
         "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
         // Another gradient that it refers to may give them.
@@ -127,10 +117,9 @@ fn fix_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
         _ => &[],
     };
     for &(name, dimension) in LENGTHS {
-        if let Some((_, default)) = missing.iter().find(|m| m.0 == name)
-            && k.source.attr(e, name).is_none()
-            && let Some(new) = numbers(default, dimension.in_view(view))
-        {
+        let default = defaults.iter().find(|d| d.0 == name).map(|d| d.1.into());
+        let value = k.source.attr(e, name).or(default);
+        if let Some(new) = value.and_then(|v| numbers(&v, dimension.in_view(view))) {
             k.edits.set_attr(e, name, new);
         }
     }

@@ -28,10 +28,6 @@ enum SpanItem {
 struct SpanTree(Vec<TextSpan>);
 
 impl SpanTree {
-    fn new(text: ElementId) -> Self {
-        Self(vec![TextSpan { element: text, content: Vec::new() }])
-    }
-
     /// The index of the innermost span of a chain of elements, `path`, outermost first. Adds a span that is missing or, with `reopen`, is
     /// no longer the last of its parent; its element then gets a second group.
     fn find_or_add(&mut self, path: &[ElementId], reopen: bool) -> usize {
@@ -109,7 +105,7 @@ fn move_html(k: &mut Keeper<'_, '_>, text: ElementId) {
 
 /// Sorts the outlines of a text into spans.
 fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> SpanTree {
-    let mut spans = SpanTree::new(text);
+    let mut spans = SpanTree(vec![TextSpan { element: text, content: Vec::new() }]);
     let path = |element: ElementId| {
         let ancestors = source.ancestors(element).take_while(|&a| a != text);
         let mut path: Vec<ElementId> = ancestors.filter(|&a| is_named(source, a)).collect();
