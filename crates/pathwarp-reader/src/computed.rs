@@ -298,7 +298,7 @@ impl Values<'_, '_, '_> {
                 None => self.length(p, raw, Sign::Positive, strict),
             },
             Kind::AnyKeywords => (!raw.is_empty()).then(|| lower(raw)),
-            Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
+            Kind::FontWeight => text::weight(raw, 400).map(|_| lower(raw)),
             Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
             Kind::Link => link(raw),

@@ -51,24 +51,6 @@ impl ComparisonCounter {
     }
 }
 
-/// Returns a function that tests if an element matches a selector.
-pub(super) fn matcher<'b>(
-    node: Node<'b, '_>,
-    counter: &ComparisonCounter,
-    caches: &'b mut SelectorCaches,
-) -> impl FnMut(&Selector<Svg>) -> bool {
-    let mut context = MatchingContext::new(
-        MatchingMode::Normal,
-        None,
-        caches,
-        QuirksMode::NoQuirks,
-        NeedsSelectorFlags::No,
-        MatchingForInvalidation::No,
-    );
-    let element = Counted { node, counter };
-    move |selector| counter.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
-}
-
 /// An element that counts accesses, and appears to have no neighbours once the limit is exceeded.
 #[derive(Clone, Copy)]
 struct Counted<'a, 'b, 'i> {
@@ -235,7 +217,12 @@ pub(super) fn applying<'r, 'a>(
 ) -> Vec<&'r Declaration<'a>> {
     let mut all = Vec::new();
     if !rules.is_empty() {
-        let mut matches = matcher(node, counter, caches);
+        let (mode, quirks, flags) = (MatchingMode::Normal, QuirksMode::NoQuirks, NeedsSelectorFlags::No);
+        let mut context = MatchingContext::new(mode, None, caches, quirks, flags, MatchingForInvalidation::No);
+        let element = Counted { node, counter };
+        let mut matches = |selector: &Selector<Svg>| {
+            counter.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
+        };
         for candidate in rules.candidates(node.tag_name().name(), node.attribute("id"), node.attribute("class")) {
             let Some((selector, order)) = rules.selectors.get(candidate).filter(|s| matches(&s.0)) else { continue };
             let block = &rules.blocks[*order];

@@ -2,9 +2,7 @@
 
 use cssparser::{ParseError, Parser, ToCss, serialize_identifier};
 use precomputed_hash::PrecomputedHash;
-use selectors::parser::{
-    NonTSPseudoClass, ParseRelative, PseudoElement, SelectorImpl, SelectorList, SelectorParseErrorKind,
-};
+use selectors::parser::{NonTSPseudoClass, PseudoElement, SelectorImpl, SelectorParseErrorKind};
 use std::borrow::Borrow;
 use std::collections::HashMap;
 use std::fmt;
@@ -126,7 +124,7 @@ impl Namespaces {
 }
 
 /// Parses selectors as browsers do: an unknown one makes the whole list invalid.
-struct Dialect<'a>(&'a Namespaces);
+pub(super) struct Dialect<'a>(pub(super) &'a Namespaces);
 
 impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
     type Impl = Svg;
@@ -157,12 +155,4 @@ impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
     fn parse_pseudo_element(&self, _: &str) -> Result<AnyPseudoElement, ParseError<SelectorParseErrorKind>> {
         Ok(AnyPseudoElement)
     }
-}
-
-/// Parses the selectors of a rule.
-pub(super) fn selectors<'i>(
-    input: &mut Parser<'i>,
-    namespaces: &Namespaces,
-) -> Result<SelectorList<Svg>, ParseError<SelectorParseErrorKind>> {
-    SelectorList::parse(&Dialect(namespaces), input, ParseRelative::No)
 }

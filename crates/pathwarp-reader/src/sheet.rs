@@ -1,11 +1,11 @@
 //! Parses style sheets and style attributes into rules and declarations.
 
-use crate::names::{Namespaces, Svg, selectors};
+use crate::names::{Dialect, Namespaces, Svg};
 use cssparser::{
     AtRuleParser, CowRcStr, DeclarationParser, ParseError, Parser, ParserState, QualifiedRuleParser,
     RuleBodyItemParser, RuleBodyParser, StyleSheetParser,
 };
-use selectors::parser::{Component, Selector, SelectorList, SelectorParseErrorKind};
+use selectors::parser::{Component, ParseRelative, Selector, SelectorList, SelectorParseErrorKind};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
@@ -183,10 +183,6 @@ impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
         })
     }
 
-    fn rule_without_block(&mut self, _: Prelude, _: &ParserState) -> Result<(), ()> {
-        Ok(())
-    }
-
     fn parse_block(&mut self, prelude: Prelude, _: &ParserState, input: &mut Parser<'i>) -> Result<(), Failure> {
         match prelude {
             Prelude::Rules(layer) => {
@@ -212,7 +208,7 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
 
     fn parse_prelude(&mut self, input: &mut Parser<'i>) -> Result<SelectorList<Svg>, Failure> {
         let state = input.state();
-        selectors(input, self.names).inspect_err(|_| {
+        SelectorList::parse(&Dialect(self.names), input, ParseRelative::No).inspect_err(|_| {
             input.reset(&state);
             let text = rest(input);
             // Browsers reject all other selectors, too.

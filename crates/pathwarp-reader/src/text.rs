@@ -159,7 +159,12 @@ impl TextStyle {
             _ => "start",
         });
         self.rtl = value("direction").map_or(self.rtl, |v| v == "rtl");
-        self.case = value("text-transform").map_or(self.case, case);
+        self.case = value("text-transform").map_or(self.case, |v| match v.to_ascii_lowercase().as_str() {
+            "uppercase" => Case::Upper,
+            "lowercase" => Case::Lower,
+            "capitalize" => Case::Capitalized,
+            _ => Case::AsTyped,
+        });
         self.spaced = value("letter-spacing").map_or(self.spaced, |v| {
             let end = v.find(|c: char| !c.is_ascii_digit() && !matches!(c, '.' | '-' | '+')).unwrap_or(v.len());
             v[..end].parse().is_ok_and(|n: f64| n != 0.0)
@@ -207,7 +212,12 @@ impl TextStyle {
         ];
         out.notes = notes.into_iter().filter(|(applies, _)| *applies).map(|(_, note)| note).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
-        let direction = direction_control(self.rtl, overrides);
+        let direction = match (self.rtl, overrides) {
+            (true, true) => Some('\u{202e}'),
+            (true, false) => Some('\u{202b}'),
+            (false, true) => Some('\u{202d}'),
+            (false, false) => None,
+        };
         (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
     }
 
@@ -280,16 +290,6 @@ fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     style.or_else(|| declared(node?)).unwrap_or(false)
 }
 
-/// The control character that sets a direction; `None` for ordinary left-to-right text.
-fn direction_control(rtl: bool, overrides: bool) -> Option<char> {
-    match (rtl, overrides) {
-        (true, true) => Some('\u{202e}'),
-        (true, false) => Some('\u{202b}'),
-        (false, true) => Some('\u{202d}'),
-        (false, false) => None,
-    }
-}
-
 /// Returns `true` if usvg loses a space of this text: one at the beginning of a part.
 fn loses_spaces(text: Node<'_, '_>) -> bool {
     let keeps = |n: Node<'_, '_>| {
@@ -328,11 +328,6 @@ pub(super) fn concerns(name: &str) -> bool {
     FOLLOWED.contains(&name) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name)
 }
 
-/// Returns `true` if a value is a valid font weight.
-pub(super) fn is_weight(value: &str) -> bool {
-    weight(value, 400).is_some()
-}
-
 /// Shortens a value for messages, of which there may be many, since texts inherit it.
 pub(super) fn excerpt(value: &str) -> &str {
     const MAX_CHARS: usize = 80;
@@ -341,7 +336,8 @@ pub(super) fn excerpt(value: &str) -> &str {
 
 /// Expands a `font` declaration into its longhands. Returns `None` if it is invalid, or names a system font.
 pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
-    if ["inherit", "initial", "unset"].iter().any(|k| value.eq_ignore_ascii_case(k)) {
+    let is_any = |text: &str, words: &[&str]| words.iter().any(|w| text.eq_ignore_ascii_case(w));
+    if is_any(value, &["inherit", "initial", "unset"]) {
         let is_initial = value.eq_ignore_ascii_case("initial");
         let longhand = |(name, initial)| (name, if is_initial { initial } else { "inherit" }.to_owned());
         return Some(FONT.map(longhand).into());
@@ -369,7 +365,9 @@ pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
                 found[slot] = word;
             }
             Token::Number { .. } => text.clone_into(&mut found[2]),
-            Token::Dimension { unit, .. } if is_angle(unit) && found[0] == "oblique" => {}
+            // The angle of oblique letters.
+            Token::Dimension { unit, .. } if found[0] == "oblique" && is_any(unit, &["deg", "rad", "grad", "turn"]) => {
+            }
             Token::Dimension { .. } | Token::Percentage { .. } => break text.to_owned(),
             _ => return None,
         }
@@ -395,12 +393,8 @@ pub(super) fn size(value: &str, parent: f64) -> Option<f64> {
     }
 }
 
-fn is_angle(unit: &str) -> bool {
-    ["deg", "rad", "grad", "turn"].iter().any(|u| unit.eq_ignore_ascii_case(u))
-}
-
-/// Rounds a weight to hundreds, as usvg requires. `parent` is the inherited weight.
-fn weight(value: &str, parent: u16) -> Option<u16> {
+/// Rounds a weight to hundreds, as usvg requires. `parent` is the inherited weight. Returns `None` for invalid values.
+pub(super) fn weight(value: &str, parent: u16) -> Option<u16> {
     Some(match value.to_ascii_lowercase().as_str() {
         "normal" => 400,
         "bold" => 700,
@@ -433,15 +427,6 @@ fn width(value: &str) -> Option<&'static str> {
 
 fn opacity(value: &str) -> Option<f64> {
     Some(factor(value)?.clamp(0.0, 1.0))
-}
-
-fn case(value: &str) -> Case {
-    match value.to_ascii_lowercase().as_str() {
-        "uppercase" => Case::Upper,
-        "lowercase" => Case::Lower,
-        "capitalize" => Case::Capitalized,
-        _ => Case::AsTyped,
-    }
 }
 
 /// Breaks up the ligatures of a text.

@@ -269,17 +269,14 @@ pub(super) fn known_length<'v>(
     if non_negative && value < 0.0 {
         return None;
     }
-    match unit {
+    let lower = unit.to_ascii_lowercase();
+    match lower.as_str() {
         "" if strict && value != 0.0 => None,
-        "" | "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(Cow::Borrowed(text)),
+        "" => Some(Cow::Borrowed(text)),
+        "px" | "in" | "cm" | "mm" | "pt" | "pc" if lower == unit => Some(Cow::Borrowed(text)),
+        "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(format!("{number}{lower}").into()),
         "%" => Some(percent.map_or(Cow::Borrowed(text), |full| format!("{}px", (value / 100.0) * full).into())),
-        _ => {
-            let lower = unit.to_ascii_lowercase();
-            if matches!(lower.as_str(), "px" | "in" | "cm" | "mm" | "pt" | "pc") {
-                return Some(format!("{number}{lower}").into());
-            }
-            Some(format!("{}px", length(text, units, 0.0)?).into())
-        }
+        _ => Some(format!("{}px", length(text, units, 0.0)?).into()),
     }
 }
 

@@ -56,11 +56,11 @@ impl Bitmap for Jpeg<'_> {
 }
 
 fn wrong(why: DecodeErrors) -> Error {
-    match why {
-        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
-            undecodable("JPEG", "the file ends early, before its first line")
-        }
-        why => undecodable("JPEG", why),
+    let ends_early = matches!(why, DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_));
+    if ends_early {
+        undecodable("JPEG", "the file ends early, before its first line")
+    } else {
+        undecodable("JPEG", why)
     }
 }
 

@@ -112,8 +112,7 @@ impl Picture {
         if Kind::sniff(bytes) != Some(Kind::Jpeg) {
             return Self::turned(bytes, limits);
         }
-        let exchanges = decode::orientation(bytes, limits).exchanges_sides();
-        exchanges.then(|| jpeg::with_sides_exchanged(bytes)).flatten()
+        decode::orientation(bytes, limits).transpose.then(|| jpeg::with_sides_exchanged(bytes))?
     }
 
     /// Reads an image of a drawing as browsers show it, from the result of [`Picture::sized`], or from the image where that is `None`.

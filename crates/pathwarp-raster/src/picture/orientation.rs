@@ -11,7 +11,8 @@ use tiny_skia::Pixmap;
 pub(super) struct Orientation {
     mirror_x: bool,
     mirror_y: bool,
-    transpose: bool,
+    /// `true` if width and height are exchanged.
+    pub(super) transpose: bool,
 }
 
 impl Orientation {
@@ -22,11 +23,6 @@ impl Orientation {
             mirror_y: matches!(n, 3 | 4 | 6 | 7),
             transpose: matches!(n, 5..=8),
         })
-    }
-
-    /// Returns `true` if width and height are exchanged.
-    pub(super) fn exchanges_sides(self) -> bool {
-        self.transpose
     }
 
     /// Turns a picture upright.

@@ -23,7 +23,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let limits = Limits::default().for_input(warp.source.data().len());
     let (width_px, height_px) = (f64::from(width), f64::from(height));
     let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;
-    let touched_tiles = TouchedTiles::new(warp, warp.shown.inverse(), TILE);
+    let touched_tiles = TouchedTiles::new(warp);
     let painter = ImagePainter {
         warp,
         to_source: warp.placed.inverse(),
@@ -206,30 +206,26 @@ struct TouchedTiles {
 }
 
 impl TouchedTiles {
-    /// Finds the tiles of `tile` pixels a side. `to_target` leads from the plane to the pixels of the result.
-    fn new(warp: &ImageWarp<'_>, to_target: Affine, tile: usize) -> Self {
-        let [columns, rows] = [warp.size.0, warp.size.1].map(|side| (side as usize).div_ceil(tile));
+    fn new(warp: &ImageWarp<'_>) -> Self {
+        let [columns, rows] = [warp.size.0, warp.size.1].map(|side| (side as usize).div_ceil(TILE));
         let mut out = Self { touched: vec![false; columns * rows], columns };
-        let cells = (warp.size.0.max(warp.size.1) as usize / MIN_CELL).clamp(1, MAX_CELLS);
-        let corners = images(warp.source, warp.placed, warp.map, to_target, cells);
-        for pair in corners.windows(2) {
+        for pair in corner_images(warp).windows(2) {
             for i in 0..pair[0].len() - 1 {
-                let cell = [pair[0][i], pair[0][i + 1], pair[1][i], pair[1][i + 1]];
-                out.touch(cell, tile, rows);
+                out.touch([pair[0][i], pair[0][i + 1], pair[1][i], pair[1][i + 1]], rows);
             }
         }
         out
     }
 
     /// Marks the tiles around the image of a cell. If some of its corners have no image, its neighbours cover most of it.
-    fn touch(&mut self, cell: [Point; 4], tile: usize, rows: usize) {
+    fn touch(&mut self, cell: [Point; 4], rows: usize) {
         let mut defined = cell.into_iter().filter(|p| p.is_finite());
         let Some(first) = defined.next() else { return };
         let b = defined.fold(Rect::from_points(first, first), |b, p| b.union_pt(p));
         // Allow for curved sides and for partly covered pixels at the edge.
         let b = b.inflate(2.0 + 0.5 * b.width(), 2.0 + 0.5 * b.height());
-        let index = |v: f64, max: usize| ((v / tile as f64).max(0.0) as usize).min(max);
-        if b.x1 < 0.0 || b.y1 < 0.0 || b.x0 > (self.columns * tile) as f64 || b.y0 > (rows * tile) as f64 {
+        let index = |v: f64, max: usize| ((v / TILE as f64).max(0.0) as usize).min(max);
+        if b.x1 < 0.0 || b.y1 < 0.0 || b.x0 > (self.columns * TILE) as f64 || b.y0 > (rows * TILE) as f64 {
             return;
         }
         for row in index(b.y0, rows - 1)..=index(b.y1, rows - 1) {
@@ -244,8 +240,11 @@ impl TouchedTiles {
 }
 
 /// Maps the corners of a grid over the source to pixels of the result, row by row.
-fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine, cells: usize) -> Vec<Vec<Point>> {
+fn corner_images(warp: &ImageWarp<'_>) -> Vec<Vec<Point>> {
+    let &ImageWarp { source, placed, map, size, .. } = warp;
+    let cells = (size.0.max(size.1) as usize / MIN_CELL).clamp(1, MAX_CELLS);
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
+    let to_target = warp.shown.inverse();
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let row = |j: usize| {

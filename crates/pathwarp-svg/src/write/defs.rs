@@ -46,15 +46,9 @@ pub(super) struct Definitions {
 
 /// An element of the source that is being replaced, so that its ids become free.
 pub(super) struct Replaced {
-    range: Range<usize>,
+    pub(super) range: Range<usize>,
     /// Elements in this range whose ids have been written.
-    named: BTreeSet<ElementId>,
-}
-
-impl Replaced {
-    pub(super) fn new(range: Range<usize>) -> Self {
-        Self { range, named: BTreeSet::new() }
-    }
+    pub(super) named: BTreeSet<ElementId>,
 }
 
 impl Definitions {

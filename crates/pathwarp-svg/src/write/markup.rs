@@ -12,7 +12,6 @@ use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp_reader::xml::escape;
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::fmt::Write as _;
 use usvg::filter::{ColorInterpolation, DropShadow};
 use usvg::{FillRule, LineCap, LineJoin, PaintOrder, ShapeRendering};
 
@@ -79,38 +78,25 @@ impl<'a> Markup<'a> {
 
     /// Properties as attributes, or as a style attribute if style sheets could override those.
     pub(super) fn attributes(&self, properties: &Properties) -> String {
+        if self.styled && !properties.is_empty() {
+            let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
+            return format!(" style=\"{}\"", escape(&all.join(";")));
+        }
         let mut out = String::new();
-        self.push_attributes(properties, &mut out);
-        out
-    }
-
-    fn push_attributes(&self, properties: &Properties, out: &mut String) {
-        if self.styled {
-            if !properties.is_empty() {
-                let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
-                let _ = write!(out, " style=\"{}\"", escape(&all.join(";")));
-            }
-        } else {
-            for (n, v) in properties {
-                // These properties have no presentation attribute.
-                if matches!(*n, "mix-blend-mode" | "isolation") {
-                    let _ = write!(out, " style=\"{n}:{v}\"");
-                } else {
-                    out.extend([" ", n, "=\"", &escape(v), "\""]);
-                }
+        for (n, v) in properties {
+            // These properties have no presentation attribute.
+            if matches!(*n, "mix-blend-mode" | "isolation") {
+                out.extend([" style=\"", n, ":", v, "\""]);
+            } else {
+                out.extend([" ", n, "=\"", &escape(v), "\""]);
             }
         }
+        out
     }
 
     /// Writes a path with the attribute `id` (empty for none).
     pub(super) fn path(&self, d: &str, id: &str, properties: &Properties) -> String {
-        /// Typical length of the attributes, for the capacity.
-        const USUAL: usize = 64;
-        let mut out = String::with_capacity(d.len() + id.len() + USUAL);
-        out.extend(["<", &self.prefix, "path", id, " d=\"", d, "\""]);
-        self.push_attributes(properties, &mut out);
-        out.push_str("/>");
-        out
+        ["<", &self.prefix, "path", id, " d=\"", d, "\"", &self.attributes(properties), "/>"].concat()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Walks over the scene and patches each element. In every function, `k` is the keeper of the edits, and `e` the patched element.
 
-use super::keeper::{self, Keeper};
+use super::keeper::{self, GEOMETRY, Keeper};
 use super::text;
 use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::options::Clones;
@@ -127,7 +127,7 @@ fn patch_shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let tag = k.tag(e);
     if tag != "path" {
         k.edits.rename(e, "path");
-        k.remove_geometry(e);
+        k.remove_attributes(e, &GEOMETRY);
         // Unlike a path, these shapes have no markers.
         if matches!(tag, "rect" | "circle" | "ellipse")
             && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
@@ -210,9 +210,7 @@ fn patch_bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
             let has = |name: &str| k.source.property(e, name).is_some_and(|v| v.trim() != "none");
             if clip.is_some() && (has("clip-path") || has("filter")) {
                 let content = k.writer.clipped_image(image, clip.as_deref(), Affine::IDENTITY);
-                for name in ["href", "preserveAspectRatio"] {
-                    k.edits.remove_attr(e, name);
-                }
+                k.remove_attributes(e, &["href", "preserveAspectRatio"]);
                 k.make_group(e, content);
             } else {
                 for (name, value) in bent_attributes(image, Affine::IDENTITY) {
@@ -242,9 +240,7 @@ fn patch_bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
 fn patch_drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group) {
     if k.changed(n) {
         let content = k.writer.group(g, "");
-        for name in ["href", "preserveAspectRatio"] {
-            k.edits.remove_attr(e, name);
-        }
+        k.remove_attributes(e, &["href", "preserveAspectRatio"]);
         k.make_group(e, content);
     }
 }

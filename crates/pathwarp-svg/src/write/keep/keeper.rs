@@ -12,8 +12,8 @@ use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
-/// Geometry attributes, which a shape loses when it becomes a path.
-const GEOMETRY: [&str; 15] =
+/// Geometry attributes, which a shape loses when it becomes a path. The first alone is that of a path.
+pub(super) const GEOMETRY: [&str; 15] =
     ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2", "points"];
 
 /// Data attributes of lettering.
@@ -60,7 +60,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
     /// the replacement specifies its appearance and position itself.
     pub(super) fn replacement(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
         let frees_ids = !self.source.has_css() && !self.source.animated;
-        self.writer.defs.replaced = frees_ids.then(|| Replaced::new(self.source.elements[e].range.clone()));
+        let range = self.source.elements[e].range.clone();
+        self.writer.defs.replaced = frees_ids.then_some(Replaced { range, named: BTreeSet::new() });
         let text = write(self.writer);
         self.writer.defs.replaced = None;
         text
@@ -95,8 +96,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
         text
     }
 
-    pub(super) fn remove_geometry(&mut self, e: ElementId) {
-        for name in GEOMETRY {
+    pub(super) fn remove_attributes(&mut self, e: ElementId, names: &[&'static str]) {
+        for name in names {
             self.edits.remove_attr(e, name);
         }
     }
@@ -118,7 +119,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
         self.remove_lettering(e);
         self.new_groups.insert(e);
         self.edits.rename(e, "g");
-        self.remove_geometry(e);
+        self.remove_attributes(e, &GEOMETRY);
         self.edits.wrap_content(e, String::new(), content);
     }
 }
@@ -163,9 +164,8 @@ pub(super) fn remove_live_attributes(k: &mut Keeper<'_, '_>, warped: &Warped) {
     for e in (0..source.elements.len()).filter(|&e| warped.within[e]) {
         if is_shape(k.tag(e)) && source.attr_in(e, Namespace::Sodipodi, "type").is_some() {
             // A rectangle with a path effect is a `path` with the attributes of a `rect`; a linked offset has a link.
-            for name in GEOMETRY.into_iter().filter(|n| *n != "d").chain(["href"]) {
-                k.edits.remove_attr(e, name);
-            }
+            k.remove_attributes(e, &GEOMETRY[1..]);
+            k.edits.remove_attr(e, "href");
         }
         k.edits.remove_attrs(e, |a| is_live(a, &source.text));
         release_orphans(k, e, warped);

@@ -75,9 +75,7 @@ pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, 
     let title = source.elements[e].title.as_ref().unwrap_or(&words);
     let title = if title.is_empty() { String::new() } else { k.writer.markup.title(title) };
     k.edits.rename(e, "g");
-    for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
-        k.edits.remove_attr(e, name);
-    }
+    k.remove_attributes(e, &["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"]);
     if !words.is_empty() && source.attr(e, "aria-label").is_none() {
         k.edits.set_attr(e, "aria-label", words);
     }
