@@ -254,7 +254,7 @@ impl Load {
             if !offset.iter().all(|v| v.abs() <= MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
-            let more = match primitive.kind() {
+            let extra = match primitive.kind() {
                 Kind::Turbulence(t) if t.num_octaves() > MAX_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
                 Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),
                 Kind::Morphology(m) => {
@@ -272,7 +272,7 @@ impl Load {
                 }
                 _ => 0.0,
             };
-            self.add((PRIMITIVE + more) * area)?;
+            self.add((PRIMITIVE + extra) * area)?;
         }
         Ok(())
     }

@@ -109,14 +109,14 @@ fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
         let c = svgtypes::Color::from_str(known.unwrap_or(&lower)).ok()?;
         return Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha));
     };
-    let inside = rest.strip_suffix(')')?;
+    let list = rest.strip_suffix(')')?;
     let levels = levels.checked_sub(1)?;
     match name {
-        "color-mix" => mix(inside, |c| resolved(c, current, levels)),
-        "light-dark" => resolved(arguments(inside).next()?, current, levels),
+        "color-mix" => mix(list, |c| resolved(c, current, levels)),
+        "light-dark" => resolved(arguments(list).next()?, current, levels),
         _ => {
             // The parser knows neither `currentColor` nor mixtures in relative colours.
-            let words = inside.strip_prefix("from ").map(|_| words(inside));
+            let words = list.strip_prefix("from ").map(|_| words(list));
             let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
             let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
             // In relative colours the parser takes no percentages. In these functions, 30% means the same as 30.

@@ -292,7 +292,8 @@ impl Values<'_, '_, '_> {
             Kind::Length(sign) | Kind::Geometry(sign) if raw != "auto" => self.length(p, raw, sign, false),
             Kind::Spacing if raw.eq_ignore_ascii_case("normal") => Some("normal".into()),
             Kind::Spacing => self.length(p, raw, Sign::Any, strict),
-            Kind::Dashes => self.dashes(p, raw),
+            Kind::Link | Kind::Dashes if raw.eq_ignore_ascii_case("none") => Some("none".into()),
+            Kind::Dashes => list(raw, |v| self.length(p, v, Sign::Positive, false)),
             Kind::FontSize => match text::size(raw, self.parent_font) {
                 Some(px) => Some(format!("{px}px").into()),
                 None => self.length(p, raw, Sign::Positive, strict),
@@ -301,7 +302,8 @@ impl Values<'_, '_, '_> {
             Kind::FontWeight => text::weight(raw, 400).map(|_| lower(raw)),
             Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
-            Kind::Link => link(raw),
+            // CSS shapes stay as they are.
+            Kind::Link => Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw))),
             Kind::Filter => Some(self.filter(p, raw)),
             _ => (!raw.is_empty()).then_some(Cow::Borrowed(raw)),
         }
@@ -316,6 +318,7 @@ impl Values<'_, '_, '_> {
 
     /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have different `names` for it.
     fn server_attribute(&self, id: Option<&str>, names: [&str; 2]) -> Option<&str> {
+        /// Gradients that refer to each other in a circle must end.
         const MAX_LINKS: usize = 16;
         let mut chain = std::iter::successors(self.ids.get(id?), |n| self.ids.target(*n)).take(MAX_LINKS);
         chain.find_map(|n| names.into_iter().find_map(|name| n.attribute(name)))
@@ -383,13 +386,6 @@ impl Values<'_, '_, '_> {
             None => color::rewritten_functions(raw, &self.color, |v| self.length(p, v, Sign::Any, false)),
         }
     }
-
-    fn dashes<'v>(&self, p: &Property, raw: &'v str) -> Option<Cow<'v, str>> {
-        if raw.eq_ignore_ascii_case("none") {
-            return Some("none".into());
-        }
-        list(raw, |v| self.length(p, v, Sign::Positive, false))
-    }
 }
 
 /// The paint that replaces a gradient or pattern that cannot apply.
@@ -429,14 +425,6 @@ fn share(raw: &str) -> Option<Cow<'_, str>> {
     // CSS numbers must not end in a point.
     let valid = !number.ends_with('.') && number.parse::<f64>().is_ok_and(f64::is_finite);
     valid.then_some(Cow::Borrowed(raw))
-}
-
-/// Rewrites a reference or `none`. CSS shapes stay as they are.
-fn link(raw: &str) -> Option<Cow<'_, str>> {
-    if raw.eq_ignore_ascii_case("none") {
-        return Some("none".into());
-    }
-    Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw)))
 }
 
 /// Collects the declarations of an element for usvg.

@@ -113,7 +113,7 @@ fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<A
     let x = |i: usize| argument(i).map_or(Some(0.0), |a| length(a, units, size.0));
     let y = |i: usize| argument(i).map_or(Some(0.0), |a| length(a, units, size.1));
     let turn = |i: usize| argument(i).map_or(Some(0.0), angle);
-    let by = |i: usize| factor(argument(i)?);
+    let scale = |i: usize| factor(argument(i)?);
     // No function goes without arguments.
     let first = argument(0)?;
     Some(match name {
@@ -124,10 +124,10 @@ fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<A
         "translate" | "translate3d" => Affine::translate((x(0)?, y(1)?)),
         "translatex" => Affine::translate((x(0)?, 0.0)),
         "translatey" => Affine::translate((0.0, length(first, units, size.1)?)),
-        "scale" => Affine::scale_non_uniform(by(0)?, by(1).or_else(|| by(0))?),
-        "scale3d" => Affine::scale_non_uniform(by(0)?, by(1)?),
-        "scalex" => Affine::scale_non_uniform(by(0)?, 1.0),
-        "scaley" => Affine::scale_non_uniform(1.0, by(0)?),
+        "scale" => Affine::scale_non_uniform(scale(0)?, scale(1).or_else(|| scale(0))?),
+        "scale3d" => Affine::scale_non_uniform(scale(0)?, scale(1)?),
+        "scalex" => Affine::scale_non_uniform(scale(0)?, 1.0),
+        "scaley" => Affine::scale_non_uniform(1.0, scale(0)?),
         // Depth is invisible from the front.
         "translatez" | "scalez" => Affine::IDENTITY,
         "rotate" if all.len() == 3 => Affine::rotate_about(turn(0)?, Point::new(x(1)?, y(2)?)),

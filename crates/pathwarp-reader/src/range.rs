@@ -8,6 +8,7 @@ use std::ops::Range;
 /// single-precision numbers are farther apart than a page is wide.
 pub const LARGEST: f64 = 1e9;
 
+/// Replaces a number out of range.
 const REPLACEMENT: &str = "9e8";
 
 /// Digits before the point of [`LARGEST`], the smallest number out of range.

@@ -161,7 +161,8 @@ fn changes(
     let mut all: Vec<(Change, String)> = Vec::new();
     let mut defs = String::new();
     // If any id is renamed, edited drawings keep all references as they are written here.
-    let references = References::new(text);
+    let has_escapes = text.contains('%') && text.contains("href");
+    let references = References { text, targets: OnceCell::new(), has_escapes };
     let any_renamed = nodes.iter().filter_map(|n| n.attribute("id")).any(|id| references.break_at(id));
     // The end of content that has been replaced.
     let mut replaced_to = 0;
@@ -189,9 +190,8 @@ fn changes(
                 replaced_to = node.range().end;
                 out.foreign.push((element - (i - html), element));
                 out.words.extend(foreign.fills.iter().map(|fill| style.computed.words.with_fill(fill.as_deref())));
-                let reasons =
-                    foreign.left_out.iter().map(|what| format!("only without {what}, which text does not have"));
-                out.unsupported.extend(reasons.map(|why| (Some(element), why)));
+                let why = foreign.left_out.iter().map(|what| format!("only without {what}, which text does not have"));
+                out.unsupported.extend(why.map(|why| (Some(element), why)));
             } else {
                 match letter_changes(text, element, *node, &styles[i..]) {
                     Some(new) => all.extend(new),
@@ -359,10 +359,10 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
     // Without a transform, the origin may serve an animation: it stays.
     let is_transformed = || node.has_attribute("transform") && !computed.transform.is_empty();
     let frozen = style.matrix.filter(|m| *m != Affine::IDENTITY || is_transformed()).map(frozen);
-    let joined = |all: &mut dyn Iterator<Item = (&str, &str)>| {
+    let css_text = |all: &mut dyn Iterator<Item = (&str, &str)>| {
         all.map(|(n, v)| format!("{n}:{v}")).collect::<Vec<_>>().join(";")
     };
-    let new_style = computed.style.as_ref().map(|s| joined(&mut s.iter().map(|(n, v)| (n.as_ref(), v.as_ref()))));
+    let new_style = computed.style.as_ref().map(|s| css_text(&mut s.iter().map(|(n, v)| (n.as_ref(), v.as_ref()))));
     if let Some([(_, list), ..]) = frozen.as_ref().filter(|_| node.parent_element().is_none()) {
         // usvg reads the root's transform from its attribute only, and turns it about the centre unless another origin is given.
         out.retain(|edit| edit.name != "transform");
@@ -370,18 +370,16 @@ fn edits(node: Node<'_, '_>, style: &Styled<'_>, renamed: Option<&References<'_>
         out.push(Edit { name: "transform-origin", value: Some("0 0".to_owned()), kept: None });
         out.extend(new_style.map(|v| Edit { name: "style", value: Some(v).filter(|v| !v.is_empty()), kept: None }));
     } else if let Some(all) = frozen {
-        let old_style = node.attribute("style").unwrap_or_default().to_owned();
+        let old = node.attribute("style").unwrap_or_default().to_owned();
         let others = new_style.unwrap_or_else(|| {
-            let all = declarations(&old_style);
-            joined(&mut all.iter().map(|d| (d.name.as_ref(), d.value.as_ref())))
+            let all = declarations(&old);
+            css_text(&mut all.iter().map(|d| (d.name.as_ref(), d.value.as_ref())))
         });
-        let value = joined(&mut all[..2].iter().map(|(n, v)| (*n, v.as_str())));
+        let value = css_text(&mut all[..2].iter().map(|(n, v)| (*n, v.as_str())));
         let value = if others.is_empty() { value } else { format!("{others};{value}") };
         let important = if computed.transform.iter().any(|d| d.important) { " !important" } else { "" };
-        let set =
-            |s: String, (name, value): &(&str, String)| with_declaration(&s, name, &format!("{value}{important}"));
-        let kept = Some(all.iter().fold(old_style, set));
-        out.push(Edit { name: "style", value: Some(value), kept });
+        let kept = all.iter().fold(old, |s, (name, value)| with_declaration(&s, name, &format!("{value}{important}")));
+        out.push(Edit { name: "style", value: Some(value), kept: Some(kept) });
     } else if let Some(value) = new_style {
         let kept = Some(&value).filter(refers).cloned();
         out.push(Edit { name: "style", value: Some(value).filter(|v| !v.is_empty()), kept });
@@ -419,11 +417,7 @@ struct References<'t> {
     has_escapes: bool,
 }
 
-impl<'t> References<'t> {
-    fn new(text: &'t str) -> Self {
-        Self { text, targets: OnceCell::new(), has_escapes: text.contains('%') && text.contains("href") }
-    }
-
+impl References<'_> {
     /// Returns `true` if references break at an id: it contains characters that end them, and something may refer to it.
     fn break_at(&self, id: &str) -> bool {
         if safe_id(id) == id {
@@ -522,9 +516,9 @@ fn embedded_drawing(
         &text[..range.start],
         &text[range.start..copied_to]
     );
-    let is_replaced =
+    let is_set =
         |name: &str| matches!(name, "width" | "height") || (!aspect.is_empty() && name == "preserveAspectRatio");
-    for a in root.attributes().filter(|a| a.namespace().is_none() && is_replaced(a.name())) {
+    for a in root.attributes().filter(|a| a.namespace().is_none() && is_set(a.name())) {
         new.push_str(text.get(copied_to..a.range().start)?);
         copied_to = a.range().end;
     }

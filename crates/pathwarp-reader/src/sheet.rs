@@ -14,6 +14,7 @@ type Failure = ParseError<SelectorParseErrorKind>;
 /// Rank of rules outside any layer.
 const UNLAYERED: usize = usize::MAX;
 
+/// A declaration of a style sheet or a style attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Declaration<'a> {
     /// In lower case, unless it is a custom property.
@@ -98,8 +99,8 @@ impl<'a> Rules<'a> {
         classes: Option<&'s str>,
     ) -> impl Iterator<Item = usize> {
         let classes = classes.into_iter().flat_map(str::split_ascii_whitespace).filter_map(|c| self.by_class.get(c));
-        let named = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
-        named.chain(classes).chain([&self.others]).flatten().copied()
+        let by_name = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
+        by_name.chain(classes).chain([&self.others]).flatten().copied()
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -50,6 +50,7 @@ const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
     ("text-decoration-thickness", &["auto", "from-font"]),
 ];
 
+// Differences from browsers, as notes.
 const OVERLINE: &str = "overlines are a little nearer to the letters than in browsers";
 const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
 const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";

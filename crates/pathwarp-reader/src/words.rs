@@ -17,6 +17,7 @@ pub enum PaintProperty {
     Color,
 }
 
+/// The names of the properties, in the order of [`PaintProperty`].
 const NAMES: [&str; 5] = ["fill", "fill-opacity", "stroke", "stroke-opacity", "color"];
 
 /// A declared value as it is written in the drawing.

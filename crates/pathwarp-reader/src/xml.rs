@@ -43,8 +43,8 @@ pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
 /// [`Error::Input`] when the text is not well-formed.
 pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
     document(text).map_err(|e| {
-        let at = e.pos();
-        Error::input(format!("{name}:{}:{}", at.row, at.col), format!("not well-formed XML: {e}"))
+        let position = e.pos();
+        Error::input(format!("{name}:{}:{}", position.row, position.col), format!("not well-formed XML: {e}"))
     })
 }
 
@@ -61,7 +61,9 @@ pub fn with_elements_of_entities(text: &str) -> Option<String> {
     // The parts still to expand, the next one last, with the number of entities that each is nested in.
     let mut left: Vec<(&str, usize)> = vec![(&text[start..], 0)];
     while let Some((part, level)) = left.pop() {
-        let Some((before, name, after)) = reference(part) else {
+        // At the first reference to an entity.
+        let split = part.split_once('&').and_then(|(before, rest)| Some((before, rest.split_once(';')?)));
+        let Some((before, (name, after))) = split else {
             out.push_str(part);
             continue;
         };
@@ -73,13 +75,6 @@ pub fn with_elements_of_entities(text: &str) -> Option<String> {
         }
     }
     Some(out)
-}
-
-/// Splits a text at its first reference to an entity: the text before it, the entity's name, and the text after it.
-fn reference(text: &str) -> Option<(&str, &str, &str)> {
-    let (before, rest) = text.split_once('&')?;
-    let (name, after) = rest.split_once(';')?;
-    Some((before, name, after))
 }
 
 /// The offset behind the name of an element, where attributes can be inserted.

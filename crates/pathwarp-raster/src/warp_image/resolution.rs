@@ -91,7 +91,7 @@ impl SmoothShade<'_> {
     /// Paints the target and two pixels around it. Returns the picture and its position in the plane.
     ///
     /// # Errors
-    /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the picture; [`Error::NoInverse`] if no pixel has an inverse.
+    /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the picture; [`Error::NoInverse`] when no pixel has an inverse.
     pub fn paint(&self) -> Result<(Pixmap, Rect), Error> {
         let finest = Vec2::new(self.target.width(), self.target.height()) * self.finest;
         let finest = Vec2::new(finest.x.max(self.coarsest.x), finest.y.max(self.coarsest.y));

@@ -49,7 +49,7 @@ impl fmt::Debug for Shade<'_> {
 /// the nearest row, so that a clip along the edge of the image shows no gap and the file stays small.
 ///
 /// # Errors
-/// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] if no pixel has an inverse.
+/// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] when no pixel has an inverse.
 pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let (width, height) = shade.size;
     let mut out = new_pixmap(f64::from(width), f64::from(height), &Limits::default())?;

@@ -363,16 +363,9 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Refers to a gradient, writing it if necessary. `address` identifies it.
-    fn gradient(
-        &mut self,
-        tag: &str,
-        g: &BaseGradient,
-        address: usize,
-        geometry: &[(&str, f32)],
-        fit: Affine,
-    ) -> String {
-        let key = server_key(address, fit);
+    /// Refers to a gradient, writing it if necessary. `ptr` is its address, which identifies it.
+    fn gradient(&mut self, tag: &str, g: &BaseGradient, ptr: usize, geometry: &[(&str, f32)], fit: Affine) -> String {
+        let key = server_key(ptr, fit);
         if let Some(id) = self.defs.servers.get(&key) {
             return format!("url(#{id})");
         }
@@ -389,7 +382,7 @@ impl<'a> Writer<'a> {
             SpreadMethod::Reflect => tag.with("spreadMethod", "reflect"),
             SpreadMethod::Repeat => tag.with("spreadMethod", "repeat"),
         };
-        let is_foreign = self.input.scene.foreign.contains(&address);
+        let is_foreign = self.input.scene.foreign.contains(&ptr);
         let shares_stops = || has_usable_stops(self.input.source, g.id(), g.stops().len());
         let text = if self.markup.in_source && !is_foreign && shares_stops() {
             tag.with(self.markup.link(), &format!("#{}", g.id())).empty()

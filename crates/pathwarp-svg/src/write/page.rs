@@ -92,8 +92,8 @@ fn auto_page(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
 
 /// The area that the artwork of a page may cover: the page with a sliver and the curves' tolerance around it.
 fn tolerated(input: &WriteInput<'_>, page: Rect) -> Rect {
-    let by = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
-    page.inflate(by, by)
+    let slack = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
+    page.inflate(slack, slack)
 }
 
 /// The transform that takes the artwork back onto its page, if it leaves it.

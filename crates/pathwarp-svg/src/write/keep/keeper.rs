@@ -50,8 +50,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
             Node::Group(g) | Node::Text { content: g, .. } => g.children.iter().any(|n| self.changed(n)),
             Node::Image(i) => {
                 let slot = self.input.scene.bitmaps[*i].slot;
-                let moved = slot.is_some_and(|s| self.input.slots[s].fit != Affine::IDENTITY);
-                moved || matches!(self.input.images[*i], EmbeddedImage::Bent { .. })
+                let is_moved = slot.is_some_and(|s| self.input.slots[s].fit != Affine::IDENTITY);
+                is_moved || matches!(self.input.images[*i], EmbeddedImage::Bent { .. })
             }
         }
     }

@@ -16,6 +16,7 @@ struct TextSpan {
     content: Vec<SpanItem>,
 }
 
+/// A part of a span's content.
 #[derive(Clone, Copy)]
 enum SpanItem {
     /// Index of an outline.
@@ -94,8 +95,8 @@ fn move_html(k: &mut Keeper<'_, '_>, text: ElementId) {
     let map = k.input.bends.bend_of(Some(text)).map(|i| k.input.bends.each[i].map.class());
     match (frame, map) {
         (Some(frame), Some(Class::Affine(map))) => {
-            let moved = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
-            k.edits.set_attr(html, "transform", matrix(moved));
+            let transform = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
+            k.edits.set_attr(html, "transform", matrix(transform));
         }
         _ => k.edits.replace(html, String::new()),
     }
