@@ -339,8 +339,8 @@ impl Values<'_, '_, '_> {
         (units != Some("userSpaceOnUse")).then(|| fallback(&link))
     }
 
-    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
-    /// in sRGB. `declared` looks up the properties of the element.
+    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop
+    /// shadow in sRGB. `declared` looks up the properties of the element.
     fn replaced_paints<'n>(
         &self,
         node: Node<'n, '_>,

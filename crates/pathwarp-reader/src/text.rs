@@ -213,12 +213,7 @@ impl TextStyle {
         ];
         out.notes = notes.into_iter().filter(|(applies, _)| *applies).map(|(_, note)| note).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
-        let direction = match (self.rtl, overrides) {
-            (true, true) => Some('\u{202e}'),
-            (true, false) => Some('\u{202b}'),
-            (false, true) => Some('\u{202d}'),
-            (false, false) => None,
-        };
+        let direction = direction_control(self.rtl, overrides);
         (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
     }
 
@@ -289,6 +284,16 @@ impl TextStyle {
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     let declared = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
     style.or_else(|| declared(node?)).unwrap_or(false)
+}
+
+/// The control character that sets a direction; `None` for ordinary left-to-right text.
+fn direction_control(rtl: bool, overrides: bool) -> Option<char> {
+    match (rtl, overrides) {
+        (true, true) => Some('\u{202e}'),
+        (true, false) => Some('\u{202b}'),
+        (false, true) => Some('\u{202d}'),
+        (false, false) => None,
+    }
 }
 
 /// Returns `true` if usvg loses a space of this text: one at the beginning of a part.

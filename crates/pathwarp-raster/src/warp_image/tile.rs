@@ -144,7 +144,8 @@ pub(super) struct SourceBlock {
 }
 
 impl SourceBlock {
-    /// Reads the pixels that a tile needs: its source points and `margin` pixels around them. Returns `false` if there are none or too many.
+    /// Reads the pixels that a tile needs: its source points and `margin` pixels around them. Returns `false` if these are none or too
+    /// many.
     #[inline(always)]
     pub(super) fn read(&mut self, source: BitmapBytes<'_>, trace: &Trace, margin: f64, layout: ChannelOrder) -> bool {
         let share = |k: usize| k as f64 / (PER_SIDE - 1) as f64;
