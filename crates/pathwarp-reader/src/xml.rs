@@ -130,7 +130,7 @@ fn charge(text: &str, budget: &Budget) -> Result<(), Exceeded> {
 /// each with the others.
 fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     /// Namespaces that are compared in the time of one comparison.
-    const COPIED: f64 = 3.0;
+    const PER_COMPARISON: f64 = 3.0;
     /// More namespaces than in any ordinary drawing.
     const FEW: usize = 64;
     let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|i| &text[i + "xmlns".len()..]);
@@ -138,7 +138,7 @@ fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     if all.len() <= FEW {
         return Ok(());
     }
-    budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / COPIED)
+    budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / PER_COMPARISON)
 }
 
 /// Bounds the number of elements by the number of tags and comments. Short texts pass: their elements are counted once they are parsed.

@@ -53,12 +53,12 @@ impl PixelArea {
     }
 
     /// Approximates the source points of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the plane,
-    /// `inverse` maps the plane back, and `last` maps to the coordinates in which source points are measured.
-    pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, last: Affine) -> Option<Trace> {
+    /// `inverse` maps the plane back, and `then` leads from there to the coordinates in which source points are measured.
+    pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, then: Affine) -> Option<Trace> {
         let mut values = [Point::ORIGIN; SAMPLES];
         inverse.points(&self.samples(basis, shown), &mut values);
         for value in &mut values {
-            *value = last * *value;
+            *value = then * *value;
         }
         basis.interpolate(&values, self.span())
     }
@@ -94,14 +94,14 @@ impl PixelArea {
 pub(super) fn announce(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
-    (shown, last): (Affine, Affine),
+    (shown, then): (Affine, Affine),
     inverse: &dyn Map,
     announce_pixels: impl Fn(&[Point]),
 ) {
     while !areas.is_empty() {
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
         inverse.prepare(&samples, &[]);
-        areas.retain(|a| a.trace(basis, shown, inverse, last).is_none());
+        areas.retain(|a| a.trace(basis, shown, inverse, then).is_none());
         let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > MIN_TILE);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
         areas = divided.into_iter().flat_map(PixelArea::quarters).collect();

@@ -133,8 +133,8 @@ const DECIMALS: u8 = 9;
 const SAMPLES: usize = 16;
 
 /// Attributes for the region of a mask, which covers all of its content after the warp.
-pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, String)> {
-    let m = &input.scene.masks[i];
+pub(super) fn region(input: &WriteInput<'_>, mask: usize) -> Vec<(&'static str, String)> {
+    let m = &input.scene.masks[mask];
     let mut area = m.rect;
     if input.changes(m.parts.clone()) {
         let from_root = input.written(m.slot, m.frame).inverse();
@@ -172,8 +172,8 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
 }
 
 /// Path data for the warped border of a mask's region, if the border clips the content.
-pub(super) fn edge(input: &WriteInput<'_>, i: usize) -> Option<String> {
-    let m = &input.scene.masks[i];
+pub(super) fn edge(input: &WriteInput<'_>, mask: usize) -> Option<String> {
+    let m = &input.scene.masks[mask];
     if m.rect.contains_rect(m.content) || !input.changes(m.parts.clone()) {
         return None;
     }

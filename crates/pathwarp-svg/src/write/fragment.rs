@@ -1,7 +1,8 @@
 //! Writes resolved geometry: groups, parts, and the definitions that they refer to.
 //!
 //! Group transforms are kept, and the geometry inside is written in the groups' user space, so that strokes, filters and paint
-//! servers keep their frames. Groups refer to definitions, which hold groups in turn; the whole recursion is in this file.
+//! servers keep their frames. Groups refer to definitions, which hold groups in turn; the whole recursion is in this file. Parts, clip
+//! paths, masks and bitmaps are given by their indices in the scene, `i`.
 
 use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;

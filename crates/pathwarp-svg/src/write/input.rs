@@ -23,13 +23,17 @@ pub(crate) struct WriteInput<'a> {
     pub(super) drawing: &'a Drawing,
     pub(super) source: &'a SourceText,
     pub(super) scene: &'a Scene,
+    /// The results for the parts, bitmaps and slots of the scene, by their indices there.
     pub(super) outcomes: &'a [PartOutcome],
     pub(super) images: &'a [EmbeddedImage],
     pub(super) slots: &'a [PlacedSlot],
     pub(super) bends: &'a Bends<'a>,
+    /// For every part, the index of its bend; `None` if it is not bent.
     pub(super) part_bends: &'a [Option<usize>],
+    /// The results for filters, by the index of their slot.
     pub(super) filters: &'a BTreeMap<usize, FilterOutcome>,
     pub(super) united: &'a United,
+    /// The line around the artwork.
     pub(super) line: Option<&'a Line>,
     pub(super) options: &'a WarpOptions,
 }

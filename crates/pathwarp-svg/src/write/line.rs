@@ -57,9 +57,10 @@ pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
 pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
     /// The width of a letter, as a fraction of its height.
     const LETTER: f64 = 0.6;
-    let ((at, text), size) = (&sight.label, sight.size);
+    let ((middle, text), size) = (&sight.label, sight.size);
     let half = 0.5 * LETTER * size * text.chars().count() as f64;
-    let text = Rect::new(at.x - half, at.y - size, at.x + half, at.y + 0.3 * size);
+    // Letters descend by about three tenths of their size.
+    let text = Rect::new(middle.x - half, middle.y - size, middle.x + half, middle.y + 0.3 * size);
     sight.path.bounding_box().union(text).inflate(size, size)
 }
 
@@ -67,8 +68,8 @@ pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
 fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     let path = w.markup.element("path").with("d", &path_data(&sight.path, 4));
     let path = path.with("style", &format!("fill:none;stroke:#000;stroke-width:{}", single(0.04 * sight.size)));
-    let (at, text) = &sight.label;
-    let label = w.markup.element("text").with("x", &single(at.x)).with("y", &single(at.y));
+    let (position, text) = &sight.label;
+    let label = w.markup.element("text").with("x", &single(position.x)).with("y", &single(position.y));
     let label = label.with(
         "style",
         &format!("font-family:sans-serif;font-size:{}px;text-anchor:middle;fill:#000", single(sight.size)),
