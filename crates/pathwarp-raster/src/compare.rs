@@ -5,7 +5,7 @@
 //! length. [`Difference::share_over`] with a threshold in between distinguishes the two.
 
 use crate::error::Error;
-use crate::pixmap::new_pixmap;
+use crate::pixmap::{bytes, new_pixmap};
 use pathwarp::budget::Limits;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
@@ -54,7 +54,7 @@ pub fn compare(a: &Pixmap, b: &Pixmap) -> Result<Difference, Error> {
         sum += differences.iter().map(|d| u64::from(*d)).sum::<u64>();
         histogram[usize::from(largest(differences))] += 1;
     }
-    let max_channel = (0..=u8::MAX).rev().find(|d| histogram[usize::from(*d)] > 0).unwrap_or(0);
+    let max_channel = (0..=u8::MAX).rfind(|d| histogram[usize::from(*d)] > 0).unwrap_or(0);
     let channels = 4.0 * f64::from(a.width()) * f64::from(a.height());
     Ok(Difference { width: a.width(), height: a.height(), max_channel, mean_abs: sum as f64 / channels, histogram })
 }
@@ -80,12 +80,8 @@ fn check_sizes(a: &Pixmap, b: &Pixmap) -> Result<(), Error> {
 }
 
 fn channel_differences(a: PremultipliedColorU8, b: PremultipliedColorU8) -> [u8; 4] {
-    [
-        a.red().abs_diff(b.red()),
-        a.green().abs_diff(b.green()),
-        a.blue().abs_diff(b.blue()),
-        a.alpha().abs_diff(b.alpha()),
-    ]
+    let (a, b) = (bytes(a), bytes(b));
+    std::array::from_fn(|channel| a[channel].abs_diff(b[channel]))
 }
 
 fn largest(differences: [u8; 4]) -> u8 {
@@ -102,7 +98,7 @@ fn pale(pixel: PremultipliedColorU8) -> ColorU8 {
     ColorU8::from_rgba(grey, grey, grey, 255)
 }
 
-/// A light red for the smallest difference up to full red at a quarter of the range.
+/// A light red for the smallest difference, up to full red at about a fifth of the range.
 fn red(difference: u8) -> ColorU8 {
     let rest = 160u8.saturating_sub(difference.saturating_mul(3));
     ColorU8::from_rgba(230, rest, rest, 255)

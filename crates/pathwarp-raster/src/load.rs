@@ -22,13 +22,16 @@ pub(crate) const MAX_COORDINATE: f32 = 1e8;
 /// The renderer's layers extend up to twice the picture's size past it on every side.
 const LAYER_REACH: f32 = 2.0;
 
-// Work for a pixel, by operation.
+/// Work for a pixel of a layer.
 const LAYER: f64 = 4.0;
+/// Work for a pixel of a gradient, and for each stop, since the renderer checks them all for each pixel.
 const GRADIENT: f64 = 2.0;
-/// Work for each stop of a gradient, since the renderer checks them all for each pixel.
 const STOP: f64 = 0.03;
+/// Work for a pixel of an interpolated picture, and for one that is decoded.
 const BICUBIC: f64 = 8.0;
 const DECODED: f64 = 4.0;
+/// Work for a pixel of a filter's primitive, and more for a blur, lighting, an octave of turbulence, and a pixel in the window of
+/// `feMorphology`.
 const PRIMITIVE: f64 = 6.0;
 const BLURRED: f64 = 20.0;
 const LIT: f64 = 20.0;
@@ -71,20 +74,11 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// Width and height of the visible part of a box, in pixels.
-    fn visible_size(&self, r: Rect) -> [f64; 2] {
-        self.clipped_size(r, 0.0)
-    }
-
-    /// Width and height of a layer for a box, which may extend past the canvas.
-    fn layer_size(&self, r: Rect) -> [f64; 2] {
-        self.clipped_size(r, LAYER_REACH)
-    }
-
+    /// Width and height, in pixels, of the part of a box on the canvas and up to `reach` times its size past it on every side.
     fn clipped_size(&self, r: Rect, reach: f32) -> [f64; 2] {
-        let side = |from: f32, to: f32, size: f32| {
+        let side = |start: f32, end: f32, size: f32| {
             let (min, max) = (-reach * size, (1.0 + reach) * size);
-            f64::from(to.min(max) - from.max(min)).max(0.0)
+            f64::from(end.min(max) - start.max(min)).max(0.0)
         };
         [side(r.left(), r.right(), self.width), side(r.top(), r.bottom(), self.height)]
     }
@@ -104,7 +98,7 @@ impl Load {
         Ok(self.limits.check(Limit::Work, cost::PIXEL * self.work).map_err(Exceeded::cut_short)?)
     }
 
-    /// Adds a surface of `area` pixels to those held. A mask takes one byte for a pixel, so that it counts as a quarter of its area.
+    /// Adds a surface of `area` pixels to those held. Callers count a mask, which takes one byte for a pixel, as a quarter of its area.
     fn hold(&self, canvas: &Canvas, area: f64) -> Result<Canvas, Error> {
         let held = canvas.held + area;
         self.limits.check(Limit::Memory, PIXEL_BYTES * held)?;
@@ -117,7 +111,7 @@ impl Load {
             return group.children().iter().try_for_each(|node| self.node(node, transform, canvas));
         }
         let Some(bounds) = group.layer_bounding_box().to_rect().transform(transform) else { return Ok(()) };
-        let [w, h] = canvas.layer_size(bounds);
+        let [w, h] = canvas.clipped_size(bounds, LAYER_REACH);
         let area = w * h;
         self.add(LAYER * area)?;
         let layer = self.hold(canvas, area)?;
@@ -149,7 +143,7 @@ impl Load {
             return Ok(());
         }
         let bounds = path.stroke_bounding_box().transform(transform).filter(is_near).ok_or(Error::TooFar)?;
-        let ([w, h], picture) = (canvas.visible_size(bounds), [canvas.width, canvas.height]);
+        let ([w, h], picture) = (canvas.clipped_size(bounds, 0.0), [canvas.width, canvas.height]);
         let edges = Edges::of_fill(path.data(), transform, picture);
         if let Some(fill) = path.fill() {
             self.add(w * h * paint_work(fill.paint()) + edges.work([w, h]))?;
@@ -183,6 +177,7 @@ impl Load {
         self.group(pattern.root(), Transform::from_scale(sx, sy), &Canvas { width, height, held })
     }
 
+    /// Adds an image: a drawing, or a picture that is decoded.
     fn image(&mut self, kind: &ImageKind, bounds: Rect, transform: Transform, canvas: &Canvas) -> Result<(), Error> {
         let data = match kind {
             ImageKind::SVG(tree) => {
@@ -203,7 +198,7 @@ impl Load {
         });
         // The decoder's buffer becomes the picture, or is copied to it.
         self.hold(canvas, 2.0 * pixels)?;
-        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.visible_size(b));
+        let [w, h] = bounds.transform(transform).map_or([0.0; 2], |b| canvas.clipped_size(b, 0.0));
         self.add(DECODED * pixels + BICUBIC * w * h)
     }
 
@@ -259,7 +254,7 @@ impl Load {
             if !offset.iter().all(|v| v.abs() <= MAX_COORDINATE) {
                 return Err(Error::TooFar);
             }
-            let more = match primitive.kind() {
+            let extra = match primitive.kind() {
                 Kind::Turbulence(t) if t.num_octaves() > MAX_OCTAVES => return Err(Error::Octaves(t.num_octaves())),
                 Kind::Turbulence(t) => OCTAVE * f64::from(t.num_octaves()),
                 Kind::Morphology(m) => {
@@ -277,7 +272,7 @@ impl Load {
                 }
                 _ => 0.0,
             };
-            self.add((PRIMITIVE + more) * area)?;
+            self.add((PRIMITIVE + extra) * area)?;
         }
         Ok(())
     }
@@ -301,17 +296,16 @@ fn is_near(area: &Rect) -> bool {
 /// Estimates the number of dashes along a path.
 fn dashes_along(path: &tiny_skia::Path, dashes: &[f32]) -> f64 {
     let period: f64 = dashes.iter().map(|d| f64::from(*d)).sum();
-    let legs = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1])));
-    let length: f64 = legs.sum();
+    let length: f64 = path.points().windows(2).map(|p| f64::from(p[0].distance(p[1]))).sum();
     if period > 0.0 { (length / period) * dashes.len() as f64 } else { 0.0 }
 }
 
 /// Work for a row of pixels that an edge crosses, in four scan lines.
-const CROSSING: f64 = 4.0;
+const CROSSED_ROW: f64 = 4.0;
 /// Work for two edges in the same row, since they may cross.
-const BESIDE: f64 = 0.4;
+const EDGE_PAIR: f64 = 0.4;
 /// Work for an edge.
-const SEGMENT: f64 = 10.0;
+const EDGE: f64 = 10.0;
 
 /// Edges of an outline, with the rows and columns that they cross.
 struct Edges {
@@ -365,21 +359,21 @@ impl Edges {
     /// the stroke is wide.
     fn stroked(&self, nodes: usize, stroke: &Stroke, width: f64, picture: [f32; 2]) -> Self {
         let nodes = nodes as f64;
-        let round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
-        let (edges, sides) = if round { (8.0, 4.0) } else { (2.0, 2.0) };
-        let around = |size: f32| sides * width.min(f64::from(size)) * nodes;
+        let is_round = stroke.linejoin() == LineJoin::Round || stroke.linecap() == LineCap::Round;
+        let (edges, crossings) = if is_round { (8.0, 4.0) } else { (2.0, 2.0) };
+        let at_nodes = |size: f32| crossings * width.min(f64::from(size)) * nodes;
         Self {
             count: 2.0 * self.count + edges * nodes,
-            rows: 2.0 * self.rows + around(picture[1]),
-            columns: 2.0 * self.columns + around(picture[0]),
+            rows: 2.0 * self.rows + at_nodes(picture[1]),
+            columns: 2.0 * self.columns + at_nodes(picture[0]),
         }
     }
 
     /// The work of filling the outline, whose visible part has this width and height.
     fn work(&self, [width, height]: [f64; 2]) -> f64 {
-        let beside = self.rows / height.max(1.0);
+        let edges_per_row = self.rows / height.max(1.0);
         // Two edges cross at most once, and only in a row that both reach, where their columns overlap.
         let overlap = (2.0 * self.columns / (self.count.max(1.0) * width.max(1.0))).min(1.0);
-        SEGMENT * self.count + CROSSING * self.rows + BESIDE * self.count.min(self.rows) * beside * overlap
+        EDGE * self.count + CROSSED_ROW * self.rows + EDGE_PAIR * self.count.min(self.rows) * edges_per_row * overlap
     }
 }

@@ -1,15 +1,15 @@
-//! Allocates pictures within the size limit.
+//! Allocates pictures within the size limit, and goes through their pixels.
 
 use crate::error::Error;
 use pathwarp::budget::{Exceeded, Limit, Limits};
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
-use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, Transform};
+use tiny_skia::{FilterQuality, IntRect, Pixmap, PixmapPaint, PremultipliedColorU8, Transform};
 
 /// Bytes held for each pixel of a new picture: the pixel itself, and its share of the file.
-const BYTES: f64 = 8.0;
+const HELD_BYTES: f64 = 8.0;
 
-/// Checks the size of a picture to read.
+/// Checks the size of a picture to read. The limit on pixels guards against files that unpack to much more than their size.
 pub(crate) fn check_size(width: f64, height: f64, limits: &Limits) -> Result<(), Error> {
     let too_large = |exceeded| Error::TooLarge { width, height, exceeded };
     limits.check(Limit::Pixels, width * height).map_err(too_large)
@@ -18,19 +18,28 @@ pub(crate) fn check_size(width: f64, height: f64, limits: &Limits) -> Result<(),
 /// Creates a transparent picture. Fails if it would be empty or exceed the limits.
 pub(crate) fn new_pixmap(width: f64, height: f64, limits: &Limits) -> Result<Pixmap, Error> {
     let too_large = |exceeded| Error::TooLarge { width, height, exceeded };
-    limits.check(Limit::Memory, BYTES * width * height).map_err(too_large)?;
+    limits.check(Limit::Memory, HELD_BYTES * width * height).map_err(too_large)?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the limit; casts saturate")]
     let (whole_width, whole_height) = (width as u32, height as u32);
     if whole_width == 0 || whole_height == 0 {
         return Err(Error::Empty { width: whole_width, height: whole_height });
     }
-    let refused = || Exceeded {
-        limit: Limit::Memory,
-        most: limits.of(Limit::Memory),
-        needed: BYTES * width * height,
-        cut: false,
-    };
-    Pixmap::new(whole_width, whole_height).ok_or_else(|| too_large(refused()))
+    let (limit, needed) = (Limit::Memory, HELD_BYTES * width * height);
+    let refused = || too_large(Exceeded { limit, most: limits.of(limit), needed, cut: false });
+    Pixmap::new(whole_width, whole_height).ok_or_else(refused)
+}
+
+/// The premultiplied channels of a pixel.
+#[inline]
+pub(crate) fn bytes(p: PremultipliedColorU8) -> [u8; 4] {
+    [p.red(), p.green(), p.blue(), p.alpha()]
+}
+
+/// The channels of a pixel with straight alpha.
+#[inline]
+pub(crate) fn straight(p: &PremultipliedColorU8) -> [u8; 4] {
+    let c = p.demultiply();
+    [c.red(), c.green(), c.blue(), c.alpha()]
 }
 
 /// Enlarges a part of a picture `factor` times. Pixels become squares if `squares`; else colours are interpolated linearly between the

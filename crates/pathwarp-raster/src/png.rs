@@ -5,8 +5,9 @@
 
 use crate::error::Error;
 use crate::picture::{PNG_SIGNATURE, Picture};
+use crate::pixmap::straight;
 use png::{ColorType, DeflateCompression, Encoder, Filter};
-use tiny_skia::{Pixmap, PremultipliedColorU8};
+use tiny_skia::Pixmap;
 
 /// Encodes a picture as RGBA PNG.
 ///
@@ -39,7 +40,7 @@ pub fn encode_smooth_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
     let pixels = pixmap.pixels();
     let is_opaque = pixels.iter().all(|p| p.alpha() == u8::MAX);
     let is_grey = pixels.iter().all(|p| p.red() == p.green() && p.green() == p.blue());
-    let straight = pixels.iter().map(demultiplied);
+    let straight = pixels.iter().map(straight);
     let (color, data): (ColorType, Vec<u8>) = match (is_grey, is_opaque) {
         (true, true) => (ColorType::Grayscale, straight.map(|[r, ..]| r).collect()),
         (true, false) => (ColorType::GrayscaleAlpha, straight.flat_map(|[r, _, _, a]| [r, a]).collect()),
@@ -60,17 +61,11 @@ pub fn encode_smooth_png(pixmap: &Pixmap) -> Result<Vec<u8>, Error> {
     Ok(out)
 }
 
-#[inline]
-fn demultiplied(p: &PremultipliedColorU8) -> [u8; 4] {
-    let c = p.demultiply();
-    [c.red(), c.green(), c.blue(), c.alpha()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use tiny_skia::ColorU8;
+    use tiny_skia::{ColorU8, PremultipliedColorU8};
 
     #[test]
     fn every_premultiplied_colour_survives() {

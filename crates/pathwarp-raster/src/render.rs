@@ -134,9 +134,9 @@ pub fn render_group(
 ) -> Result<Option<Pixmap>, Error> {
     // The renderer moves the corner of the layer to the origin.
     let corner = group.abs_layer_bounding_box();
-    let moved = transform.pre_translate(-corner.x(), -corner.y());
+    let from_corner = transform.pre_translate(-corner.x(), -corner.y());
     #[expect(clippy::cast_possible_truncation, reason = "an estimate")]
-    load::charge_group(group, moved, [width as f32, height as f32], budget)?;
+    load::charge_group(group, from_corner, [width as f32, height as f32], budget)?;
     let mut pixmap = new_pixmap(width, height, &budget.limits())?;
     let node = Node::Group(Box::new(group.clone()));
     let drawn = catch_unwind(AssertUnwindSafe(|| resvg::render_node(&node, transform, &mut pixmap.as_mut())));

@@ -1,9 +1,9 @@
 //! Warps what a drawing shows, pixel by pixel, at the lowest resolution that shows the same.
 
 use crate::error::Error;
-use crate::pixmap::new_pixmap;
+use crate::pixmap::{bytes, new_pixmap};
 use crate::render::draw;
-use crate::warp_image::{GridInverse, ImageWarp, in_pixels, lattice, lengths, shown, warp_image};
+use crate::warp_image::{GridInverse, ImageWarp, composed, lattice, lengths, shown, warp_image};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::budget::{Budget, Exceeded};
 use pathwarp::map::{Creases, Jet, Map};
@@ -13,21 +13,22 @@ use usvg::Node;
 use usvg::filter::Kind;
 
 /// Largest number of pixels of the drawing before the warp.
-const MOST_BEFORE: f64 = 4e6;
+const MAX_SOURCE_PIXELS: f64 = 4e6;
 /// Pixels along the longer side of two compared pictures.
 const COMPARED: f64 = 128.0;
 /// Pixels along the longer side in a first comparison, and the share of the painted pixels that may differ in it.
 const COMPARED_FIRST: f64 = 64.0;
-const LARGE_SHARE: f64 = 0.1;
+const COMPARED_FIRST_SHARE: f64 = 0.1;
 /// Largest difference that nobody notices, of 255, and the share of the painted pixels that may exceed it.
-const NOTICED: u8 = 8;
-const NOTICED_SHARE: f64 = 0.01;
-/// Largest usual difference between a smooth picture and its copy of half the size, the share of pixels that may exceed it, and the
-/// largest difference of any pixel.
+const UNNOTICED: u8 = 8;
+const UNNOTICED_SHARE: f64 = 0.01;
+/// Largest usual difference between a smooth picture and its copy of half the size, of 255, the share of pixels that may exceed it, and
+/// the largest difference of any pixel.
 const SMOOTH: f64 = 3.0;
 const SMOOTH_SHARE: f64 = 0.05;
-const SHARP: f64 = 24.0;
-/// Least ratio of the squared losses at a quarter and at half of the size of a blurred picture: interpolation is of second order.
+const SMOOTH_MAX: f64 = 24.0;
+/// Least ratio of the squared losses at a quarter and at half of the size of a blurred picture. Interpolation is of second order, so the
+/// losses have a ratio of 4, and their squares one of 16.
 const BLURRED: f64 = 5.0;
 /// A length that exceeds whole pixels by less is rounded.
 const ROUNDING: f64 = 1e-6;
@@ -39,11 +40,15 @@ pub type Counter<'a> = dyn Fn(f64, f64) -> Result<(), Exceeded> + 'a;
 
 /// Warps drawings of one area.
 pub struct DrawingWarp<'a> {
+    /// The page of the drawings.
     area: Rect,
+    /// Leads from the page to the plane of the map.
     placed: Affine,
     map: &'a dyn Map,
     inverse: GridInverse<'a>,
+    /// Leads from the plane of the map to the plane of the result.
     after: Affine,
+    /// Bounding box of the image of the area, in the plane of the result.
     bounds: Rect,
     /// Lengths of the image of a unit: in the direction that shrinks most, apart from a few outliers, and on average.
     lengths: [f64; 2],
@@ -73,35 +78,27 @@ impl<'a> DrawingWarp<'a> {
         const REACH: f64 = 0.02;
         const PIXELS: f64 = 48.0;
         /// One of so many samples may shrink more than `lengths` tells.
-        const FEW: usize = 20;
+        const PER_OUTLIER: usize = 20;
         let samples: Vec<Point> = lattice(area, CELLS).map(|p| placed * p).collect();
         let mut images = vec![Jet::default(); samples.len()];
         map.jets(&samples, &mut images);
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let is_defined = images.iter().all(|jet| jet.p.is_finite()) && samples.iter().all(|p| creases.defined_at(*p));
-        let images: Vec<Jet> = images.into_iter().map(|jet| in_pixels(&jet, after, placed)).collect();
+        let images: Vec<Jet> = images.into_iter().map(|jet| composed(&jet, after, placed)).collect();
         let mut shortest: Vec<f64> = images.iter().map(|jet| lengths(jet)[0]).collect();
         shortest.sort_unstable_by(f64::total_cmp);
-        let shortest = shortest[images.len() / FEW];
         let mean = (images.iter().map(|jet| jet.det().abs()).sum::<f64>() / images.len() as f64).sqrt();
-        let bounds = images.iter().map(|jet| Rect::from_origin_size(jet.p, (0.0, 0.0))).reduce(|a, b| a.union(b))?;
+        let lengths = [shortest[images.len() / PER_OUTLIER], mean];
+        let bounds = images.iter().map(|jet| Rect::from_points(jet.p, jet.p)).reduce(|a, b| a.union(b))?;
         let has_area = bounds.width() > 0.0 && bounds.height() > 0.0 && bounds.is_finite();
+        if !is_defined || !has_area {
+            return None;
+        }
         let source = placed.transform_rect_bbox(area);
         let reach = REACH * source.width().max(source.height());
-        let inverse = || GridInverse::new(map, source, reach, Affine::IDENTITY, Affine::IDENTITY, PIXELS).strict();
-        let lengths = [shortest, mean];
-        (is_defined && has_area).then(|| Self {
-            area,
-            placed,
-            map,
-            inverse: inverse(),
-            after,
-            bounds,
-            lengths,
-            count,
-            budget,
-        })
+        let inverse = GridInverse::new(map, source, reach, Affine::IDENTITY, Affine::IDENTITY, PIXELS).strict();
+        Some(Self { area, placed, map, inverse, after, bounds, lengths, count, budget })
     }
 
     /// The bounding box of the image of the area.
@@ -119,16 +116,17 @@ impl<'a> DrawingWarp<'a> {
         /// Pixels of the drawing for one pixel of the result, along a side.
         const SHARE: f64 = 0.8;
         let bounds = self.bounds;
-        let before = |density: f64| SHARE * density * (bounds.area() / self.area.area()).sqrt();
-        let along = |pixels: f64| pixels / bounds.width().max(bounds.height());
-        let first = Some((along(COMPARED_FIRST), LARGE_SHARE)).filter(|(density, _)| *density < finest);
-        let resembles = |(density, share): (f64, f64)| -> Result<bool, Error> {
+        let source_density = |density: f64| SHARE * density * (bounds.area() / self.area.area()).sqrt();
+        let density_for = |pixels: f64| pixels / bounds.width().max(bounds.height());
+        let resembles = |density: f64, share: f64| -> Result<bool, Error> {
             let density = whole_offsets(other, density);
-            let target = grid(bounds, density);
-            let picture = self.warped(tree, (target, density), before(density))?;
+            let target = whole_pixels(bounds, density);
+            let picture = self.warped(tree, (target, density), source_density(density))?;
             Ok(alike(&picture, &self.drawn(other, (bounds, target), density)?, share, unseen * density * density))
         };
-        Ok(first.map_or(Ok(true), resembles)? && resembles((along(COMPARED).min(finest), NOTICED_SHARE))?)
+        let first = density_for(COMPARED_FIRST);
+        Ok((first >= finest || resembles(first, COMPARED_FIRST_SHARE)?)
+            && resembles(density_for(COMPARED).min(finest), UNNOTICED_SHARE)?)
     }
 
     /// Warps a drawing, with at least `coarsest` and at most `finest` pixels per unit of the plane of the result. Returns the picture and
@@ -142,14 +140,15 @@ impl<'a> DrawingWarp<'a> {
         /// Pixels of the drawing for one pixel of the result, along a side. Where the map stretches more, the result is a little smoother.
         const SHARE: f64 = 0.9;
         /// Largest such number in the direction that the map shrinks most, since sampling more is slow, and the smallest on average.
-        const SHRUNK: f64 = 1.9;
+        const SHRUNK_SHARE: f64 = 1.9;
         const LEAST_SHARE: f64 = 0.5;
         let [shortest, mean] = self.lengths;
-        let before = |density: f64| density * (SHARE * mean).min((SHRUNK * shortest).max(LEAST_SHARE * mean));
+        let source_density =
+            |density: f64| density * (SHARE * mean).min((SHRUNK_SHARE * shortest).max(LEAST_SHARE * mean));
         let bounds = self.bounds;
         let mut density = coarsest.max(LEAST_SIDE / bounds.width().min(bounds.height())).min(finest);
-        let mut target = grid(bounds, density);
-        let mut picture = self.warped(tree, (target, density), before(density))?;
+        let mut target = whole_pixels(bounds, density);
+        let mut picture = self.warped(tree, (target, density), source_density(density))?;
         let Some(part) = painted(&picture) else { return Ok(None) };
         let [x, y, width, height] =
             [part.x().into(), part.y().into(), part.width().into(), part.height().into()].map(|v: f64| v / density);
@@ -159,20 +158,20 @@ impl<'a> DrawingWarp<'a> {
             // The density is the finest one, halved any number of times.
             let halvings = (finest / (GROWTH * density)).log2().floor().max(0.0);
             density = finest * (-halvings).exp2();
-            target = grid(target, density);
-            picture = self.warped(tree, (target, density), before(density))?;
+            target = whole_pixels(target, density);
+            picture = self.warped(tree, (target, density), source_density(density))?;
         }
         Ok(Some((picture, target)))
     }
 
-    /// A drawing warped over `target`, from a picture of about `before` pixels per unit.
-    fn warped(&self, tree: &usvg::Tree, (target, density): (Rect, f64), before: f64) -> Result<Pixmap, Error> {
+    /// A drawing warped over `target`, from a picture of about `source_density` pixels per unit.
+    fn warped(&self, tree: &usvg::Tree, (target, density): (Rect, f64), source_density: f64) -> Result<Pixmap, Error> {
         let size = ((target.width() * density).round(), (target.height() * density).round());
         (self.count)(size.0, size.1)?;
-        let before = whole_offsets(tree, before).min((MOST_BEFORE / self.area.area()).sqrt());
-        let before = before.max(1.0 / self.area.width().min(self.area.height()));
-        let source = self.drawn(tree, (self.area, self.area), before)?;
-        let to_area = Affine::translate(self.area.origin().to_vec2()) * Affine::scale(1.0 / before);
+        let source_density = whole_offsets(tree, source_density).min((MAX_SOURCE_PIXELS / self.area.area()).sqrt());
+        let source_density = source_density.max(1.0 / self.area.width().min(self.area.height()));
+        let source = self.drawn(tree, (self.area, self.area), source_density)?;
+        let to_area = Affine::translate(self.area.origin().to_vec2()) * Affine::scale(1.0 / source_density);
         let size = (size.0 as u32, size.1 as u32);
         let warp = ImageWarp {
             source: &source,
@@ -204,20 +203,16 @@ fn whole_offsets(tree: &usvg::Tree, density: f64) -> f64 {
     const DROPPED: f64 = 0.15;
     /// Multiples tried of each offset.
     const TRIED: u32 = 3;
-    let mut all = Vec::new();
-    push_offsets(tree.root(), &mut all);
-    let dropped = |density: f64| all.iter().map(|v| (v * density).fract()).fold(0.0, f64::max);
+    let mut offsets = Vec::new();
+    push_offsets(tree.root(), &mut offsets);
     let (least, most) = (LEAST * density, MOST * density);
     // Slightly more, for rounding.
     let whole = |v: f64| move |k: u32| ((v * least).ceil() + f64::from(k)) / v * (1.0 + ROUNDING);
-    let tried = all.iter().filter(|v| **v > 0.0).flat_map(|v| (0..TRIED).map(whole(*v)));
+    let tried = offsets.iter().filter(|v| **v > 0.0).flat_map(|v| (0..TRIED).map(whole(*v)));
     let tried = tried.filter(|d| *d < most).chain([density]);
-    let cost = |d: f64| (dropped(d).max(DROPPED), d);
-    let less = |a: &f64, b: &f64| {
-        let (a, b) = (cost(*a), cost(*b));
-        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-    };
-    tried.min_by(less).unwrap_or(density)
+    let dropped = |density: f64| offsets.iter().map(|v| (v * density).fract()).fold(DROPPED, f64::max);
+    let better = |a: &f64, b: &f64| dropped(*a).total_cmp(&dropped(*b)).then(a.total_cmp(b));
+    tried.min_by(better).unwrap_or(density)
 }
 
 /// Lists the offsets of filters, in units of the page.
@@ -237,8 +232,8 @@ fn push_offsets(g: &usvg::Group, out: &mut Vec<f64>) {
     }
 }
 
-/// A box of whole pixels around `target`.
-fn grid(target: Rect, density: f64) -> Rect {
+/// The box with the origin of `target` that is enlarged to whole pixels.
+fn whole_pixels(target: Rect, density: f64) -> Rect {
     let side = |length: f64| (length * density - ROUNDING).ceil().max(1.0) / density;
     Rect::from_origin_size(target.origin(), (side(target.width()), side(target.height())))
 }
@@ -247,68 +242,66 @@ fn grid(target: Rect, density: f64) -> Rect {
 fn painted(picture: &Pixmap) -> Option<IntRect> {
     const MARGIN: usize = 2;
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let (mut from, mut to) = ([width, height], [0, 0]);
+    let (mut start, mut end) = ([width, height], [0, 0]);
     for (j, row) in picture.pixels().chunks_exact(width).enumerate() {
         if let Some(first) = row.iter().position(|p| p.alpha() > 0) {
             let last = row.iter().rposition(|p| p.alpha() > 0).unwrap_or(first);
-            from = [from[0].min(first), from[1].min(j)];
-            to = [to[0].max(last + 1), j + 1];
+            start = [start[0].min(first), start[1].min(j)];
+            end = [end[0].max(last + 1), j + 1];
         }
     }
-    let [x, y] = from.map(|v| v.saturating_sub(MARGIN));
-    let [w, h] = [(to[0] + MARGIN).min(width).saturating_sub(x), (to[1] + MARGIN).min(height).saturating_sub(y)];
-    if to[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
+    let [x, y] = start.map(|v| v.saturating_sub(MARGIN));
+    let [w, h] = [(end[0] + MARGIN).min(width).saturating_sub(x), (end[1] + MARGIN).min(height).saturating_sub(y)];
+    if end[1] == 0 { None } else { IntRect::from_xywh(x as i32, y as i32, w as u32, h as u32) }
 }
 
 /// Returns `true` if at most a share of the painted pixels, or `unseen` pixels, differs between two pictures of the same size. Edges may
 /// lie a pixel apart, so a pixel may have any colour between the colours around it in the other picture.
 fn alike(a: &Pixmap, b: &Pixmap, share: f64, unseen: f64) -> bool {
     let (width, height) = (a.width() as usize, a.height() as usize);
-    let read = |from: &Pixmap, at: usize| <[u8; 4]>::try_from(&from.data()[4 * at..4 * at + 4]).unwrap_or_default();
-    let between = |color: [u8; 4], around: &Pixmap, at: usize| {
-        let (x, y) = (at % width, at / width);
-        let middle = read(around, at);
-        let (mut least, mut most) = (middle, middle);
+    let is_between = |color: [u8; 4], picture: &Pixmap, index: usize| {
+        let (x, y) = (index % width, index / width);
+        let (mut least, mut most) = ([u8::MAX; 4], [0; 4]);
         for v in y.saturating_sub(1)..(y + 2).min(height) {
             for u in x.saturating_sub(1)..(x + 2).min(width) {
-                let c = read(around, v * width + u);
+                let c = bytes(picture.pixels()[v * width + u]);
                 least = std::array::from_fn(|k| least[k].min(c[k]));
                 most = std::array::from_fn(|k| most[k].max(c[k]));
             }
         }
-        (0..4).all(|k| color[k] >= least[k].saturating_sub(NOTICED) && color[k] <= most[k].saturating_add(NOTICED))
+        (0..4).all(|k| color[k] >= least[k].saturating_sub(UNNOTICED) && color[k] <= most[k].saturating_add(UNNOTICED))
     };
-    let (mut painted, mut off) = (0_u32, 0_u32);
-    for at in 0..width * height {
-        let (c, d) = (read(a, at), read(b, at));
-        painted += u32::from(c[3].max(d[3]) > NOTICED);
-        let is_near = (0..4).all(|k| c[k].abs_diff(d[k]) <= NOTICED);
-        off += u32::from(!(is_near || (between(c, b, at) && between(d, a, at))));
+    let (mut painted, mut different) = (0_u32, 0_u32);
+    for (i, (p, q)) in a.pixels().iter().zip(b.pixels()).enumerate() {
+        let (c, d) = (bytes(*p), bytes(*q));
+        painted += u32::from(c[3].max(d[3]) > UNNOTICED);
+        let is_near = (0..4).all(|k| c[k].abs_diff(d[k]) <= UNNOTICED);
+        different += u32::from(!(is_near || (is_between(c, b, i) && is_between(d, a, i))));
     }
-    f64::from(off) <= (share * f64::from(painted)).max(unseen)
+    f64::from(different) <= (share * f64::from(painted)).max(unseen)
 }
 
 /// Returns `true` if half as many pixels along each side, interpolated, show nearly the same picture, or if twice as many would.
 fn is_smooth(picture: &Pixmap) -> bool {
-    let half = Lost::new(picture, 2);
-    half.most <= SHARP
-        && ((half.over <= SMOOTH_SHARE && half.noticed <= NOTICED_SHARE)
-            || Lost::new(picture, 4).squares >= BLURRED * half.squares)
+    let half = Loss::new(picture, 2);
+    half.max <= SMOOTH_MAX
+        && ((half.over_smooth <= SMOOTH_SHARE && half.noticed <= UNNOTICED_SHARE)
+            || Loss::new(picture, 4).squares >= BLURRED * half.squares)
 }
 
 /// Differences of a picture from a reduced copy of it, in which squares of pixels are averaged, interpolated to the full size.
 #[derive(Default)]
-struct Lost {
+struct Loss {
     /// The largest difference of a channel, 0 to 255.
-    most: f64,
-    /// The shares of pixels above [`SMOOTH`] and [`NOTICED`].
-    over: f64,
+    max: f64,
+    /// The shares of pixels above [`SMOOTH`] and [`UNNOTICED`].
+    over_smooth: f64,
     noticed: f64,
     /// The sum of the squared differences.
     squares: f64,
 }
 
-impl Lost {
+impl Loss {
     /// Measures the loss for squares of `n` pixels a side.
     fn new(picture: &Pixmap, n: usize) -> Self {
         let (width, height) = (picture.width() as usize / n, picture.height() as usize / n);
@@ -318,30 +311,29 @@ impl Lost {
             sums[(y / n) * width + (x / n)].iter_mut().zip(read(x, y)).for_each(|(s, v)| *s += f64::from(*v));
         }
         // The indices of a pixel's square and of the square next to it, and the weight of the latter.
-        let mixed = |v: usize, squares: usize| {
-            let off = ((v % n) as f64 + 0.5) / n as f64 - 0.5;
-            let beside = if off < 0.0 { (v / n).saturating_sub(1) } else { (v / n + 1).min(squares - 1) };
-            (v / n, beside, off.abs())
+        let mixture = |v: usize, squares: usize| {
+            let offset = ((v % n) as f64 + 0.5) / n as f64 - 0.5;
+            let beside = if offset < 0.0 { (v / n).saturating_sub(1) } else { (v / n + 1).min(squares - 1) };
+            (v / n, beside, offset.abs())
         };
-        let columns: Vec<_> = (0..n * width).map(|x| mixed(x, width)).collect();
+        let columns: Vec<_> = (0..n * width).map(|x| mixture(x, width)).collect();
         let mut out = Self::default();
         for y in 0..n * height {
-            let (above, below, v) = mixed(y, height);
-            for (x, (left, right, u)) in columns.iter().enumerate() {
-                let corner = |row: usize, column: usize| sums[row * width + column];
-                let four = [(above, *left), (above, *right), (below, *left), (below, *right)];
-                let [a, b, c, d] = four.map(|(row, column)| corner(row, column));
+            let (row, next_row, v) = mixture(y, height);
+            for (x, (column, next_column, u)) in columns.iter().enumerate() {
+                let squares = [(row, *column), (row, *next_column), (next_row, *column), (next_row, *next_column)];
+                let [a, b, c, d] = squares.map(|(row, column)| sums[row * width + column]);
                 let sum = |k: usize| (a[k] * (1.0 - u) + b[k] * u) * (1.0 - v) + (c[k] * (1.0 - u) + d[k] * u) * v;
                 let area = (n * n) as f64;
-                let off = read(x, y).enumerate().map(|(k, value)| (sum(k) / area - f64::from(*value)).abs());
-                let off = off.fold(0.0, f64::max);
-                out.most = out.most.max(off);
-                out.over += f64::from(u8::from(off > SMOOTH));
-                out.noticed += f64::from(u8::from(off > f64::from(NOTICED)));
-                out.squares += off * off;
+                let differences = read(x, y).enumerate().map(|(k, value)| (sum(k) / area - f64::from(*value)).abs());
+                let difference = differences.fold(0.0, f64::max);
+                out.max = out.max.max(difference);
+                out.over_smooth += f64::from(u8::from(difference > SMOOTH));
+                out.noticed += f64::from(u8::from(difference > f64::from(UNNOTICED)));
+                out.squares += difference * difference;
             }
         }
         let pixels = (n * n * width * height) as f64;
-        Self { over: out.over / pixels, noticed: out.noticed / pixels, ..out }
+        Self { over_smooth: out.over_smooth / pixels, noticed: out.noticed / pixels, ..out }
     }
 }

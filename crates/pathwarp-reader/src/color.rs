@@ -1,6 +1,6 @@
 //! Colours that usvg does not read (CSS Color 4 and 5), as the nearest in sRGB.
 
-use crate::value::{arguments, reference, safe_id};
+use crate::value::{arguments, reference, safe_id, split_outside};
 use csscolorparser::Color;
 use std::borrow::Cow;
 use std::f32::consts::TAU;
@@ -23,10 +23,10 @@ pub(super) fn paint<'v>(value: &'v str, current: &Color) -> Option<Cow<'v, str>>
     if let Some(link) = reference(value) {
         let fallback = link.rest.trim();
         let solid = || paint(fallback, current).filter(|_| reference(fallback).is_none());
-        let new = if fallback.is_empty() { "".into() } else { solid()? };
-        let old = &value[..value.len() - link.rest.len()];
-        let id = link.id.as_deref().map_or(Cow::Borrowed(old), |id| format!("url(#{})", safe_id(id)).into());
-        let text = format!("{} {new}", id.trim());
+        let fallback = if fallback.is_empty() { "".into() } else { solid()? };
+        let old_link = &value[..value.len() - link.rest.len()];
+        let link = link.id.as_deref().map_or(Cow::Borrowed(old_link), |id| format!("url(#{})", safe_id(id)).into());
+        let text = format!("{} {fallback}", link.trim());
         return Some(if text.trim() == value { Cow::Borrowed(value) } else { Cow::Owned(text.trim().to_owned()) });
     }
     for keyword in ["none", "context-fill", "context-stroke"] {
@@ -109,14 +109,14 @@ fn resolved(value: &str, current: &Color, levels: usize) -> Option<Color> {
         let c = svgtypes::Color::from_str(known.unwrap_or(&lower)).ok()?;
         return Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha));
     };
-    let inside = rest.strip_suffix(')')?;
+    let list = rest.strip_suffix(')')?;
     let levels = levels.checked_sub(1)?;
     match name {
-        "color-mix" => mix(inside, |c| resolved(c, current, levels)),
-        "light-dark" => resolved(arguments(inside).next()?, current, levels),
+        "color-mix" => mix(list, |c| resolved(c, current, levels)),
+        "light-dark" => resolved(arguments(list).next()?, current, levels),
         _ => {
             // The parser knows neither `currentColor` nor mixtures in relative colours.
-            let words = inside.strip_prefix("from ").map(|_| words(inside));
+            let words = list.strip_prefix("from ").map(|_| words(list));
             let base = words.as_ref().and_then(|w| Some((*w.get(1)?, resolved(w.get(1)?, current, levels)?)));
             let plain = base.map(|(word, c)| lower.replacen(word, &c.to_css_hex().to_string(), 1));
             // In relative colours the parser takes no percentages. In these functions, 30% means the same as 30.
@@ -135,16 +135,7 @@ fn without_percent(color: &str) -> String {
 
 /// Splits at white space outside parentheses.
 fn words(text: &str) -> Vec<&str> {
-    let mut depth = 0_usize;
-    let words = text.split(move |c: char| {
-        match c {
-            '(' => depth += 1,
-            ')' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        depth == 0 && c.is_ascii_whitespace()
-    });
-    words.filter(|w| !w.is_empty()).collect()
+    split_outside(text, |c| c.is_ascii_whitespace()).filter(|w| !w.is_empty()).collect()
 }
 
 /// Mixes two colours (CSS Color 5, section 3): "in oklch longer hue, red 30%, blue".
@@ -169,12 +160,11 @@ fn mix(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> {
         (None, Some(q)) => (1.0 - q, q),
         (Some(p), Some(q)) => (p, q),
     };
-    let whole = p + q;
-    let alpha_at = 3;
-    let mut out = interpolated(method.first()?, method.get(1).copied(), [&a, &b], [p / whole, q / whole])?;
-    out[alpha_at] *= whole.min(1.0);
-    let [x, y, z, alpha] = out;
-    let color = match *method.first()? {
+    let (space, arc, sum) = (*method.first()?, method.get(1).copied(), p + q);
+    let [x, y, z, alpha] = interpolated(space, arc, [&a, &b], [p / sum, q / sum])?;
+    // Shares that sum to less than 100 % make the mixture transparent.
+    let alpha = alpha * sum.min(1.0);
+    let color = match space {
         "srgb-linear" => Color::from_linear_rgba(x, y, z, alpha),
         "oklab" => Color::from_oklaba(x, y, z, alpha),
         "oklch" => Color::from_oklcha(x, y, z, alpha),
@@ -186,12 +176,13 @@ fn mix(list: &str, resolved: impl Fn(&str) -> Option<Color>) -> Option<Color> {
         "hwb" => Color::from_hwba(x, y, z, alpha),
         _ => Color::new(x, y, z, alpha),
     };
-    (whole > 0.0).then_some(color)
+    (sum > 0.0).then_some(color)
 }
 
 /// Interpolates coordinates in a colour space with premultiplied alpha, and hues along an arc (CSS Color 4, section 12). Returns `None` for
 /// an unsupported space.
 fn interpolated(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f32; 2]) -> Option<[f32; 4]> {
+    // The coordinates, and the index of the hue with the value of a full turn.
     let coordinates = |c: &Color| match space {
         "srgb" => Some((c.to_array(), None)),
         "srgb-linear" => Some((c.to_linear_rgba(), None)),
@@ -208,18 +199,18 @@ fn interpolated(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f3
     let ((mut a, hue), (mut b, _)) = (coordinates(colors[0])?, coordinates(colors[1])?);
     let alpha = p * a[3] + q * b[3];
     let mut out = [0, 1, 2].map(|i| if alpha > 0.0 { (p * a[i] * a[3] + q * b[i] * b[3]) / alpha } else { 0.0 });
-    if let Some((at, turn)) = hue {
+    if let Some((hue, turn)) = hue {
         // Greys have no hue.
         let is_grey = |c: &Color| {
             let [r, g, b, _] = c.to_array();
             r.max(g).max(b) - r.min(g).min(b) < 1e-4
         };
         match colors.map(is_grey) {
-            [true, false] => a[at] = b[at],
-            [false, true] => b[at] = a[at],
+            [true, false] => a[hue] = b[hue],
+            [false, true] => b[hue] = a[hue],
             _ => {}
         }
-        let step = (b[at] - a[at]).rem_euclid(turn);
+        let step = (b[hue] - a[hue]).rem_euclid(turn);
         let step = match arc {
             Some("increasing") => step,
             Some("longer") if step > 0.5 * turn => step,
@@ -227,33 +218,33 @@ fn interpolated(space: &str, arc: Option<&str>, colors: [&Color; 2], [p, q]: [f3
             _ if step > 0.5 * turn => step - turn,
             _ => step,
         };
-        out[at] = a[at] + q * step;
+        out[hue] = a[hue] + q * step;
     }
     Some([out[0], out[1], out[2], alpha])
 }
 
-/// Rewrites the colours and lengths in a list of functions for usvg, whose style sheets know no functions in functions.
+/// Rewrites the colours and lengths in a list of filter functions for usvg, whose style sheets know no functions in functions.
 pub(super) fn rewritten_functions<'v>(
     list: &'v str,
     current: &Color,
     length: impl Fn(&'v str) -> Option<Cow<'v, str>>,
 ) -> Cow<'v, str> {
     let has_unit = |w: &str| !w.starts_with('#') && w.ends_with(|c: char| c.is_ascii_alphabetic());
-    let measured = |w: &'v str| length(w).filter(|_| has_unit(w)).unwrap_or(Cow::Borrowed(w));
+    let rewritten = |w: &'v str| length(w).filter(|_| has_unit(w)).unwrap_or(Cow::Borrowed(w));
     let (mut out, mut left) = (String::new(), list);
     while let Some((name, inside, after)) = function(left) {
         let is = |word: &str| name.trim().eq_ignore_ascii_case(word);
-        let mut inner: Vec<Cow<'_, str>> = words(inside).into_iter().map(measured).collect();
+        let mut arguments: Vec<Cow<'_, str>> = words(inside).into_iter().map(rewritten).collect();
         if is("drop-shadow") {
-            let given = inner.iter().enumerate().find_map(|(i, w)| Some((i, computed(w, current)?)));
-            if let Some((i, _)) = given {
-                inner.remove(i);
+            let mut color = *current;
+            if let Some((i, given)) = arguments.iter().enumerate().find_map(|(i, w)| Some((i, computed(w, current)?))) {
+                arguments.remove(i);
+                color = given;
             }
-            let color = given.map_or_else(|| *current, |g| g.1);
-            inner.push(shadow(&color).into());
+            arguments.push(shadow(&color).into());
         }
-        let inner = if is("url") { inside.to_owned() } else { inner.join(" ") };
-        out.extend([name, "(", &inner, ")"]);
+        let arguments = if is("url") { inside.to_owned() } else { arguments.join(" ") };
+        out.extend([name, "(", &arguments, ")"]);
         left = after;
     }
     out.push_str(left);
@@ -313,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_rewritten_functions() {
+    fn filter_functions_are_rewritten() {
         for (css, plain) in [
             ("drop-shadow(8px 1rem 6px rgba(0, 0, 0, .6))", "drop-shadow(8px 16px 6px #00000099)"),
             ("blur(2px) drop-shadow(rgb(255 0 0 / 50%) 1px 2px)", "blur(2px) drop-shadow(1px 2px #ff000080)"),

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 pub(super) const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 
-const SHARES: &str = "spacing in per cent is a share of the font's size, which Chromium takes on the screen";
+const PERCENT_SPACING: &str = "spacing in per cent is a share of the font's size, which Chromium takes on the screen";
 
 const DASHES: [&str; 2] = ["stroke-dasharray", "stroke-dashoffset"];
 
@@ -35,7 +35,7 @@ pub(super) struct Inherited {
     /// `true` inside a symbol with a viewport. Percentages refer to that viewport, which usvg doesn't know.
     pub(super) in_symbol: bool,
     /// `true` if paths have markers.
-    pub(super) marked: bool,
+    pub(super) has_markers: bool,
     pub(super) custom: Rc<Custom>,
     pub(super) units: Units,
     pub(super) color: Color,
@@ -46,6 +46,9 @@ pub(super) struct Inherited {
 
 /// Properties with their values as the author wrote them; `None` for the initial value.
 type Written<'a> = Vec<(Cow<'a, str>, Option<Cow<'a, str>>)>;
+
+/// The name and the value of a declaration.
+type Pair<'a> = (Cow<'a, str>, Cow<'a, str>);
 
 impl Inherited {
     /// Records which declarations of an element are about paint. Returns all such declarations that hold for it.
@@ -67,8 +70,7 @@ impl Inherited {
 
     /// The value of a property of [`TRACKED`].
     fn tracked(&self, name: &str) -> Option<&str> {
-        let at = TRACKED.iter().position(|t| *t == name)?;
-        self.tracked[at].as_deref()
+        self.tracked[TRACKED.iter().position(|t| *t == name)?].as_deref()
     }
 }
 
@@ -76,7 +78,7 @@ impl Inherited {
 #[derive(Debug, Default)]
 pub(super) struct Computed<'a> {
     /// Declarations for usvg, unless the style attribute already holds exactly these.
-    pub(super) style: Option<Vec<(Cow<'a, str>, Cow<'a, str>)>>,
+    pub(super) style: Option<Vec<Pair<'a>>>,
     /// New values of attributes; `None` removes the attribute.
     pub(super) attributes: Vec<(&'static str, Option<String>)>,
     /// Declarations that make up the transform.
@@ -96,7 +98,7 @@ pub(super) struct Computed<'a> {
 }
 
 /// The geometry properties that Chromium takes from style sheets. Nested viewports take none, and a `use` takes no size.
-fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
+fn styled_geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
     match tag {
         "rect" => &["x", "y", "width", "height", "rx", "ry"],
         "circle" => &["cx", "cy", "r"],
@@ -105,16 +107,6 @@ fn geometry(tag: &str, is_root: bool) -> &'static [&'static str] {
         "use" => &["x", "y"],
         "svg" if is_root => &["width", "height"],
         _ => &[],
-    }
-}
-
-/// The length that 100 % of a property stands for.
-fn full(name: &str, units: &Units) -> f64 {
-    let (w, h) = units.viewport;
-    match name {
-        "x" | "width" | "cx" | "rx" | "x1" | "x2" | "dx" | "fx" | "refX" | "markerWidth" => w,
-        "y" | "height" | "cy" | "ry" | "y1" | "y2" | "dy" | "fy" | "refY" | "markerHeight" => h,
-        _ => w.hypot(h) / std::f64::consts::SQRT_2,
     }
 }
 
@@ -134,14 +126,14 @@ pub(super) fn computed<'a>(
         inherited.custom = Rc::new(value::custom(&variables, &inherited.custom));
         Arc::make_mut(&mut inherited.words).declare_variables(node.range().start);
     }
-    let is_server =
+    let is_resource =
         matches!(tag, "linearGradient" | "radialGradient" | "pattern" | "mask" | "filter" | "marker" | "clipPath");
     let mut values = Values {
         custom: Rc::clone(&inherited.custom),
         units: inherited.units,
-        font: inherited.units.font,
+        parent_font: inherited.units.font,
         color: inherited.color,
-        absolute: inherited.in_symbol && !is_server && !tag.starts_with("fe"),
+        converts_percent: inherited.in_symbol && !is_resource && !tag.starts_with("fe"),
         ids,
     };
     // Resolve the font size first; other lengths depend on it.
@@ -156,24 +148,29 @@ pub(super) fn computed<'a>(
         values.color = color;
         inherited.color = color;
     }
-    let mut all = Declared { geometry: geometry(tag, is_root), ..Declared::new(tag, &values) };
+    let geometry = styled_geometry(tag, is_root);
+    let (decided, dropped) = (HashSet::new(), HashSet::new());
+    let (written, unknown, style) = (Vec::new(), Vec::new(), Vec::new());
+    let out = Computed::default();
+    let mut collector = Collector { tag, geometry, values: &values, decided, dropped, written, unknown, style, out };
     for d in declarations.iter().rev().filter(|d| !d.name.starts_with("--")) {
-        all.declare(d);
+        collector.declare(d);
     }
-    all.style.reverse();
-    all.take_attributes(node);
-    all.replace_unknown(node);
-    all.finish(node, inherited)
+    collector.style.reverse();
+    collector.take_attributes(node);
+    collector.replace_unknown(node);
+    collector.finish(node, inherited)
 }
 
 /// The size of an element's font in px, if it declares one.
 fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<f64> {
     let size = property("font-size")?;
-    let px = |text: &str, strict| value::length(&values.rewrite(size, text, strict)?, &values.units, values.font);
+    let px =
+        |text: &str, strict| value::length(&values.rewrite(size, text, strict)?, &values.units, values.parent_font);
     let declared = declarations.iter().rev().find_map(|d| match d.name.as_ref() {
-        "font-size" => match wide(&d.value) {
-            Some(Wide::Initial) => Some(value::MEDIUM),
-            Some(_) => Some(values.font),
+        "font-size" => match css_wide(&d.value) {
+            Some(CssWide::Initial) => Some(value::MEDIUM),
+            Some(_) => Some(values.parent_font),
             None => px(&d.value, d.strict),
         },
         "font" => px(&text::font(&values.substituted(&d.value)?)?.iter().find(|l| l.0 == "font-size")?.1, true),
@@ -184,8 +181,8 @@ fn font_size(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Val
 
 /// The colour that an element declares as its `color`.
 fn declared_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values: &Values<'_, '_, '_>) -> Option<Color> {
-    let resolve = |text: &str| match wide(text.trim()) {
-        Some(Wide::Initial) => color::computed("black", &values.color),
+    let resolve = |text: &str| match css_wide(text.trim()) {
+        Some(CssWide::Initial) => Some(Color::default()),
         Some(_) => Some(values.color),
         None => {
             color::computed(value::computed(&values.substituted(text)?, &values.units, None)?.trim(), &values.color)
@@ -195,45 +192,42 @@ fn declared_color(node: Node<'_, '_>, declarations: &[&Declaration<'_>], values:
     declared.find_map(resolve).or_else(|| resolve(node.attribute("color")?))
 }
 
-/// A CSS-wide keyword.
+/// The meaning of a CSS-wide keyword.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Wide {
+enum CssWide {
     Inherit,
     Initial,
     /// Inherits if the property is inherited by default; otherwise the initial value.
     Unset,
 }
 
-fn wide(value: &str) -> Option<Wide> {
-    let first = value.as_bytes().first()? | 0x20;
-    if !matches!(first, b'i' | b'u' | b'r') {
-        return None;
-    }
-    let is = |word: &str| value.eq_ignore_ascii_case(word);
-    match () {
-        () if is("inherit") => Some(Wide::Inherit),
-        () if is("initial") => Some(Wide::Initial),
-        () if is("unset") || is("revert") || is("revert-layer") => Some(Wide::Unset),
-        () => None,
-    }
+fn css_wide(value: &str) -> Option<CssWide> {
+    const KEYWORDS: [(&str, CssWide); 5] = [
+        ("inherit", CssWide::Inherit),
+        ("initial", CssWide::Initial),
+        ("unset", CssWide::Unset),
+        ("revert", CssWide::Unset),
+        ("revert-layer", CssWide::Unset),
+    ];
+    KEYWORDS.iter().find(|(word, _)| value.eq_ignore_ascii_case(word)).map(|(_, meaning)| *meaning)
 }
 
 /// The value that a CSS-wide keyword stands for; `None` if it is the parent's value.
-fn resolved(wide: Wide, p: &Property) -> Option<&'static str> {
-    match wide {
-        Wide::Inherit => None,
-        Wide::Unset if p.inherited => None,
-        Wide::Initial | Wide::Unset => Some(p.initial),
+fn css_wide_value(keyword: CssWide, p: &Property) -> Option<&'static str> {
+    match keyword {
+        CssWide::Inherit => None,
+        CssWide::Unset if p.inherited => None,
+        CssWide::Initial | CssWide::Unset => Some(p.initial),
     }
 }
 
 /// Returns `true` if browsers accept the value of a declaration. Values with variables or expressions count as accepted.
 pub(super) fn is_valid(d: &Declaration<'_>, units: Units, ids: &Ids<'_, '_>) -> bool {
-    let Some(p) = property(&d.name).filter(|_| wide(&d.value).is_none() && !value::has_functions(&d.value)) else {
+    let Some(p) = property(&d.name).filter(|_| css_wide(&d.value).is_none() && !value::has_functions(&d.value)) else {
         return true;
     };
-    let color = Color::new(0.0, 0.0, 0.0, 1.0);
-    let values = Values { custom: Rc::default(), units, font: units.font, color, absolute: false, ids };
+    let (custom, color) = (Rc::default(), Color::default());
+    let values = Values { custom, units, parent_font: units.font, color, converts_percent: false, ids };
     values.rewrite(p, &d.value, d.strict).is_some()
 }
 
@@ -242,15 +236,16 @@ struct Values<'d, 'a, 'i> {
     custom: Rc<Custom>,
     units: Units,
     /// Font size of the parent.
-    font: f64,
+    parent_font: f64,
     /// The colour that `currentColor` stands for.
     color: Color,
     /// `true` if percentages are converted to px.
-    absolute: bool,
+    converts_percent: bool,
     ids: &'d Ids<'a, 'i>,
 }
 
 impl Values<'_, '_, '_> {
+    /// Replaces variables. Returns `None` if one has no value.
     fn substituted(&self, raw: &str) -> Option<String> {
         value::substituted(raw, &|n| self.custom.get(n).map(ToString::to_string))
     }
@@ -260,53 +255,55 @@ impl Values<'_, '_, '_> {
         let raw = raw.trim();
         if value::has_functions(raw) && !matches!(p.kind, Kind::Transform | Kind::Any) {
             let text = self.substituted(raw)?;
-            let text = value::computed(&text, &self.units_for(p), Some(self.full(p)))?;
-            return Some(Cow::Owned(self.plain(p, text.trim(), strict)?.into_owned()));
+            let text = value::computed(&text, &self.units_for(p), Some(self.percentage_base(p)))?;
+            return Some(Cow::Owned(self.rewrite_simple(p, text.trim(), strict)?.into_owned()));
         }
         if matches!(p.kind, Kind::Transform | Kind::Any) && !value::is_plain(raw) {
             let text = self.substituted(raw)?;
             return Some(Cow::Owned(value::computed(&text, &self.units_for(p), None).unwrap_or(text)));
         }
-        self.plain(p, raw, strict)
+        self.rewrite_simple(p, raw, strict)
     }
 
     /// The units for a property. For font sizes, they refer to the parent's font.
     fn units_for(&self, p: &Property) -> Units {
-        let font = if matches!(p.kind, Kind::FontSize) { self.font } else { self.units.font };
+        let font = if matches!(p.kind, Kind::FontSize) { self.parent_font } else { self.units.font };
         Units { font, ..self.units }
     }
 
     /// The value that 100 % stands for.
-    fn full(&self, p: &Property) -> f64 {
+    fn percentage_base(&self, p: &Property) -> f64 {
         match p.kind {
-            Kind::FontSize => self.font,
+            Kind::FontSize => self.parent_font,
             Kind::Spacing => self.units.font,
             Kind::Share => 1.0,
-            _ => full(p.name, &self.units),
+            _ => self.units.percentage_base(p.name),
         }
     }
 
     /// Rewrites a value that holds no variables or expressions.
-    fn plain<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
+    fn rewrite_simple<'v>(&self, p: &Property, raw: &'v str, strict: bool) -> Option<Cow<'v, str>> {
         match p.kind {
-            Kind::Word(words) => word(words, raw),
-            Kind::Paint => color::paint(self.seen_paint(raw), &self.color),
+            Kind::Keyword(words) => word(words, raw),
+            Kind::Paint => color::paint(self.visible_paint(raw), &self.color),
             Kind::Color => color::color(raw, &self.color),
             Kind::Share => share(raw),
             Kind::Number => raw.parse::<f64>().ok().filter(|n| *n >= 0.0).map(|_| Cow::Borrowed(raw)),
             Kind::Length(sign) | Kind::Geometry(sign) if raw != "auto" => self.length(p, raw, sign, false),
             Kind::Spacing if raw.eq_ignore_ascii_case("normal") => Some("normal".into()),
             Kind::Spacing => self.length(p, raw, Sign::Any, strict),
-            Kind::Dashes => self.dashes(p, raw),
-            Kind::FontSize => match text::size(raw, self.font) {
+            Kind::Link | Kind::Dashes if raw.eq_ignore_ascii_case("none") => Some("none".into()),
+            Kind::Dashes => list(raw, |v| self.length(p, v, Sign::Positive, false)),
+            Kind::FontSize => match text::size(raw, self.parent_font) {
                 Some(px) => Some(format!("{px}px").into()),
                 None => self.length(p, raw, Sign::Positive, strict),
             },
-            Kind::Words => (!raw.is_empty()).then(|| lower(raw)),
-            Kind::FontWeight => text::is_weight(raw).then(|| lower(raw)),
+            Kind::AnyKeywords => (!raw.is_empty()).then(|| lower(raw)),
+            Kind::FontWeight => text::weight(raw, 400).map(|_| lower(raw)),
             Kind::BaselineShift => word(&["baseline", "sub", "super"], raw)
                 .or_else(|| self.length(&Property { kind: Kind::Length(Sign::Any), ..*p }, raw, Sign::Any, false)),
-            Kind::Link => link(raw),
+            // CSS shapes stay as they are.
+            Kind::Link => Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw))),
             Kind::Filter => Some(self.filter(p, raw)),
             _ => (!raw.is_empty()).then_some(Cow::Borrowed(raw)),
         }
@@ -314,19 +311,21 @@ impl Values<'_, '_, '_> {
 
     /// Rewrites a length in a unit that usvg knows.
     fn length<'v>(&self, p: &Property, raw: &'v str, sign: Sign, strict: bool) -> Option<Cow<'v, str>> {
-        let relative = self.absolute || matches!(p.kind, Kind::FontSize | Kind::Spacing);
-        value::known_length(raw, &self.units_for(p), relative.then(|| self.full(p)), sign == Sign::Positive, strict)
+        let converts = self.converts_percent || matches!(p.kind, Kind::FontSize | Kind::Spacing);
+        let base = converts.then(|| self.percentage_base(p));
+        value::known_length(raw, &self.units_for(p), base, sign == Sign::Positive, strict)
     }
 
     /// An attribute of a gradient or pattern, or of one that it refers to. Gradients and patterns have different `names` for it.
     fn server_attribute(&self, id: Option<&str>, names: [&str; 2]) -> Option<&str> {
+        /// Gradients that refer to each other in a circle must end.
         const MAX_LINKS: usize = 16;
         let mut chain = std::iter::successors(self.ids.get(id?), |n| self.ids.target(*n)).take(MAX_LINKS);
         chain.find_map(|n| names.into_iter().find_map(|name| n.attribute(name)))
     }
 
     /// Replaces a gradient or pattern with a singular transform by its fallback colour, or by `none`.
-    fn seen_paint<'v>(&self, raw: &'v str) -> &'v str {
+    fn visible_paint<'v>(&self, raw: &'v str) -> &'v str {
         let Some(link) = reference(raw) else { return raw };
         let given = self.server_attribute(link.id.as_deref(), ["gradientTransform", "patternTransform"]);
         let t = given.and_then(|t| t.parse::<svgtypes::Transform>().ok());
@@ -334,21 +333,21 @@ impl Values<'_, '_, '_> {
     }
 
     /// The paint that replaces a gradient or pattern in box units on a shape whose box has no width or no height.
-    fn flat_paint<'v>(&self, raw: &'v str) -> Option<&'v str> {
+    fn paint_of_flat_shape<'v>(&self, raw: &'v str) -> Option<&'v str> {
         let link = reference(raw)?;
         let units = self.server_attribute(link.id.as_deref(), ["gradientUnits", "patternUnits"]);
         (units != Some("userSpaceOnUse")).then(|| fallback(&link))
     }
 
-    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop shadow
-    /// in sRGB. `declared` looks up the properties of the element.
-    fn paints<'s, 'n>(
+    /// Further declarations: the paint that replaces a gradient or pattern that cannot apply to a flat shape, and the colour of a drop
+    /// shadow in sRGB. `declared` looks up the properties of the element.
+    fn replaced_paints<'n>(
         &self,
         node: Node<'n, '_>,
         inherited: &Inherited,
         computed: &Computed<'n>,
         declared: &dyn Fn(&str) -> Option<String>,
-    ) -> Vec<(Cow<'s, str>, Cow<'s, str>)> {
+    ) -> Vec<Pair<'n>> {
         let tag = node.tag_name().name();
         let mut out = Vec::new();
         let is_flat = || {
@@ -356,7 +355,7 @@ impl Values<'_, '_, '_> {
             area.is_some_and(|b| b.width() == 0.0 || b.height() == 0.0)
         };
         for name in ["fill", "stroke"] {
-            let paint = inherited.tracked(name).and_then(|v| self.flat_paint(v));
+            let paint = inherited.tracked(name).and_then(|v| self.paint_of_flat_shape(v));
             out.extend(paint.filter(|_| is_flat()).map(|p| (name.into(), p.to_owned().into())));
         }
         if tag == "feDropShadow" && inherited.tracked("color-interpolation-filters") == Some("sRGB") {
@@ -376,10 +375,9 @@ impl Values<'_, '_, '_> {
 
     /// Rewrites a list of filters. If one of them does not exist, browsers apply none.
     fn filter<'v>(&self, p: &Property, raw: &'v str) -> Cow<'v, str> {
-        let links =
-            || raw.char_indices().filter_map(|(at, c)| reference(&raw[at..]).filter(|_| c.eq_ignore_ascii_case(&'u')));
+        let mut links = raw.char_indices().filter_map(|(start, _)| reference(&raw[start..]));
         let is_there = |id: &str| self.ids.get(id).is_some_and(|n| n.tag_name().name() == "filter");
-        if raw.eq_ignore_ascii_case("none") || links().any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
+        if raw.eq_ignore_ascii_case("none") || links.any(|l| l.id.as_deref().is_none_or(|id| !is_there(id))) {
             return "none".into();
         }
         // Links in lists stay as they are.
@@ -388,16 +386,9 @@ impl Values<'_, '_, '_> {
             None => color::rewritten_functions(raw, &self.color, |v| self.length(p, v, Sign::Any, false)),
         }
     }
-
-    fn dashes<'v>(&self, p: &Property, raw: &'v str) -> Option<Cow<'v, str>> {
-        if raw.eq_ignore_ascii_case("none") {
-            return Some("none".into());
-        }
-        list(raw, |v| self.length(p, v, Sign::Positive, false))
-    }
 }
 
-/// The paint that replaces one that cannot apply.
+/// The paint that replaces a gradient or pattern that cannot apply.
 fn fallback<'v>(link: &Reference<'v>) -> &'v str {
     if link.rest.trim().is_empty() { "none" } else { link.rest.trim() }
 }
@@ -419,6 +410,7 @@ fn list<'v>(raw: &'v str, rewrite: impl Fn(&'v str) -> Option<Cow<'v, str>>) -> 
     })
 }
 
+/// The keyword that a value is, in upper or lower case.
 fn word<'v>(words: &'static [&'static str], raw: &'v str) -> Option<Cow<'v, str>> {
     words.iter().find(|w| w.eq_ignore_ascii_case(raw)).map(|w| Cow::Borrowed(*w))
 }
@@ -427,6 +419,7 @@ fn lower(raw: &str) -> Cow<'_, str> {
     if raw.bytes().any(|b| b.is_ascii_uppercase()) { raw.to_ascii_lowercase().into() } else { Cow::Borrowed(raw) }
 }
 
+/// Accepts a number or a percentage.
 fn share(raw: &str) -> Option<Cow<'_, str>> {
     let number = raw.strip_suffix('%').unwrap_or(raw);
     // CSS numbers must not end in a point.
@@ -434,37 +427,25 @@ fn share(raw: &str) -> Option<Cow<'_, str>> {
     valid.then_some(Cow::Borrowed(raw))
 }
 
-/// Rewrites a reference or `none`. CSS shapes stay as they are.
-fn link(raw: &str) -> Option<Cow<'_, str>> {
-    if raw.eq_ignore_ascii_case("none") {
-        return Some("none".into());
-    }
-    Some(reference(raw).map_or(Cow::Borrowed(raw), |r| r.text(raw)))
-}
-
 /// Collects the declarations of an element for usvg.
-struct Declared<'v, 'a, 'i> {
+struct Collector<'v, 'a, 'i> {
     tag: &'v str,
+    /// The geometry properties that the element takes from its style.
     geometry: &'static [&'static str],
     values: &'v Values<'v, 'a, 'i>,
-    seen: HashSet<Cow<'a, str>>,
+    /// Properties that a valid declaration sets.
+    decided: HashSet<Cow<'a, str>>,
     /// Properties that inherit, but for which usvg doesn't know the keyword `inherit`. They are left out.
     dropped: HashSet<&'static str>,
     written: Written<'a>,
     /// Colours that are not understood, by property.
     unknown: Vec<(&'static str, String)>,
     /// Strongest first, until all declarations have been added.
-    style: Vec<(Cow<'a, str>, Cow<'a, str>)>,
+    style: Vec<Pair<'a>>,
     out: Computed<'a>,
 }
 
-impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
-    fn new(tag: &'v str, values: &'v Values<'v, 'a, 'i>) -> Self {
-        let (seen, dropped) = (HashSet::new(), HashSet::new());
-        let (written, unknown, style) = (Vec::new(), Vec::new(), Vec::new());
-        Self { tag, geometry: &[], values, seen, dropped, written, unknown, style, out: Computed::default() }
-    }
-
+impl<'a> Collector<'_, 'a, '_> {
     /// Adds a declaration weaker than all before it. The strongest valid declaration of a property wins.
     fn declare(&mut self, d: &Declaration<'a>) {
         match d.name.as_ref() {
@@ -484,7 +465,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             name => match property(name) {
                 Some(p) => self.set(p, d),
                 None => {
-                    if self.seen.insert(d.name.clone()) {
+                    if self.decided.insert(d.name.clone()) {
                         self.out.unsupported.extend(unsupported(&d.name, &d.value));
                         self.style.push((d.name.clone(), d.value.clone()));
                     }
@@ -493,16 +474,17 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
+    /// Sets a property, unless a stronger declaration has done so or this one is invalid.
     fn set(&mut self, p: &'static Property, d: &Declaration<'a>) {
-        if self.seen.contains(p.name) {
+        if self.decided.contains(p.name) {
             return;
         }
-        self.note_share(p, &d.value);
-        let value = match wide(&d.value) {
-            Some(wide) => match resolved(wide, p) {
+        self.note_percent_spacing(p, &d.value);
+        let value = match css_wide(&d.value) {
+            Some(keyword) => match css_wide_value(keyword, p) {
                 Some(initial) => Cow::Borrowed(initial),
                 None if !knows_inherit(p) => {
-                    self.seen.insert(p.name.into());
+                    self.decided.insert(p.name.into());
                     self.dropped.insert(p.name);
                     return;
                 }
@@ -514,22 +496,22 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
                 None => return self.note_color(p, &d.value),
             },
         };
-        self.seen.insert(p.name.into());
+        self.decided.insert(p.name.into());
         self.record(p, d.value.clone());
         match p.kind {
             Kind::Transform => self.out.transform.push(Declaration { value, ..d.clone() }),
             Kind::Geometry(_) if self.geometry.contains(&p.name) => {
-                let value = self.near(&value).into_owned();
-                // Attributes cannot say `auto`; leaving one out means the same.
+                let value = self.in_range(&value).into_owned();
+                // Attributes cannot be `auto`; leaving one out means the same.
                 self.out.attributes.push((p.name, Some(value).filter(|v| v != "auto")));
             }
             Kind::Path if self.tag == "path" => {
                 let data = value::path_data(&value).unwrap_or_default();
-                let data = self.near(&data).into_owned();
+                let data = self.in_range(&data).into_owned();
                 self.out.attributes.push((p.name, Some(data)));
             }
             Kind::Length(_) | Kind::Spacing | Kind::Dashes | Kind::FontSize => {
-                let value = self.near(&value).into_owned();
+                let value = self.in_range(&value).into_owned();
                 self.style.push((d.name.clone(), value.into()));
             }
             _ => {
@@ -539,10 +521,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
     }
 
-    /// Records a valid value of a property of paint.
+    /// Records a valid value if the property is about paint.
     fn record(&mut self, p: &'static Property, raw: Cow<'a, str>) {
         if Words::records(p.name) {
-            match wide(raw.trim()).map(|wide| resolved(wide, p)) {
+            match css_wide(raw.trim()).map(|keyword| css_wide_value(keyword, p)) {
                 Some(None) => {}
                 Some(Some(_)) => self.written.push((p.name.into(), None)),
                 None => self.written.push((p.name.into(), Some(raw))),
@@ -551,8 +533,9 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 
     /// Notes percentages that Chromium resolves against the font's size on the screen.
-    fn note_share(&mut self, p: &Property, value: &str) {
-        self.out.notes.extend((matches!(p.kind, Kind::Spacing) && value.trim_end().ends_with('%')).then_some(SHARES));
+    fn note_percent_spacing(&mut self, p: &Property, value: &str) {
+        let is_percent_spacing = matches!(p.kind, Kind::Spacing) && value.trim_end().ends_with('%');
+        self.out.notes.extend(is_percent_spacing.then_some(PERCENT_SPACING));
     }
 
     /// Remembers a value that may be a colour, and is not understood.
@@ -566,12 +549,12 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     /// Reports the colours that are not understood. Black replaces those that have no other value.
     fn replace_unknown(&mut self, node: Node<'a, '_>) {
         for (name, value) in std::mem::take(&mut self.unknown) {
-            let set = self.seen.contains(name) || self.out.value(node, name).is_some();
-            if !set {
+            let is_set = self.decided.contains(name) || self.out.value(node, name).is_some();
+            if !is_set {
                 self.style.push((name.into(), "black".into()));
             }
-            let other = if set { "another declaration" } else { "black" };
-            let value = text::start(&value);
+            let other = if is_set { "another declaration" } else { "black" };
+            let value = text::excerpt(&value);
             self.out.unsupported.push(format!(
                 "only with {other} in place of “{name}: {value}”, a colour that is not understood; write it as #rrggbb"
             ));
@@ -579,12 +562,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 
     /// Brings the numbers of a value into range, and remembers the first that was not.
-    fn near<'t>(&mut self, value: &'t str) -> Cow<'t, str> {
-        let (near, far) = range::in_range(value);
-        if self.out.far.is_none() {
-            self.out.far = far;
-        }
-        near
+    fn in_range<'t>(&mut self, value: &'t str) -> Cow<'t, str> {
+        let (value, first_out) = range::in_range(value);
+        self.out.far = self.out.far.take().or(first_out);
+        value
     }
 
     /// Computes the attributes that no declaration overrides.
@@ -592,34 +573,34 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         for a in node.attributes().filter(|a| a.namespace().is_none()) {
             let (name, raw) = (a.name(), a.value());
             if let Some(p) = attribute_property(name) {
-                if !self.seen.contains(p.name) {
-                    self.attribute(p, raw);
+                if !self.decided.contains(p.name) {
+                    self.take_attribute(p, raw);
                 } else if self.dropped.contains(p.name) {
                     self.out.attributes.push((p.name, None));
                 }
             } else if let Some(name) = length_attribute(name) {
                 let p = Property { name, inherited: false, initial: "0", kind: Kind::Length(Sign::Any) };
-                let all = list(raw.trim(), |v| self.values.rewrite(&p, v, false));
-                let new =
-                    all.map_or(Cow::Borrowed(raw), |new| if new == raw.trim() { Cow::Borrowed(raw) } else { new });
-                let new = self.near(&new).into_owned();
+                let rewritten = list(raw.trim(), |v| self.values.rewrite(&p, v, false));
+                let new = rewritten.filter(|new| new != raw.trim()).unwrap_or(Cow::Borrowed(raw));
+                let new = self.in_range(&new).into_owned();
                 self.out.attributes.extend((new != raw).then_some((name, Some(new))));
             } else if let Some(name) = range::checked(name)
-                && let Cow::Owned(new) = self.near(raw)
+                && let Cow::Owned(new) = self.in_range(raw)
             {
                 self.out.attributes.push((name, Some(new)));
             }
         }
     }
 
-    fn attribute(&mut self, p: &'static Property, raw: &'a str) {
+    /// Computes the attribute of a property.
+    fn take_attribute(&mut self, p: &'static Property, raw: &'a str) {
         if matches!(p.kind, Kind::Transform) {
-            if let Cow::Owned(new) = self.near(raw) {
+            if let Cow::Owned(new) = self.in_range(raw) {
                 self.out.attributes.push((p.name, Some(new)));
             }
             return;
         }
-        self.note_share(p, raw);
+        self.note_percent_spacing(p, raw);
         if p.name == "image-rendering" {
             // usvg reads the CSS keywords from the style attribute only.
             let new = self.values.rewrite(p, raw, false).map(|v| (p.name.into(), v.into_owned().into()));
@@ -627,8 +608,8 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             return;
         }
         let is_geometry = matches!(p.kind, Kind::Geometry(_));
-        let new = match wide(raw.trim()) {
-            Some(wide) => match resolved(wide, p) {
+        let new = match css_wide(raw.trim()) {
+            Some(keyword) => match css_wide_value(keyword, p) {
                 Some(initial) => Some(Cow::Borrowed(initial)),
                 None if knows_inherit(p) => Some("inherit".into()),
                 None => None,
@@ -650,7 +631,7 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         }
         let is_length =
             is_geometry || matches!(p.kind, Kind::Length(_) | Kind::Dashes | Kind::FontSize | Kind::Spacing);
-        let new = new.map(|v| if is_length { self.near(&v).into_owned() } else { v.into_owned() });
+        let new = new.map(|v| if is_length { self.in_range(&v).into_owned() } else { v.into_owned() });
         if new.as_deref().is_none_or(|v| v != raw.trim()) {
             self.out.attributes.push((p.name, new));
         }
@@ -663,13 +644,10 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
         if tag == "use" {
             out.attributes.extend(size_of_use(node, &self.values.units));
         }
-        let marker = |name: &str| {
-            let declared = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
-            declared.or_else(|| out.value(node, name)).filter(|v| *v != "inherit").map(|v| v != "none")
-        };
-        let markers: Vec<bool> = MARKERS.into_iter().filter_map(marker).collect();
-        inherited.marked = markers.contains(&true) || (inherited.marked && markers.len() < 3);
-        if inherited.marked && matches!(tag, "rect" | "circle" | "ellipse") {
+        let markers = MARKERS.iter().filter_map(|name| winner(&style, &out, node, name));
+        let has_marker: Vec<bool> = markers.filter(|v| *v != "inherit").map(|v| v != "none").collect();
+        inherited.has_markers = has_marker.contains(&true) || (inherited.has_markers && has_marker.len() < 3);
+        if inherited.has_markers && matches!(tag, "rect" | "circle" | "ellipse") {
             // usvg would draw markers on these as on paths.
             out.attributes.retain(|a| !MARKERS.contains(&a.0));
             style.retain(|s| !MARKERS.contains(&s.0.as_ref()));
@@ -680,11 +658,9 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             style.retain(|s| s.0 != "writing-mode");
             out.attributes.retain(|a| a.0 != "writing-mode");
             out.attributes.extend(node.has_attribute("writing-mode").then_some(("writing-mode", None)));
-            let applies = |name: &str| {
-                let value = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
-                value.or_else(|| out.value(node, name)).is_some_and(|v| !matches!(v, "none" | "inherit"))
-            };
-            let effect = ["clip-path", "mask", "filter"].into_iter().find(|name| applies(name));
+            let applies =
+                |name: &&str| winner(&style, &out, node, name).is_some_and(|v| !matches!(v, "none" | "inherit"));
+            let effect = ["clip-path", "mask", "filter"].into_iter().find(applies);
             out.unsupported
                 .extend(effect.map(|name| format!("only without its {name}, which parts of texts cannot have")));
             if tag == "textPath" && self.values.ids.target(node).is_some_and(|n| n.tag_name().name() != "path") {
@@ -698,26 +674,23 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
             out.attributes.retain(|a| new.iter().all(|n| n.0 != a.0));
             out.attributes.extend(new.into_iter().map(|(name, v)| (name, Some(v))));
         }
-        let styled = |name: &str| {
-            let found = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.to_string());
-            found.or_else(|| out.value(node, name).map(ToOwned::to_owned))
-        };
+        let declared = |name: &str| winner(&style, &out, node, name).map(ToOwned::to_owned);
         inherited.track(|name| {
-            let is_declared = self.seen.contains(name) || node.attributes().any(|a| a.name() == name);
-            is_declared.then(|| styled(name))?
+            let is_declared = self.decided.contains(name) || node.attributes().any(|a| a.name() == name);
+            is_declared.then(|| declared(name))?
         });
-        let linear = inherited.tracked("color-interpolation") == Some("linearRGB");
-        let stop = (linear && tag == "stop").then(|| self.values.stop(&styled));
-        let more = self.values.paints(node, inherited, &out, &styled);
-        style.extend(more);
-        (out.is_linear, out.stop) = (linear && matches!(tag, "linearGradient" | "radialGradient"), stop);
+        let is_linear = inherited.tracked("color-interpolation") == Some("linearRGB");
+        let stop = (is_linear && tag == "stop").then(|| self.values.stop(&declared));
+        let replaced = self.values.replaced_paints(node, inherited, &out, &declared);
+        style.extend(replaced);
+        (out.is_linear, out.stop) = (is_linear && matches!(tag, "linearGradient" | "radialGradient"), stop);
         if inherited.text.concerns(tag)
             || style.iter().any(|s| text::concerns(&s.0))
             || node.attributes().any(|a| text::concerns(a.name()))
         {
             let (changes, letters) = inherited.text.declare(node, |name| {
-                let declared = style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref());
-                declared.or_else(|| out.value(node, name).filter(|_| attribute_property(name).is_some()))
+                let attribute = || out.value(node, name).filter(|_| attribute_property(name).is_some());
+                last_value(&style, name).or_else(attribute)
             });
             out.letters = letters;
             out.notes.extend(changes.notes);
@@ -738,17 +711,32 @@ impl<'v, 'a, 'i> Declared<'v, 'a, 'i> {
     }
 }
 
+/// The last value of a property in a list of declarations.
+fn last_value<'s>(style: &'s [Pair<'_>], name: &str) -> Option<&'s str> {
+    style.iter().rev().find(|s| s.0 == name).map(|s| s.1.as_ref())
+}
+
+/// The value of a property in a list of declarations, or else of its attribute.
+fn winner<'s, 'a>(
+    style: &'s [Pair<'a>],
+    computed: &'s Computed<'a>,
+    node: Node<'a, '_>,
+    name: &str,
+) -> Option<&'s str> {
+    last_value(style, name).or_else(|| computed.value(node, name))
+}
+
 /// Returns `true` if the style attribute holds exactly these declarations.
-fn is_written(node: Node<'_, '_>, style: &[(Cow<'_, str>, Cow<'_, str>)]) -> bool {
-    let before = node.attribute("style").map_or_else(|| Some(Vec::new()), simple);
-    before.is_some_and(|b| b.len() == style.len() && b.iter().zip(style).all(|(b, s)| b.0 == s.0 && b.1 == s.1))
+fn is_written(node: Node<'_, '_>, style: &[Pair<'_>]) -> bool {
+    let old = simple(node.attribute("style").unwrap_or_default());
+    old.is_some_and(|old| old.len() == style.len() && old.iter().zip(style).all(|(o, s)| o.0 == s.0 && o.1 == s.1))
 }
 
 /// Converts the size of a `use` to px; usvg would apply percentages twice when it shows a symbol.
 fn size_of_use(node: Node<'_, '_>, units: &Units) -> impl Iterator<Item = (&'static str, Option<String>)> {
     ["width", "height"].into_iter().filter_map(move |name| {
         let share = node.attribute(name).filter(|v| v.trim().ends_with('%'))?;
-        Some((name, Some(value::length(share, units, full(name, units))?.to_string())))
+        Some((name, Some(units.length(name, share)?.to_string())))
     })
 }
 
@@ -759,56 +747,42 @@ fn shown_symbol(
     style: &Computed<'_>,
     units: &Units,
 ) -> Vec<(&'static str, String)> {
-    let length_of = |n: Node<'_, '_>, name: &str| value::length(n.attribute(name)?, units, full(name, units));
+    let of_symbol = |name: &str| units.length(name, symbol.attribute(name)?);
     let mut out = Vec::new();
     for name in ["width", "height"] {
-        let given = style.value(node, name).is_some_and(|v| v.trim() != "auto");
-        out.extend(length_of(symbol, name).filter(|_| !given).map(|px| (name, px.to_string())));
+        let has_size = style.value(node, name).is_some_and(|v| v.trim() != "auto");
+        out.extend(of_symbol(name).filter(|_| !has_size).map(|px| (name, px.to_string())));
     }
     let matrix = |n: Node<'_, '_>| {
         let t: svgtypes::Transform = n.attribute("transform")?.parse().ok()?;
         Some(Affine::new([t.a, t.b, t.c, t.d, t.e, t.f]))
     };
-    let turned = matrix(symbol);
-    let shift = ["x", "y"].map(|name| length_of(symbol, name).unwrap_or(0.0));
-    if turned.is_some() || shift != [0.0; 2] {
-        let declared = |name: &str| value::length(style.value(node, name)?, units, full(name, units));
-        let [x, y] = ["x", "y"].map(|name| declared(name).unwrap_or(0.0));
-        let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * turned.unwrap_or_default();
+    let transform = matrix(symbol);
+    let corner = ["x", "y"].map(|name| of_symbol(name).unwrap_or(0.0));
+    if transform.is_some() || corner != [0.0; 2] {
+        let of_use = |name: &str| units.length(name, style.value(node, name)?);
+        let [x, y] = ["x", "y"].map(|name| of_use(name).unwrap_or(0.0));
+        let all = matrix(node).unwrap_or_default() * Affine::translate((x, y)) * transform.unwrap_or_default();
         out.push(("transform", pathwarp::engine::decimal::matrix(all)));
-        out.extend(["x", "y"].into_iter().zip(shift).map(|(name, v)| (name, v.to_string())));
+        out.extend(["x", "y"].into_iter().zip(corner).map(|(name, v)| (name, v.to_string())));
     }
     out
 }
 
 /// Returns `true` if usvg understands `inherit` as a value of a property.
 fn knows_inherit(p: &Property) -> bool {
-    let unknown = matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
-        || matches!(
-            p.name,
-            "paint-order"
-                | "mix-blend-mode"
-                | "isolation"
-                | "mask-type"
-                | "vector-effect"
-                | "white-space"
-                | "lighting-color"
-        )
-        || p.name.starts_with("font-variant-")
-        || (text::concerns(p.name)
-            && !matches!(
-                p.name,
-                "font-size"
-                    | "font-weight"
-                    | "font-stretch"
-                    | "direction"
-                    | "letter-spacing"
-                    | "word-spacing"
-                    | "text-anchor"
-                    | "text-decoration"
-                    | "font-variant"
-            ));
-    !unknown
+    #[rustfmt::skip]
+    const UNKNOWN: [&str; 7] = [
+        "paint-order", "mix-blend-mode", "isolation", "mask-type", "vector-effect", "white-space", "lighting-color",
+    ];
+    #[rustfmt::skip]
+    const KNOWN_OF_TEXT: [&str; 7] = [
+        "font-weight", "font-stretch", "direction", "letter-spacing", "text-anchor", "text-decoration", "font-variant",
+    ];
+    !matches!(p.kind, Kind::Geometry(_) | Kind::Transform | Kind::Path)
+        && !UNKNOWN.contains(&p.name)
+        && !p.name.starts_with("font-variant-")
+        && (!text::concerns(p.name) || KNOWN_OF_TEXT.contains(&p.name))
 }
 
 /// Converts dashes from the unit that `pathLength` sets to user units.
@@ -817,14 +791,14 @@ fn scaled_dashes(node: Node<'_, '_>, style: &Computed<'_>, inherited: &Inherited
     let [array, offset] = DASHES.map(|name| inherited.tracked(name));
     let units = &inherited.units;
     let unit = shape_length(node.tag_name().name(), |name| style.value(node, name), units)? / whole;
-    let diagonal = units.viewport.0.hypot(units.viewport.1) / std::f64::consts::SQRT_2;
-    let scaled = |v: &str| Some((value::length(v, units, diagonal)? * unit).to_string());
+    let scaled = |v: &str| Some((units.length(DASHES[0], v)? * unit).to_string());
     let array = array?.split([',', ' ']).filter(|v| !v.is_empty()).map(scaled).collect::<Option<Vec<_>>>()?;
     let offset = offset.map_or_else(|| Some("0".to_owned()), scaled)?;
     (!array.is_empty()).then(|| [array.join(","), offset])
 }
 
 impl<'a> Computed<'a> {
+    /// All values, in no order.
     pub(super) fn values(&self) -> impl Iterator<Item = &str> {
         let declared =
             self.style.iter().flatten().map(|d| d.1.as_ref()).chain(self.transform.iter().map(|d| d.value.as_ref()));
@@ -849,10 +823,12 @@ fn unsupported(name: &str, value: &str) -> Option<String> {
     if matches!(lower.as_str(), "none" | "inherit" | "initial" | "unset" | "revert" | "auto") {
         return None;
     }
-    let cut = matches!(name, "clip-path" | "mask") && !lower.contains("url(");
-    let letters = name == "text-transform" && !matches!(lower.as_str(), "uppercase" | "lowercase" | "capitalize");
-    (cut || letters || matches!(name, "mask-image" | "offset-path"))
-        .then(|| ignored(&format!("{name}: {}", text::start(value))))
+    let is_ignored = match name {
+        "clip-path" | "mask" => !lower.contains("url("),
+        "text-transform" => !matches!(lower.as_str(), "uppercase" | "lowercase" | "capitalize"),
+        _ => true,
+    };
+    is_ignored.then(|| ignored(&format!("{name}: {}", text::excerpt(value))))
 }
 
 fn ignored(declaration: &str) -> String {

@@ -1,7 +1,7 @@
 //! Matches elements against selectors, by the crate `selectors`. Every access is counted, since a selector of many parts can
 //! try many combinations of an element's ancestors and siblings.
 
-use crate::names::{Name, State, Svg};
+use crate::names::{AnyPseudoElement, Name, PseudoClass, Svg};
 use crate::sheet::{Declaration, Rules};
 use pathwarp::budget::{Budget, Exceeded, cost};
 use roxmltree::Node;
@@ -51,24 +51,6 @@ impl ComparisonCounter {
     }
 }
 
-/// Returns a function that tests if an element matches a selector.
-pub(super) fn matcher<'b>(
-    node: Node<'b, '_>,
-    counter: &ComparisonCounter,
-    caches: &'b mut SelectorCaches,
-) -> impl FnMut(&Selector<Svg>) -> bool {
-    let mut context = MatchingContext::new(
-        MatchingMode::Normal,
-        None,
-        caches,
-        QuirksMode::NoQuirks,
-        NeedsSelectorFlags::No,
-        MatchingForInvalidation::No,
-    );
-    let element = Counted { node, counter };
-    move |selector| counter.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
-}
-
 /// An element that counts accesses, and appears to have no neighbours once the limit is exceeded.
 #[derive(Clone, Copy)]
 struct Counted<'a, 'b, 'i> {
@@ -83,8 +65,8 @@ impl std::fmt::Debug for Counted<'_, '_, '_> {
 }
 
 impl<'b, 'i> Counted<'_, 'b, 'i> {
-    fn go(self, to: impl FnOnce(&Node<'b, 'i>) -> Option<Node<'b, 'i>>) -> Option<Self> {
-        self.counter.add(1).then(|| to(&self.node)).flatten().map(|node| Self { node, ..self })
+    fn neighbour(self, find: impl FnOnce(&Node<'b, 'i>) -> Option<Node<'b, 'i>>) -> Option<Self> {
+        self.counter.add(1).then(|| find(&self.node)).flatten().map(|node| Self { node, ..self })
     }
 
     fn attribute(&self, name: &str) -> Option<&'b str> {
@@ -104,7 +86,7 @@ impl selectors::Element for Counted<'_, '_, '_> {
     }
 
     fn parent_element(&self) -> Option<Self> {
-        self.go(Node::parent_element)
+        self.neighbour(Node::parent_element)
     }
 
     fn parent_node_is_shadow_root(&self) -> bool {
@@ -120,15 +102,15 @@ impl selectors::Element for Counted<'_, '_, '_> {
     }
 
     fn prev_sibling_element(&self) -> Option<Self> {
-        self.go(Node::prev_sibling_element)
+        self.neighbour(Node::prev_sibling_element)
     }
 
     fn next_sibling_element(&self) -> Option<Self> {
-        self.go(Node::next_sibling_element)
+        self.neighbour(Node::next_sibling_element)
     }
 
     fn first_element_child(&self) -> Option<Self> {
-        self.go(Node::first_element_child)
+        self.neighbour(Node::first_element_child)
     }
 
     fn is_html_element_in_html_document(&self) -> bool {
@@ -153,25 +135,22 @@ impl selectors::Element for Counted<'_, '_, '_> {
         name: &Name,
         operation: &AttrSelectorOperation<&Name>,
     ) -> bool {
-        let uri = match namespace {
-            NamespaceConstraint::Specific(uri) => uri.as_ref(),
-            NamespaceConstraint::Any => {
-                let mut values = self.node.attributes().filter(|a| a.name() == name.as_ref()).map(|a| a.value());
-                return values.any(|v| self.counter.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v));
+        let name = name.as_ref();
+        let matches = |v: &str| self.counter.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v);
+        match namespace {
+            NamespaceConstraint::Any => self.node.attributes().filter(|a| a.name() == name).any(|a| matches(a.value())),
+            NamespaceConstraint::Specific(uri) if uri.as_ref().is_empty() => {
+                self.attribute(name).is_some_and(|value| operation.eval_str(value))
             }
-        };
-        if uri.is_empty() {
-            return self.attribute(name.as_ref()).is_some_and(|value| operation.eval_str(value));
+            NamespaceConstraint::Specific(uri) => self.node.attribute((uri.as_ref(), name)).is_some_and(matches),
         }
-        let value = self.node.attribute((uri, name.as_ref()));
-        value.is_some_and(|v| self.counter.add(1 + v.len() / VALUE_BYTES) && operation.eval_str(v))
     }
 
-    fn match_non_ts_pseudo_class(&self, state: &State, _: &mut MatchingContext<'_, Svg>) -> bool {
-        *state == State::Link && self.is_link()
+    fn match_non_ts_pseudo_class(&self, class: &PseudoClass, _: &mut MatchingContext<'_, Svg>) -> bool {
+        *class == PseudoClass::Link && self.is_link()
     }
 
-    fn match_pseudo_element(&self, _: &super::names::Part, _: &mut MatchingContext<'_, Svg>) -> bool {
+    fn match_pseudo_element(&self, _: &AnyPseudoElement, _: &mut MatchingContext<'_, Svg>) -> bool {
         false
     }
 
@@ -224,9 +203,8 @@ const CUSTOM_PROPERTY: usize = 8;
 
 /// Estimates the work of computing a value, in comparisons.
 pub(super) fn work(value: &str) -> usize {
-    /// Bytes that take as long to compute as one comparison.
-    const BYTES: usize = 8;
-    1 + value.len() / BYTES
+    const BYTES_PER_COMPARISON: usize = 8;
+    1 + value.len() / BYTES_PER_COMPARISON
 }
 
 /// Lists the declarations that apply to an element, weakest first: from matching rules, and `inline` from its style attribute.
@@ -239,7 +217,12 @@ pub(super) fn applying<'r, 'a>(
 ) -> Vec<&'r Declaration<'a>> {
     let mut all = Vec::new();
     if !rules.is_empty() {
-        let mut matches = matcher(node, counter, caches);
+        let (mode, quirks, flags) = (MatchingMode::Normal, QuirksMode::NoQuirks, NeedsSelectorFlags::No);
+        let mut context = MatchingContext::new(mode, None, caches, quirks, flags, MatchingForInvalidation::No);
+        let element = Counted { node, counter };
+        let mut matches = |selector: &Selector<Svg>| {
+            counter.add(SELECTOR) && matches_selector(selector, 0, None, element, &mut context)
+        };
         for candidate in rules.candidates(node.tag_name().name(), node.attribute("id"), node.attribute("class")) {
             let Some((selector, order)) = rules.selectors.get(candidate).filter(|s| matches(&s.0)) else { continue };
             let block = &rules.blocks[*order];
@@ -253,7 +236,7 @@ pub(super) fn applying<'r, 'a>(
         }
     }
     all.extend(inline.iter().map(|d| ((d.important, true, 0, 0, 0), d)));
-    // The sort is stable, so that the later of two equals is stronger.
+    // The sort is stable, so that the later of two equally strong declarations wins.
     all.sort_by_key(|(strength, _)| *strength);
     all.into_iter().map(|(_, d)| d).collect()
 }

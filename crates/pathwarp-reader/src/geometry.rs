@@ -17,14 +17,14 @@ pub(super) fn matrix<'a>(
     let set = |name: &str| declared(name).map(str::trim).filter(|v| !v.eq_ignore_ascii_case("none"));
     let size = (reference.width(), reference.height());
     let translate = set("translate").map_or(Some(Affine::IDENTITY), |v| {
-        let p = lengths(v, units, size)?;
-        Some(Affine::translate((p[0], p.get(1).copied().unwrap_or(0.0))))
+        let shift = lengths(v, units, size)?;
+        Some(Affine::translate((*shift.first()?, shift.get(1).copied().unwrap_or(0.0))))
     })?;
     let rotate = set("rotate").map_or(Some(0.0), angle)?;
     let scale = set("scale").map_or(Some(Affine::IDENTITY), |v| {
-        let s = v.split_ascii_whitespace().map(factor).collect::<Option<Vec<f64>>>()?;
-        let x = *s.first()?;
-        Some(Affine::scale_non_uniform(x, s.get(1).copied().unwrap_or(x)))
+        let factors = v.split_ascii_whitespace().map(factor).collect::<Option<Vec<f64>>>()?;
+        let x = *factors.first()?;
+        Some(Affine::scale_non_uniform(x, factors.get(1).copied().unwrap_or(x)))
     })?;
     let list = set("transform").map_or(Some(Affine::IDENTITY), |v| functions(v, units, size))?;
     let origin = declared("transform-origin").map_or(Some(None), |v| origin(v, units, size).map(Some))?;
@@ -59,11 +59,10 @@ fn is_vertical(word: &str) -> bool {
     matches!(word, "top" | "bottom")
 }
 
-fn lengths(value: &str, units: &Units, size: (f64, f64)) -> Option<Vec<f64>> {
+/// Reads lengths; percentages refer to the width in the first, and to the height in the others.
+fn lengths(value: &str, units: &Units, (width, height): (f64, f64)) -> Option<Vec<f64>> {
     let words = value.split_ascii_whitespace().enumerate();
-    let all =
-        words.map(|(i, w)| length(w, units, if i == 0 { size.0 } else { size.1 })).collect::<Option<Vec<f64>>>()?;
-    (!all.is_empty()).then_some(all)
+    words.map(|(i, w)| length(w, units, if i == 0 { width } else { height })).collect()
 }
 
 /// Reads an angle and returns it in radians. Without a unit, as in attributes, it is in degrees.
@@ -104,17 +103,19 @@ fn functions(value: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
     }
 }
 
+/// The matrix of a transform function. Its name is in lower case.
 fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<Affine> {
     // Attributes may leave out commas. Spaces within expressions do not separate arguments.
     let separators: &[char] =
         if text.contains(',') || text.contains('(') { &[','] } else { &[',', ' ', '\n', '\t', '\r'] };
     let all: Vec<&str> = text.split(separators).map(str::trim).filter(|a| !a.is_empty()).collect();
-    let at = |i: usize| all.get(i).copied();
-    let x = |i: usize| at(i).map_or(Some(0.0), |a| length(a, units, size.0));
-    let y = |i: usize| at(i).map_or(Some(0.0), |a| length(a, units, size.1));
-    let turn = |i: usize| at(i).map_or(Some(0.0), angle);
-    let by = |i: usize| factor(at(i)?);
-    let first = at(0)?;
+    let argument = |i: usize| all.get(i).copied();
+    let x = |i: usize| argument(i).map_or(Some(0.0), |a| length(a, units, size.0));
+    let y = |i: usize| argument(i).map_or(Some(0.0), |a| length(a, units, size.1));
+    let turn = |i: usize| argument(i).map_or(Some(0.0), angle);
+    let scale = |i: usize| factor(argument(i)?);
+    // No function goes without arguments.
+    let first = argument(0)?;
     Some(match name {
         "matrix" => {
             let c = all.iter().map(|a| length(a, units, 0.0)).collect::<Option<Vec<f64>>>()?;
@@ -123,10 +124,10 @@ fn function(name: &str, text: &str, units: &Units, size: (f64, f64)) -> Option<A
         "translate" | "translate3d" => Affine::translate((x(0)?, y(1)?)),
         "translatex" => Affine::translate((x(0)?, 0.0)),
         "translatey" => Affine::translate((0.0, length(first, units, size.1)?)),
-        "scale" => Affine::scale_non_uniform(by(0)?, by(1).or_else(|| by(0))?),
-        "scale3d" => Affine::scale_non_uniform(by(0)?, by(1)?),
-        "scalex" => Affine::scale_non_uniform(by(0)?, 1.0),
-        "scaley" => Affine::scale_non_uniform(1.0, by(0)?),
+        "scale" => Affine::scale_non_uniform(scale(0)?, scale(1).or_else(|| scale(0))?),
+        "scale3d" => Affine::scale_non_uniform(scale(0)?, scale(1)?),
+        "scalex" => Affine::scale_non_uniform(scale(0)?, 1.0),
+        "scaley" => Affine::scale_non_uniform(1.0, scale(0)?),
         // Depth is invisible from the front.
         "translatez" | "scalez" => Affine::IDENTITY,
         "rotate" if all.len() == 3 => Affine::rotate_about(turn(0)?, Point::new(x(1)?, y(2)?)),
@@ -146,24 +147,17 @@ fn points(list: &str) -> Vec<Point> {
 
 /// The bounding box of a shape; `attr` looks up its attributes. `None` for other elements and for shapes without a size.
 pub(super) fn shape_box<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>, units: &Units) -> Option<Rect> {
-    let (w, h) = units.viewport;
-    let optional = |name: &str, full: f64| attr(name).and_then(|v| length(v, units, full));
-    let get = |name: &str, full: f64| optional(name, full).unwrap_or(0.0);
+    let optional = |name: &str| attr(name).and_then(|v| units.length(name, v));
+    let get = |name: &str| optional(name).unwrap_or(0.0);
     match tag {
-        "rect" | "image" => {
-            let corner = Point::new(get("x", w), get("y", h));
-            Some(Rect::from_origin_size(corner, (get("width", w), get("height", h))))
-        }
-        "circle" => {
-            let r = get("r", w.hypot(h) / std::f64::consts::SQRT_2);
-            Some(Rect::from_center_size((get("cx", w), get("cy", h)), (2.0 * r, 2.0 * r)))
-        }
+        "rect" | "image" => Some(Rect::from_origin_size((get("x"), get("y")), (get("width"), get("height")))),
+        "circle" => Some(Rect::from_center_size((get("cx"), get("cy")), (2.0 * get("r"), 2.0 * get("r")))),
         "ellipse" => {
-            let (rx, ry) = (optional("rx", w), optional("ry", h));
+            let (rx, ry) = (optional("rx"), optional("ry"));
             let (rx, ry) = (rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0));
-            Some(Rect::from_center_size((get("cx", w), get("cy", h)), (2.0 * rx, 2.0 * ry)))
+            Some(Rect::from_center_size((get("cx"), get("cy")), (2.0 * rx, 2.0 * ry)))
         }
-        "line" => Some(Rect::from_points((get("x1", w), get("y1", h)), (get("x2", w), get("y2", h)))),
+        "line" => Some(Rect::from_points((get("x1"), get("y1")), (get("x2"), get("y2")))),
         "polyline" | "polygon" => {
             points(attr("points")?).into_iter().map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))
         }
@@ -181,9 +175,8 @@ pub(super) fn shape_length<'a>(tag: &str, attr: impl Fn(&str) -> Option<&'a str>
     let accuracy = ACCURACY * area.width().hypot(area.height());
     let length = match tag {
         "rect" => {
-            let (w, h) = units.viewport;
-            let radius = |name: &str, full: f64| attr(name).and_then(|v| length(v, units, full)).filter(|r| *r >= 0.0);
-            let (rx, ry) = (radius("rx", w), radius("ry", h));
+            let radius = |name: &str| attr(name).and_then(|v| units.length(name, v)).filter(|r| *r >= 0.0);
+            let (rx, ry) = (radius("rx"), radius("ry"));
             let rx = rx.or(ry).unwrap_or(0.0).min(area.width() / 2.0);
             let ry = ry.unwrap_or(rx).min(area.height() / 2.0);
             let corners = Ellipse::new((0.0, 0.0), (rx, ry), 0.0).perimeter(accuracy);

@@ -7,7 +7,7 @@ use crate::rewrite::ReadError;
 use crate::sheet::{Declaration, declarations};
 use crate::table::attribute_property;
 use crate::tree::{root_units, rules};
-use crate::xml::{self, escape};
+use crate::xml::{self, escape, name_end};
 use pathwarp::budget::Budget;
 use roxmltree::Node;
 use selectors::context::SelectorCaches;
@@ -26,99 +26,92 @@ pub fn guarded(
     kept: &[(usize, usize)],
     budget: &Budget,
 ) -> Result<Option<String>, ReadError> {
-    let (was, is) = (xml::document(before).map_err(ReadError::Xml)?, xml::document(after).map_err(ReadError::Xml)?);
-    let elements = |doc: &'_ roxmltree::Document<'_>| {
-        doc.descendants().filter(Node::is_element).map(|n| n.id()).collect::<Vec<_>>()
-    };
-    let nodes = |doc| -> Vec<Node<'_, '_>> { elements(doc).into_iter().filter_map(|id| doc.get_node(id)).collect() };
-    let (was_nodes, is_nodes) = (nodes(&was), nodes(&is));
-    let (was_rules, ..) = rules(&was_nodes, budget)?;
-    let (is_rules, ..) = rules(&is_nodes, budget)?;
-    if is_rules.is_empty() {
+    let (old_doc, new_doc) =
+        (xml::document(before).map_err(ReadError::Xml)?, xml::document(after).map_err(ReadError::Xml)?);
+    let (old_nodes, new_nodes) = (xml::elements(&old_doc), xml::elements(&new_doc));
+    let (old_rules, _) = rules(&old_nodes, budget)?;
+    let (new_rules, _) = rules(&new_nodes, budget)?;
+    if new_rules.is_empty() {
         return Ok(None);
     }
     let counter = ComparisonCounter::new(budget);
-    let (units, ids) = (root_units(&was), Ids::new(&was));
-    let valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
-    let (mut was_caches, mut is_caches) = (SelectorCaches::default(), SelectorCaches::default());
-    let starts: HashMap<usize, Node<'_, '_>> = was_nodes.iter().map(|n| (n.range().start, *n)).collect();
+    let (units, ids) = (root_units(&old_doc), Ids::new(&old_doc));
+    let is_valid = |d: &Declaration<'_>| is_valid(d, units, &ids);
+    let (mut old_caches, mut new_caches) = (SelectorCaches::default(), SelectorCaches::default());
+    let starts: HashMap<usize, Node<'_, '_>> = old_nodes.iter().map(|n| (n.range().start, *n)).collect();
     let origins: HashMap<usize, usize> = kept.iter().map(|(from, to)| (*to, *from)).collect();
     let mut out = String::new();
-    let mut done = 0;
-    for node in is_nodes {
-        let origin = origins.get(&node.range().start).and_then(|at| starts.get(at)).copied();
-        let style = |n: Node<'_, '_>| n.attribute("style").map(str::to_owned).unwrap_or_default();
-        let (old, new) = (origin.map(style).unwrap_or_default(), style(node));
-        let (old, new) = (declarations(&old), declarations(&new));
-        let then = origin.map_or_else(Vec::new, |n| applying(&was_rules, &[], n, &counter, &mut was_caches));
-        let now = applying(&is_rules, &[], node, &counter, &mut is_caches);
+    let mut copied_to = 0;
+    for node in new_nodes {
+        let origin = origins.get(&node.range().start).and_then(|start| starts.get(start)).copied();
+        let old_inline = declarations(origin.and_then(|n| n.attribute("style")).unwrap_or_default());
+        let new_inline = declarations(node.attribute("style").unwrap_or_default());
+        let old = origin.map_or_else(Vec::new, |n| applying(&old_rules, &[], n, &counter, &mut old_caches));
+        let new = applying(&new_rules, &[], node, &counter, &mut new_caches);
         if counter.exceeded() {
             break;
         }
-        if then == now {
+        if old == new {
             continue;
         }
-        let added = corrections(node, [&then, &old.iter().collect()], [&now, &new.iter().collect()], &valid);
+        let (old, new) = ([&old, &old_inline.iter().collect()], [&new, &new_inline.iter().collect()]);
+        let added = corrections(node, old, new, &is_valid);
         if added.is_empty() {
             continue;
         }
         let (range, value) = match node.attribute_node("style") {
-            Some(a) => (
-                a.range_value(),
-                format!(
-                    "{}{}{added}",
-                    escape(a.value()),
-                    if a.value().trim_end().ends_with([';']) || new.is_empty() { "" } else { ";" }
-                ),
-            ),
+            Some(a) => {
+                let is_closed = a.value().trim_end().ends_with(';') || new_inline.is_empty();
+                (a.range_value(), format!("{}{}{added}", escape(a.value()), if is_closed { "" } else { ";" }))
+            }
             None => {
-                let name = after[node.range().start..].find(|c: char| c.is_whitespace() || matches!(c, '/' | '>'));
-                let at = node.range().start + name.unwrap_or_default();
-                (at..at, format!(" style=\"{added}\""))
+                let end = name_end(after, node);
+                (end..end, format!(" style=\"{added}\""))
             }
         };
-        out.push_str(&after[done..range.start]);
+        out.push_str(&after[copied_to..range.start]);
         out.push_str(&value);
-        done = range.end;
+        copied_to = range.end;
     }
     counter.spend(budget)?;
-    out.push_str(&after[done..]);
-    Ok((done > 0).then_some(out))
+    out.push_str(&after[copied_to..]);
+    Ok((copied_to > 0).then_some(out))
 }
 
-/// Computes the declarations that restore an element's style, as the text of an attribute. Either side lists the rules that
-/// apply, weakest first, and the declarations of the style attribute. Those that are not `valid` do not count.
+/// Computes the declarations that restore an element's style, as the text of an attribute. `old` and `new` list the declarations of
+/// the rules that apply, weakest first, and those of the style attribute. Invalid ones do not count.
 fn corrections(
     node: Node<'_, '_>,
-    then: [&Vec<&Declaration<'_>>; 2],
-    now: [&Vec<&Declaration<'_>>; 2],
-    valid: &dyn Fn(&Declaration<'_>) -> bool,
+    old: [&Vec<&Declaration<'_>>; 2],
+    new: [&Vec<&Declaration<'_>>; 2],
+    is_valid: &dyn Fn(&Declaration<'_>) -> bool,
 ) -> String {
-    let concerned = then[0].iter().chain(now[0]).flat_map(|d| match d.name.as_ref() {
+    let names = old[0].iter().chain(new[0]).flat_map(|d| match d.name.as_ref() {
         "marker" => MARKERS.to_vec(),
         name => vec![name],
     });
-    let concerned: BTreeSet<&str> = concerned.filter(|name| !name.starts_with("--")).collect();
+    let names: BTreeSet<&str> = names.filter(|name| !name.starts_with("--")).collect();
     let mut out = Vec::new();
-    for name in concerned {
+    for name in names {
         let last = |all: &[&Declaration<'_>]| {
             let sets = |d: &&&Declaration<'_>| d.name == name || (d.name == "marker" && MARKERS.contains(&name));
-            all.iter().rev().filter(sets).find(|d| valid(d)).map(|d| (d.value.to_string(), d.important))
+            all.iter().rev().filter(sets).find(|d| is_valid(d)).map(|d| (d.value.to_string(), d.important))
         };
         let winner = |[rules, inline]: [&Vec<&Declaration<'_>>; 2]| match (last(rules), last(inline)) {
             (Some(rule), Some(inline)) => Some(if rule.1 && !inline.1 { rule } else { inline }),
             (rule, inline) => inline.or(rule),
         };
-        let (inline_then, inline_now) = (last(then[1]), last(now[1]));
-        let wanted = match inline_now {
-            Some(inline) if inline_then.is_none_or(|then| then.0 != inline.0) => Some(inline.0),
-            _ => winner(then).map(|w| w.0),
+        let (old_inline, new_inline) = (last(old[1]), last(new[1]));
+        // A value that the edit sets counts; otherwise the element keeps the value that it had.
+        let wanted = match new_inline {
+            Some(inline) if old_inline.is_none_or(|old| old.0 != inline.0) => Some(inline.0),
+            _ => winner(old).map(|w| w.0),
         };
-        if winner(now).map(|w| w.0) == wanted {
+        if winner(new).map(|w| w.0) == wanted {
             continue;
         }
         let value = wanted.or_else(|| from_attribute(node, name)).unwrap_or_else(|| "unset".to_owned());
-        let important = if last(now[0]).is_some_and(|rule| rule.1) { "!important" } else { "" };
+        let important = if last(new[0]).is_some_and(|rule| rule.1) { "!important" } else { "" };
         out.push(format!("{name}:{value}{important}"));
     }
     escape(&out.join(";"))

@@ -1,7 +1,7 @@
 //! Finds the targets of references, and attributes by name.
 
 use crate::value::percent_decoded;
-use roxmltree::{Document, NS_XML_URI, Node};
+use roxmltree::{Attribute, Document, NS_XML_URI, Node};
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
@@ -31,16 +31,20 @@ impl<'a, 'i> Ids<'a, 'i> {
 
     /// The element that an element's `href` refers to.
     pub(super) fn target(&self, node: Node<'_, '_>) -> Option<Node<'a, 'i>> {
-        let links = || node.attributes().filter(|a| a.name() == "href");
-        let link = links().find(|a| a.namespace().is_none()).or_else(|| links().next())?;
-        self.get(&percent_decoded(link.value().trim().strip_prefix('#')?))
+        self.get(&percent_decoded(attribute(node, "href")?.trim().strip_prefix('#')?))
     }
 }
 
-/// Looks up an attribute whose name has no prefix, or the prefix `xml`.
+/// The value of an attribute whose name has no prefix, or the prefix `xml`; `href` may have any.
 pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    attribute_node(node, name).map(|a| a.value())
+}
+
+/// Looks up an attribute whose name has no prefix, or the prefix `xml`. `href` may have any, if there is none without.
+pub(super) fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Attribute<'a, 'i>> {
     match name.strip_prefix("xml:") {
-        Some(name) => node.attribute((NS_XML_URI, name)),
-        None => node.attribute(name),
+        Some(name) => node.attribute_node((NS_XML_URI, name)),
+        None if name == "href" => node.attribute_node(name).or_else(|| node.attributes().find(|a| a.name() == name)),
+        None => node.attribute_node(name),
     }
 }

@@ -2,9 +2,7 @@
 
 use cssparser::{ParseError, Parser, ToCss, serialize_identifier};
 use precomputed_hash::PrecomputedHash;
-use selectors::parser::{
-    NonTSPseudoClass, ParseRelative, PseudoElement, SelectorImpl, SelectorList, SelectorParseErrorKind,
-};
+use selectors::parser::{NonTSPseudoClass, PseudoElement, SelectorImpl, SelectorParseErrorKind};
 use std::borrow::Borrow;
 use std::collections::HashMap;
 use std::fmt;
@@ -53,14 +51,14 @@ impl PrecomputedHash for Name {
 
 /// A pseudo-class that does not depend on the tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum PseudoClass {
     /// `:link` and `:any-link`.
     Link,
     /// Depends on interaction, such as `:hover`, so it never matches.
     Never,
 }
 
-impl ToCss for State {
+impl ToCss for PseudoClass {
     fn to_css<W: fmt::Write>(&self, out: &mut W) -> fmt::Result {
         out.write_str(match self {
             Self::Link => ":link",
@@ -69,7 +67,7 @@ impl ToCss for State {
     }
 }
 
-impl NonTSPseudoClass for State {
+impl NonTSPseudoClass for PseudoClass {
     fn is_active_or_hover(&self) -> bool {
         *self == Self::Never
     }
@@ -81,15 +79,15 @@ impl NonTSPseudoClass for State {
 
 /// A pseudo-element, such as `::before`. It never matches.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Part;
+pub(super) struct AnyPseudoElement;
 
-impl ToCss for Part {
+impl ToCss for AnyPseudoElement {
     fn to_css<W: fmt::Write>(&self, out: &mut W) -> fmt::Result {
         out.write_str("::before")
     }
 }
 
-impl PseudoElement for Part {}
+impl PseudoElement for AnyPseudoElement {}
 
 impl SelectorImpl for Svg {
     type ExtraMatchingData<'a> = ();
@@ -100,8 +98,8 @@ impl SelectorImpl for Svg {
     type NamespacePrefix = Name;
     type BorrowedNamespaceUrl = str;
     type BorrowedLocalName = str;
-    type NonTSPseudoClass = State;
-    type PseudoElement = Part;
+    type NonTSPseudoClass = PseudoClass;
+    type PseudoElement = AnyPseudoElement;
 }
 
 /// The namespaces that a sheet declares.
@@ -126,7 +124,7 @@ impl Namespaces {
 }
 
 /// Parses selectors as browsers do: an unknown one makes the whole list invalid.
-struct Dialect<'a>(&'a Namespaces);
+pub(super) struct Dialect<'a>(pub(super) &'a Namespaces);
 
 impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
     type Impl = Svg;
@@ -136,10 +134,12 @@ impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
         true
     }
 
-    fn parse_non_ts_pseudo_class(&self, name: &str) -> Result<State, ParseError<SelectorParseErrorKind>> {
+    fn parse_non_ts_pseudo_class(&self, name: &str) -> Result<PseudoClass, ParseError<SelectorParseErrorKind>> {
         match name.to_ascii_lowercase().as_str() {
-            "link" | "any-link" => Ok(State::Link),
-            "active" | "focus" | "focus-visible" | "focus-within" | "hover" | "target" | "visited" => Ok(State::Never),
+            "link" | "any-link" => Ok(PseudoClass::Link),
+            "active" | "focus" | "focus-visible" | "focus-within" | "hover" | "target" | "visited" => {
+                Ok(PseudoClass::Never)
+            }
             _ => Err(ParseError::custom(SelectorParseErrorKind::UnsupportedPseudoClassOrElement)),
         }
     }
@@ -152,15 +152,7 @@ impl<'i> selectors::parser::Parser<'i> for Dialect<'_> {
         self.0.by_prefix.get(prefix.as_ref()).cloned()
     }
 
-    fn parse_pseudo_element(&self, _: &str) -> Result<Part, ParseError<SelectorParseErrorKind>> {
-        Ok(Part)
+    fn parse_pseudo_element(&self, _: &str) -> Result<AnyPseudoElement, ParseError<SelectorParseErrorKind>> {
+        Ok(AnyPseudoElement)
     }
-}
-
-/// Parses the selectors of a rule.
-pub(super) fn selectors<'i>(
-    input: &mut Parser<'i>,
-    namespaces: &Namespaces,
-) -> Result<SelectorList<Svg>, ParseError<SelectorParseErrorKind>> {
-    SelectorList::parse(&Dialect(namespaces), input, ParseRelative::No)
 }

@@ -1,11 +1,11 @@
 //! Parses style sheets and style attributes into rules and declarations.
 
-use crate::names::{Namespaces, Svg, selectors};
+use crate::names::{Dialect, Namespaces, Svg};
 use cssparser::{
     AtRuleParser, CowRcStr, DeclarationParser, ParseError, Parser, ParserState, QualifiedRuleParser,
     RuleBodyItemParser, RuleBodyParser, StyleSheetParser,
 };
-use selectors::parser::{Component, Selector, SelectorList, SelectorParseErrorKind};
+use selectors::parser::{Component, ParseRelative, Selector, SelectorList, SelectorParseErrorKind};
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,6 +14,7 @@ type Failure = ParseError<SelectorParseErrorKind>;
 /// Rank of rules outside any layer.
 const UNLAYERED: usize = usize::MAX;
 
+/// A declaration of a style sheet or a style attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Declaration<'a> {
     /// In lower case, unless it is a custom property.
@@ -51,23 +52,10 @@ pub(super) struct Rules<'a> {
 }
 
 /// Properties that move an element, or change its geometry.
+#[rustfmt::skip]
 const MOVING: [&str; 16] = [
-    "transform",
-    "translate",
-    "rotate",
-    "scale",
-    "offset-path",
-    "offset-distance",
-    "d",
-    "x",
-    "y",
-    "width",
-    "height",
-    "cx",
-    "cy",
-    "r",
-    "rx",
-    "ry",
+    "transform", "translate", "rotate", "scale", "offset-path", "offset-distance", "d", "x", "y", "width", "height", "cx", "cy", "r",
+    "rx", "ry",
 ];
 
 impl<'a> Rules<'a> {
@@ -81,7 +69,6 @@ impl<'a> Rules<'a> {
 
     fn add_rule(&mut self, list: &SelectorList<Svg>, block: Block<'a>) {
         for selector in list.slice() {
-            let number = self.selectors.len();
             // The most selective requirement on the element itself decides the index.
             let (mut id, mut class, mut tag) = (None, None, None);
             for part in selector.iter() {
@@ -92,17 +79,13 @@ impl<'a> Rules<'a> {
                     _ => {}
                 }
             }
-            let (index, name) = match (id, class, tag) {
-                (Some(name), ..) => (&mut self.by_id, name),
-                (_, Some(name), _) => (&mut self.by_class, name),
-                (.., Some(name)) => (&mut self.by_tag, name),
-                _ => {
-                    self.others.push(number);
-                    self.selectors.push((selector.clone(), self.blocks.len()));
-                    continue;
-                }
+            let entry = match (id, class, tag) {
+                (Some(id), ..) => self.by_id.entry(id.as_ref().to_owned()).or_default(),
+                (_, Some(class), _) => self.by_class.entry(class.as_ref().to_owned()).or_default(),
+                (.., Some(tag)) => self.by_tag.entry(tag.as_ref().to_owned()).or_default(),
+                _ => &mut self.others,
             };
-            index.entry(name.as_ref().to_owned()).or_default().push(number);
+            entry.push(self.selectors.len());
             self.selectors.push((selector.clone(), self.blocks.len()));
         }
         self.blocks.push(block);
@@ -116,14 +99,15 @@ impl<'a> Rules<'a> {
         classes: Option<&'s str>,
     ) -> impl Iterator<Item = usize> {
         let classes = classes.into_iter().flat_map(str::split_ascii_whitespace).filter_map(|c| self.by_class.get(c));
-        let named = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
-        named.chain(classes).chain([&self.others]).flatten().copied()
+        let by_name = self.by_id.get(id.unwrap_or_default()).into_iter().chain(self.by_tag.get(tag));
+        by_name.chain(classes).chain([&self.others]).flatten().copied()
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.selectors.is_empty()
     }
 
+    /// The rank of a cascade layer.
     fn layer(&mut self, name: &str) -> usize {
         let next = self.layers.len();
         *self.layers.entry(name.to_owned()).or_insert(next)
@@ -133,22 +117,20 @@ impl<'a> Rules<'a> {
 /// Parses a style attribute.
 pub(super) fn declarations(style: &str) -> Vec<Declaration<'_>> {
     if let Some(all) = simple(style) {
-        let lower = |name: &str| !name.starts_with("--") && name.bytes().any(|b| b.is_ascii_uppercase());
+        let has_upper = |name: &str| !name.starts_with("--") && name.bytes().any(|b| b.is_ascii_uppercase());
         let pairs = all.into_iter().map(|(n, value)| {
-            let name = if lower(n) { Cow::Owned(n.to_ascii_lowercase()) } else { Cow::Borrowed(n) };
+            let name = if has_upper(n) { Cow::Owned(n.to_ascii_lowercase()) } else { Cow::Borrowed(n) };
             Declaration { name, value: value.into(), important: false, strict: false }
         });
         return pairs.collect();
     }
-    let mut input = Parser::new(style);
-    let mut body = Body::default();
-    RuleBodyParser::new(&mut input, &mut body).flatten().collect()
+    RuleBodyParser::new(&mut Parser::new(style), &mut Body::default()).flatten().collect()
 }
 
 /// The meaning of an at-rule's block.
 enum Prelude {
     /// Rules that apply, in this layer.
-    Inside(usize),
+    Rules(usize),
     /// An animation of this name.
     Keyframes(String),
     Ignored,
@@ -177,17 +159,17 @@ impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
         let text = rest(input);
         Ok(match name.to_ascii_lowercase().as_str() {
             "media" => match applies(text) {
-                Some(true) => Prelude::Inside(self.layer),
+                Some(true) => Prelude::Rules(self.layer),
                 Some(false) => Prelude::Ignored,
                 None => {
                     self.out.unsupported.insert(format!("the rules of “@media {text}” are ignored"));
                     Prelude::Ignored
                 }
             },
-            "supports" => Prelude::Inside(self.layer),
+            "supports" => Prelude::Rules(self.layer),
             "layer" => {
                 let layers = text.split(',').map(|name| self.out.layer(name.trim()));
-                Prelude::Inside(layers.last().unwrap_or(self.layer))
+                Prelude::Rules(layers.last().unwrap_or(self.layer))
             }
             "namespace" => {
                 self.names.declare(text);
@@ -202,15 +184,11 @@ impl<'i> AtRuleParser<'i> for Sheet<'_, 'i> {
         })
     }
 
-    fn rule_without_block(&mut self, _: Prelude, _: &ParserState) -> Result<(), ()> {
-        Ok(())
-    }
-
     fn parse_block(&mut self, prelude: Prelude, _: &ParserState, input: &mut Parser<'i>) -> Result<(), Failure> {
         match prelude {
-            Prelude::Inside(layer) => {
-                let mut inner = Sheet { out: self.out, layer, names: self.names };
-                StyleSheetParser::new(input, &mut inner).for_each(drop);
+            Prelude::Rules(layer) => {
+                let mut nested = Sheet { out: self.out, layer, names: self.names };
+                StyleSheetParser::new(input, &mut nested).for_each(drop);
             }
             Prelude::Keyframes(name) => {
                 let names = rest(input).split(['{', '}', ';']).filter_map(|d| Some(d.split_once(':')?.0.trim()));
@@ -231,7 +209,7 @@ impl<'i> QualifiedRuleParser<'i> for Sheet<'_, 'i> {
 
     fn parse_prelude(&mut self, input: &mut Parser<'i>) -> Result<SelectorList<Svg>, Failure> {
         let state = input.state();
-        selectors(input, self.names).inspect_err(|_| {
+        SelectorList::parse(&Dialect(self.names), input, ParseRelative::No).inspect_err(|_| {
             input.reset(&state);
             let text = rest(input);
             // Browsers reject all other selectors, too.
@@ -369,24 +347,22 @@ fn decided(answers: impl Iterator<Item = Option<bool>>, decisive: bool) -> Optio
 fn query(query: &str) -> Option<bool> {
     let query = query.trim().to_ascii_lowercase();
     let words = query.strip_prefix("only ").unwrap_or(&query).trim();
-    let (negated, words) = match words.strip_prefix("not ") {
-        Some(rest) => (true, rest.trim()),
-        None => (false, words),
-    };
+    let negated = words.strip_prefix("not ");
+    let words = negated.unwrap_or(words).trim();
     // `or` and nested conditions are rare.
     if words.contains(" or ") || words.contains("((") || words.contains("(not") {
         return None;
     }
-    let answers = words.split(" and ").map(|w| condition(w.trim()));
-    let all = decided(answers, false)?;
-    Some(all != negated)
+    let all = decided(words.split(" and ").map(|w| condition(w.trim())), false)?;
+    Some(all != negated.is_some())
 }
 
+/// Returns `true` if a media type or feature holds for a screen with a light theme; `None` if that is not known.
 fn condition(word: &str) -> Option<bool> {
     let Some(feature) = word.strip_prefix('(').and_then(|w| w.strip_suffix(')')) else {
         return Some(matches!(word, "all" | "screen"));
     };
-    let (name, value) = feature.split_once(':').map_or((feature, ""), |(n, v)| (n, v));
+    let (name, value) = feature.split_once(':').unwrap_or((feature, ""));
     Some(match (name.trim(), value.trim()) {
         ("prefers-color-scheme", value) => value == "light",
         ("prefers-reduced-motion" | "prefers-contrast" | "prefers-reduced-transparency", value) => {

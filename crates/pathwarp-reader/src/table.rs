@@ -4,8 +4,8 @@
 //! The facts are Chromium's computed values. A [`Kind`] other than [`Any`] means that usvg reads the property differently.
 
 use Kind::{
-    Any, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Length, Link, Number, Paint, Path,
-    Share, Spacing, Transform, Word, Words,
+    Any, AnyKeywords, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Keyword, Length, Link,
+    Number, Paint, Path, Share, Spacing, Transform,
 };
 
 /// A CSS property, which style sheets, style attributes, and mostly an attribute of the same name set.
@@ -22,7 +22,7 @@ pub(super) struct Property {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     /// One of these keywords, in upper or lower case.
-    Word(&'static [&'static str]),
+    Keyword(&'static [&'static str]),
     Paint,
     Color,
     /// A number, or a percentage of 1.
@@ -48,7 +48,7 @@ pub(super) enum Kind {
     /// Path data, as `path("…")`.
     Path,
     /// Any keywords, in upper or lower case.
-    Words,
+    AnyKeywords,
     /// Anything: usvg and browsers agree, or neither shows it.
     Any,
 }
@@ -78,7 +78,7 @@ const BLENDS: &[&str] = &[
 ];
 
 /// An inherited property.
-const fn up(name: &'static str, initial: &'static str, kind: Kind) -> Property {
+const fn inherited(name: &'static str, initial: &'static str, kind: Kind) -> Property {
     Property { name, inherited: true, initial, kind }
 }
 
@@ -89,89 +89,97 @@ const fn local(name: &'static str, initial: &'static str, kind: Kind) -> Propert
 
 /// The properties, sorted by name.
 static PROPERTIES: [Property; 85] = [
-    local("alignment-baseline", "baseline", Word(BASELINES)),
+    local("alignment-baseline", "baseline", Keyword(BASELINES)),
     local("baseline-shift", "baseline", BaselineShift),
     local("clip-path", "none", Link),
-    up("clip-rule", "nonzero", Word(&["nonzero", "evenodd"])),
-    up("color", "black", Color),
-    up("color-interpolation", "sRGB", Word(&["auto", "sRGB", "linearRGB"])),
-    up("color-interpolation-filters", "linearRGB", Word(&["auto", "sRGB", "linearRGB"])),
+    inherited("clip-rule", "nonzero", Keyword(&["nonzero", "evenodd"])),
+    inherited("color", "black", Color),
+    inherited("color-interpolation", "sRGB", Keyword(&["auto", "sRGB", "linearRGB"])),
+    inherited("color-interpolation-filters", "linearRGB", Keyword(&["auto", "sRGB", "linearRGB"])),
     local("cx", "0", Geometry(Sign::Any)),
     local("cy", "0", Geometry(Sign::Any)),
     local("d", "none", Path),
-    up("direction", "ltr", Word(&["ltr", "rtl"])),
-    local("display", "inline", Word(DISPLAY)),
-    up("dominant-baseline", "auto", Word(BASELINES)),
-    up("fill", "black", Paint),
-    up("fill-opacity", "1", Share),
-    up("fill-rule", "nonzero", Word(&["nonzero", "evenodd"])),
+    inherited("direction", "ltr", Keyword(&["ltr", "rtl"])),
+    local("display", "inline", Keyword(DISPLAY)),
+    inherited("dominant-baseline", "auto", Keyword(BASELINES)),
+    inherited("fill", "black", Paint),
+    inherited("fill-opacity", "1", Share),
+    inherited("fill-rule", "nonzero", Keyword(&["nonzero", "evenodd"])),
     local("filter", "none", Filter),
     local("flood-color", "black", Color),
     local("flood-opacity", "1", Share),
-    up("font-family", "serif", Any),
-    up("font-feature-settings", "normal", Any),
-    up("font-kerning", "auto", Word(&["auto", "normal", "none"])),
-    up("font-size", "16px", FontSize),
-    up("font-size-adjust", "none", Any),
-    up("font-stretch", "normal", Words),
-    up("font-style", "normal", Words),
-    up("font-variant", "normal", Words),
-    up("font-variant-caps", "normal", Words),
-    up("font-variant-east-asian", "normal", Words),
-    up("font-variant-ligatures", "normal", Words),
-    up("font-variant-numeric", "normal", Words),
-    up("font-variant-position", "normal", Words),
-    up("font-variation-settings", "normal", Any),
-    up("font-weight", "400", FontWeight),
+    inherited("font-family", "serif", Any),
+    inherited("font-feature-settings", "normal", Any),
+    inherited("font-kerning", "auto", Keyword(&["auto", "normal", "none"])),
+    inherited("font-size", "16px", FontSize),
+    inherited("font-size-adjust", "none", Any),
+    inherited("font-stretch", "normal", AnyKeywords),
+    inherited("font-style", "normal", AnyKeywords),
+    inherited("font-variant", "normal", AnyKeywords),
+    inherited("font-variant-caps", "normal", AnyKeywords),
+    inherited("font-variant-east-asian", "normal", AnyKeywords),
+    inherited("font-variant-ligatures", "normal", AnyKeywords),
+    inherited("font-variant-numeric", "normal", AnyKeywords),
+    inherited("font-variant-position", "normal", AnyKeywords),
+    inherited("font-variation-settings", "normal", Any),
+    inherited("font-weight", "400", FontWeight),
     local("height", "auto", Geometry(Sign::Positive)),
-    up("image-rendering", "auto", Word(&["auto", "optimizeQuality", "optimizeSpeed", "crisp-edges", "pixelated"])),
-    local("isolation", "auto", Word(&["auto", "isolate"])),
-    up("letter-spacing", "0", Spacing),
+    inherited(
+        "image-rendering",
+        "auto",
+        Keyword(&["auto", "optimizeQuality", "optimizeSpeed", "crisp-edges", "pixelated"]),
+    ),
+    local("isolation", "auto", Keyword(&["auto", "isolate"])),
+    inherited("letter-spacing", "0", Spacing),
     local("lighting-color", "white", Color),
-    up("marker-end", "none", Link),
-    up("marker-mid", "none", Link),
-    up("marker-start", "none", Link),
+    inherited("marker-end", "none", Link),
+    inherited("marker-mid", "none", Link),
+    inherited("marker-start", "none", Link),
     local("mask", "none", Link),
-    local("mask-type", "luminance", Word(&["luminance", "alpha"])),
-    local("mix-blend-mode", "normal", Word(BLENDS)),
+    local("mask-type", "luminance", Keyword(&["luminance", "alpha"])),
+    local("mix-blend-mode", "normal", Keyword(BLENDS)),
     local("opacity", "1", Share),
-    local("overflow", "visible", Word(&["visible", "hidden", "scroll", "auto", "clip"])),
-    up("paint-order", "normal", Words),
+    local("overflow", "visible", Keyword(&["visible", "hidden", "scroll", "auto", "clip"])),
+    inherited("paint-order", "normal", AnyKeywords),
     local("r", "0", Geometry(Sign::Positive)),
     local("rotate", "none", Transform),
     local("rx", "auto", Geometry(Sign::Positive)),
     local("ry", "auto", Geometry(Sign::Positive)),
     local("scale", "none", Transform),
-    up("shape-rendering", "auto", Word(&["auto", "optimizeSpeed", "crispEdges", "geometricPrecision"])),
+    inherited("shape-rendering", "auto", Keyword(&["auto", "optimizeSpeed", "crispEdges", "geometricPrecision"])),
     local("stop-color", "black", Color),
     local("stop-opacity", "1", Share),
-    up("stroke", "none", Paint),
-    up("stroke-dasharray", "none", Dashes),
-    up("stroke-dashoffset", "0", Length(Sign::Any)),
-    up("stroke-linecap", "butt", Word(&["butt", "round", "square"])),
-    up("stroke-linejoin", "miter", Word(&["miter", "round", "bevel"])),
-    up("stroke-miterlimit", "4", Number),
-    up("stroke-opacity", "1", Share),
-    up("stroke-width", "1", Length(Sign::Positive)),
-    up("text-anchor", "start", Word(&["start", "middle", "end"])),
-    local("text-decoration", "none", Words),
-    local("text-decoration-style", "solid", Words),
+    inherited("stroke", "none", Paint),
+    inherited("stroke-dasharray", "none", Dashes),
+    inherited("stroke-dashoffset", "0", Length(Sign::Any)),
+    inherited("stroke-linecap", "butt", Keyword(&["butt", "round", "square"])),
+    inherited("stroke-linejoin", "miter", Keyword(&["miter", "round", "bevel"])),
+    inherited("stroke-miterlimit", "4", Number),
+    inherited("stroke-opacity", "1", Share),
+    inherited("stroke-width", "1", Length(Sign::Positive)),
+    inherited("text-anchor", "start", Keyword(&["start", "middle", "end"])),
+    local("text-decoration", "none", AnyKeywords),
+    local("text-decoration-style", "solid", AnyKeywords),
     local("text-decoration-thickness", "auto", Any),
-    up("text-orientation", "mixed", Words),
-    up("text-rendering", "auto", Word(&["auto", "optimizeSpeed", "optimizeLegibility", "geometricPrecision"])),
-    up("text-shadow", "none", Any),
-    up("text-transform", "none", Words),
+    inherited("text-orientation", "mixed", AnyKeywords),
+    inherited(
+        "text-rendering",
+        "auto",
+        Keyword(&["auto", "optimizeSpeed", "optimizeLegibility", "geometricPrecision"]),
+    ),
+    inherited("text-shadow", "none", Any),
+    inherited("text-transform", "none", AnyKeywords),
     local("transform", "none", Transform),
     local("transform-box", "view-box", Transform),
     local("transform-origin", "0 0", Transform),
     local("translate", "none", Transform),
-    local("unicode-bidi", "normal", Words),
-    local("vector-effect", "none", Word(&["none", "non-scaling-stroke"])),
-    up("visibility", "visible", Word(&["visible", "hidden", "collapse"])),
-    up("white-space", "normal", Words),
+    local("unicode-bidi", "normal", AnyKeywords),
+    local("vector-effect", "none", Keyword(&["none", "non-scaling-stroke"])),
+    inherited("visibility", "visible", Keyword(&["visible", "hidden", "collapse"])),
+    inherited("white-space", "normal", AnyKeywords),
     local("width", "auto", Geometry(Sign::Positive)),
-    up("word-spacing", "0", Spacing),
-    up("writing-mode", "horizontal-tb", Words),
+    inherited("word-spacing", "0", Spacing),
+    inherited("writing-mode", "horizontal-tb", AnyKeywords),
     local("x", "0", Geometry(Sign::Any)),
     local("y", "0", Geometry(Sign::Any)),
 ];
@@ -191,7 +199,7 @@ const STYLE_ONLY: [&str; 17] = [
     "scale", "text-shadow", "text-transform", "translate", "white-space",
 ];
 
-/// Looks up a property by its name in lower case.
+/// Looks inherited a property by its name in lower case.
 pub(super) fn property(name: &str) -> Option<&'static Property> {
     PROPERTIES.binary_search_by(|p| p.name.cmp(name)).ok().map(|i| &PROPERTIES[i])
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// The longhands that `font` sets, with their initial values.
+/// The longhands that `font` sets, with their initial values. [`font`] refers to them by their indices.
 const FONT: [(&str, &str); 7] = [
     ("font-style", "normal"),
     ("font-variant", "normal"),
@@ -20,27 +20,16 @@ const FONT: [(&str, &str); 7] = [
 ];
 
 /// Widths in percent, with their keywords.
+#[rustfmt::skip]
 const WIDTHS: [(f64, &str); 9] = [
-    (50.0, "ultra-condensed"),
-    (62.5, "extra-condensed"),
-    (75.0, "condensed"),
-    (87.5, "semi-condensed"),
-    (100.0, "normal"),
-    (112.5, "semi-expanded"),
-    (125.0, "expanded"),
-    (150.0, "extra-expanded"),
-    (200.0, "ultra-expanded"),
+    (50.0, "ultra-condensed"), (62.5, "extra-condensed"), (75.0, "condensed"), (87.5, "semi-condensed"), (100.0, "normal"),
+    (112.5, "semi-expanded"), (125.0, "expanded"), (150.0, "extra-expanded"), (200.0, "ultra-expanded"),
 ];
 
 /// Sizes by keyword, in px, as in browsers (CSS Fonts 4, section 2.5.1).
+#[rustfmt::skip]
 const SIZES: [(&str, f64); 8] = [
-    ("xx-small", 9.0),
-    ("x-small", 10.0),
-    ("small", 13.0),
-    ("medium", 16.0),
-    ("large", 18.0),
-    ("x-large", 24.0),
-    ("xx-large", 32.0),
+    ("xx-small", 9.0), ("x-small", 10.0), ("small", 13.0), ("medium", 16.0), ("large", 18.0), ("x-large", 24.0), ("xx-large", 32.0),
     ("xxx-large", 48.0),
 ];
 
@@ -61,6 +50,7 @@ const WITHOUT_EFFECT: [(&str, &[&str]); 13] = [
     ("text-decoration-thickness", &["auto", "from-font"]),
 ];
 
+// Differences from browsers, as notes.
 const OVERLINE: &str = "overlines are a little nearer to the letters than in browsers";
 const SPACES: &str = "spaces where parts of a text keep them and others do not are not those of browsers";
 const LINES: &str = "a tspan with y and without x begins where the words before end, which centred or right-aligned lines of browsers do not";
@@ -69,7 +59,7 @@ const ON_PATHS: &str =
 const AFTER_PATHS: &str = "words after a textPath begin elsewhere than in browsers";
 const VERTICAL: &str = "punctuation, lines and turned letters of vertical text are placed otherwise than in browsers";
 
-/// The case that `text-transform` asks for.
+/// The case that `text-transform` or `font-variant-caps` asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Case {
     #[default]
@@ -80,14 +70,6 @@ pub(super) enum Case {
     Capitalized,
 }
 
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Anchor {
-    #[default]
-    Start,
-    Middle,
-    End,
-}
-
 /// Inherited style of text.
 #[derive(Debug, Clone)]
 pub(super) struct TextStyle {
@@ -95,11 +77,12 @@ pub(super) struct TextStyle {
     /// `true` if white space is kept, `false` if it is collapsed; `None` leaves it to `xml:space`.
     keeps_space: Option<bool>,
     rtl: bool,
-    anchor: Anchor,
+    /// The value of `text-anchor`: `start`, `middle` or `end`.
+    anchor: &'static str,
     /// Opacities of the fill and the stroke.
     opacities: [f64; 2],
-    /// Combined opacity of the elements between the text, excluded, and this one. `None` outside of texts.
-    fade: Option<f64>,
+    /// Product of the opacities of the elements from below the text to this one. `None` outside of texts.
+    part_opacity: Option<f64>,
     case: Case,
     /// `true` if `letter-spacing` is not zero.
     spaced: bool,
@@ -113,9 +96,9 @@ impl Default for TextStyle {
             weight: 400,
             keeps_space: None,
             rtl: false,
-            anchor: Anchor::Start,
+            anchor: "start",
             opacities: [1.0; 2],
-            fade: None,
+            part_opacity: None,
             case: Case::AsTyped,
             spaced: false,
             without_effect: Rc::default(),
@@ -149,7 +132,7 @@ pub(super) struct Letters {
 impl TextStyle {
     /// Returns `true` if an element is a text or a part of one.
     pub(super) fn concerns(&self, tag: &str) -> bool {
-        tag == "text" || self.fade.is_some()
+        tag == "text" || self.part_opacity.is_some()
     }
 
     /// Applies the properties of an element, which `value` looks up.
@@ -172,26 +155,32 @@ impl TextStyle {
             set("font-stretch", keyword.to_owned());
         }
         self.anchor = value("text-anchor").map_or(self.anchor, |v| match v {
-            "middle" => Anchor::Middle,
-            "end" => Anchor::End,
-            _ => Anchor::Start,
+            "middle" => "middle",
+            "end" => "end",
+            _ => "start",
         });
         self.rtl = value("direction").map_or(self.rtl, |v| v == "rtl");
-        self.case = value("text-transform").map_or(self.case, case);
+        self.case = value("text-transform").map_or(self.case, |v| match v.to_ascii_lowercase().as_str() {
+            "uppercase" => Case::Upper,
+            "lowercase" => Case::Lower,
+            "capitalize" => Case::Capitalized,
+            _ => Case::AsTyped,
+        });
         self.spaced = value("letter-spacing").map_or(self.spaced, |v| {
             let end = v.find(|c: char| !c.is_ascii_digit() && !matches!(c, '.' | '-' | '+')).unwrap_or(v.len());
             v[..end].parse().is_ok_and(|n: f64| n != 0.0)
         });
-        let kept = self.keeps_space;
+        let parent_keeps_space = self.keeps_space;
         self.keeps_space = value("white-space")
             .map_or(self.keeps_space, |v| Some(matches!(v, "pre" | "pre-wrap" | "break-spaces" | "-moz-pre-space")));
-        let is_content = tag == "text" || (self.fade.is_some() && matches!(tag, "tspan" | "textPath" | "a" | "tref"));
+        let is_part = self.part_opacity.is_some() && is_part(node);
+        let is_content = tag == "text" || is_part;
         if is_content && self.rtl {
             // CSS starts at the right, usvg at the left.
             let anchor = match self.anchor {
-                Anchor::Start => "end",
-                Anchor::Middle => "middle",
-                Anchor::End => "start",
+                "start" => "end",
+                "end" => "start",
+                middle => middle,
             };
             set("text-anchor", anchor.to_owned());
         }
@@ -200,35 +189,31 @@ impl TextStyle {
         if collapses {
             out.attributes.push(("xml:space", "preserve".to_owned()));
         }
-        self.fade(tag, &value, &mut set);
+        self.multiply_opacities(tag, &value, &mut set);
         if let Some(keeps) = self.keeps_space.filter(|_| is_content) {
             out.attributes.push(("xml:space", if keeps { "preserve" } else { "default" }.to_owned()));
         }
         out.unsupported = self.without_effect(tag, is_content, &value);
         let shift = value("baseline-shift").filter(|v| tag == "text" && !matches!(*v, "baseline" | "0" | "initial"));
-        out.unsupported.extend(shift.map(|v| format!("baseline-shift: {}", start(v))));
-        let overline = value("text-decoration").is_some_and(|v| v.contains("overline"));
-        let spaces = tag != "text"
-            && is_content
-            && keeps_space(self.keeps_space, Some(node)) != keeps_space(kept, node.parent());
-        let lines = tag != "text" && is_content && self.anchor != Anchor::Start && is_lower(node);
-        let is_path = tag == "textPath" && self.fade.is_some();
-        let goes_on = |n: &Node<'_, '_>| {
-            let rest = n.next_siblings().skip(1);
-            { rest }.any(|n| n.text().is_some_and(|t| !t.trim().is_empty()) || n.has_tag_name("tspan"))
-        };
-        let vertical = value("writing-mode").is_some_and(|v| v.starts_with("tb") || v.starts_with("vertical"));
+        out.unsupported.extend(shift.map(|v| format!("baseline-shift: {}", excerpt(v))));
+        let has_overline = value("text-decoration").is_some_and(|v| v.contains("overline"));
+        let changes_spaces =
+            is_part && keeps_space(self.keeps_space, Some(node)) != keeps_space(parent_keeps_space, node.parent());
+        let begins_lower = is_part && self.anchor != "start" && begins_lower(node);
+        let is_path = tag == "textPath" && is_part;
+        let has_words = |n: Node<'_, '_>| n.text().is_some_and(|t| !t.trim().is_empty()) || n.has_tag_name("tspan");
+        let is_vertical = value("writing-mode").is_some_and(|v| v.starts_with("tb") || v.starts_with("vertical"));
         let notes = [
-            (overline, OVERLINE),
-            (spaces, SPACES),
-            (lines, LINES),
+            (has_overline, OVERLINE),
+            (changes_spaces, SPACES),
+            (begins_lower, LINES),
             (is_path && self.spaced, ON_PATHS),
-            (is_path && goes_on(&node), AFTER_PATHS),
-            (vertical, VERTICAL),
+            (is_path && node.next_siblings().skip(1).any(has_words), AFTER_PATHS),
+            (is_vertical, VERTICAL),
         ];
-        out.notes = notes.into_iter().filter(|n| n.0).map(|n| n.1).collect();
+        out.notes = notes.into_iter().filter(|(applies, _)| *applies).map(|(_, note)| note).collect();
         let overrides = matches!(value("unicode-bidi"), Some("bidi-override" | "isolate-override"));
-        let direction = control(self.rtl, overrides);
+        let direction = direction_control(self.rtl, overrides);
         (out, Letters { case: self.case, separate: self.spaced, direction, collapses })
     }
 
@@ -243,22 +228,27 @@ impl TextStyle {
         self.case = if caps == "all-small-caps" { Case::Lower } else { self.case };
     }
 
-    /// Multiplies the opacities of the fill and stroke of a part of a text by its opacity.
-    fn fade<'a>(&mut self, tag: &str, value: &impl Fn(&str) -> Option<&'a str>, set: &mut impl FnMut(&str, String)) {
+    /// Multiplies the opacities of the fill and stroke of a part of a text by its opacity, which usvg ignores.
+    fn multiply_opacities<'a>(
+        &mut self,
+        tag: &str,
+        value: &impl Fn(&str) -> Option<&'a str>,
+        set: &mut impl FnMut(&str, String),
+    ) {
         const NAMES: [&str; 2] = ["fill-opacity", "stroke-opacity"];
         let declared = NAMES.map(|name| value(name).and_then(opacity));
-        for (known, declared) in self.opacities.iter_mut().zip(declared) {
-            *known = declared.unwrap_or(*known);
+        for (inherited, declared) in self.opacities.iter_mut().zip(declared) {
+            *inherited = declared.unwrap_or(*inherited);
         }
-        let Some(around) = self.fade else {
-            self.fade = (tag == "text").then_some(1.0);
+        let Some(of_parent) = self.part_opacity else {
+            self.part_opacity = (tag == "text").then_some(1.0);
             return;
         };
-        let here = around * value("opacity").and_then(opacity).unwrap_or(1.0);
-        self.fade = Some(here);
-        for ((name, all), declared) in NAMES.iter().zip(self.opacities).zip(declared) {
-            if here != around || (declared.is_some() && here != 1.0) {
-                set(name, (all * here).to_string());
+        let product = of_parent * value("opacity").and_then(opacity).unwrap_or(1.0);
+        self.part_opacity = Some(product);
+        for ((name, opacity), declared) in NAMES.iter().zip(self.opacities).zip(declared) {
+            if product != of_parent || (declared.is_some() && product != 1.0) {
+                set(name, (opacity * product).to_string());
             }
         }
     }
@@ -278,8 +268,8 @@ impl TextStyle {
             changed |= if is_plain {
                 all.remove(name).is_some()
             } else {
-                let v = start(v);
-                all.insert(name, v.to_owned()).is_none_or(|was| was != v)
+                let v = excerpt(v);
+                all.insert(name, v.to_owned()).is_none_or(|old| old != v)
             };
         }
         if tag == "text" || (is_content && changed) {
@@ -290,14 +280,14 @@ impl TextStyle {
     }
 }
 
-/// Returns `true` if an element keeps its white space, by its style or else by `xml:space`.
+/// Returns `true` if an element keeps its white space, by its style, or else by `xml:space` on it or around it.
 fn keeps_space(style: Option<bool>, node: Option<Node<'_, '_>>) -> bool {
     let declared = |n: Node<'_, '_>| n.ancestors().find_map(|a| attribute(a, "xml:space").map(|v| v == "preserve"));
     style.or_else(|| declared(node?)).unwrap_or(false)
 }
 
 /// The control character that sets a direction; `None` for ordinary left-to-right text.
-fn control(rtl: bool, overrides: bool) -> Option<char> {
+fn direction_control(rtl: bool, overrides: bool) -> Option<char> {
     match (rtl, overrides) {
         (true, true) => Some('\u{202e}'),
         (true, false) => Some('\u{202b}'),
@@ -318,58 +308,45 @@ fn loses_spaces(text: Node<'_, '_>) -> bool {
     let mut before = None;
     text.descendants().filter(Node::is_text).any(|n| {
         let words = n.text().unwrap_or_default();
-        let is_inside = n.parent().is_some_and(|p| p != text);
-        let lost =
-            is_inside && words.starts_with(char::is_whitespace) && before.is_some_and(|c: char| !c.is_whitespace());
+        let is_in_part = n.parent().is_some_and(|p| p != text);
+        let is_lost =
+            is_in_part && words.starts_with(char::is_whitespace) && before.is_some_and(|c: char| !c.is_whitespace());
         before = words.chars().next_back().or(before);
-        lost
+        is_lost
     })
 }
 
 /// Returns `true` if a part of a text sets only its y, so that it begins below the end of the words before it.
-fn is_lower(part: Node<'_, '_>) -> bool {
+fn begins_lower(part: Node<'_, '_>) -> bool {
     /// Siblings to search for words; some may be white space or comments.
-    const NEAR: usize = 4;
+    const SIBLINGS: usize = 4;
     let has_words = |n: Node<'_, '_>| n.descendants().filter_map(|d| d.text()).any(|t| !t.trim().is_empty());
-    part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(NEAR).any(has_words)
+    part.has_attribute("y") && !part.has_attribute("x") && part.prev_siblings().skip(1).take(SIBLINGS).any(has_words)
 }
 
 /// Returns `true` if [`TextStyle`] follows a property.
 pub(super) fn concerns(name: &str) -> bool {
-    matches!(name.as_bytes().first(), Some(b'f' | b'd' | b't' | b'l' | b'w' | b'u' | b'o' | b's'))
-        && (matches!(
-            name,
-            "font-weight"
-                | "font-stretch"
-                | "text-anchor"
-                | "direction"
-                | "text-transform"
-                | "letter-spacing"
-                | "white-space"
-                | "unicode-bidi"
-                | "fill-opacity"
-                | "stroke-opacity"
-                | "opacity"
-        ) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name))
-}
-
-/// Returns `true` if a value is a valid font weight.
-pub(super) fn is_weight(value: &str) -> bool {
-    weight(value, 400).is_some()
+    #[rustfmt::skip]
+    const FOLLOWED: [&str; 11] = [
+        "font-weight", "font-stretch", "text-anchor", "direction", "text-transform", "letter-spacing", "white-space", "unicode-bidi",
+        "fill-opacity", "stroke-opacity", "opacity",
+    ];
+    FOLLOWED.contains(&name) || WITHOUT_EFFECT.iter().any(|(n, _)| *n == name)
 }
 
 /// Shortens a value for messages, of which there may be many, since texts inherit it.
-pub(super) fn start(value: &str) -> &str {
+pub(super) fn excerpt(value: &str) -> &str {
     const MAX_CHARS: usize = 80;
-    &value[..value.char_indices().nth(MAX_CHARS).map_or(value.len(), |(at, _)| at)]
+    &value[..value.char_indices().nth(MAX_CHARS).map_or(value.len(), |(end, _)| end)]
 }
 
 /// Expands a `font` declaration into its longhands. Returns `None` if it is invalid, or names a system font.
 pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
-    let with = |v: &dyn Fn(usize) -> String| FONT.iter().enumerate().map(|(i, (name, _))| (*name, v(i))).collect();
-    if ["inherit", "initial", "unset"].iter().any(|k| value.eq_ignore_ascii_case(k)) {
-        let initial = value.eq_ignore_ascii_case("initial");
-        return Some(with(&|i| if initial { FONT[i].1 } else { "inherit" }.to_owned()));
+    let is_any = |text: &str, words: &[&str]| words.iter().any(|w| text.eq_ignore_ascii_case(w));
+    if is_any(value, &["inherit", "initial", "unset"]) {
+        let is_initial = value.eq_ignore_ascii_case("initial");
+        let longhand = |(name, initial)| (name, if is_initial { initial } else { "inherit" }.to_owned());
+        return Some(FONT.map(longhand).into());
     }
     let mut input = Parser::new(value);
     let mut found = FONT.map(|(_, initial)| initial.to_owned());
@@ -394,7 +371,9 @@ pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
                 found[slot] = word;
             }
             Token::Number { .. } => text.clone_into(&mut found[2]),
-            Token::Dimension { unit, .. } if is_angle(unit) && found[0] == "oblique" => {}
+            // The angle of oblique letters.
+            Token::Dimension { unit, .. } if found[0] == "oblique" && is_any(unit, &["deg", "rad", "grad", "turn"]) => {
+            }
             Token::Dimension { .. } | Token::Percentage { .. } => break text.to_owned(),
             _ => return None,
         }
@@ -406,7 +385,7 @@ pub(super) fn font(value: &str) -> Option<Vec<(&'static str, String)>> {
     input.skip_whitespace();
     let family = value.get(input.position().byte_index()..)?.trim();
     family.clone_into(&mut found[5]);
-    (!family.is_empty()).then(|| with(&|i| found[i].clone()))
+    (!family.is_empty()).then(|| FONT.iter().map(|(name, _)| *name).zip(found).collect())
 }
 
 /// Converts a keyword for a font size to px. `parent` is the font size of the parent.
@@ -420,12 +399,8 @@ pub(super) fn size(value: &str, parent: f64) -> Option<f64> {
     }
 }
 
-fn is_angle(unit: &str) -> bool {
-    ["deg", "rad", "grad", "turn"].iter().any(|u| unit.eq_ignore_ascii_case(u))
-}
-
-/// Rounds a weight to hundreds, as usvg requires. `parent` is the inherited weight.
-fn weight(value: &str, parent: u16) -> Option<u16> {
+/// Rounds a weight to hundreds, as usvg requires. `parent` is the inherited weight. Returns `None` for invalid values.
+pub(super) fn weight(value: &str, parent: u16) -> Option<u16> {
     Some(match value.to_ascii_lowercase().as_str() {
         "normal" => 400,
         "bold" => 700,
@@ -452,28 +427,19 @@ fn weight(value: &str, parent: u16) -> Option<u16> {
 /// Finds the keyword nearest to a width in percent.
 fn width(value: &str) -> Option<&'static str> {
     let percent: f64 = value.strip_suffix('%')?.parse().ok()?;
-    let off = |w: f64| (w - percent).abs();
-    WIDTHS.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0))).map(|w| w.1)
+    let distance = |w: f64| (w - percent).abs();
+    WIDTHS.iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0))).map(|w| w.1)
 }
 
 fn opacity(value: &str) -> Option<f64> {
     Some(factor(value)?.clamp(0.0, 1.0))
 }
 
-fn case(value: &str) -> Case {
-    match value.to_ascii_lowercase().as_str() {
-        "uppercase" => Case::Upper,
-        "lowercase" => Case::Lower,
-        "capitalize" => Case::Capitalized,
-        _ => Case::AsTyped,
-    }
-}
-
 /// Breaks up the ligatures of a text.
 fn separated(text: &str) -> String {
     /// An invisible character that prevents ligatures and kerning. Unlike U+200C, usvg adds no letter spacing after it.
     const SEPARATOR: char = '\u{180b}';
-    let mut out = String::with_capacity(text.len() + 8);
+    let mut out = String::with_capacity(text.len());
     let mut last = ' ';
     for c in text.chars() {
         if matches!(last, 'f' | 'T') && c.is_ascii_lowercase() {
@@ -533,7 +499,7 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
     let mut lines: Vec<Vec<Run<'_>>> = vec![Vec::new()];
     let mut elements = 0;
     let mut before = None;
-    let (mut is_marked, mut is_positioned) = (false, false);
+    let (mut has_direction, mut is_positioned) = (false, false);
     for node in text.descendants() {
         if node.is_element() {
             let style = letters.get(elements).copied().unwrap_or_default();
@@ -543,7 +509,7 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
                 if begins_line(node) {
                     lines.push(Vec::new());
                 }
-                is_marked |= style.direction.is_some();
+                has_direction |= style.direction.is_some();
                 is_positioned |= has_letter_positions(node);
             }
             continue;
@@ -557,11 +523,11 @@ pub(super) fn rewritten(text: Node<'_, '_>, letters: &[Letters]) -> Option<Vec<R
     if letters.first().is_some_and(|l| l.collapses) {
         collapse(lines.iter_mut().flatten());
     }
-    if is_marked && is_positioned {
+    if has_direction && is_positioned {
         return None;
     }
     if !is_positioned {
-        lines.iter_mut().for_each(|line| mark(line));
+        lines.iter_mut().for_each(|line| insert_controls(line));
     }
     Some(lines.into_iter().flatten().filter(|r| r.new.text != r.old).map(|r| r.new).collect())
 }
@@ -591,21 +557,20 @@ fn collapse<'a, 'b: 'a>(runs: impl Iterator<Item = &'a mut Run<'b>>) {
 }
 
 /// Sets the direction of a line, breaks up its ligatures, and ends it so that its last letter keeps its spacing.
-fn mark(line: &mut [Run<'_>]) {
-    /// An invisible character at the end of a line takes no spacing itself.
+fn insert_controls(line: &mut [Run<'_>]) {
+    /// Word joiner: an invisible character that takes the place of the last letter, which usvg gives no spacing.
     const END: char = '\u{2060}';
     let is_letter = |c: char| !c.is_whitespace();
     for run in line.iter_mut().filter(|r| r.style.separate) {
         run.new.text = separated(&run.new.text);
     }
     if let Some(last) = line.iter_mut().rfind(|r| r.old.contains(is_letter)).filter(|r| r.style.separate) {
-        let at = last.new.text.trim_end().len();
-        last.new.text.insert(at, END);
+        last.new.text.insert(last.new.text.trim_end().len(), END);
     }
     if let Some(first) = line.iter_mut().find(|r| r.old.contains(is_letter))
-        && let (Some(at), Some(direction)) = (first.new.text.find(is_letter), first.style.direction)
+        && let (Some(start), Some(direction)) = (first.new.text.find(is_letter), first.style.direction)
     {
-        first.new.text.insert(at, direction);
+        first.new.text.insert(start, direction);
     }
 }
 
@@ -635,9 +600,9 @@ fn begins_line(node: Node<'_, '_>) -> bool {
 
 /// Returns `true` if single letters have positions or rotations, or `textLength` spreads them.
 fn has_letter_positions(node: Node<'_, '_>) -> bool {
-    let several = |v: &str| v.split([',', ' ', '\n', '\t', '\r']).filter(|n| !n.is_empty()).nth(1).is_some();
+    let is_list = |v: &str| v.split([',', ' ', '\n', '\t', '\r']).filter(|n| !n.is_empty()).nth(1).is_some();
     node.has_attribute("textLength")
-        || ["x", "y", "dx", "dy", "rotate"].iter().any(|a| node.attribute(*a).is_some_and(several))
+        || ["x", "y", "dx", "dy", "rotate"].iter().any(|a| node.attribute(*a).is_some_and(is_list))
 }
 
 #[cfg(test)]

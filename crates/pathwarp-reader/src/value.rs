@@ -35,17 +35,33 @@ pub(super) struct Units {
     pub(super) viewport: (f64, f64),
 }
 
+impl Units {
+    /// The length that 100 % of a property stands for.
+    pub(super) fn percentage_base(&self, name: &str) -> f64 {
+        let (w, h) = self.viewport;
+        match name {
+            "x" | "width" | "cx" | "rx" | "x1" | "x2" | "dx" | "fx" | "refX" | "markerWidth" => w,
+            "y" | "height" | "cy" | "ry" | "y1" | "y2" | "dy" | "fy" | "refY" | "markerHeight" => h,
+            _ => w.hypot(h) / std::f64::consts::SQRT_2,
+        }
+    }
+
+    /// Reads a length or percentage of a property, in user units.
+    pub(super) fn length(&self, name: &str, value: &str) -> Option<f64> {
+        length(value, self, self.percentage_base(name))
+    }
+}
+
 /// Returns `true` if a value has no variables, expressions or units for [`substituted`] and [`computed`] to replace.
 pub(super) fn is_plain(value: &str) -> bool {
     let bytes = value.as_bytes();
-    let unit = |(i, b): (usize, &u8)| {
+    let precedes_unit = |(i, b): (usize, &u8)| {
         (b.is_ascii_digit() || *b == b'.') && bytes.get(i + 1).is_some_and(u8::is_ascii_alphabetic) && {
-            let rest = &value[i + 1..];
-            let end = rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len());
-            is_relative(&rest[..end])
+            let unit = value[i + 1..].split(|c: char| !c.is_ascii_alphanumeric()).next();
+            unit.is_some_and(is_relative)
         }
     };
-    !has_functions(value) && !bytes.iter().enumerate().any(unit)
+    !has_functions(value) && !bytes.iter().enumerate().any(precedes_unit)
 }
 
 /// Returns `true` if a value has variables or expressions.
@@ -62,10 +78,6 @@ fn calls(value: &str) -> impl Iterator<Item = &[u8]> {
 fn ends_in(text: &[u8], function: &str) -> bool {
     let start = text.len().checked_sub(function.len());
     start.is_some_and(|start| text[start..].eq_ignore_ascii_case(function.as_bytes()))
-}
-
-fn contains(value: &str, function: &str) -> bool {
-    find(value, function).is_some()
 }
 
 /// Finds the first occurrence of a function's name, which ends in a parenthesis, in upper or lower case.
@@ -86,36 +98,36 @@ fn is_relative(unit: &str) -> bool {
 
 /// Replaces variables. Returns `None` if one has no value, which makes the declaration invalid.
 pub(super) fn substituted(value: &str, variable: &dyn Fn(&str) -> Option<String>) -> Option<String> {
-    replaced(value, variable, MAX_CHAIN)
+    substituted_to_depth(value, variable, MAX_CHAIN)
 }
 
-fn replaced(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize) -> Option<String> {
+/// Replaces variables. Fallbacks may be nested to a depth.
+fn substituted_to_depth(value: &str, variable: &dyn Fn(&str) -> Option<String>, depth: usize) -> Option<String> {
     let mut out = String::new();
     let mut left = value;
-    while let Some(at) = find(left, "var(") {
-        let (before, from) = left.split_at(at);
-        out.push_str(before);
-        let mut input = Parser::new(&from["var(".len()..]);
-        let end = closing(&mut input);
-        let arguments = &from["var(".len().."var(".len() + end];
+    while let Some(start) = find(left, "var(") {
+        out.push_str(&left[..start]);
+        let inside = &left[start + "var(".len()..];
+        let end = block_end(&mut Parser::new(inside));
+        let arguments = &inside[..end];
         let (name, fallback) = arguments.split_once(',').map_or((arguments, None), |(n, f)| (n, Some(f)));
-        let found = variable(name.trim()).or_else(|| replaced(fallback?, variable, depth.checked_sub(1)?))?;
-        out.push_str(found.trim());
+        let fallback = || substituted_to_depth(fallback?, variable, depth.checked_sub(1)?);
+        out.push_str(variable(name.trim()).or_else(fallback)?.trim());
         if out.len() > MAX_LEN {
             return None;
         }
-        left = from.get("var(".len() + end + 1..).unwrap_or_default();
+        left = inside.get(end + 1..).unwrap_or_default();
     }
     out.push_str(left);
     (out.len() <= MAX_LEN).then(|| out.trim().to_owned())
 }
 
 /// The position of the parenthesis that closes the current block.
-fn closing(input: &mut Parser<'_>) -> usize {
+fn block_end(input: &mut Parser<'_>) -> usize {
     loop {
-        let at = input.position().byte_index();
+        let position = input.position().byte_index();
         match input.next_including_whitespace_and_comments() {
-            Err(_) | Ok(Token::CloseParenthesis) => return at,
+            Err(_) | Ok(Token::CloseParenthesis) => return position,
             Ok(Token::Function(_) | Token::ParenthesisBlock | Token::SquareBracketBlock | Token::CurlyBracketBlock) => {
                 nested(input);
             }
@@ -126,14 +138,11 @@ fn closing(input: &mut Parser<'_>) -> usize {
 
 /// The custom properties of an element, declared and inherited.
 pub(super) fn custom(declared: &[(String, String)], inherited: &Custom) -> Custom {
-    let found = Variables {
-        declared: declared.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect(),
-        inherited,
-        known: RefCell::default(),
-    };
+    let declared = declared.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect();
+    let variables = Variables { declared, inherited, known: RefCell::default() };
     let mut out = inherited.clone();
-    for name in found.declared.keys() {
-        match found.value(name, MAX_CHAIN) {
+    for name in variables.declared.keys() {
+        match variables.value(name, MAX_CHAIN) {
             Some(v) => out.insert((*name).to_owned(), v),
             None => out.remove(*name),
         };
@@ -157,7 +166,7 @@ impl Variables<'_> {
             return known.clone();
         }
         self.known.borrow_mut().insert(name.to_owned(), None);
-        let value = if contains(raw, "var(") {
+        let value = if find(raw, "var(").is_some() {
             depth.checked_sub(1).and_then(|depth| substituted(raw, &|n| self.value(n, depth).map(|v| v.to_string())))
         } else {
             (raw.len() <= MAX_LEN).then(|| (*raw).to_owned())
@@ -210,16 +219,20 @@ pub(super) fn nested<'i>(input: &mut Parser<'i>) -> &'i str {
 
 /// Splits at the commas outside parentheses.
 pub(super) fn arguments(text: &str) -> impl Iterator<Item = &str> {
+    split_outside(text, |c| c == ',').map(str::trim)
+}
+
+/// Splits at the separators outside parentheses.
+pub(super) fn split_outside(text: &str, is_separator: impl Fn(char) -> bool) -> impl Iterator<Item = &str> {
     let mut depth = 0_usize;
-    let parts = text.split(move |c| {
+    text.split(move |c| {
         match c {
             '(' => depth += 1,
             ')' => depth = depth.saturating_sub(1),
             _ => {}
         }
-        c == ',' && depth == 0
-    });
-    parts.map(str::trim)
+        depth == 0 && is_separator(c)
+    })
 }
 
 /// Reads a single length or percentage, in user units.
@@ -230,12 +243,12 @@ pub(super) fn length(value: &str, units: &Units, percent: f64) -> Option<f64> {
 }
 
 /// Rewrites a length for usvg. `percent` is the value of 100 %, if usvg doesn't know it. Returns `None` for anything that is not a
-/// length; if `strict`, for numbers without a unit, too.
+/// length, for negative ones if `non_negative`, and for numbers other than zero without a unit if `strict`.
 pub(super) fn known_length<'v>(
     text: &'v str,
     units: &Units,
     percent: Option<f64>,
-    positive: bool,
+    non_negative: bool,
     strict: bool,
 ) -> Option<Cow<'v, str>> {
     let bytes = text.as_bytes();
@@ -246,34 +259,31 @@ pub(super) fn known_length<'v>(
         end = digits(end + 1);
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let signed = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        if bytes.get(signed).is_some_and(u8::is_ascii_digit) {
-            end = digits(signed);
+        let exponent = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if bytes.get(exponent).is_some_and(u8::is_ascii_digit) {
+            end = digits(exponent);
         }
     }
     let (number, unit) = text.split_at(end);
     let value: f64 = number.parse().ok()?;
-    if positive && value < 0.0 {
+    if non_negative && value < 0.0 {
         return None;
     }
-    match unit {
+    let lower = unit.to_ascii_lowercase();
+    match lower.as_str() {
         "" if strict && value != 0.0 => None,
-        "" | "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(Cow::Borrowed(text)),
+        "" => Some(Cow::Borrowed(text)),
+        "px" | "in" | "cm" | "mm" | "pt" | "pc" if lower == unit => Some(Cow::Borrowed(text)),
+        "px" | "in" | "cm" | "mm" | "pt" | "pc" => Some(format!("{number}{lower}").into()),
         "%" => Some(percent.map_or(Cow::Borrowed(text), |full| format!("{}px", (value / 100.0) * full).into())),
-        _ => {
-            let lower = unit.to_ascii_lowercase();
-            if matches!(lower.as_str(), "px" | "in" | "cm" | "mm" | "pt" | "pc") {
-                return Some(format!("{number}{lower}").into());
-            }
-            Some(format!("{}px", length(text, units, 0.0)?).into())
-        }
+        _ => Some(format!("{}px", length(text, units, 0.0)?).into()),
     }
 }
 
 /// A parsed `url()`.
 #[derive(Debug, PartialEq)]
 pub(super) struct Reference<'v> {
-    /// The id of an element in the same file.
+    /// The id of an element in the same file; `None` for a link to another file.
     pub(super) id: Option<String>,
     /// The text that follows.
     pub(super) rest: &'v str,
@@ -312,13 +322,12 @@ pub fn percent_decoded(part: &str) -> Cow<'_, str> {
     if !part.contains('%') {
         return Cow::Borrowed(part);
     }
-    let bytes = part.as_bytes();
-    let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
-    while let Some(&b) = bytes.get(at) {
-        let digits = part.get(at + 1..at + 3).filter(|d| b == b'%' && d.bytes().all(|d| d.is_ascii_hexdigit()));
+    let (mut out, mut i) = (Vec::with_capacity(part.len()), 0);
+    while let Some(&b) = part.as_bytes().get(i) {
+        let digits = part.get(i + 1..i + 3).filter(|d| b == b'%' && d.bytes().all(|d| d.is_ascii_hexdigit()));
         let code = digits.and_then(|d| u8::from_str_radix(d, 16).ok());
         out.push(code.unwrap_or(b));
-        at += if code.is_some() { 3 } else { 1 };
+        i += if code.is_some() { 3 } else { 1 };
     }
     String::from_utf8(out).map_or(Cow::Borrowed(part), Cow::Owned)
 }
@@ -344,7 +353,7 @@ pub(super) fn path_data(value: &str) -> Option<String> {
     data.ok().map(|d| d.as_ref().to_owned())
 }
 
-/// A number, or a length in px.
+/// A number, or a length in px. Percentages count as lengths.
 #[derive(Debug, Clone, Copy)]
 struct Quantity {
     value: f64,
@@ -364,6 +373,7 @@ fn is_math(name: &str) -> bool {
 /// Evaluates math expressions (CSS Values 4, section 10).
 struct Math<'a> {
     units: &'a Units,
+    /// The value of 100 %; `None` makes percentages invalid.
     percent: Option<f64>,
 }
 
@@ -415,12 +425,11 @@ impl Math<'_> {
             let state = input.state();
             match input.next() {
                 Ok(Token::Delim('*')) => {
-                    let by = self.atom(input).filter(|b| !(b.is_length && out.is_length))?;
-                    out = Quantity { value: out.value * by.value, is_length: out.is_length || by.is_length };
+                    let factor = self.atom(input).filter(|f| !(f.is_length && out.is_length))?;
+                    out = Quantity { value: out.value * factor.value, is_length: out.is_length || factor.is_length };
                 }
                 Ok(Token::Delim('/')) => {
-                    let by = self.atom(input).filter(|b| !b.is_length && b.value != 0.0)?;
-                    out.value /= by.value;
+                    out.value /= self.atom(input).filter(|divisor| !divisor.is_length && divisor.value != 0.0)?.value;
                 }
                 _ => {
                     input.reset(&state);
@@ -459,11 +468,10 @@ impl Math<'_> {
         /// Pixels of CSS per inch.
         const INCH: f64 = 96.0;
         let number: f64 = text.get(..text.len().checked_sub(unit.len())?)?.parse().ok()?;
-        let u = self.units;
+        let &Units { font, root_font, window: (w, h), .. } = self.units;
         let unit = unit.to_ascii_lowercase();
-        let window = |share: &str| {
-            let (w, h) = u.window;
-            Some(match share {
+        let window = |side: &str| {
+            Some(match side {
                 "w" | "i" => w,
                 "h" | "b" => h,
                 "min" => w.min(h),
@@ -473,13 +481,13 @@ impl Math<'_> {
         };
         let one = match unit.as_str() {
             "px" => 1.0,
-            "em" | "ic" => u.font,
-            "rem" => u.root_font,
-            // CSS assumes half an em for fonts without these metrics.
-            "ex" | "ch" => 0.5 * u.font,
-            "cap" => 0.7 * u.font,
-            "lh" => 1.2 * u.font,
-            "rlh" => 1.2 * u.root_font,
+            "em" | "ic" => font,
+            "rem" => root_font,
+            // CSS assumes half an em for fonts without these metrics. The height of capitals and lines is that of ordinary fonts.
+            "ex" | "ch" => 0.5 * font,
+            "cap" => 0.7 * font,
+            "lh" => 1.2 * font,
+            "rlh" => 1.2 * root_font,
             "in" => INCH,
             "cm" => INCH / 2.54,
             "mm" => INCH / 25.4,

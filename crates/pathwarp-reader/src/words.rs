@@ -17,6 +17,7 @@ pub enum PaintProperty {
     Color,
 }
 
+/// The names of the properties, in the order of [`PaintProperty`].
 const NAMES: [&str; 5] = ["fill", "fill-opacity", "stroke", "stroke-opacity", "color"];
 
 /// A declared value as it is written in the drawing.
@@ -32,7 +33,7 @@ struct Word {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Words {
     /// The value of each property in [`NAMES`]; shared by all elements that inherit it.
-    declared: [Option<Arc<Word>>; 5],
+    declared: [Option<Arc<Word>>; NAMES.len()],
     /// Offset of the innermost element around that declares variables; 0 if there is none.
     scope: usize,
 }
@@ -50,13 +51,13 @@ impl Words {
 
     /// Records a valid value of a property; `None` for the initial one.
     pub(super) fn record(&mut self, name: &str, value: Option<&str>) {
-        let Some(k) = NAMES.iter().position(|n| *n == name) else { return };
+        let Some(property) = NAMES.iter().position(|n| *n == name) else { return };
         let text = value.map(str::trim);
         // The keyword means the inherited colour here.
         if name == "color" && text.is_some_and(|t| t.eq_ignore_ascii_case("currentcolor")) {
             return;
         }
-        self.declared[k] = text.map(|t| Arc::new(Word { text: t.to_owned(), scope: self.scope }));
+        self.declared[property] = text.map(|t| Arc::new(Word { text: t.to_owned(), scope: self.scope }));
     }
 
     /// These words for a child with another fill, if one is given.

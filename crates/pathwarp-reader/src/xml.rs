@@ -15,6 +15,11 @@ pub fn document(text: &str) -> Result<roxmltree::Document<'_>, roxmltree::Error>
     roxmltree::Document::parse_with_options(text, options)
 }
 
+/// The elements of a drawing, in document order.
+pub(super) fn elements<'a, 'i>(doc: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
+    doc.descendants().filter(Node::is_element).collect()
+}
+
 /// Parses XML. `name` identifies the text in errors.
 ///
 /// # Errors
@@ -29,7 +34,7 @@ pub fn parse<'a>(text: &'a str, name: &str, budget: &Budget) -> Result<roxmltree
 /// # Errors
 /// [`Error::Input`] when parsing takes more than the budget allows.
 pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
-    count(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
+    charge(text, budget).map_err(|e| Error::limit(name, "its markup takes", e))
 }
 
 /// Parses XML that is known to be within the budget. `name` identifies the text in errors.
@@ -38,8 +43,8 @@ pub fn check(text: &str, name: &str, budget: &Budget) -> Result<(), Error> {
 /// [`Error::Input`] when the text is not well-formed.
 pub fn parse_checked<'a>(text: &'a str, name: &str) -> Result<roxmltree::Document<'a>, Error> {
     document(text).map_err(|e| {
-        let at = e.pos();
-        Error::input(format!("{name}:{}:{}", at.row, at.col), format!("not well-formed XML: {e}"))
+        let position = e.pos();
+        Error::input(format!("{name}:{}:{}", position.row, position.col), format!("not well-formed XML: {e}"))
     })
 }
 
@@ -53,9 +58,12 @@ pub fn with_elements_of_entities(text: &str) -> Option<String> {
     // The subset of the DTD ends with a bracket.
     let start = text.find(']')?;
     let mut out = text[..start].to_owned();
+    // The parts still to expand, the next one last, with the number of entities that each is nested in.
     let mut left: Vec<(&str, usize)> = vec![(&text[start..], 0)];
     while let Some((part, level)) = left.pop() {
-        let Some((before, name, after)) = reference(part) else {
+        // At the first reference to an entity.
+        let split = part.split_once('&').and_then(|(before, rest)| Some((before, rest.split_once(';')?)));
+        let Some((before, (name, after))) = split else {
             out.push_str(part);
             continue;
         };
@@ -63,21 +71,10 @@ pub fn with_elements_of_entities(text: &str) -> Option<String> {
         left.push((after, level));
         match entities.iter().find(|e| e.0 == name).filter(|_| level < MAX_LEVELS) {
             Some((_, value)) => left.push((value, level + 1)),
-            None => {
-                out.push('&');
-                out.push_str(name);
-                out.push(';');
-            }
+            None => out.extend(["&", name, ";"]),
         }
     }
     Some(out)
-}
-
-/// Splits a text at its first reference to an entity: the text before it, the entity's name, and the text after it.
-fn reference(text: &str) -> Option<(&str, &str, &str)> {
-    let (before, rest) = text.split_once('&')?;
-    let (name, after) = rest.split_once(';')?;
-    Some((before, name, after))
 }
 
 /// The offset behind the name of an element, where attributes can be inserted.
@@ -121,8 +118,8 @@ fn escaped(text: &str, in_attribute: bool) -> String {
     out
 }
 
-/// Charges the budget for the bytes that entities expand to, and for comparisons of attributes and namespaces.
-fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
+/// Charges the budget for what the parser does with a text.
+fn charge(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     tags(text, budget)?;
     entities(text, budget)?;
     namespaces(text, budget)?;
@@ -133,16 +130,15 @@ fn count(text: &str, budget: &Budget) -> Result<(), Exceeded> {
 /// each with the others.
 fn namespaces(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     /// Namespaces that are compared in the time of one comparison.
-    const COPIED: f64 = 3.0;
+    const PER_COMPARISON: f64 = 3.0;
     /// More namespaces than in any ordinary drawing.
     const FEW: usize = 64;
-    let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|at| at + "xmlns".len());
-    let end = |at: usize| memchr3(b' ', b'>', b'/', &text.as_bytes()[at..]).map_or(text.len(), |i| at + i);
-    let all: HashSet<&str> = declarations().filter_map(|at| text.get(at..end(at))).collect();
+    let declarations = || memmem::find_iter(text.as_bytes(), "xmlns").map(|i| &text[i + "xmlns".len()..]);
+    let all: HashSet<&str> = declarations().filter_map(|rest| rest.split([' ', '>', '/']).next()).collect();
     if all.len() <= FEW {
         return Ok(());
     }
-    budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / COPIED)
+    budget.spend(cost::COMPARISON * declarations().count() as f64 * all.len() as f64 / PER_COMPARISON)
 }
 
 /// Bounds the number of elements by the number of tags and comments. Short texts pass: their elements are counted once they are parsed.
@@ -203,10 +199,7 @@ fn declaration(text: &str) -> Option<(&str, &str)> {
 
 /// Lists the names of the entities that a text refers to.
 fn references(text: &str) -> impl Iterator<Item = &str> {
-    text.split('&').skip(1).filter_map(|rest| {
-        let end = memchr(b';', rest.as_bytes())?;
-        rest.get(..end)
-    })
+    text.split('&').skip(1).filter_map(|rest| Some(rest.split_once(';')?.0))
 }
 
 /// The size of a text with its references expanded.
@@ -220,12 +213,12 @@ fn attributes(text: &str, budget: &Budget) -> Result<(), Exceeded> {
     /// Shorter tags have so few attributes that comparing them takes no time.
     const LONG_TAG: usize = 4096;
     let bytes = text.as_bytes();
-    let mut at = 0;
-    while let Some(from) = bytes.get(at..).and_then(|b| memchr(b'<', b)).map(|i| at + i) {
-        let to = bytes.get(from..).and_then(|b| memchr(b'>', b)).map_or(bytes.len(), |i| from + i);
-        at = to + 1;
-        if to - from >= LONG_TAG {
-            let tag = &bytes[from..to];
+    let mut next = 0;
+    while let Some(start) = bytes.get(next..).and_then(|b| memchr(b'<', b)).map(|i| next + i) {
+        let end = memchr(b'>', &bytes[start..]).map_or(bytes.len(), |i| start + i);
+        next = end + 1;
+        if end - start >= LONG_TAG {
+            let tag = &bytes[start..end];
             let attributes = memchr2_iter(b'"', b'\'', tag).count() as f64 / 2.0;
             let declarations = memchr_iter(b';', tag).count() as f64;
             budget.spend(cost::COMPARISON * (attributes * attributes + declarations * declarations) / 2.0)?;
@@ -244,7 +237,7 @@ mod tests {
     fn expansions_are_counted_before_they_happen() {
         let within = |text: &str, bytes: f64| {
             let budget = Budget::new(Limits::default().with(Limit::Bytes, bytes));
-            count(text, &budget).is_ok()
+            charge(text, &budget).is_ok()
         };
         // 10 bytes in four references, less the references themselves.
         let flat = "<!DOCTYPE s [<!ENTITY a \"aaaaaaaaaa\">]><s>&a;&a;&a;&a;</s>";
@@ -262,7 +255,7 @@ mod tests {
     #[test]
     fn many_attributes_are_many_comparisons() {
         let tag = |n: usize| format!("<s {}/>", (0..n).map(|i| format!("a{i}=''")).collect::<Vec<_>>().join(" "));
-        let within = |text: &str| count(text, &Budget::default()).is_ok();
+        let within = |text: &str| charge(text, &Budget::default()).is_ok();
         assert!(within(&tag(1000)) && !within(&tag(100_000)));
     }
 }

@@ -1,7 +1,8 @@
 //! The interface of all decoders, and conversion of their samples to pixels.
 
 use crate::error::Error;
-use std::fmt::{Display, Formatter, Result as Written};
+use crate::pixmap::bytes;
+use std::fmt::{self, Display, Formatter};
 use tiny_skia::{ColorU8, Pixmap};
 
 /// The extent of a picture in a file that ends early.
@@ -14,7 +15,7 @@ pub struct EarlyEnd {
 }
 
 impl Display for EarlyEnd {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Written {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.lines {
             Some(lines) => write!(f, "ends early, after {lines} of {} lines", self.of),
             None => write!(f, "ends early, before all details of its {} lines", self.of),
@@ -45,8 +46,7 @@ pub(super) fn undecodable(format: &str, why: impl Display) -> Error {
 
 /// Sets opaque pixels from `N` samples each.
 pub(super) fn set_opaque<const N: usize>(to: &mut Pixmap, samples: &[u8], rgb: impl Fn([u8; N]) -> [u8; 3]) {
-    let (to, _) = to.data_mut().as_chunks_mut::<4>();
-    for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
+    for (to, from) in to.data_mut().as_chunks_mut().0.iter_mut().zip(samples.as_chunks::<N>().0) {
         let [r, g, b] = rgb(*from);
         *to = [r, g, b, u8::MAX];
     }
@@ -54,8 +54,7 @@ pub(super) fn set_opaque<const N: usize>(to: &mut Pixmap, samples: &[u8], rgb: i
 
 /// Sets pixels with straight alpha from `N` samples each.
 pub(super) fn set_straight<const N: usize>(to: &mut Pixmap, samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) {
-    let (to, _) = to.data_mut().as_chunks_mut::<4>();
-    for (to, from) in to.iter_mut().zip(samples.as_chunks::<N>().0) {
+    for (to, from) in to.data_mut().as_chunks_mut().0.iter_mut().zip(samples.as_chunks::<N>().0) {
         *to = premultiplied(rgba(*from));
     }
 }
@@ -69,8 +68,7 @@ pub(super) fn premultiply(pixmap: &mut Pixmap) {
 
 #[inline]
 fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {
-    let c = ColorU8::from_rgba(r, g, b, a).premultiply();
-    [c.red(), c.green(), c.blue(), c.alpha()]
+    bytes(ColorU8::from_rgba(r, g, b, a).premultiply())
 }
 
 /// The first bytes of every PNG file.

@@ -1,6 +1,7 @@
 //! Decodes files to pixels, within limits.
 
-use super::bitmap::{Bitmap, EarlyEnd, Kind};
+use super::Picture;
+use super::bitmap::{Bitmap, Kind};
 use super::gif::Gif;
 use super::jpeg::{Jpeg, early_end};
 use super::orientation::Orientation;
@@ -9,18 +10,9 @@ use super::webp::WebP;
 use crate::error::Error;
 use crate::pixmap::{check_size, new_pixmap};
 use pathwarp::budget::{Limit, Limits};
-use tiny_skia::Pixmap;
-
-/// The contents of a file.
-pub(super) struct Decoded {
-    pub(super) pixmap: Pixmap,
-    pub(super) profile: Option<Vec<u8>>,
-    pub(super) exif: Option<Vec<u8>>,
-    pub(super) early_end: Option<EarlyEnd>,
-}
 
 /// Decodes the pixels and the ICC profile. If `upright`, applies the EXIF orientation and keeps the metadata.
-pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Decoded, Error> {
+pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Picture, Error> {
     let check = |(width, height): (u32, u32)| check_size(f64::from(width), f64::from(height), limits);
     png::size(bytes).map_or(Ok(()), check)?;
     let mut bitmap = open(bytes, limits)?;
@@ -31,9 +23,10 @@ pub(super) fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Dec
     let limits = &limits.for_pixels(f64::from(width) * f64::from(height));
     let mut pixmap = new_pixmap(f64::from(width), f64::from(height), limits)?;
     bitmap.decode(&mut pixmap)?;
-    let end = if upright && Kind::sniff(bytes) == Some(Kind::Jpeg) { early_end(bytes, &mut pixmap) } else { None };
+    let is_jpeg = Kind::sniff(bytes) == Some(Kind::Jpeg);
+    let early_end = if upright && is_jpeg { early_end(bytes, &mut pixmap) } else { None };
     let orientation = exif.as_deref().map_or_else(Orientation::default, Orientation::of_exif);
-    Ok(Decoded { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end: end })
+    Ok(Picture { pixmap: orientation.apply(pixmap, limits)?, profile, exif, early_end })
 }
 
 /// Reads the orientation from the metadata of a picture; upright if there is none.
@@ -56,12 +49,12 @@ pub fn header_size(bytes: &[u8]) -> Result<(u32, u32), Error> {
 /// animation, which may be larger than the picture.
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Box<dyn Bitmap + 'a>, Error> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
-    let max = limits.of(Limit::Bytes) as usize;
+    let max_bytes = limits.of(Limit::Bytes) as usize;
     match Kind::sniff(bytes) {
-        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max)?)),
+        Some(Kind::Png) => Ok(Box::new(Png::open(bytes, max_bytes)?)),
         Some(Kind::Jpeg) => Ok(Box::new(Jpeg::open(bytes)?)),
         Some(Kind::WebP) => Ok(Box::new(WebP::open(bytes)?)),
-        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, max)?)),
+        Some(Kind::Gif) => Ok(Box::new(Gif::open(bytes, max_bytes)?)),
         None => Err(Error::Decode("neither a PNG nor a JPEG nor a WebP nor a GIF".to_owned())),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::jpeg;
 use crate::error::Error;
+use crate::pixmap::straight;
 use image_webp::WebPEncoder;
 use jpeg_encoder::{ImageBuffer, JpegColorType, QuantizationTableType, SamplingFactor, rgb_to_ycbcr};
 use png::{BitDepth, ColorType, Compression, Filter, Info};
@@ -57,7 +58,7 @@ fn encode_png(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> R
     // Setting the compression sets a filter, so this comes after it.
     encoder.set_filter(Filter::Adaptive);
     let mut writer = encoder.write_header().map_err(unencodable)?;
-    writer.write_image_data(&straight(pixmap)).map_err(unencodable)?;
+    writer.write_image_data(&straight_bytes(pixmap)).map_err(unencodable)?;
     writer.finish().map_err(unencodable)?;
     Ok(out)
 }
@@ -68,7 +69,7 @@ fn encode_webp(pixmap: &Pixmap, profile: Option<&[u8]>, exif: Option<&[u8]>) -> 
     encoder.set_icc_profile(profile.unwrap_or_default().to_vec());
     encoder.set_exif_metadata(exif.unwrap_or_default().to_vec());
     let (width, height) = (pixmap.width(), pixmap.height());
-    encoder.encode(&straight(pixmap), width, height, image_webp::ColorType::Rgba8).map_err(unencodable)?;
+    encoder.encode(&straight_bytes(pixmap), width, height, image_webp::ColorType::Rgba8).map_err(unencodable)?;
     Ok(out)
 }
 
@@ -83,18 +84,19 @@ pub(super) fn encode_like(like: &jpeg::Compression, pixmap: &Pixmap, profile: Op
     })
 }
 
+/// Encodes a picture as JPEG. `set_quality` sets the quality or the tables of the encoder.
 fn encode_jpeg(
     pixmap: &Pixmap,
     profile: Option<&[u8]>,
     exif: Option<&[u8]>,
     color: JpegColorType,
-    set: impl Fn(&mut jpeg_encoder::Encoder<&mut Vec<u8>>),
+    set_quality: impl Fn(&mut jpeg_encoder::Encoder<&mut Vec<u8>>),
 ) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut encoder = jpeg_encoder::Encoder::new(&mut out, PictureFormat::QUALITY);
     // Don't subsample colours, so that red on white has no fringes.
     encoder.set_sampling_factor(SamplingFactor::F_1_1);
-    set(&mut encoder);
+    set_quality(&mut encoder);
     exif.map_or(Ok(()), |exif| encoder.add_exif_metadata(exif)).map_err(unencodable)?;
     encoder.add_icc_profile(profile.unwrap_or_default()).map_err(unencodable)?;
     encoder.encode_image(OnWhite::new(pixmap, color)?).map_err(unencodable)?;
@@ -111,8 +113,8 @@ struct OnWhite<'a> {
 impl<'a> OnWhite<'a> {
     fn new(pixmap: &'a Pixmap, color: JpegColorType) -> Result<Self, Error> {
         let side = |n: u32| {
-            let wrong = |_| unencodable(format!("a JPEG has at most {} pixels on a side, not {n}", u16::MAX));
-            u16::try_from(n).map_err(wrong)
+            let too_long = |_| unencodable(format!("a JPEG has at most {} pixels on a side, not {n}", u16::MAX));
+            u16::try_from(n).map_err(too_long)
         };
         Ok(Self { pixmap, size: [side(pixmap.width())?, side(pixmap.height())?], color })
     }
@@ -145,13 +147,9 @@ impl ImageBuffer for OnWhite<'_> {
     }
 }
 
-/// Converts the samples to straight alpha.
-fn straight(pixmap: &Pixmap) -> Vec<u8> {
-    let pixels = pixmap.pixels().iter().flat_map(|p| {
-        let c = p.demultiply();
-        [c.red(), c.green(), c.blue(), c.alpha()]
-    });
-    pixels.collect()
+/// The samples of a picture with straight alpha.
+fn straight_bytes(pixmap: &Pixmap) -> Vec<u8> {
+    pixmap.pixels().iter().flat_map(straight).collect()
 }
 
 fn unencodable(why: impl Display) -> Error {

@@ -17,15 +17,15 @@ const INTEROPERABILITY_DIRECTORY: u16 = 0xa005;
 /// Types of numbers of 16 and 32 bits.
 const SHORT: u16 = 3;
 const LONG: u16 = 4;
-/// Bytes of a value of each type, from 1.
+/// Bytes of a value of each type; types are numbered from 1.
 const SIZES: [usize; 13] = [1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4];
 
-/// Bytes of an entry: tag, type, count, and the value or its offset.
+/// Bytes of an entry: tag (2), type (2), count (4), and the value or its offset (4).
 const ENTRY: usize = 12;
 /// Precedes the TIFF file in a JPEG, and sometimes in other formats.
 const PREFIX: &[u8] = b"Exif\0\0";
 /// Largest number of bytes that a segment of a JPEG holds beside the prefix.
-const MOST: usize = 65_527;
+const MAX_BYTES: usize = 65_527;
 
 /// A TIFF file.
 #[derive(Clone)]
@@ -37,8 +37,10 @@ struct Tiff {
 /// An entry of a directory.
 #[derive(Clone, Copy)]
 struct Entry {
-    at: usize,
+    /// Offset of the entry in the file.
+    start: usize,
     tag: u16,
+    /// The type of its values.
     kind: u16,
     count: u32,
 }
@@ -81,10 +83,9 @@ impl Tiff {
     /// The entries of a directory that lie in the file, up to the first that does not.
     fn entries(&self, directory: usize) -> impl Iterator<Item = Entry> {
         let entry = move |i: usize| {
-            let at = directory.checked_add(2 + ENTRY * i)?;
-            let value = at + 8;
-            self.long(value)?;
-            Some(Entry { at, tag: self.short(at)?, kind: self.short(at + 2)?, count: self.long(at + 4)? })
+            let start = directory.checked_add(2 + ENTRY * i)?;
+            self.long(start + 8)?;
+            Some(Entry { start, tag: self.short(start)?, kind: self.short(start + 2)?, count: self.long(start + 4)? })
         };
         (0..usize::from(self.short(directory).unwrap_or(0))).map_while(entry)
     }
@@ -98,7 +99,7 @@ impl Tiff {
     /// The directory that an entry leads to.
     fn directory(&self, from: usize, tag: u16) -> Option<usize> {
         let entry = self.entries(from).find(|e| e.tag == tag)?;
-        self.offset(entry.at + 8)
+        self.offset(entry.start + 8)
     }
 
     /// The bytes of the values that do not fit into the entries of a directory.
@@ -106,7 +107,7 @@ impl Tiff {
         self.entries(directory).filter_map(|e| {
             let size = SIZES.get(usize::from(e.kind).checked_sub(1)?)?;
             let length = size.checked_mul(usize::try_from(e.count).ok()?)?;
-            let start = self.offset(e.at + 8)?;
+            let start = self.offset(e.start + 8)?;
             let end = start.checked_add(length)?;
             (length > 4 && end <= self.bytes.len()).then_some(start..end)
         })
@@ -114,15 +115,15 @@ impl Tiff {
 
     /// Writes a number into the entries of a directory that have this tag.
     fn set(&mut self, directory: usize, tag: u16, kind: u16, n: u32) {
-        let offsets: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
-        for at in offsets {
-            self.write_short(at + 2, kind);
-            self.write_long(at + 4, 1);
-            self.write_long(at + 8, n);
+        let starts: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.start).collect();
+        for start in starts {
+            self.write_short(start + 2, kind);
+            self.write_long(start + 4, 1);
+            self.write_long(start + 8, n);
             if kind == SHORT {
-                // The value stands in the first two bytes of four.
-                self.write_short(at + 8, n as u16);
-                self.write_short(at + 10, 0);
+                // The value is in the first two bytes of four.
+                self.write_short(start + 8, n as u16);
+                self.write_short(start + 10, 0);
             }
         }
     }
@@ -130,12 +131,12 @@ impl Tiff {
     /// Removes the entries of a directory that have this tag, unless the directory is cut short; later entries move up.
     fn remove(&mut self, directory: usize, tag: u16) {
         let Some(extent) = self.extent(directory) else { return };
-        let offsets: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.at).collect();
-        for at in offsets.iter().rev() {
-            self.bytes.copy_within(at + ENTRY..extent.end, *at);
+        let starts: Vec<usize> = self.entries(directory).filter(|e| e.tag == tag).map(|e| e.start).collect();
+        for start in starts.iter().rev() {
+            self.bytes.copy_within(start + ENTRY..extent.end, *start);
             self.bytes[extent.end - ENTRY..extent.end].fill(0);
         }
-        let left = self.entries(directory).count().saturating_sub(offsets.len());
+        let left = self.entries(directory).count().saturating_sub(starts.len());
         self.write_short(directory, u16::try_from(left).unwrap_or(0));
     }
 
@@ -158,15 +159,15 @@ impl Tiff {
 /// Finds the number of the orientation, from 1 (upright) to 8.
 pub(super) fn orientation(exif: &[u8]) -> Option<u16> {
     let tiff = Tiff::parse(exif)?;
-    let entries = tiff.entries(tiff.offset(4)?);
-    let found = { entries }.find(|e| (e.tag, e.kind, e.count) == (ORIENTATION, SHORT, 1))?;
-    tiff.short(found.at + 8)
+    let mut entries = tiff.entries(tiff.offset(4)?);
+    let entry = entries.find(|e| (e.tag, e.kind, e.count) == (ORIENTATION, SHORT, 1))?;
+    tiff.short(entry.start + 8)
 }
 
 /// The metadata for an upright picture of another size, without the thumbnail and, unless `keep_location`, the geographic position.
 /// `None` if they are damaged, or too long for a JPEG.
 pub(super) fn edited(exif: &[u8], (width, height): (u32, u32), keep_location: bool) -> Option<Vec<u8>> {
-    let mut tiff = Tiff::parse(exif).filter(|t| t.bytes.len() <= MOST)?;
+    let mut tiff = Tiff::parse(exif).filter(|t| t.bytes.len() <= MAX_BYTES)?;
     let first = tiff.offset(4)?;
     let end = tiff.extent(first)?.end;
     tiff.set(first, ORIENTATION, SHORT, 1);
@@ -246,7 +247,7 @@ mod tests {
         }
         exif.extend([0; 4]);
         assert_eq!(edited(&exif, (1, 1), false).map(|out| out.len()), Some(exif.len()));
-        exif.resize(MOST + 1, 0);
+        exif.resize(MAX_BYTES + 1, 0);
         assert_eq!(edited(&exif, (1, 1), false), None);
     }
 }

@@ -8,14 +8,15 @@ use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 /// An opened GIF.
 pub(super) struct Gif<'a> {
     decoder: Decoder<&'a [u8]>,
-    max: usize,
+    /// Largest number of bytes of a frame that is larger than the page.
+    max_bytes: usize,
 }
 
 impl<'a> Gif<'a> {
-    /// Reads the header. A frame larger than the page takes at most `max` bytes.
-    pub(super) fn open(bytes: &'a [u8], max: usize) -> Result<Self, Error> {
+    /// Reads the header.
+    pub(super) fn open(bytes: &'a [u8], max_bytes: usize) -> Result<Self, Error> {
         let decoder = DecodeOptions::new().read_info(bytes).map_err(wrong)?;
-        Ok(Self { decoder, max })
+        Ok(Self { decoder, max_bytes })
     }
 }
 
@@ -34,7 +35,7 @@ impl Bitmap for Gif<'_> {
         let [left, top, width, height] = [frame.left, frame.top, frame.width, frame.height].map(usize::from);
         let transparent = frame.transparent;
         let area = width.saturating_mul(height);
-        if area == 0 || area > self.max.max(to.pixels().len()) {
+        if area == 0 || area > self.max_bytes.max(to.pixels().len()) {
             return Err(undecodable("GIF", format!("its first frame has {width} x {height} pixels")));
         }
         let mut colors = [PremultipliedColorU8::TRANSPARENT; 256];
@@ -46,8 +47,8 @@ impl Bitmap for Gif<'_> {
         }
         let mut indices = vec![0; area];
         self.decoder.read_into_buffer(&mut indices).map_err(wrong)?;
-        let page = to.width() as usize;
-        let rows = to.pixels_mut().chunks_exact_mut(page).skip(top);
+        let page_width = to.width() as usize;
+        let rows = to.pixels_mut().chunks_exact_mut(page_width).skip(top);
         for (row, indices) in rows.zip(indices.chunks_exact(width)) {
             for (to, index) in row.iter_mut().skip(left).zip(indices) {
                 *to = colors[usize::from(*index)];

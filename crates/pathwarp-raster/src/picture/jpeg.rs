@@ -56,11 +56,11 @@ impl Bitmap for Jpeg<'_> {
 }
 
 fn wrong(why: DecodeErrors) -> Error {
-    match why {
-        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
-            undecodable("JPEG", "the file ends early, before its first line")
-        }
-        why => undecodable("JPEG", why),
+    let ends_early = matches!(why, DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_));
+    if ends_early {
+        undecodable("JPEG", "the file ends early, before its first line")
+    } else {
+        undecodable("JPEG", why)
     }
 }
 
@@ -108,22 +108,22 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
 /// A JPEG with width and height exchanged in its header.
 pub(super) fn with_sides_exchanged(bytes: &[u8]) -> Option<Vec<u8>> {
     let (_, frame) = segments(bytes).find(|(marker, _)| (0xc0..=0xc2).contains(marker))?;
-    let at = frame.as_ptr().addr() - bytes.as_ptr().addr();
+    let start = frame.as_ptr().addr() - bytes.as_ptr().addr();
     let mut out = bytes.to_vec();
-    // After the precision.
-    out.get_mut(at + 1..at + 5)?.rotate_left(2);
+    // Height and width, of two bytes each, follow the precision.
+    out.get_mut(start + 1..start + 5)?.rotate_left(2);
     Some(out)
 }
 
 /// Reads the tables of a DQT segment, whose values go in zigzag order.
 fn read_tables(mut content: &[u8], tables: &mut [Option<[u16; 64]>; 4]) -> Option<()> {
     while let Some((&head, rest)) = content.split_first() {
-        let wide = head >> 4 != 0;
-        let values = rest.get(..if wide { 128 } else { 64 })?;
+        let is_wide = head >> 4 != 0;
+        let values = rest.get(..if is_wide { 128 } else { 64 })?;
         let value =
-            |k: usize| if wide { u16::from_be_bytes([values[2 * k], values[2 * k + 1]]) } else { values[k].into() };
+            |k: usize| if is_wide { u16::from_be_bytes([values[2 * k], values[2 * k + 1]]) } else { values[k].into() };
         let mut table = [0; 64];
-        zigzag().zip(0..).for_each(|(at, k)| table[at] = value(k));
+        zigzag().zip(0..).for_each(|(index, k)| table[index] = value(k));
         tables[usize::from(head & 3)] = Some(table);
         content = &rest[values.len()..];
     }
@@ -133,11 +133,10 @@ fn read_tables(mut content: &[u8], tables: &mut [Option<[u16; 64]>; 4]) -> Optio
 /// The order in which the values of a block of 8 × 8 are stored, as indices row by row: along diagonals, up and down in turn.
 fn zigzag() -> impl Iterator<Item = usize> {
     (0..15).flat_map(|sum: usize| {
-        let rows = sum.saturating_sub(7)..=sum.min(7);
-        let upwards = sum.is_multiple_of(2);
-        let (first, last) = (*rows.start(), *rows.end());
-        rows.map(move |row| {
-            let row = if upwards { last - (row - first) } else { row };
+        let (first, last) = (sum.saturating_sub(7), sum.min(7));
+        let is_upwards = sum.is_multiple_of(2);
+        (first..=last).map(move |row| {
+            let row = if is_upwards { last - (row - first) } else { row };
             row * 8 + (sum - row)
         })
     })
@@ -151,40 +150,37 @@ struct Layout {
     /// `true` if all data of a line are stored together, not in several scans.
     in_one_pass: bool,
     /// Number of lines that are stored together.
-    together: u32,
+    lines_together: u32,
 }
 
 /// Reads the layout from the markers of a JPEG, as far as they go.
 fn layout(bytes: &[u8]) -> Layout {
-    let (mut out, mut at, mut components) = (Layout::default(), 2, 0);
-    while let Some(&[0xff, marker]) = bytes.get(at..).and_then(|b| b.first_chunk()) {
-        let segment = match bytes.get(at + 2..).and_then(|b| b.first_chunk()) {
-            Some(&[high, low]) => usize::from(u16::from_be_bytes([high, low])),
-            None => 0,
-        };
-        let content = bytes.get(at + 4..).unwrap_or_default();
+    let (mut out, mut position, mut components) = (Layout::default(), 2, 0);
+    while let Some(&[0xff, marker]) = bytes.get(position..).and_then(|b| b.first_chunk()) {
+        let segment = bytes.get(position + 2..).and_then(|b| b.first_chunk());
+        let segment = segment.map_or(0, |length| usize::from(u16::from_be_bytes(*length)));
+        let content = bytes.get(position + 4..).unwrap_or_default();
         match marker {
             0xd9 => return Layout { has_end: true, ..out },
-            0xff => at += 1,
-            0x00 | 0x01 | 0xd0..=0xd8 => at += 2,
             // Frames, of which the third is progressive: precision, height, width, and three bytes for each component, of which the
             // second has the lines stored together, in eights, in its lower half.
             0xc0..=0xc2 => {
                 components = content.get(5).copied().unwrap_or(0);
                 let factors = content.get(6..).unwrap_or_default().chunks(3).take(components.into());
                 let most = factors.filter_map(|c| c.get(1)).map(|f| f & 15).max();
-                out.together = 8 * u32::from(most.unwrap_or(1).max(1));
+                out.lines_together = 8 * u32::from(most.unwrap_or(1).max(1));
                 out.in_one_pass = marker < 0xc2;
-                at += 2 + segment;
             }
-            0xda => {
-                out.in_one_pass &= content.first() == Some(&components);
-                at += 2 + segment;
-            }
-            _ => at += 2 + segment,
+            0xda => out.in_one_pass &= content.first() == Some(&components),
+            _ => {}
         }
+        position += match marker {
+            0xff => 1,
+            0x00 | 0x01 | 0xd0..=0xd8 => 2,
+            _ => 2 + segment,
+        };
         // Data, up to the next marker.
-        at += bytes.get(at..).map_or(0, |rest| rest.iter().position(|b| *b == 0xff).unwrap_or(rest.len()));
+        position += bytes.get(position..).map_or(0, |rest| rest.iter().position(|b| *b == 0xff).unwrap_or(rest.len()));
     }
     out
 }
@@ -205,11 +201,10 @@ pub(super) fn early_end(bytes: &[u8], decoded: &mut Pixmap) -> Option<EarlyEnd> 
     let is_missing = |line: &&[u8]| line.as_chunks().0.iter().all(|p| *p == MISSING);
     let missing = decoded.data().rchunks_exact(row).take_while(is_missing).count();
     // If only the mark of the end is missing, nothing is lost.
-    let there = of.checked_sub(u32::try_from(missing).ok()?).filter(|n| *n < of)?;
+    let decoded_lines = of.checked_sub(u32::try_from(missing).ok()?).filter(|n| *n < of)?;
     // Of the last lines that are stored together, some are missing.
-    let lines = there.saturating_sub(layout.together);
-    let all = decoded.data_mut();
-    all[row * lines as usize..].fill(0);
+    let lines = decoded_lines.saturating_sub(layout.lines_together);
+    decoded.data_mut()[row * lines as usize..].fill(0);
     Some(EarlyEnd { lines: Some(lines), of })
 }
 

@@ -12,7 +12,6 @@ mod webp;
 
 use crate::error::Error;
 use crate::picture::bitmap::Kind;
-use crate::picture::decode::Decoded;
 use crate::picture::jpeg::Compression;
 use crate::picture::orientation::Orientation;
 use pathwarp::budget::Limits;
@@ -63,11 +62,10 @@ impl Picture {
     /// # Errors
     /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        if Self::sniff(bytes) {
-            Self::decode(bytes, true, limits)
-        } else {
-            Err(Error::Decode("neither a PNG nor a JPEG nor a WebP".to_owned()))
+        if !Self::sniff(bytes) {
+            return Err(Error::Decode("neither a PNG nor a JPEG nor a WebP".to_owned()));
         }
+        decode::decode(bytes, true, limits)
     }
 
     /// Reads an image of a drawing (PNG, JPEG, GIF or WebP) as it is stored, without applying its orientation. Takes the first image of an
@@ -84,7 +82,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Decode`] for other and damaged files; [`Error::TooLarge`] above the limits.
     pub fn read_stored_within(bytes: &[u8], limits: &Limits) -> Result<Self, Error> {
-        Self::decode(bytes, false, limits)
+        decode::decode(bytes, false, limits)
     }
 
     /// Returns `true` if the EXIF metadata of a PNG, JPEG or WebP ask to turn its pixels. Decodes no pixels.
@@ -103,11 +101,8 @@ impl Picture {
     /// JPEG nor a PNG, or if it cannot be read within the limits.
     #[must_use]
     pub fn turned(bytes: &[u8], limits: &Limits) -> Option<Vec<u8>> {
-        let may_be = matches!(Kind::sniff(bytes)?, Kind::Jpeg | Kind::Png);
-        if !may_be || !Self::is_turned(bytes, limits) {
-            return None;
-        }
-        Self::read_within(bytes, limits).ok()?.write_like(bytes).ok()
+        let is_turned = matches!(Kind::sniff(bytes)?, Kind::Jpeg | Kind::Png) && Self::is_turned(bytes, limits);
+        is_turned.then(|| Self::read_within(bytes, limits).ok()?.write_like(bytes).ok())?
     }
 
     /// Gives an image of a drawing the size at which browsers show it. In a JPEG only the header changes, and a second call restores it;
@@ -117,8 +112,7 @@ impl Picture {
         if Kind::sniff(bytes) != Some(Kind::Jpeg) {
             return Self::turned(bytes, limits);
         }
-        let exchanges = decode::orientation(bytes, limits).exchanges_sides();
-        exchanges.then(|| jpeg::with_sides_exchanged(bytes)).flatten()
+        decode::orientation(bytes, limits).transpose.then(|| jpeg::with_sides_exchanged(bytes))?
     }
 
     /// Reads an image of a drawing as browsers show it, from the result of [`Picture::sized`], or from the image where that is `None`.
@@ -129,12 +123,7 @@ impl Picture {
         if Kind::sniff(bytes) != Some(Kind::Jpeg) || !Self::is_turned(bytes, limits) {
             return Self::read_stored_within(bytes, limits);
         }
-        Self::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
-    }
-
-    fn decode(bytes: &[u8], upright: bool, limits: &Limits) -> Result<Self, Error> {
-        let Decoded { pixmap, profile, exif, early_end } = decode::decode(bytes, upright, limits)?;
-        Ok(Self { pixmap, profile, exif, early_end })
+        decode::decode(Self::sized(bytes, limits).as_deref().unwrap_or(bytes), true, limits)
     }
 
     /// A picture of new pixels made from this one, with its colour profile, if that fits, and its EXIF metadata, if they are sound,
@@ -157,7 +146,7 @@ impl Picture {
     /// quantization tables, on white where it is transparent; else it is a PNG. It has no EXIF metadata.
     ///
     /// # Errors
-    /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
+    /// [`Error::Encode`] when the encoder fails, as for a JPEG with a side of more than 65535 pixels.
     pub fn write_like(&self, source: &[u8]) -> Result<Vec<u8>, Error> {
         match Compression::read(source) {
             Some(like) => encode::encode_like(&like, &self.pixmap, self.profile_of_pixels()),
@@ -168,7 +157,7 @@ impl Picture {
     /// Encodes the picture.
     ///
     /// # Errors
-    /// [`Error::Encode`], for instance for a JPEG with a side of more than 65535 pixels.
+    /// [`Error::Encode`] when the encoder fails, as for a JPEG with a side of more than 65535 pixels.
     pub fn write(&self, format: PictureFormat) -> Result<Vec<u8>, Error> {
         encode::encode(&self.pixmap, self.profile_of_pixels(), self.exif.as_deref(), format)
     }

@@ -11,7 +11,8 @@ use tiny_skia::Pixmap;
 pub(super) struct Orientation {
     mirror_x: bool,
     mirror_y: bool,
-    transpose: bool,
+    /// `true` if width and height are exchanged.
+    pub(super) transpose: bool,
 }
 
 impl Orientation {
@@ -24,22 +25,17 @@ impl Orientation {
         })
     }
 
-    /// Returns `true` if width and height are exchanged.
-    pub(super) fn exchanges_sides(self) -> bool {
-        self.transpose
-    }
-
     /// Turns a picture upright.
     pub(super) fn apply(self, stored: Pixmap, limits: &Limits) -> Result<Pixmap, Error> {
         if self == Self::default() {
             return Ok(stored);
         }
         let [width, height] = [stored.width(), stored.height()];
-        let (across, down) = if self.transpose { (height, width) } else { (width, height) };
-        let mut upright = new_pixmap(f64::from(across), f64::from(down), limits)?;
+        let (columns, rows) = if self.transpose { (height, width) } else { (width, height) };
+        let mut upright = new_pixmap(f64::from(columns), f64::from(rows), limits)?;
         let [width, height] = [width, height].map(|n| n as usize);
         let pixels = stored.pixels();
-        for (y, row) in upright.pixels_mut().chunks_exact_mut(across as usize).enumerate() {
+        for (y, row) in upright.pixels_mut().chunks_exact_mut(columns as usize).enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {
                 let (x, y) = if self.transpose { (y, x) } else { (x, y) };
                 let x = if self.mirror_x { width - 1 - x } else { x };

@@ -17,9 +17,9 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 }
 
 impl<'a> Png<'a> {
-    /// Reads the file up to its pixels. An unpacked profile and a row together take at most `max` bytes.
-    pub(super) fn open(bytes: &'a [u8], max: usize) -> Result<Self, Error> {
-        let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: max });
+    /// Reads the file up to its pixels. An unpacked profile and a row together take at most `max_bytes`.
+    pub(super) fn open(bytes: &'a [u8], max_bytes: usize) -> Result<Self, Error> {
+        let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: max_bytes });
         decoder.set_ignore_text_chunk(true);
         decoder.set_transformations(Transformations::EXPAND);
         decoder.read_info().map(Self).map_err(wrong)
@@ -54,6 +54,7 @@ impl Bitmap for Png<'_> {
         let size = self.0.output_buffer_size().ok_or_else(|| wrong(DecodingError::LimitsExceeded))?;
         let mut samples = vec![0; size];
         self.0.next_frame(&mut samples).map_err(wrong)?;
+        // Samples of sixteen bits are two bytes each.
         match (color, depth) {
             (ColorType::Grayscale, BitDepth::Sixteen) => set_opaque(to, &samples, |[v, w]| [eight(v, w); 3]),
             (ColorType::Grayscale, _) => set_opaque(to, &samples, |[v]| [v; 3]),

@@ -70,6 +70,7 @@ fn first_frame_fits(bytes: &[u8]) -> Option<bool> {
 
 /// Returns `true` if the header says that there are EXIF data.
 fn announces_exif(bytes: &[u8]) -> bool {
+    /// The flag for EXIF data.
     const EXIF: u8 = 8;
     let first = bytes.get(12..).and_then(|b| chunks(b).next());
     first.is_some_and(|(name, data)| &name == b"VP8X" && data.first().is_some_and(|flags| flags & EXIF != 0))

@@ -29,8 +29,8 @@ const MARGIN: f64 = 20.0;
 /// Space between the panels, in nominal pixels.
 const GAP: f64 = 4.0;
 
-/// Each panel shows a different part of the plane where a common one would be so many times as long as the longer of the two.
-const APART: f64 = 1.5;
+/// Panels show different parts of the plane where a common one would be more than this many times as long as the longer of the two.
+const MAX_COMMON: f64 = 1.5;
 
 /// A drawing with its overlays.
 #[derive(Debug, Clone)]
@@ -113,7 +113,7 @@ impl<'a> Preview<'a> {
     /// Draws the preview.
     ///
     /// # Errors
-    /// [`Error::NoView`] if there is nothing to show; [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes.
+    /// [`Error::NoView`] when there is nothing to show; [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes.
     pub fn render(&self) -> Result<Pixmap, Error> {
         self.render_within(&Limits::default())
     }
@@ -121,7 +121,7 @@ impl<'a> Preview<'a> {
     /// Draws the preview, within limits.
     ///
     /// # Errors
-    /// [`Error::TooMuch`] if drawing takes more than the limits allow, and any [`Error`] of [`Preview::render`].
+    /// [`Error::TooMuch`] when drawing takes more than the limits allow, and any [`Error`] of [`Preview::render`].
     pub fn render_within(&self, limits: &Limits) -> Result<Pixmap, Error> {
         let views = self.views();
         let layout = PanelLayout::new(views[0], self.panel_size)?;
@@ -137,18 +137,16 @@ impl<'a> Preview<'a> {
         }
         Ok(picture)
     }
-}
 
-impl Preview<'_> {
     /// The parts of the plane that the panels show, of the same size.
     fn views(&self) -> [Rect; 2] {
-        let all = [self.before.bounds(), self.after.bounds()];
-        let both = all[0].union(all[1]);
-        let size = all[0].size().max(all[1].size());
-        if both.width() <= APART * size.width && both.height() <= APART * size.height {
+        let bounds = [self.before.bounds(), self.after.bounds()];
+        let both = bounds[0].union(bounds[1]);
+        let size = bounds[0].size().max(bounds[1].size());
+        if both.width() <= MAX_COMMON * size.width && both.height() <= MAX_COMMON * size.height {
             return [both; 2];
         }
-        all.map(|bounds| Rect::from_center_size(bounds.center(), size))
+        bounds.map(|b| Rect::from_center_size(b.center(), size))
     }
 }
 

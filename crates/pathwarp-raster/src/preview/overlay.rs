@@ -66,8 +66,9 @@ impl PreviewOverlay {
     /// Draws the overlay; `unit` is the number of pixels per nominal pixel.
     pub(super) fn draw(&self, to_panel: Affine, unit: f32, picture: &mut Pixmap) {
         let path = to_panel * &self.path;
-        let drawable = |p: Point| p.x.abs() < MAX_COORDINATE && p.y.abs() < MAX_COORDINATE;
-        if !control_points(&path).all(drawable) {
+        let bounds = path.control_box();
+        let is_near = [bounds.x0, bounds.y0, bounds.x1, bounds.y1].iter().all(|v| v.abs() < MAX_COORDINATE);
+        if !path.is_finite() || !is_near {
             return;
         }
         let style = self.kind.style();
@@ -84,16 +85,6 @@ impl PreviewOverlay {
     }
 }
 
-/// Lists the control points, on and off the curve.
-fn control_points(path: &BezPath) -> impl Iterator<Item = Point> {
-    path.elements().iter().flat_map(|element| match *element {
-        PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
-        PathEl::QuadTo(p, q) => vec![p, q],
-        PathEl::CurveTo(p, q, r) => vec![p, q, r],
-        PathEl::ClosePath => Vec::new(),
-    })
-}
-
 /// Width of the white border of a line, on each side, in nominal pixels.
 const HALO: f32 = 1.5;
 /// Half the side or the radius of an anchor, in nominal pixels.
@@ -106,7 +97,9 @@ const ARROW: f64 = 6.5;
 /// The look of an overlay; widths are in nominal pixels.
 struct OverlayStyle {
     rgba: [u8; 4],
+    /// Width of lines; 0 for none.
     width: f32,
+    /// Lengths of a dash and of the gap after it.
     dash: Option<[f32; 2]>,
     anchors: Option<AnchorMark>,
 }
@@ -208,36 +201,34 @@ impl Brush<'_> {
     }
 
     /// Draws an anchor; the first one is larger and hollow.
-    fn anchor(&mut self, mark: AnchorMark, at: Point, first: bool) {
-        let radius = if first { FIRST_ANCHOR } else { ANCHOR } * f64::from(self.unit);
-        let outline = |radius: f64| skia_path(&mark.outline(at, radius));
+    fn anchor(&mut self, mark: AnchorMark, center: Point, is_first: bool) {
+        let radius = if is_first { FIRST_ANCHOR } else { ANCHOR } * f64::from(self.unit);
+        let outline = |radius: f64| skia_path(&mark.outline(center, radius));
         if let (Some(halo), Some(dot)) = (outline(radius + f64::from(HALO * self.unit)), outline(radius)) {
             self.fill(&halo, Color::WHITE);
             self.fill(&dot, self.color());
         }
-        if first && let Some(hole) = outline(radius * 0.5) {
+        if is_first && let Some(hole) = outline(radius * 0.5) {
             self.fill(&hole, Color::WHITE);
         }
     }
 }
 
 impl AnchorMark {
-    /// The outline around `at`. All marks of the same radius have about the same area.
-    fn outline(self, at: Point, radius: f64) -> BezPath {
-        let corners = |reach: [Vec2; 4]| {
+    /// The outline around a point. All marks of the same radius have about the same area.
+    fn outline(self, center: Point, radius: f64) -> BezPath {
+        let polygon = |corners: [(f64, f64); 4]| {
             let mut path = BezPath::new();
-            path.move_to(at + reach[0]);
-            reach[1..].iter().for_each(|r| path.line_to(at + *r));
+            path.move_to(center + Vec2::from(corners[0]));
+            corners[1..].iter().for_each(|c| path.line_to(center + Vec2::from(*c)));
             path.close_path();
             path
         };
         let (side, diagonal) = (radius * 0.9, radius * 1.3);
         match self {
-            Self::Round => kurbo::Circle::new(at, radius).to_path(0.01),
-            Self::Square => corners([(-side, -side), (side, -side), (side, side), (-side, side)].map(Vec2::from)),
-            Self::Diamond => {
-                corners([(0.0, -diagonal), (diagonal, 0.0), (0.0, diagonal), (-diagonal, 0.0)].map(Vec2::from))
-            }
+            Self::Round => kurbo::Circle::new(center, radius).to_path(0.01),
+            Self::Square => polygon([(-side, -side), (side, -side), (side, side), (-side, side)]),
+            Self::Diamond => polygon([(0.0, -diagonal), (diagonal, 0.0), (0.0, diagonal), (-diagonal, 0.0)]),
         }
     }
 }
@@ -252,6 +243,7 @@ fn middle(segment: PathSeg) -> (Point, Vec2) {
     (segment.eval(0.5), tangent)
 }
 
+/// A paint of one colour, with smooth edges.
 fn paint(color: Color) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color(color);
@@ -272,25 +264,13 @@ pub(super) fn transform(affine: Affine) -> Transform {
 /// Converts a path; `None` if there is nothing to draw.
 fn skia_path(path: &BezPath) -> Option<Path> {
     let mut builder = PathBuilder::new();
-    let xy = |p: Point| (to_f32(p.x), to_f32(p.y));
+    let (x, y) = (|p: Point| to_f32(p.x), |p: Point| to_f32(p.y));
     for element in path.elements() {
         match *element {
-            PathEl::MoveTo(p) => {
-                let (x, y) = xy(p);
-                builder.move_to(x, y);
-            }
-            PathEl::LineTo(p) => {
-                let (x, y) = xy(p);
-                builder.line_to(x, y);
-            }
-            PathEl::QuadTo(p, q) => {
-                let ((px, py), (qx, qy)) = (xy(p), xy(q));
-                builder.quad_to(px, py, qx, qy);
-            }
-            PathEl::CurveTo(p, q, r) => {
-                let ((px, py), (qx, qy), (rx, ry)) = (xy(p), xy(q), xy(r));
-                builder.cubic_to(px, py, qx, qy, rx, ry);
-            }
+            PathEl::MoveTo(p) => builder.move_to(x(p), y(p)),
+            PathEl::LineTo(p) => builder.line_to(x(p), y(p)),
+            PathEl::QuadTo(p, q) => builder.quad_to(x(p), y(p), x(q), y(q)),
+            PathEl::CurveTo(p, q, r) => builder.cubic_to(x(p), y(p), x(q), y(q), x(r), y(r)),
             PathEl::ClosePath => builder.close(),
         }
     }

@@ -3,28 +3,22 @@
 use kurbo::{Point, Rect};
 use pathwarp::engine::{Batches, Cost};
 use pathwarp::map::{Creases, Jet, Map};
-use std::fmt;
 
 /// The corners of a box divided into cells, of which `cells` lie along each side.
 pub(crate) fn lattice(r: Rect, cells: usize) -> impl Iterator<Item = Point> {
-    let at = move |k: usize| k as f64 / cells as f64;
-    let fractions = (0..=cells).flat_map(move |j| (0..=cells).map(move |i| (at(i), at(j))));
-    fractions.map(move |(u, v)| Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()))
+    let share = move |k: usize| k as f64 / cells as f64;
+    let shares = (0..=cells).flat_map(move |j| (0..=cells).map(move |i| (share(i), share(j))));
+    shares.map(move |(u, v)| Point::new(r.x0 + u * r.width(), r.y0 + v * r.height()))
 }
 
 /// A map, continued beyond a box by its tangents if it folds there or is not defined.
 ///
 /// Deformations are made for the box of the artwork; its shadows lie around it.
+#[derive(Debug)]
 pub struct Continued<'a> {
     map: &'a dyn Map,
-    /// The box beyond which tangents continue the map.
+    /// The box beyond which tangents continue the map; `None` if the map itself does.
     inner: Option<Rect>,
-}
-
-impl fmt::Debug for Continued<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Continued").field("map", &self.map).field("inner", &self.inner).finish()
-    }
 }
 
 impl<'a> Continued<'a> {
@@ -39,9 +33,9 @@ impl<'a> Continued<'a> {
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let sign = jets.last().map_or(0.0, |jet| jet.det().signum());
-        let sound = |(p, jet): (&Point, &Jet)| jet.det() * sign > 0.0 && creases.defined_at(*p);
-        let is_sound = samples.iter().zip(&jets).all(sound);
-        Self { map, inner: (!is_sound).then_some(inner) }
+        let is_sound = |(p, jet): (&Point, &Jet)| jet.det() * sign > 0.0 && creases.defined_at(*p);
+        let is_sound_everywhere = samples.iter().zip(&jets).all(is_sound);
+        Self { map, inner: (!is_sound_everywhere).then_some(inner) }
     }
 
     /// The nearest point of the inner box.
@@ -52,16 +46,16 @@ impl<'a> Continued<'a> {
 
 impl Map for Continued<'_> {
     fn jet(&self, p: Point) -> Jet {
-        let from = self.nearest_inner(p);
-        let jet = self.map.jet(from);
-        Jet { p: jet.p + jet.push(p - from), ..jet }
+        let inner = self.nearest_inner(p);
+        let jet = self.map.jet(inner);
+        Jet { p: jet.p + jet.push(p - inner), ..jet }
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        let from: Vec<Point> = ps.iter().map(|p| self.nearest_inner(*p)).collect();
-        self.map.jets(&from, out);
-        for ((p, from), jet) in ps.iter().zip(&from).zip(out) {
-            jet.p += jet.push(*p - *from);
+        let inner: Vec<Point> = ps.iter().map(|p| self.nearest_inner(*p)).collect();
+        self.map.jets(&inner, out);
+        for ((p, inner), jet) in ps.iter().zip(&inner).zip(out) {
+            jet.p += jet.push(*p - *inner);
         }
     }
 

@@ -7,7 +7,7 @@
 //!
 //! Unlike [`NewtonInverse`](pathwarp::map::NewtonInverse), answers are not certified: this serves colours, not geometry.
 
-use super::image_warp::in_pixels;
+use super::image_warp::composed;
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::engine::{Batches, Cost};
 use pathwarp::map::{Creases, Jet, Map};
@@ -27,10 +27,10 @@ const BUCKETS: usize = 32;
 const MAX_STEPS: usize = 5;
 /// A residual below this fraction of the image's size needs just one more step, which about squares it.
 const CLOSE: f64 = 1.0 / 1024.0;
-/// The residual of a strict answer is below this multiple of [`CLOSE`].
-const FAR: f64 = 4.0;
+/// The residual of a strict answer is at most this multiple of [`CLOSE`].
+const STRICT: f64 = 4.0;
 /// Around the box, the map is inverted if it differs from its tangent by at most this fraction of the distance; else the tangent is.
-const CONTINUES: f64 = 0.25;
+const MAX_DEVIATION: f64 = 0.25;
 /// Largest distance from the first answer, in cells.
 const MAX_DRIFT: f64 = 1.5;
 
@@ -42,11 +42,12 @@ pub struct GridInverse<'a> {
     nodes: Vec<Node>,
     triangles: Vec<Triangle>,
     buckets: Buckets,
+    /// Size of a cell of the box.
     cell: Vec2,
     /// A residual below this needs just one more step.
     close: f64,
-    /// The largest residual of an answer.
-    most: f64,
+    /// The largest residual of an answer; infinite unless answers are strict.
+    max_residual: f64,
 }
 
 impl fmt::Debug for GridInverse<'_> {
@@ -55,21 +56,24 @@ impl fmt::Debug for GridInverse<'_> {
     }
 }
 
+/// A corner of the cells.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     point: Point,
     image: Point,
 }
 
+/// Half a cell.
 #[derive(Debug, Clone, Copy)]
 struct Triangle {
+    /// Indices of nodes.
     corners: [usize; 3],
     /// `true` if the triangle lies in the box.
-    inner: bool,
+    is_inner: bool,
     /// `true` if the map, not a tangent, applies in the triangle, so that Newton steps can improve its answers.
-    mapped: bool,
-    /// `true` if the map keeps the triangle's orientation.
-    upright: bool,
+    is_mapped: bool,
+    /// `true` if the triangle's image has the orientation of the larger part of the box.
+    is_upright: bool,
 }
 
 impl<'a> GridInverse<'a> {
@@ -84,63 +88,58 @@ impl<'a> GridInverse<'a> {
         let (nodes, continues) = grid.nodes(map, placed, after);
         let triangles = grid.triangles(&nodes, continues);
         let images = nodes.iter().map(|n| n.image).filter(|p| p.is_finite());
-        let bounds = images
-            .fold(None, |b: Option<Rect>, p| Some(b.map_or(Rect::from_origin_size(p, (0.0, 0.0)), |b| b.union_pt(p))));
-        let bounds = bounds.unwrap_or_default();
+        let bounds = images.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or_default();
         let buckets = Buckets::new(bounds, &nodes, &triangles);
         let close = CLOSE * bounds.width().hypot(bounds.height());
-        Self { map, placed, after, nodes, triangles, buckets, cell: grid.cell(), close, most: f64::INFINITY }
+        Self { map, placed, after, nodes, triangles, buckets, cell: grid.cell(), close, max_residual: f64::INFINITY }
     }
 
     /// Leaves out answers with a large residual, and those where the map reverses orientation.
     #[must_use]
     pub(crate) fn strict(self) -> Self {
-        Self { most: FAR * self.close, ..self }
+        Self { max_residual: STRICT * self.close, ..self }
     }
 
     /// Returns `false` if certainly no point of a box has an inverse.
     #[must_use]
     pub fn touches(&self, r: Rect) -> bool {
-        let common = r.intersect(self.buckets.bounds);
-        let ((i0, j0), (i1, j1)) =
-            (self.buckets.index(common.origin()), self.buckets.index(Point::new(common.x1, common.y1)));
-        let mut all = (j0..=j1).flat_map(|j| (i0..=i1).map(move |i| j * BUCKETS + i));
-        r.overlaps(self.buckets.bounds) && all.any(|k| self.buckets.starts[k] < self.buckets.starts[k + 1])
+        let starts = &self.buckets.starts;
+        let mut touched = self.buckets.touched_by(r.intersect(self.buckets.bounds));
+        r.overlaps(self.buckets.bounds) && touched.any(|b| starts[b] < starts[b + 1])
     }
 
     /// The first answer for a point, and `true` if Newton steps can improve it. `last` caches the triangle of the previous answer, which a
     /// neighbour is likely to share.
     fn locate(&self, q: Point, last: &mut Option<u32>) -> Option<(Point, bool)> {
-        let found = last.and_then(|k| self.answer_in(k, q));
+        let found = last.and_then(|triangle| self.answer_in(triangle, q));
         if found.is_some() {
             return found;
         }
         let mut reversed = None;
-        for k in self.buckets.triangles_near(q)? {
-            let t = &self.triangles[*k as usize];
-            let Some(found) = self.answer_in(*k, q) else { continue };
-            if t.upright {
-                *last = t.mapped.then_some(*k);
+        for triangle in self.buckets.triangles_near(q)? {
+            let t = &self.triangles[*triangle as usize];
+            let Some(found) = self.answer_in(*triangle, q) else { continue };
+            if t.is_upright {
+                *last = t.is_mapped.then_some(*triangle);
                 return Some(found);
             }
-            reversed = reversed.or(Some(found).filter(|_| self.most.is_infinite()));
+            reversed = reversed.or(Some(found).filter(|_| self.max_residual.is_infinite()));
         }
         reversed
     }
 
-    /// The answer of triangle `k` if the point is in its image.
+    /// The answer of a triangle if the point is in its image.
     #[inline]
-    fn answer_in(&self, k: u32, q: Point) -> Option<(Point, bool)> {
-        let t = &self.triangles[k as usize];
-        let [a, b, c] = t.corners;
-        let (a, b, c) = (&self.nodes[a], &self.nodes[b], &self.nodes[c]);
+    fn answer_in(&self, triangle: u32, q: Point) -> Option<(Point, bool)> {
+        let t = &self.triangles[triangle as usize];
+        let [a, b, c] = t.corners.map(|n| &self.nodes[n]);
         let (v, w) = barycentric(q, a.image, b.image, c.image)?;
-        Some((a.point + (b.point - a.point) * v + (c.point - a.point) * w, t.mapped))
+        Some((a.point + (b.point - a.point) * v + (c.point - a.point) * w, t.is_mapped))
     }
 
-    /// The next Newton step, given the jet at the current point, with its residual. `None` if the jet is singular.
+    /// The next Newton step, given the map's jet at the current point, with its residual. `None` if the jet is singular.
     fn step(&self, q: Point, jet: &Jet) -> Option<(Vec2, f64)> {
-        let jet = in_pixels(jet, self.after, self.placed);
+        let jet = composed(jet, self.after, self.placed);
         let (r, det) = (q - jet.p, jet.det());
         let step = Vec2::new(r.cross(jet.dy) / det, jet.dx.cross(r) / det);
         step.is_finite().then(|| (step, r.hypot()))
@@ -153,7 +152,7 @@ impl Map for GridInverse<'_> {
         if !p.is_finite() {
             return Jet::UNDEFINED;
         }
-        in_pixels(&self.map.jet(self.placed * p), self.after, self.placed).inverted(p)
+        composed(&self.map.jet(self.placed * p), self.after, self.placed).inverted(p)
     }
 
     fn cost(&self) -> Cost<'_> {
@@ -167,13 +166,14 @@ impl Map for GridInverse<'_> {
     }
 
     fn points(&self, qs: &[Point], out: &mut [Point]) {
+        const UNDEFINED: Point = Point::new(f64::NAN, f64::NAN);
         let mut active = Vec::with_capacity(qs.len());
         let mut last = None;
-        for (i, (q, o)) in qs.iter().zip(out.iter_mut()).enumerate() {
+        for (index, (q, o)) in qs.iter().zip(out.iter_mut()).enumerate() {
             let found = self.locate(*q, &mut last);
-            *o = found.map_or(Point::new(f64::NAN, f64::NAN), |f| f.0);
+            *o = found.map_or(UNDEFINED, |f| f.0);
             if found.is_some_and(|f| f.1) {
-                active.push(Search { index: i, start: *o, at: *o, best: f64::INFINITY });
+                active.push(Search { index, start: *o, current: *o, best: f64::INFINITY });
             }
         }
         let mut points = Vec::with_capacity(active.len());
@@ -183,28 +183,27 @@ impl Map for GridInverse<'_> {
                 break;
             }
             points.clear();
-            points.extend(active.iter().map(|s| self.placed * s.at));
+            points.extend(active.iter().map(|s| self.placed * s.current));
             self.map.jets(&points, &mut jets[..active.len()]);
-            let mut k = 0;
+            let mut jets = jets.iter();
             active.retain_mut(|s| {
-                let found = self.step(qs[s.index], &jets[k]);
-                k += 1;
-                let undefined = Point::new(f64::NAN, f64::NAN);
+                let found = jets.next().and_then(|jet| self.step(qs[s.index], jet));
                 let Some((step, residual)) = found.filter(|f| f.1 < s.best) else {
-                    if s.best > self.most {
-                        out[s.index] = undefined;
+                    if s.best > self.max_residual {
+                        out[s.index] = UNDEFINED;
                     }
                     return false;
                 };
-                out[s.index] = if residual > self.most { undefined } else { s.at };
+                out[s.index] = if residual > self.max_residual { UNDEFINED } else { s.current };
                 s.best = residual;
-                let (to, far) = (s.at + step, s.at + step - s.start);
-                if far.x.abs() > MAX_DRIFT * self.cell.x || far.y.abs() > MAX_DRIFT * self.cell.y {
+                let next = s.current + step;
+                let drift = next - s.start;
+                if drift.x.abs() > MAX_DRIFT * self.cell.x || drift.y.abs() > MAX_DRIFT * self.cell.y {
                     return false;
                 }
-                s.at = to;
+                s.current = next;
                 if residual <= self.close {
-                    out[s.index] = to;
+                    out[s.index] = next;
                     return false;
                 }
                 true
@@ -218,8 +217,9 @@ impl Batches for GridInverse<'_> {}
 /// A point that is being inverted.
 struct Search {
     index: usize,
+    /// The first answer, and the current one.
     start: Point,
-    at: Point,
+    current: Point,
     /// The smallest residual so far.
     best: f64,
 }
@@ -246,48 +246,48 @@ impl Grid {
         Vec2::new(self.area.width() / self.columns as f64, self.area.height() / self.rows as f64)
     }
 
-    /// Nodes along the width.
-    fn side(&self) -> usize {
+    /// Nodes along the width. The box has one more than columns, and the ring one on each side.
+    fn nodes_per_row(&self) -> usize {
         self.columns + 3
     }
 
     /// The nodes of the box and around it, row by row, and `true` if the images of the latter come from the map, `false` if they come from
     /// its tangents.
     fn nodes(&self, map: &dyn Map, placed: Affine, after: Affine) -> (Vec<Node>, bool) {
-        let (area, side) = (self.area, self.side());
-        let along = |k: usize, from: f64, size: f64, n: usize| match k {
-            0 => from - self.reach,
-            k if k == n + 2 => from + size + self.reach,
-            k => from + size * (k - 1) as f64 / n as f64,
+        let (area, per_row) = (self.area, self.nodes_per_row());
+        let coordinate = |k: usize, start: f64, size: f64, cells: usize| match k {
+            0 => start - self.reach,
+            k if k == cells + 2 => start + size + self.reach,
+            k => start + size * (k - 1) as f64 / cells as f64,
         };
-        let point = |k: usize| {
-            let x = along(k % side, area.x0, area.width(), self.columns);
-            Point::new(x, along(k / side, area.y0, area.height(), self.rows))
+        let point = |node: usize| {
+            let x = coordinate(node % per_row, area.x0, area.width(), self.columns);
+            Point::new(x, coordinate(node / per_row, area.y0, area.height(), self.rows))
         };
-        let inside: Vec<Point> = (0..side * (self.rows + 3))
-            .map(|k| point(k).to_vec2())
-            .map(|p| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)))
-            .collect();
-        let points: Vec<Point> = inside.iter().map(|p| placed * *p).collect();
-        let mut jets = vec![Jet::default(); points.len()];
-        map.jets(&points, &mut jets);
+        let points: Vec<Point> = (0..per_row * (self.rows + 3)).map(point).collect();
+        let nearest = |p: &Point| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1));
+        let inside: Vec<Point> = points.iter().map(nearest).collect();
+        let sources: Vec<Point> = inside.iter().map(|p| placed * *p).collect();
+        let mut jets = vec![Jet::default(); sources.len()];
+        map.jets(&sources, &mut jets);
         let mut creases = Creases::default();
         map.creases(&mut creases);
         let node = |(k, (jet, source)): (usize, (&Jet, &Point))| {
-            let jet = in_pixels(jet, after, placed);
-            let image = jet.p + jet.push(point(k) - inside[k]);
+            let jet = composed(jet, after, placed);
+            let image = jet.p + jet.push(points[k] - inside[k]);
             let image = if creases.defined_at(*source) { image } else { Point::new(f64::NAN, f64::NAN) };
-            Node { point: point(k), image }
+            Node { point: points[k], image }
         };
-        let mut nodes: Vec<Node> = jets.iter().zip(&points).enumerate().map(node).collect();
-        let around: Vec<usize> = (0..nodes.len()).filter(|k| point(*k) != inside[*k]).collect();
-        let beyond: Vec<Point> = around.iter().map(|k| placed * point(*k)).collect();
+        let mut nodes: Vec<Node> = jets.iter().zip(&sources).enumerate().map(node).collect();
+        let around: Vec<usize> = (0..nodes.len()).filter(|k| points[*k] != inside[*k]).collect();
+        let beyond: Vec<Point> = around.iter().map(|k| placed * points[*k]).collect();
         let mut images = vec![Point::ORIGIN; beyond.len()];
         map.points(&beyond, &mut images);
         let continues = around.iter().zip(&beyond).zip(&mut images).all(|((k, source), image)| {
             *image = after * *image;
-            let (by_tangent, from) = (nodes[*k].image, after * jets[*k].p);
-            creases.defined_at(*source) && image.distance(by_tangent) <= CONTINUES * by_tangent.distance(from)
+            let (by_tangent, inner_image) = (nodes[*k].image, after * jets[*k].p);
+            let max_distance = MAX_DEVIATION * by_tangent.distance(inner_image);
+            creases.defined_at(*source) && image.distance(by_tangent) <= max_distance
         });
         if continues {
             around.iter().zip(images).for_each(|(k, image)| nodes[*k].image = image);
@@ -297,28 +297,29 @@ impl Grid {
 
     /// The triangles between nodes that have images. Those of the box come first, since they take precedence.
     fn triangles(&self, nodes: &[Node], continues: bool) -> Vec<Triangle> {
-        let area = |t: [usize; 3]| {
-            let [a, b, c] = t.map(|n| nodes[n].image);
+        let image_area = |corners: [usize; 3]| {
+            let [a, b, c] = corners.map(|n| nodes[n].image);
             (b - a).cross(c - a)
         };
-        let side = self.side();
+        let per_row = self.nodes_per_row();
         let mut out: Vec<(Triangle, f64)> = Vec::with_capacity(2 * nodes.len());
-        for k in (0..side * (self.rows + 2)).filter(|k| k % side != side - 1) {
-            let inner = (1..=self.columns).contains(&(k % side)) && (1..=self.rows).contains(&(k / side));
-            for corners in [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]] {
-                let size = area(corners);
-                if size.is_finite() && size != 0.0 {
-                    out.push((Triangle { corners, inner, mapped: inner || continues, upright: true }, size));
+        for k in (0..per_row * (self.rows + 2)).filter(|k| k % per_row != per_row - 1) {
+            let is_inner = (1..=self.columns).contains(&(k % per_row)) && (1..=self.rows).contains(&(k / per_row));
+            for corners in [[k, k + 1, k + per_row], [k + 1, k + per_row + 1, k + per_row]] {
+                let area = image_area(corners);
+                if area.is_finite() && area != 0.0 {
+                    let is_mapped = is_inner || continues;
+                    out.push((Triangle { corners, is_inner, is_mapped, is_upright: true }, area));
                 }
             }
         }
         // The larger part of the image decides which orientation is upright.
-        let up = out.iter().filter(|t| t.0.inner).map(|t| t.1).sum::<f64>().signum();
-        for (t, size) in &mut out {
-            t.upright = size.signum() == up;
+        let upright = out.iter().filter(|(t, _)| t.is_inner).map(|(_, area)| area).sum::<f64>().signum();
+        for (t, area) in &mut out {
+            t.is_upright = area.signum() == upright;
         }
-        out.sort_by_key(|t| !t.0.inner);
-        out.into_iter().map(|t| t.0).collect()
+        out.sort_by_key(|(t, _)| !t.is_inner);
+        out.into_iter().map(|(t, _)| t).collect()
     }
 }
 
@@ -343,48 +344,50 @@ struct Buckets {
 impl Buckets {
     fn new(bounds: Rect, nodes: &[Node], triangles: &[Triangle]) -> Self {
         let mut out = Self { bounds, starts: vec![0; BUCKETS * BUCKETS + 1], lists: Vec::new() };
-        let spans: Vec<_> = triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.corners.map(|n| nodes[n].image);
-                let r = Rect::from_points(a, b).union_pt(c);
-                (out.index(r.origin()), out.index(Point::new(r.x1, r.y1)))
-            })
-            .collect();
-        let buckets = |((i0, j0), (i1, j1)): ((usize, usize), (usize, usize))| {
-            (j0..=j1).flat_map(move |j| (i0..=i1).map(move |i| j * BUCKETS + i))
+        let image_box = |t: &Triangle| {
+            let [a, b, c] = t.corners.map(|n| nodes[n].image);
+            Rect::from_points(a, b).union_pt(c)
         };
-        for span in &spans {
-            buckets(*span).for_each(|b| out.starts[b + 1] += 1);
+        let boxes: Vec<Rect> = triangles.iter().map(image_box).collect();
+        // First the number of triangles in each bucket, then where its list starts.
+        for image in &boxes {
+            out.touched_by(*image).for_each(|b| out.starts[b + 1] += 1);
         }
         for b in 0..BUCKETS * BUCKETS {
             out.starts[b + 1] += out.starts[b];
         }
         out.lists = vec![0; out.starts[BUCKETS * BUCKETS] as usize];
         let mut next = out.starts.clone();
-        for (k, span) in (0..).zip(&spans) {
-            for b in buckets(*span) {
-                out.lists[next[b] as usize] = k;
+        for (triangle, image) in (0..).zip(&boxes) {
+            for b in out.touched_by(*image) {
+                out.lists[next[b] as usize] = triangle;
                 next[b] += 1;
             }
         }
         out
     }
 
-    /// Column and row of the bucket that is nearest to a point.
-    fn index(&self, q: Point) -> (usize, usize) {
-        let along = |v: f64, a: f64, b: f64| (((v - a) / (b - a) * BUCKETS as f64).max(0.0) as usize).min(BUCKETS - 1);
-        (along(q.x, self.bounds.x0, self.bounds.x1), along(q.y, self.bounds.y0, self.bounds.y1))
+    /// The buckets that a box touches, or else the nearest ones.
+    fn touched_by(&self, r: Rect) -> impl Iterator<Item = usize> + use<> {
+        let ((i0, j0), (i1, j1)) = (self.index(r.origin()), self.index(Point::new(r.x1, r.y1)));
+        (j0..=j1).flat_map(move |j| (i0..=i1).map(move |i| j * BUCKETS + i))
     }
 
+    /// Column and row of the bucket that is nearest to a point.
+    fn index(&self, q: Point) -> (usize, usize) {
+        let index = |v: f64, a: f64, b: f64| (((v - a) / (b - a) * BUCKETS as f64).max(0.0) as usize).min(BUCKETS - 1);
+        (index(q.x, self.bounds.x0, self.bounds.x1), index(q.y, self.bounds.y0, self.bounds.y1))
+    }
+
+    /// Indices of the triangles that may contain a point; `None` if the point is outside of all.
     fn triangles_near(&self, q: Point) -> Option<&[u32]> {
         let b = &self.bounds;
         if !((b.x0..=b.x1).contains(&q.x) && (b.y0..=b.y1).contains(&q.y)) {
             return None;
         }
         let (i, j) = self.index(q);
-        let k = j * BUCKETS + i;
-        self.lists.get(self.starts[k] as usize..self.starts[k + 1] as usize)
+        let bucket = j * BUCKETS + i;
+        self.lists.get(self.starts[bucket] as usize..self.starts[bucket + 1] as usize)
     }
 }
 
@@ -420,7 +423,7 @@ mod tests {
         assert!(worst < 1e-4, "{worst}");
         let (p, q) = (Point::new(40.0, 50.0), forward(Point::new(40.0, 50.0)));
         let jet = inverse.jet(q);
-        let there = in_pixels(&Bend.jet(READ * p), WRITE, READ).then(&jet);
+        let there = composed(&Bend.jet(READ * p), WRITE, READ).then(&jet);
         assert!((there.dx - Vec2::new(1.0, 0.0)).hypot() + (there.dy - Vec2::new(0.0, 1.0)).hypot() < 1e-6);
     }
 
@@ -429,7 +432,7 @@ mod tests {
         let inverse = GridInverse::new(&Bend, AREA, 20.0, READ, WRITE, 50.0);
         for (p, c) in [((8.0, 45.0), (10.0, 45.0)), ((95.0, 30.0), (90.0, 30.0)), ((50.0, 75.0), (50.0, 70.0))] {
             let (p, c) = (Point::from(p), Point::from(c));
-            let jet = in_pixels(&Bend.jet(READ * c), WRITE, READ);
+            let jet = composed(&Bend.jet(READ * c), WRITE, READ);
             let back = inverse.point(jet.p + jet.push(p - c));
             assert!(back.distance(p) < 0.1, "{p} {back}");
         }

@@ -1,5 +1,6 @@
 //! Describes a warp of a bitmap, and measures its extent.
 
+use super::continued::lattice;
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::map::{Creases, Jet, Map};
 use tiny_skia::Pixmap;
@@ -28,13 +29,14 @@ pub fn shown(target: Rect, size: (u32, u32)) -> Affine {
         * Affine::scale_non_uniform(target.width() / f64::from(size.0), target.height() / f64::from(size.1))
 }
 
-/// Converts a jet of a map between planes to one between the pixels of two pictures.
+/// The jet of the composition of `before`, a map and `after`, in this order, given the map's jet. So a jet between planes becomes one
+/// between the pixels of two pictures.
 #[inline]
-pub(crate) fn in_pixels(jet: &Jet, to_source: Affine, shown: Affine) -> Jet {
-    let [a, b, c, d, ..] = to_source.as_coeffs();
-    let along = |v: Vec2| Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y);
-    let [p, q, r, s, ..] = shown.as_coeffs();
-    Jet { p: to_source * jet.p, dx: along(jet.push(Vec2::new(p, q))), dy: along(jet.push(Vec2::new(r, s))) }
+pub(crate) fn composed(jet: &Jet, after: Affine, before: Affine) -> Jet {
+    let [a, b, c, d, ..] = after.as_coeffs();
+    let push = |v: Vec2| Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y);
+    let [p, q, r, s, ..] = before.as_coeffs();
+    Jet { p: after * jet.p, dx: push(jet.push(Vec2::new(p, q))), dy: push(jet.push(Vec2::new(r, s))) }
 }
 
 /// The singular values of a jet, smaller one first: the lengths of the images of unit vectors in the directions of extreme stretch.
@@ -44,9 +46,6 @@ pub(crate) fn lengths(jet: &Jet) -> [f64; 2] {
     let stretch = (0.5 * (frobenius + discriminant)).sqrt();
     [jet.det().abs() / stretch, stretch]
 }
-
-/// Cells along a side of the sampling grid.
-const CELLS: usize = 192;
 
 /// The extent of a warped picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,29 +65,26 @@ pub struct Extent {
 /// Returns `None` if the map is defined at none of them.
 #[must_use]
 pub fn extent(area: Rect, placed: Affine, map: &dyn Map, after: Affine) -> Option<Extent> {
-    const ALONG: usize = 2048;
+    /// Cells along a side of the grid of samples inside, and intervals between those along a side of the edge.
+    const CELLS: usize = 192;
+    const INTERVALS: usize = 2048;
     let mut creases = Creases::default();
     map.creases(&mut creases);
-    let at = |u: f64, v: f64| Point::new(area.x0 + u * area.width(), area.y0 + v * area.height());
-    let n = CELLS as f64;
-    let inside = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| (i as f64 / n, j as f64 / n)));
-    let edge = (0..=ALONG).map(|k| k as f64 / ALONG as f64).flat_map(|t| [(t, 0.0), (t, 1.0), (0.0, t), (1.0, t)]);
+    let shares = (0..=INTERVALS).map(|k| k as f64 / INTERVALS as f64);
+    let edge = shares.flat_map(|t| [(t, 0.0), (t, 1.0), (0.0, t), (1.0, t)]);
+    let edge = edge.map(|(u, v)| Point::new(area.x0 + u * area.width(), area.y0 + v * area.height()));
     let mut out: Option<Extent> = None;
     let mut undefined = None;
-    for (u, v) in inside.chain(edge) {
-        let p = placed * at(u, v);
-        let jet = in_pixels(&map.jet(p), after, placed);
+    for p in lattice(area, CELLS).chain(edge) {
+        let p = placed * p;
+        let jet = composed(&map.jet(p), after, placed);
         if !jet.p.is_finite() || !creases.defined_at(p) {
             undefined = undefined.or(Some(p));
             continue;
         }
         let [squeeze, stretch] = lengths(&jet);
-        let e = out.get_or_insert(Extent {
-            bounds: Rect::from_origin_size(jet.p, (0.0, 0.0)),
-            stretch: 0.0,
-            squeeze: f64::INFINITY,
-            undefined,
-        });
+        let bounds = Rect::from_points(jet.p, jet.p);
+        let e = out.get_or_insert(Extent { bounds, stretch: 0.0, squeeze: f64::INFINITY, undefined });
         e.bounds = e.bounds.union_pt(jet.p);
         if stretch.is_finite() {
             e.stretch = e.stretch.max(stretch);

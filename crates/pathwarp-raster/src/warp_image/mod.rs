@@ -33,7 +33,7 @@ pub use continued::Continued;
 pub(crate) use continued::lattice;
 pub use grid_inverse::GridInverse;
 pub use image_warp::{Extent, ImageWarp, extent, shown};
-pub(crate) use image_warp::{in_pixels, lengths};
+pub(crate) use image_warp::{composed, lengths};
 pub use painter::warp_image;
 pub use resolution::{SeenColor, ShadeTolerance, SmoothShade};
 pub use shade::{Colors, Shade, shade};

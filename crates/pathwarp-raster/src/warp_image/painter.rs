@@ -1,12 +1,12 @@
 //! Warps a bitmap tile by tile.
 
-use super::image_warp::{ImageWarp, in_pixels};
+use super::image_warp::{ImageWarp, composed};
 use super::rows::{self, TileMethod};
-use super::sample::{self, Pyramid, bytes};
+use super::sample::{self, Pyramid};
 use super::tile::{BYTES, BitmapBytes, MIN_TILE, PixelArea, SourceBlock, TILE, announce};
 use super::trace::{ChebyshevBasis, Trace};
 use crate::error::Error;
-use crate::pixmap::{for_each_chunk, new_pixmap};
+use crate::pixmap::{bytes, for_each_chunk, new_pixmap};
 use kurbo::{Affine, Point, Rect, Vec2};
 use pathwarp::budget::Limits;
 use pathwarp::engine::{Batches, Gathered};
@@ -23,7 +23,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let limits = Limits::default().for_input(warp.source.data().len());
     let (width_px, height_px) = (f64::from(width), f64::from(height));
     let mut out = new_pixmap(width_px, height_px, &limits.for_pixels(width_px * height_px))?;
-    let reach = Reach::new(warp, warp.shown.inverse(), TILE);
+    let touched_tiles = TouchedTiles::new(warp);
     let painter = ImagePainter {
         warp,
         to_source: warp.placed.inverse(),
@@ -39,7 +39,7 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
     let columns = width as usize;
     for_each_chunk(out.data_mut(), columns * BYTES * TILE, |band, rows| {
         let (top, height) = (band * TILE, rows.len() / (columns * BYTES));
-        let touched = (0..columns).step_by(TILE).filter(|left| reach.touches(left / TILE, band));
+        let touched = (0..columns).step_by(TILE).filter(|left| touched_tiles.contain(left / TILE, band));
         let tile = |left: usize| PixelArea { left, top, width: TILE.min(columns - left), height };
         let tiles: Vec<PixelArea> = touched.map(tile).collect();
         let cache = warp.inverse.prefers_batches().then(|| painter.cache(tiles.clone()));
@@ -52,7 +52,9 @@ pub fn warp_image(warp: &ImageWarp<'_>) -> Result<Pixmap, Error> {
 
 /// A band of whole rows of the result.
 struct ImageBand<'a> {
+    /// The first row.
     top: usize,
+    /// Bytes per row.
     stride: usize,
     rows: &'a mut [u8],
     /// The part of the source that a tile reads. The next tile reuses the memory.
@@ -103,7 +105,8 @@ impl<'a> ImagePainter<'a> {
         let centre = |i: isize, j: isize| {
             self.warp.shown * Point::new(area.left as f64 + i as f64 + 0.5, area.top as f64 + j as f64 + 0.5)
         };
-        let in_source = |jet: &Jet| in_pixels(jet, self.to_source, self.warp.shown);
+        // From pixels of the result to pixels of the source.
+        let between_pixels = |jet: &Jet| composed(jet, self.to_source, self.warp.shown);
         let mut centres = [Point::ORIGIN; MIN_TILE];
         let mut jets = [[Jet::default(); MIN_TILE]; MIN_TILE];
         for (j, row) in jets[..area.height].iter_mut().enumerate() {
@@ -112,22 +115,22 @@ impl<'a> ImagePainter<'a> {
             }
             band.inverse.jets(&centres[..area.width], &mut row[..area.width]);
             for jet in &mut row[..area.width] {
-                *jet = in_source(jet);
+                *jet = between_pixels(jet);
             }
         }
         let inverse = band.inverse;
-        let at = |i: isize, j: isize| {
-            let known = usize::try_from(i).ok().zip(usize::try_from(j).ok());
-            match known.filter(|(i, j)| *i < area.width && *j < area.height) {
+        let jet_at = |i: isize, j: isize| {
+            let in_tile = usize::try_from(i).ok().zip(usize::try_from(j).ok());
+            match in_tile.filter(|(i, j)| *i < area.width && *j < area.height) {
                 Some((i, j)) => jets[j][i],
-                None => in_source(&inverse.jet(centre(i, j))),
+                None => between_pixels(&inverse.jet(centre(i, j))),
             }
         };
         for (j, row) in jets.iter().enumerate().take(area.height) {
             for (pixel, (i, jet)) in band.row(area, j).as_chunks_mut().0.iter_mut().zip(row.iter().enumerate()) {
                 let jet = Some(*jet)
                     .filter(|jet| jet.p.is_finite())
-                    .or_else(|| extrapolated(self.warp.source, |di, dj| at(i as isize + di, j as isize + dj)));
+                    .or_else(|| extrapolated(self.warp.source, |di, dj| jet_at(i as isize + di, j as isize + dj)));
                 if let Some(jet) = jet {
                     *pixel = bytes(sample::pixel(&self.pyramid, &jet));
                 }
@@ -186,46 +189,43 @@ fn extrapolated(source: &Pixmap, neighbour: impl Fn(isize, isize) -> Jet) -> Opt
     [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().find_map(|(di, dj)| {
         let jet = neighbour(di, dj);
         let p = jet.p - jet.push(Vec2::new(di as f64, dj as f64));
-        let off = p.x < 0.0 || p.y < 0.0 || p.x > width || p.y > height;
-        off.then_some(Jet { p, ..jet })
+        let is_outside = p.x < 0.0 || p.y < 0.0 || p.x > width || p.y > height;
+        is_outside.then_some(Jet { p, ..jet })
     })
 }
 
 /// Largest number of cells along a side of the source, and the least pixels of the result along a side of a cell.
-const CELLS: usize = 192;
-const CELL: usize = 2;
+const MAX_CELLS: usize = 192;
+const MIN_CELL: usize = 2;
 
 /// The tiles of the result that the warped source touches. The inverse must not be evaluated in other tiles, where it may have values,
 /// too: a projective inverse also maps points beyond the horizon.
-pub(super) struct Reach {
+struct TouchedTiles {
     touched: Vec<bool>,
     columns: usize,
 }
 
-impl Reach {
-    pub(super) fn new(warp: &ImageWarp<'_>, to_target: Affine, tile: usize) -> Self {
-        let (columns, rows) = (tiles_along(warp.size.0, tile), tiles_along(warp.size.1, tile));
+impl TouchedTiles {
+    fn new(warp: &ImageWarp<'_>) -> Self {
+        let [columns, rows] = [warp.size.0, warp.size.1].map(|side| (side as usize).div_ceil(TILE));
         let mut out = Self { touched: vec![false; columns * rows], columns };
-        let cells = (warp.size.0.max(warp.size.1) as usize / CELL).clamp(1, CELLS);
-        let corners = images(warp.source, warp.placed, warp.map, to_target, cells);
-        for pair in corners.windows(2) {
+        for pair in corner_images(warp).windows(2) {
             for i in 0..pair[0].len() - 1 {
-                let cell = [pair[0][i], pair[0][i + 1], pair[1][i], pair[1][i + 1]];
-                out.touch(cell, tile, rows);
+                out.touch([pair[0][i], pair[0][i + 1], pair[1][i], pair[1][i + 1]], rows);
             }
         }
         out
     }
 
     /// Marks the tiles around the image of a cell. If some of its corners have no image, its neighbours cover most of it.
-    fn touch(&mut self, cell: [Point; 4], tile: usize, rows: usize) {
+    fn touch(&mut self, cell: [Point; 4], rows: usize) {
         let mut defined = cell.into_iter().filter(|p| p.is_finite());
         let Some(first) = defined.next() else { return };
-        let b = defined.fold(Rect::from_origin_size(first, (0.0, 0.0)), |b, p| b.union_pt(p));
+        let b = defined.fold(Rect::from_points(first, first), |b, p| b.union_pt(p));
         // Allow for curved sides and for partly covered pixels at the edge.
         let b = b.inflate(2.0 + 0.5 * b.width(), 2.0 + 0.5 * b.height());
-        let index = |v: f64, max: usize| ((v / tile as f64).max(0.0) as usize).min(max);
-        if b.x1 < 0.0 || b.y1 < 0.0 || b.x0 > (self.columns * tile) as f64 || b.y0 > (rows * tile) as f64 {
+        let index = |v: f64, max: usize| ((v / TILE as f64).max(0.0) as usize).min(max);
+        if b.x1 < 0.0 || b.y1 < 0.0 || b.x0 > (self.columns * TILE) as f64 || b.y0 > (rows * TILE) as f64 {
             return;
         }
         for row in index(b.y0, rows - 1)..=index(b.y1, rows - 1) {
@@ -234,18 +234,17 @@ impl Reach {
         }
     }
 
-    pub(super) fn touches(&self, column: usize, row: usize) -> bool {
+    fn contain(&self, column: usize, row: usize) -> bool {
         self.touched[row * self.columns + column]
     }
 }
 
-fn tiles_along(pixels: u32, tile: usize) -> usize {
-    (pixels as usize).div_ceil(tile)
-}
-
 /// Maps the corners of a grid over the source to pixels of the result, row by row.
-fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine, cells: usize) -> Vec<Vec<Point>> {
+fn corner_images(warp: &ImageWarp<'_>) -> Vec<Vec<Point>> {
+    let &ImageWarp { source, placed, map, size, .. } = warp;
+    let cells = (size.0.max(size.1) as usize / MIN_CELL).clamp(1, MAX_CELLS);
     let (width, height) = (f64::from(source.width()), f64::from(source.height()));
+    let to_target = warp.shown.inverse();
     let mut creases = Creases::default();
     map.creases(&mut creases);
     let row = |j: usize| {
@@ -253,10 +252,10 @@ fn images(source: &Pixmap, placed: Affine, map: &dyn Map, to_target: Affine, cel
         let points: Vec<Point> = (0..=cells).map(|i| placed * Point::new(width * i as f64 / cells as f64, v)).collect();
         let mut out = vec![Point::ORIGIN; points.len()];
         map.points(&points, &mut out);
-        let defined = points.iter().zip(out);
-        defined
-            .map(|(p, q)| if creases.defined_at(*p) { to_target * q } else { Point::new(f64::NAN, f64::NAN) })
-            .collect()
+        let image = |(p, q): (&Point, Point)| {
+            if creases.defined_at(*p) { to_target * q } else { Point::new(f64::NAN, f64::NAN) }
+        };
+        points.iter().zip(out).map(image).collect()
     };
     (0..=cells).map(row).collect()
 }

@@ -7,6 +7,7 @@ use super::grid_inverse::GridInverse;
 use super::image_warp::shown;
 use super::shade::{Colors, Shade, shade};
 use crate::error::Error;
+use crate::pixmap::bytes;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use pathwarp::map::Map;
 use std::fmt;
@@ -15,15 +16,15 @@ use tiny_skia::Pixmap;
 /// Margin around the target in pixels: renderers read up to two pixels on either side of a point.
 const MARGIN: f64 = 2.0;
 /// Reach of the paint around its source, in pixels: enough for the margin even where the map compresses it several times.
-const READ: f64 = 12.0;
+const REACH: f64 = 12.0;
 /// Largest reach as a fraction of the source's longer side.
 const MAX_REACH: f64 = 0.3;
 /// Range of the growth of a side from one picture to the next.
 const GROWTH: (f64, f64) = (1.2, 4.0);
 /// Safety factor on the expected growth.
-const SURE: f64 = 1.05;
-/// A side grows if it contributes more than this fraction to the error of interpolation.
-const GUILTY: f64 = 0.4;
+const SAFETY: f64 = 1.05;
+/// A side grows if its second differences add up to at least this fraction of those along the other side.
+const GROWING_SHARE: f64 = 0.4;
 
 /// A colour that the result must show.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,35 +91,35 @@ impl SmoothShade<'_> {
     /// Paints the target and two pixels around it. Returns the picture and its position in the plane.
     ///
     /// # Errors
-    /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the picture; [`Error::NoInverse`] if no pixel has an inverse.
+    /// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the picture; [`Error::NoInverse`] when no pixel has an inverse.
     pub fn paint(&self) -> Result<(Pixmap, Rect), Error> {
         let finest = Vec2::new(self.target.width(), self.target.height()) * self.finest;
         let finest = Vec2::new(finest.x.max(self.coarsest.x), finest.y.max(self.coarsest.y));
         let limit = |v: Vec2| Vec2::new(v.x.min(finest.x), v.y.min(finest.y));
-        let mut inner = if self.seen.is_empty() { finest } else { self.coarsest };
+        let mut pixels = if self.seen.is_empty() { finest } else { self.coarsest };
         loop {
-            let (pixmap, area) = self.painted(inner)?;
-            if inner == finest {
+            let (pixmap, area) = self.painted(pixels)?;
+            if pixels == finest {
                 return Ok((pixmap, area));
             }
-            let error = Interpolation { pixmap: &pixmap, area }.error(self.seen, &self.tolerance);
-            let Some(grow) = error else { return Ok((pixmap, area)) };
-            let next = limit(Vec2::new(inner.x * grow.x, inner.y * grow.y));
+            let growth = Interpolation { pixmap: &pixmap, area }.growth(self.seen, &self.tolerance);
+            let Some(growth) = growth else { return Ok((pixmap, area)) };
+            let next = limit(Vec2::new(pixels.x * growth.x, pixels.y * growth.y));
             // If the side to grow has reached its limit, finish at full resolution.
-            inner = if next == inner { finest } else { next };
+            pixels = if next == pixels { finest } else { next };
         }
     }
 
-    /// Paints with the given number of pixels across the target.
-    fn painted(&self, inner: Vec2) -> Result<(Pixmap, Rect), Error> {
-        let (wide, high) = (self.target.width() / inner.x, self.target.height() / inner.y);
-        let pixels = |n: f64| (n + 2.0 * MARGIN).ceil().max(1.0);
-        let (columns, rows) = (pixels(inner.x), pixels(inner.y));
-        let area = Rect::from_center_size(self.target.center(), (columns * wide, rows * high));
+    /// Paints with the given number of pixels across the target and down.
+    fn painted(&self, pixels: Vec2) -> Result<(Pixmap, Rect), Error> {
+        let (pixel_width, pixel_height) = (self.target.width() / pixels.x, self.target.height() / pixels.y);
+        let with_margin = |n: f64| (n + 2.0 * MARGIN).ceil().max(1.0);
+        let (columns, rows) = (with_margin(pixels.x), with_margin(pixels.y));
+        let area = Rect::from_center_size(self.target.center(), (columns * pixel_width, rows * pixel_height));
         let size = (columns as u32, rows as u32);
         // Extend the paint to the pixels around its image that renderers read.
-        let reach = (READ / inner.x.min(inner.y)).min(MAX_REACH) * self.source.width().max(self.source.height());
-        let side = (inner.x * inner.y).sqrt();
+        let reach = (REACH / pixels.x.min(pixels.y)).min(MAX_REACH) * self.source.width().max(self.source.height());
+        let side = (pixels.x * pixels.y).sqrt();
         let inverse = GridInverse::new(self.map, self.source, reach, self.placed, self.after, side);
         let (colors, shape) = (self.colors, self.shape);
         let pixmap = shade(&Shade { colors, inverse: &inverse, shown: shown(area, size), size, shape })?;
@@ -133,46 +134,48 @@ struct Interpolation<'a> {
 }
 
 impl Interpolation<'_> {
-    /// Returns `None` if the picture is good enough, else the factors by which its sides should grow.
-    fn error(&self, seen: &[SeenColor], tolerance: &ShadeTolerance) -> Option<Vec2> {
+    /// Returns the factors by which the sides of the picture should grow, or `None` if it is good enough.
+    fn growth(&self, seen: &[SeenColor], tolerance: &ShadeTolerance) -> Option<Vec2> {
+        // Sums of second differences along both sides, where colours differ visibly.
         let mut bends = [0.0_f64; 2];
-        let mut off: Vec<f64> = Vec::with_capacity(seen.len());
+        let mut differences: Vec<f64> = Vec::with_capacity(seen.len());
         for s in seen {
             let (found, bend) = self.color_at(s.at);
-            off.push(s.color.iter().zip(found).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max));
-            if off.last().is_some_and(|o| *o > tolerance.usual) {
+            let difference = s.color.iter().zip(found).map(|(w, f)| (w - f).abs()).fold(0.0, f64::max);
+            differences.push(difference);
+            if difference > tolerance.usual {
                 bends = [bends[0] + bend[0], bends[1] + bend[1]];
             }
         }
-        off.sort_by(f64::total_cmp);
-        let largest = off.last().copied().unwrap_or_default();
-        let rank = off.len().saturating_sub(1 + (tolerance.share * off.len() as f64) as usize);
-        let usual = off.get(rank).copied().unwrap_or_default();
+        differences.sort_by(f64::total_cmp);
+        let largest = differences.last().copied().unwrap_or_default();
+        let rank = differences.len().saturating_sub(1 + (tolerance.share * differences.len() as f64) as usize);
+        let usual = differences.get(rank).copied().unwrap_or_default();
         if largest <= tolerance.largest && usual <= tolerance.usual {
             return None;
         }
         // The error of interpolation falls with the square of the distance of the pixels, and at kinks in proportion to it.
-        let grow = (usual / tolerance.usual).sqrt().max(largest / tolerance.largest);
-        let grow = (SURE * grow).clamp(GROWTH.0, GROWTH.1);
+        let growth = (usual / tolerance.usual).sqrt().max(largest / tolerance.largest);
+        let growth = (SAFETY * growth).clamp(GROWTH.0, GROWTH.1);
         let largest = bends[0].max(bends[1]);
-        let factor = |bend: f64| if bend >= GUILTY * largest { grow } else { 1.0 };
+        let factor = |bend: f64| if bend >= GROWING_SHARE * largest { growth } else { 1.0 };
         Some(Vec2::new(factor(bends[0]), factor(bends[1])))
     }
 
     /// The premultiplied colour at a point, and the second differences along both sides.
     fn color_at(&self, p: Point) -> ([f64; 4], [f64; 2]) {
         let (width, height) = (self.pixmap.width() as usize, self.pixmap.height() as usize);
-        let cell = |v: f64, from: f64, size: f64, n: usize| {
-            let v = (((v - from) / size) * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
-            let i = (v as usize).min(n.saturating_sub(2));
+        // The pixel before a coordinate, and the fraction of the way to the next one.
+        let position = |v: f64, start: f64, size: f64, pixels: usize| {
+            let v = (((v - start) / size) * pixels as f64 - 0.5).clamp(0.0, pixels as f64 - 1.0);
+            let i = (v as usize).min(pixels.saturating_sub(2));
             (i, v - i as f64)
         };
-        let (i, u) = cell(p.x, self.area.x0, self.area.width(), width);
-        let (j, v) = cell(p.y, self.area.y0, self.area.height(), height);
+        let (i, u) = position(p.x, self.area.x0, self.area.width(), width);
+        let (j, v) = position(p.y, self.area.y0, self.area.height(), height);
         let read = |i: usize, j: usize| {
-            let at = (j.min(height - 1) * width + i.min(width - 1)) * 4;
-            let c = &self.pixmap.data()[at..at + 4];
-            [c[0], c[1], c[2], c[3]].map(|v| f64::from(v) / 255.0)
+            let pixel = self.pixmap.pixels()[j.min(height - 1) * width + i.min(width - 1)];
+            bytes(pixel).map(|v| f64::from(v) / 255.0)
         };
         let [a, b, c, d] = [read(i, j), read(i + 1, j), read(i, j + 1), read(i + 1, j + 1)];
         let color = std::array::from_fn(|k| {
@@ -213,21 +216,10 @@ mod tests {
         let (placed, after) = (Affine::IDENTITY, Affine::IDENTITY);
         let (source, coarsest, finest) = (SOURCE, Vec2::new(12.0, 12.0), 8.0);
         let colors = &each(color);
-        SmoothShade {
-            colors,
-            source,
-            placed,
-            map,
-            after,
-            target,
-            shape: None,
-            seen: &seen,
-            tolerance,
-            coarsest,
-            finest,
-        }
-        .paint()
-        .unwrap()
+        let (seen, shape) = (&seen[..], None);
+        let shade =
+            SmoothShade { colors, source, placed, map, after, target, shape, seen, tolerance, coarsest, finest };
+        shade.paint().unwrap()
     }
 
     #[test]

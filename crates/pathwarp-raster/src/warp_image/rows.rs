@@ -227,9 +227,9 @@ pub(super) fn skewed(
         let Some((mut values, stride)) = block.values_from(first[i]) else { continue };
         let [ix, k, iy] = [shapes[0][i], shapes[1][i], shapes[2][i]];
         let (mut sums, mut totals) = ([[0.0; SIDE]; BYTES], [0.0; SIDE]);
-        let mut at = top[i];
-        while at <= bottom[i] {
-            let dy = at - y[i];
+        let mut line = top[i];
+        while line <= bottom[i] {
+            let dy = line - y[i];
             let (mut u, mut v) = ([0.0; SIDE], [0.0; SIDE]);
             for n in 0..SIDE {
                 let dx = left[i] - x[i] + n as f32;
@@ -250,7 +250,7 @@ pub(super) fn skewed(
                 }
             }
             values = values.get(stride..).unwrap_or_default();
-            at += 1.0;
+            line += 1.0;
         }
         let scale = 1.0 / sum(&totals);
         for (a, s) in color.iter_mut().zip(&sums) {
@@ -294,6 +294,7 @@ fn stretches(row: &TraceRow, coordinate: usize) -> [f32; TILE] {
 /// Catmull-Rom weights of the four pixels around a point at distance `t` after the second.
 #[inline(always)]
 fn weights(t: f32) -> [f32; 4] {
+    // Coefficients of t³, t², t and 1.
     const CUBED: [f32; 4] = [-0.5, 1.5, -1.5, 0.5];
     const SQUARED: [f32; 4] = [1.0, -2.5, 2.0, -0.5];
     const ONCE: [f32; 4] = [-0.5, 0.0, 0.5, 0.0];

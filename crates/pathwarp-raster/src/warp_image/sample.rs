@@ -1,6 +1,6 @@
 //! Computes one pixel of the result as the average over its footprint in the source.
 
-use super::tile::BYTES;
+use crate::pixmap::bytes;
 use pathwarp::map::Jet;
 use std::sync::OnceLock;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
@@ -9,8 +9,8 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 const MAX_ASPECT: f64 = 16.0;
 /// Minimum number of pixels of a pyramid level per pixel of the result, along each side; the maximum is twice as many.
 const MIN_SHRINK: f64 = 2.0;
-/// Stretches below this are rounding errors.
-const SAME: f64 = 1e-9;
+/// A squared stretch that exceeds one by less is a rounding error.
+const ROUNDING: f64 = 1e-9;
 
 /// Returns the colour of a pixel of the result. `jet` maps pixels of the result to pixels of the source.
 #[inline]
@@ -36,8 +36,8 @@ pub(super) fn pixel(pyramid: &Pyramid<'_>, jet: &Jet) -> PremultipliedColorU8 {
 /// The share of a pixel between the edges 0 and `size` of the source, with `rate` source pixels per pixel of the result.
 #[inline]
 fn covered(at: f64, size: f64, rate: f64) -> f64 {
-    let inside = |depth: f64| (depth / rate + 0.5).clamp(0.0, 1.0);
-    inside(at) + inside(size - at) - 1.0
+    let share_inside = |depth: f64| (depth / rate + 0.5).clamp(0.0, 1.0);
+    share_inside(at) + share_inside(size - at) - 1.0
 }
 
 /// The Catmull-Rom cubic: E. Catmull, R. Rom, *A class of local interpolating splines*, 1974; R. G. Keys, *Cubic
@@ -115,14 +115,15 @@ impl Footprint {
     pub(super) fn new(jet: &Jet) -> Option<Self> {
         let (a, c) = (jet.dx.x * jet.dx.x + jet.dy.x * jet.dy.x, jet.dx.y * jet.dx.y + jet.dy.y * jet.dy.y);
         let b = jet.dx.x * jet.dx.y + jet.dy.x * jet.dy.y;
-        let (mean, apart) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
-        if mean + apart <= 1.0 + SAME {
+        // The eigenvalues of J·Jᵀ, with the entries a, b and c, are the mean of a and c plus and minus this radius.
+        let (mean, radius) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+        if mean + radius <= 1.0 + ROUNDING {
             return None;
         }
-        let longest = (mean + apart).sqrt();
-        let shortest = (mean - apart).max(0.0).sqrt().max(1.0).max(longest / MAX_ASPECT);
+        let longest = (mean + radius).sqrt();
+        let shortest = (mean - radius).max(0.0).sqrt().max(1.0).max(longest / MAX_ASPECT);
         // Take the eigenvector from the row of the matrix that does not suffer from cancellation.
-        let axis = if a > c { [0.5 * (a - c) + apart, b] } else { [b, 0.5 * (c - a) + apart] };
+        let axis = if a > c { [0.5 * (a - c) + radius, b] } else { [b, 0.5 * (c - a) + radius] };
         let length = axis[0].hypot(axis[1]);
         let axis = if length > 0.0 { axis.map(|v| v / length) } else { [1.0, 0.0] };
         Some(Self { axis, longest, shortest })
@@ -144,7 +145,7 @@ impl Footprint {
         [q + (p - q) * x * x, (p - q) * x * y, q + (p - q) * y * y]
     }
 
-    /// Returns the weighted average around a point.
+    /// Returns the weighted average around a point, given in pixels of the source.
     fn average(&self, pyramid: &Pyramid<'_>, x: f64, y: f64) -> Channels {
         let steps = (self.shortest / MIN_SHRINK).log2().floor().max(0.0) as usize;
         let steps = steps.min(pyramid.deepest());
@@ -161,22 +162,22 @@ impl Footprint {
             // The footprint lies along rows and columns, so the weights of columns are equal in every row.
             let (left, right) = range(x - wide, x + wide, level.width);
             let mut columns = [0.0; COLUMNS];
-            let n = right.saturating_sub(left).min(COLUMNS);
-            for (k, w) in columns[..n].iter_mut().enumerate() {
+            let count = right.saturating_sub(left).min(COLUMNS);
+            for (k, w) in columns[..count].iter_mut().enumerate() {
                 *w = cubic(((left + k) as f64 - x) as f32 * ix as f32);
                 total += *w;
             }
-            let mut rows = 0.0;
+            let mut row_total = 0.0;
             for row in top..bottom {
                 let weight = cubic((row as f64 - y) as f32 * iy as f32);
-                rows += weight;
+                row_total += weight;
                 let mut part = [0.0; 4];
-                for (pixel, w) in level.pixels[row * level.width + left..][..n].iter().zip(&columns) {
+                for (pixel, w) in level.pixels[row * level.width + left..][..count].iter().zip(&columns) {
                     add(&mut part, channels(*pixel), *w);
                 }
                 add(&mut sum, part, weight);
             }
-            total *= rows;
+            total *= row_total;
         } else {
             for row in top..bottom {
                 let dy = row as f64 - y;
@@ -236,11 +237,8 @@ pub(super) struct Pyramid<'a> {
 impl<'a> Pyramid<'a> {
     pub(super) fn new(source: &'a Pixmap) -> Self {
         let (width, height) = (source.width() as usize, source.height() as usize);
-        let levels = width.max(height).ilog2() as usize;
-        Self {
-            source: PyramidLevel { width, height, pixels: source.pixels().into() },
-            halves: (0..levels).map(|_| OnceLock::new()).collect(),
-        }
+        let halves = (0..width.max(height).ilog2()).map(|_| OnceLock::new()).collect();
+        Self { source: PyramidLevel { width, height, pixels: source.pixels().into() }, halves }
     }
 
     /// Index of the deepest level.
@@ -297,7 +295,7 @@ pub(super) type Channels = [f32; 4];
 
 #[inline]
 pub(super) fn channels(p: PremultipliedColorU8) -> Channels {
-    [f32::from(p.red()), f32::from(p.green()), f32::from(p.blue()), f32::from(p.alpha())]
+    bytes(p).map(f32::from)
 }
 
 /// Rounds to the nearest valid colour, clipping the overshoots of the cubic.
@@ -307,11 +305,6 @@ pub(super) fn color(c: Channels) -> PremultipliedColorU8 {
     let alpha = level(c[3], 255);
     PremultipliedColorU8::from_rgba(level(c[0], alpha), level(c[1], alpha), level(c[2], alpha), alpha)
         .unwrap_or(PremultipliedColorU8::TRANSPARENT)
-}
-
-#[inline]
-pub(super) fn bytes(p: PremultipliedColorU8) -> [u8; BYTES] {
-    [p.red(), p.green(), p.blue(), p.alpha()]
 }
 
 /// Adds a weighted pixel to a sum.

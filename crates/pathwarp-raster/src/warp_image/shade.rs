@@ -14,12 +14,12 @@ use std::fmt;
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
 /// Largest error of a source point in a traced tile, in pixels of the result.
-const MAX_OFF: f64 = 1.0 / 64.0;
-/// Largest side of a block in pixels. Smooth colours tolerate a larger [`MAX_OFF`] than the pixels of a bitmap, so a cubic covers a
-/// larger area.
+const MAX_SHADE_ERROR: f64 = 1.0 / 64.0;
+/// Largest side of a block in pixels. Smooth colours tolerate a larger error than the pixels of a bitmap, so a cubic covers a larger
+/// area than a tile.
 const BLOCK: usize = 2 * TILE;
 /// Pictures with fewer pixels are painted faster on one thread.
-const WORTH_THREADS: usize = 1 << 17;
+const MIN_PARALLEL: usize = 1 << 17;
 
 /// The colours at points of a paint's coordinates: red, green, blue and alpha, 0 to 1, not premultiplied.
 pub type Colors<'a> = dyn Fn(&[Point], &mut [[f64; 4]]) + Sync + 'a;
@@ -49,7 +49,7 @@ impl fmt::Debug for Shade<'_> {
 /// the nearest row, so that a clip along the edge of the image shows no gap and the file stays small.
 ///
 /// # Errors
-/// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] if no pixel has an inverse.
+/// [`Error::Empty`] and [`Error::TooLarge`] for impossible sizes of the result; [`Error::NoInverse`] when no pixel has an inverse.
 pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     let (width, height) = shade.size;
     let mut out = new_pixmap(f64::from(width), f64::from(height), &Limits::default())?;
@@ -61,14 +61,14 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
         shade,
         cover: shade.shape.map(|shape| Cover::new(shape, shade.shown, shade.size)),
         basis: ChebyshevBasis::new(),
-        to_pixels: Affine::scale(MAX_ERROR / (MAX_OFF * unit)),
+        to_trace: Affine::scale(MAX_ERROR / (MAX_SHADE_ERROR * unit)),
     };
     let columns = width as usize;
     let mut known = vec![false; columns * height as usize];
     let blocks = |top: usize, rows: usize| {
         let lefts = (0..columns).step_by(BLOCK);
         let blocks = lefts.map(|left| PixelArea { left, top, width: BLOCK.min(columns - left), height: rows });
-        blocks.filter_map(|block| painter.seen(block)).collect::<Vec<_>>()
+        blocks.filter_map(|block| painter.visible(block)).collect::<Vec<_>>()
     };
     let paint = |band: usize, pixels: &mut [PremultipliedColorU8], known: &mut [bool], inverse: &dyn Map| {
         let top = band * BLOCK;
@@ -78,7 +78,7 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
     };
     // A costly inverse, such as another program's, is asked for many points at once.
     let batches = shade.inverse.cost().batches.is_some();
-    if known.len() >= WORTH_THREADS {
+    if known.len() >= MIN_PARALLEL {
         for_each_chunk_pair(out.pixels_mut(), &mut known, columns * BLOCK, |i, pixels, known| {
             let cache = batches.then(|| painter.cache(blocks(i * BLOCK, pixels.len() / columns)));
             paint(i, pixels, known, cache.as_ref().map_or(shade.inverse, |cache| cache as &dyn Map));
@@ -101,9 +101,11 @@ pub fn shade(shade: &Shade<'_>) -> Result<Pixmap, Error> {
 
 /// A band of whole rows of the result.
 struct ShadeBand<'a> {
+    /// The first row.
     top: usize,
     columns: usize,
     pixels: &'a mut [PremultipliedColorU8],
+    /// For every pixel, `true` if it is painted.
     known: &'a mut [bool],
     /// The inverse, or a cache of it.
     inverse: &'a dyn Map,
@@ -115,21 +117,21 @@ struct ShadePainter<'a> {
     /// The visible part; `None` if everything is visible.
     cover: Option<Cover>,
     basis: ChebyshevBasis,
-    /// Scales the paint's coordinates so that [`MAX_ERROR`], the tolerance of traces, stands for [`MAX_OFF`].
-    to_pixels: Affine,
+    /// Scales the paint's coordinates to those of traces, in which [`MAX_ERROR`], their tolerance, stands for [`MAX_SHADE_ERROR`].
+    to_trace: Affine,
 }
 
 impl<'a> ShadePainter<'a> {
     /// The visible part of an area. `None` if nothing is visible, or nothing has an inverse.
-    fn seen(&self, area: PixelArea) -> Option<PixelArea> {
-        let seen = self.cover.as_ref().map_or(Some(area), |cover| cover.seen(area));
-        seen.filter(|seen| self.shade.inverse.touches(seen.covered(self.shade.shown)))
+    fn visible(&self, area: PixelArea) -> Option<PixelArea> {
+        let visible = self.cover.as_ref().map_or(Some(area), |cover| cover.visible(area));
+        visible.filter(|visible| self.shade.inverse.touches(visible.covered(self.shade.shown)))
     }
 
     /// Caches the values of the inverse for these blocks, computed in batches. Painting needs no jets.
     fn cache(&self, blocks: Vec<PixelArea>) -> Gathered<'a> {
         let cache = Gathered::new(self.shade.inverse);
-        announce(blocks, &self.basis, (self.shade.shown, self.to_pixels), &cache, |pixels| {
+        announce(blocks, &self.basis, (self.shade.shown, self.to_trace), &cache, |pixels| {
             cache.prepare(pixels, &[]);
         });
         cache
@@ -137,9 +139,9 @@ impl<'a> ShadePainter<'a> {
 
     /// Paints a block, dividing it until the inverse is close to a cubic.
     fn block(&self, band: &mut ShadeBand<'_>, area: PixelArea) {
-        match area.trace(&self.basis, self.shade.shown, band.inverse, self.to_pixels) {
+        match area.trace(&self.basis, self.shade.shown, band.inverse, self.to_trace) {
             Some(trace) => {
-                for tile in area.tiles().filter_map(|tile| self.seen(tile)) {
+                for tile in area.tiles().filter_map(|tile| self.visible(tile)) {
                     let (right, down) = (tile.left - area.left, tile.top - area.top);
                     self.paint(band, tile, |j| {
                         let row = trace.pixels(down + j);
@@ -148,30 +150,30 @@ impl<'a> ShadePainter<'a> {
                 }
             }
             None if area.width.max(area.height) > MIN_TILE => {
-                area.quarters().filter_map(|a| self.seen(a)).for_each(|quarter| self.block(band, quarter));
+                area.quarters().filter_map(|a| self.visible(a)).for_each(|quarter| self.block(band, quarter));
             }
             None => {
                 let pixels: Vec<Point> = area.pixels(self.shade.shown).collect();
-                let mut found = vec![Point::ORIGIN; pixels.len()];
-                band.inverse.points(&pixels, &mut found);
-                let found = &found;
-                self.paint(band, area, |j| move |i| self.to_pixels * found[j * area.width + i]);
+                let mut sources = vec![Point::ORIGIN; pixels.len()];
+                band.inverse.points(&pixels, &mut sources);
+                let sources = &sources;
+                self.paint(band, area, |j| move |i| self.to_trace * sources[j * area.width + i]);
             }
         }
     }
 
-    /// Paints at most a tile. `row` gives the source points of a row's pixels, scaled by `to_pixels`.
+    /// Paints at most a tile. `row` gives the source points of a row's pixels, scaled by `to_trace`.
     fn paint<Row: Fn(usize) -> Point>(&self, band: &mut ShadeBand<'_>, area: PixelArea, row: impl Fn(usize) -> Row) {
-        let to_paint = self.to_pixels.inverse();
+        let to_paint = self.to_trace.inverse();
         let (mut points, mut colors) = ([Point::ORIGIN; TILE], [[0.0; 4]; TILE]);
         for j in 0..area.height {
             let start = (area.top - band.top + j) * band.columns + area.left;
             let pixels = &mut band.pixels[start..start + area.width];
             let known = &mut band.known[start..start + area.width];
-            let from = row(j);
+            let source = row(j);
             let (points, colors) = (&mut points[..area.width], &mut colors[..area.width]);
             for (i, point) in points.iter_mut().enumerate() {
-                *point = to_paint * from(i);
+                *point = to_paint * source(i);
             }
             (self.shade.colors)(points, colors);
             for (((pixel, known), point), color) in pixels.iter_mut().zip(known).zip(points).zip(colors) {
@@ -217,26 +219,27 @@ fn extend(out: &mut Pixmap, known: &[bool]) {
 
 /// Side of a cell in pixels.
 const CELL: usize = 8;
-/// Flattening tolerance in pixels.
-const FLAT: f64 = 0.25;
+/// Tolerance of the polygon that stands for the shape, in pixels.
+const FLATNESS: f64 = 0.25;
 /// Distance from the shape, in pixels, up to which pixels are needed: renderers read up to two on either side of a point.
-const MARGIN: f64 = 2.0 + FLAT;
+const MARGIN: f64 = 2.0 + FLATNESS;
 
 /// The cells that a shape touches or comes near.
-pub(super) struct Cover {
+struct Cover {
     columns: usize,
+    /// Row by row, `true` for these cells.
     cells: Vec<bool>,
 }
 
 impl Cover {
     /// `shown` maps the pixels of a picture of the given size to the shape's plane.
-    pub(super) fn new(shape: &BezPath, shown: Affine, (width, height): (u32, u32)) -> Self {
+    fn new(shape: &BezPath, shown: Affine, (width, height): (u32, u32)) -> Self {
         let [columns, rows] = [width, height].map(|n| (n as usize).div_ceil(CELL));
         let mut cover = Self { columns, cells: vec![false; columns * rows] };
         let mut windings = vec![0_i32; columns * rows];
-        boundary(&(shown.inverse() * shape), FLAT, |a, b| {
+        boundary(&(shown.inverse() * shape), FLATNESS, |a, b| {
             cover.touch(a, b, rows);
-            wind(a, b, &mut windings, columns);
+            add_winding(a, b, &mut windings, columns);
         });
         // A cell without edges is all inside or all outside. This covers too much for shapes with the even-odd rule.
         for (cell, winding) in cover.cells.iter_mut().zip(windings) {
@@ -246,19 +249,20 @@ impl Cover {
     }
 
     /// Shrinks an area of the picture to its visible cells. `None` if there are none.
-    pub(super) fn seen(&self, area: PixelArea) -> Option<PixelArea> {
-        let cells = |from: usize, size: usize| from / CELL..(from + size).div_ceil(CELL);
-        let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);
+    fn visible(&self, area: PixelArea) -> Option<PixelArea> {
+        let cells = |start: usize, size: usize| start / CELL..(start + size).div_ceil(CELL);
+        let (mut start, mut end) = ([usize::MAX; 2], [0; 2]);
         for j in cells(area.top, area.height) {
             for i in cells(area.left, area.width) {
-                if self.cells.get(j * self.columns + i).is_none_or(|seen| *seen) {
-                    from = [from[0].min(i), from[1].min(j)];
-                    to = [to[0].max(i + 1), to[1].max(j + 1)];
+                if self.cells.get(j * self.columns + i).is_none_or(|visible| *visible) {
+                    start = [start[0].min(i), start[1].min(j)];
+                    end = [end[0].max(i + 1), end[1].max(j + 1)];
                 }
             }
         }
-        let [left, top] = [(from[0].saturating_mul(CELL)).max(area.left), (from[1].saturating_mul(CELL)).max(area.top)];
-        let [right, bottom] = [(to[0] * CELL).min(area.left + area.width), (to[1] * CELL).min(area.top + area.height)];
+        let [left, top] = [start[0].saturating_mul(CELL).max(area.left), start[1].saturating_mul(CELL).max(area.top)];
+        let [right, bottom] =
+            [(end[0] * CELL).min(area.left + area.width), (end[1] * CELL).min(area.top + area.height)];
         (left < right && top < bottom).then(|| PixelArea { left, top, width: right - left, height: bottom - top })
     }
 
@@ -266,11 +270,11 @@ impl Cover {
     fn touch(&mut self, a: Point, b: Point, rows: usize) {
         let pieces = (a.distance(b) / CELL as f64).ceil().clamp(1.0, (self.columns + rows) as f64) as usize;
         for k in 0..pieces {
-            let at = |k: usize| a.lerp(b, k as f64 / pieces as f64);
-            let near = Rect::from_points(at(k), at(k + 1)).inflate(MARGIN, MARGIN);
-            let range = |from: f64, to: f64, n: usize| {
+            let point = |k: usize| a.lerp(b, k as f64 / pieces as f64);
+            let near = Rect::from_points(point(k), point(k + 1)).inflate(MARGIN, MARGIN);
+            let range = |start: f64, end: f64, cells: usize| {
                 let cell = |v: f64| (v.max(0.0) / CELL as f64) as usize;
-                if to < 0.0 { 0..0 } else { cell(from).min(n)..(cell(to) + 1).min(n) }
+                if end < 0.0 { 0..0 } else { cell(start).min(cells)..(cell(end) + 1).min(cells) }
             };
             for j in range(near.y0, near.y1, rows) {
                 for i in range(near.x0, near.x1, self.columns) {
@@ -282,7 +286,7 @@ impl Cover {
 }
 
 /// Adds a line to the winding numbers of the middles of cells to its right.
-fn wind(a: Point, b: Point, windings: &mut [i32], columns: usize) {
+fn add_winding(a: Point, b: Point, windings: &mut [i32], columns: usize) {
     let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
     let slope = (bottom.x - top.x) / (bottom.y - top.y);
     // Index of the first cell whose middle is not before `v`.
@@ -399,7 +403,8 @@ pub(super) mod tests {
             let cover = Cover::new(&path, shown, size);
             let (mut covered, mut all) = (0, 0);
             for (j, i) in (0..size.1).flat_map(|j| (0..size.0).map(move |i| (j, i))) {
-                let held = cover.seen(PixelArea { left: i as usize, top: j as usize, width: 1, height: 1 }).is_some();
+                let pixel = PixelArea { left: i as usize, top: j as usize, width: 1, height: 1 };
+                let held = cover.visible(pixel).is_some();
                 all += 1;
                 covered += i32::from(held);
                 let near = [(0.0, 0.0), (-2.0, -2.0), (2.0, -2.0), (-2.0, 2.0), (2.0, 2.0)];

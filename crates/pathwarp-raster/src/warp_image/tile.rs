@@ -53,12 +53,12 @@ impl PixelArea {
     }
 
     /// Approximates the source points of the pixels by a polynomial; `None` if that is not accurate. `shown` maps pixels to the plane,
-    /// `inverse` maps the plane back, and `last` maps to the coordinates in which source points are measured.
-    pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, last: Affine) -> Option<Trace> {
+    /// `inverse` maps the plane back, and `then` leads from there to the coordinates in which source points are measured.
+    pub(super) fn trace(self, basis: &ChebyshevBasis, shown: Affine, inverse: &dyn Map, then: Affine) -> Option<Trace> {
         let mut values = [Point::ORIGIN; SAMPLES];
         inverse.points(&self.samples(basis, shown), &mut values);
         for value in &mut values {
-            *value = last * *value;
+            *value = then * *value;
         }
         basis.interpolate(&values, self.span())
     }
@@ -94,14 +94,14 @@ impl PixelArea {
 pub(super) fn announce(
     mut areas: Vec<PixelArea>,
     basis: &ChebyshevBasis,
-    (shown, last): (Affine, Affine),
+    (shown, then): (Affine, Affine),
     inverse: &dyn Map,
     announce_pixels: impl Fn(&[Point]),
 ) {
     while !areas.is_empty() {
         let samples: Vec<Point> = areas.iter().flat_map(|a| a.samples(basis, shown)).collect();
         inverse.prepare(&samples, &[]);
-        areas.retain(|a| a.trace(basis, shown, inverse, last).is_none());
+        areas.retain(|a| a.trace(basis, shown, inverse, then).is_none());
         let (divided, smallest): (Vec<_>, Vec<_>) = areas.into_iter().partition(|a| a.width.max(a.height) > MIN_TILE);
         announce_pixels(&smallest.iter().flat_map(|a| a.pixels(shown)).collect::<Vec<_>>());
         areas = divided.into_iter().flat_map(PixelArea::quarters).collect();
@@ -135,14 +135,17 @@ pub(super) enum ChannelOrder {
 /// A part of a bitmap.
 #[derive(Debug, Default)]
 pub(super) struct SourceBlock {
+    /// The channels of the pixels, 0 to 255, row by row.
     values: Vec<f32>,
     /// First column and row.
     pub(super) corner: [usize; 2],
+    /// Number of columns and of rows.
     size: [usize; 2],
 }
 
 impl SourceBlock {
-    /// Reads the pixels that a tile needs: its source points and `margin` pixels around them. Returns `false` if there are none or too many.
+    /// Reads the pixels that a tile needs: its source points and `margin` pixels around them. Returns `false` if these are none or too
+    /// many.
     #[inline(always)]
     pub(super) fn read(&mut self, source: BitmapBytes<'_>, trace: &Trace, margin: f64, layout: ChannelOrder) -> bool {
         let share = |k: usize| k as f64 / (PER_SIDE - 1) as f64;
@@ -152,10 +155,10 @@ impl SourceBlock {
             low = [low[0].min(p.x), low[1].min(p.y)];
             high = [high[0].max(p.x), high[1].max(p.y)];
         }
-        for (k, size) in [source.width, source.height].into_iter().enumerate() {
-            let from = (low[k] - margin).floor().clamp(0.0, size as f64);
-            let to = (high[k] + margin).ceil().clamp(from, size as f64);
-            (self.corner[k], self.size[k]) = (from as usize, (to - from) as usize);
+        for (axis, size) in [source.width, source.height].into_iter().enumerate() {
+            let start = (low[axis] - margin).floor().clamp(0.0, size as f64);
+            let end = (high[axis] + margin).ceil().clamp(start, size as f64);
+            (self.corner[axis], self.size[axis]) = (start as usize, (end - start) as usize);
         }
         let [width, height] = self.size;
         if width == 0 || height == 0 || width > MAX_BLOCK || height > MAX_BLOCK {
@@ -163,17 +166,17 @@ impl SourceBlock {
         }
         self.values.resize(width * height * BYTES, 0.0);
         let rows = self.values.chunks_exact_mut(width * BYTES).zip(self.corner[1]..);
-        for (to, row) in rows {
-            let from = &source.data[(row * source.width + self.corner[0]) * BYTES..][..width * BYTES];
+        for (values, row) in rows {
+            let bytes = &source.data[(row * source.width + self.corner[0]) * BYTES..][..width * BYTES];
             match layout {
                 ChannelOrder::Interleaved => {
-                    for (value, byte) in to.iter_mut().zip(from) {
+                    for (value, byte) in values.iter_mut().zip(bytes) {
                         *value = f32::from(*byte);
                     }
                 }
                 ChannelOrder::Planar => {
-                    for (c, channel) in to.chunks_exact_mut(width).enumerate() {
-                        for (value, pixel) in channel.iter_mut().zip(from.as_chunks::<BYTES>().0) {
+                    for (c, channel) in values.chunks_exact_mut(width).enumerate() {
+                        for (value, pixel) in channel.iter_mut().zip(bytes.as_chunks::<BYTES>().0) {
                             *value = f32::from(pixel[c]);
                         }
                     }

@@ -11,10 +11,10 @@ use pathwarp::map::Jet;
 pub(super) const MAX_ERROR: f64 = 1.0 / 1024.0;
 /// Interpolation points along a side.
 const NODES: usize = 4;
-/// Number of values of the inverse per tile.
-pub(super) const SAMPLES: usize = NODES * NODES + CHECKED * CHECKED;
 /// Check points along a side: both ends and the middle.
-const CHECKED: usize = 3;
+const CHECKS: usize = 3;
+/// Number of values of the inverse per tile.
+pub(super) const SAMPLES: usize = NODES * NODES + CHECKS * CHECKS;
 
 /// Coefficients of 1, u, u², u³.
 type Cubic = [f64; NODES];
@@ -46,7 +46,7 @@ impl ChebyshevBasis {
     /// The sample points as fractions of the width and height of the tile.
     pub(super) fn sample_points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let nodes = self.nodes.iter().flat_map(|v| self.nodes.iter().map(move |u| (*u, *v)));
-        let checks = (0..CHECKED * CHECKED).map(|k| (0.5 * (k % CHECKED) as f64, 0.5 * (k / CHECKED) as f64));
+        let checks = (0..CHECKS * CHECKS).map(|k| (0.5 * (k % CHECKS) as f64, 0.5 * (k / CHECKS) as f64));
         nodes.chain(checks)
     }
 
@@ -73,8 +73,9 @@ impl ChebyshevBasis {
 
 /// The polynomial of a tile.
 pub(super) struct Trace {
-    /// Coefficients by powers of v, then of u.
+    /// Coefficients of both coordinates of the source point by powers of v, then of u.
     coefficients: [[[f64; 2]; NODES]; NODES],
+    /// Change of u and v from a pixel to the next.
     per_pixel: (f64, f64),
 }
 
@@ -89,6 +90,7 @@ impl Trace {
         self.jet_at(column as f64 * self.per_pixel.0, row as f64 * self.per_pixel.1)
     }
 
+    /// The row at a fraction of the height.
     fn row(&self, v: f64) -> TraceRow {
         let [a, b, c, d] = &self.coefficients;
         let mut out = TraceRow { point: [[0.0; 2]; NODES], down: [[0.0; 2]; NODES], per_column: self.per_pixel.0 };
@@ -111,7 +113,8 @@ impl Trace {
 pub(super) struct TraceRow {
     point: [[f64; 2]; NODES],
     down: [[f64; 2]; NODES],
-    pub(super) per_column: f64,
+    /// Change of the fraction from a column to the next.
+    per_column: f64,
 }
 
 impl TraceRow {

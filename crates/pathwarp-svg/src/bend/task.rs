@@ -93,8 +93,8 @@ impl<'a> PartTask<'a> {
             let subpaths = &mut Arc::make_mut(&mut outline).subpaths;
             subpaths.iter_mut().for_each(|s| path::drop_closing_stub(s, rounding));
         }
-        let reach = reach(part, context.to_px);
-        let bounds = whole.bounding_box().map(|b| b.inflate(reach, reach));
+        let extent = stroke_extent(part, context.to_px);
+        let bounds = whole.bounding_box().map(|b| b.inflate(extent, extent));
         Self {
             part,
             context,

@@ -14,8 +14,8 @@ use std::borrow::Cow;
 use usvg::FillRule;
 use usvg::filter::Filter;
 
-/// Relative tolerance of outlines that are measured.
-const FINE: f64 = 1e-4;
+/// Tolerance of outlines that are measured, as a fraction of their size.
+const OUTLINE_TOLERANCE: f64 = 1e-4;
 
 /// An approximation of the path written for a part.
 pub(super) fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezPath> {
@@ -23,11 +23,11 @@ pub(super) fn path<'a>(p: &Part, warped: Option<&'a WarpedPart>) -> Cow<'a, BezP
         return Cow::Borrowed(&d.path);
     }
     let size = p.local.bounding_box().map_or(1.0, |b| b.width().max(b.height()));
-    Cow::Owned(p.local.to_bez_path((size * FINE).max(1e-12)))
+    Cow::Owned(p.local.to_bez_path((size * OUTLINE_TOLERANCE).max(1e-12)))
 }
 
-/// Bounding box of a path; empty if it has no segments.
-fn extent(path: &BezPath) -> Rect {
+/// Bounding box of a path's segments; empty if it has none.
+fn segments_box(path: &BezPath) -> Rect {
     let segs = || path.segments().map(Seg::from);
     let ends = segs().map(|s| Rect::from_points(s.start(), s.end())).reduce(|a, b| a.union(b));
     ends.map_or(Rect::ZERO, |ends| segs().fold(ends, |all, s| s.extend(all)))
@@ -35,11 +35,11 @@ fn extent(path: &BezPath) -> Rect {
 
 /// Bounding box of a path's image under `frame`.
 pub(super) fn box_under(frame: Affine, path: &BezPath) -> Rect {
-    if frame == Affine::IDENTITY { extent(path) } else { extent(&(frame * path)) }
+    if frame == Affine::IDENTITY { segments_box(path) } else { segments_box(&(frame * path)) }
 }
 
 /// A quickly computed box that contains all that a part paints.
-pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
+pub(super) fn quick_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = match warped {
         Some(d) => d.path.control_box(),
         None => p.local.bounding_box().unwrap_or(Rect::ZERO),
@@ -48,10 +48,10 @@ pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rec
         (None, _) => path,
         (Some(_), Some(StrokeOutcome::Outlined(o))) => path.union(o.control_box()),
         (Some(s), _) => {
-            // The longest extent is that of miters or of square caps.
-            let reach = f64::from(s.miterlimit().get()).max(std::f64::consts::SQRT_2);
-            let reach = 0.5 * f64::from(s.width().get()) * stroke_scale(warped) * reach;
-            path.inflate(reach, reach)
+            // Miters or square caps extend farthest; this is their extent in half widths.
+            let ratio = f64::from(s.miterlimit().get()).max(std::f64::consts::SQRT_2);
+            let extent = 0.5 * f64::from(s.width().get()) * stroke_scale(warped) * ratio;
+            path.inflate(extent, extent)
         }
     };
     frame.transform_rect_bbox(all)
@@ -60,25 +60,26 @@ pub(super) fn bound(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rec
 /// Bounding box of everything a part paints.
 pub(super) fn painted_box(p: &Part, warped: Option<&WarpedPart>, frame: Affine) -> Rect {
     let path = path(p, warped);
-    let inside = box_under(frame, &path);
+    let path_box = box_under(frame, &path);
     match (&p.stroke, warped.map(|d| &d.stroke)) {
-        (None, _) => inside,
-        (Some(_), Some(StrokeOutcome::Outlined(o))) => inside.union(box_under(frame, o)),
+        (None, _) => path_box,
+        (Some(_), Some(StrokeOutcome::Outlined(o))) => path_box.union(box_under(frame, o)),
         (Some(s), _) => {
-            // Expansion is linear in the width: scale the path down instead of the width up.
+            // Scaling the path down and its outline up is the same as scaling the stroke's width.
             let scale = stroke_scale(warped);
             let size = path.bounding_box();
             let size = size.width().max(size.height()) / scale;
-            let back = Outline::from(&*path).transformed(Affine::scale(1.0 / scale));
-            let outline = stroke_outline(&back, s, (FINE * size).max(1e-9)).transformed(frame * Affine::scale(scale));
-            outline.bounding_box().map_or(inside, |b| inside.union(b))
+            let shrunk = Outline::from(&*path).transformed(Affine::scale(1.0 / scale));
+            let outline = stroke_outline(&shrunk, s, (OUTLINE_TOLERANCE * size).max(1e-9));
+            let outline = outline.transformed(frame * Affine::scale(scale));
+            outline.bounding_box().map_or(path_box, |b| path_box.union(b))
         }
     }
 }
 
 /// Returns `true` if a part paints anything in an area, up to the boxes of its segments and the reach of its stroke.
 pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, area: Rect) -> bool {
-    if overlap(bound(p, warped, frame), area).is_none() || overlap(painted_box(p, warped, frame), area).is_none() {
+    if overlap(quick_box(p, warped, frame), area).is_none() || overlap(painted_box(p, warped, frame), area).is_none() {
         return false;
     }
     let fills = |path: &BezPath, rule: FillRule| {
@@ -95,27 +96,32 @@ pub(super) fn paints_in(p: &Part, warped: Option<&WarpedPart>, frame: Affine, ar
 }
 
 /// Least growth of a side that counts, as a fraction of the content's size. Rounding causes less.
-const SEEN: f64 = 1e-4;
+const LEAST_GROWTH: f64 = 1e-4;
 
 /// The growth of the regions of a group's filters: on each side, the distance by which the bent content extends past the source's. Both
 /// are measured in the filters' user space, which follows the affine fit of the map.
 pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
     let slot = g.slot.filter(|_| !g.filters.is_empty()).map(|i| &input.scene.slots[i]);
+<<<<<<< HEAD
     let Some(slot) = slot.filter(|s| !s.fits_outside && input.changes(s.parts.clone())) else { return Insets::ZERO };
     let from = slot.frame.inverse();
     let to = input.written(g.slot, slot.frame).inverse();
+=======
+    let Some(slot) = slot.filter(|s| !s.before && input.changes(s.parts.clone())) else { return Insets::ZERO };
+    let (from_root, from_new_root) = (slot.frame.inverse(), input.written(g.slot, slot.frame).inverse());
+>>>>>>> w7
     let painted = slot.parts.clone().filter(|&i| {
         let p = input.part(i);
         p.role == PartRole::Paint && is_seen(p) && input.warped(i).is_none_or(WarpedPart::draws)
     });
     let boxes = painted.map(|i| {
         let p = input.part(i);
-        let before = painted_box(p, None, from * p.frame);
-        (before, painted_box(p, input.warped(i), to * input.written(p.slot, p.frame)))
+        let before = painted_box(p, None, from_root * p.frame);
+        (before, painted_box(p, input.warped(i), from_new_root * input.written(p.slot, p.frame)))
     });
     let all = boxes.reduce(|(a, b), (c, d)| (a.union(c), b.union(d)));
     let Some((before, after)) = all.filter(|(a, b)| a.is_finite() && b.is_finite()) else { return Insets::ZERO };
-    let least = SEEN * before.width().max(before.height());
+    let least = LEAST_GROWTH * before.width().max(before.height());
     let side = |outwards: f64| if outwards > least { outwards } else { 0.0 };
     let (left, top) = (side(before.x0 - after.x0), side(before.y0 - after.y0));
     Insets::new(left, top, side(after.x1 - before.x1), side(after.y1 - before.y1))
@@ -126,14 +132,15 @@ pub(super) fn grown(f: &Filter, growth: Insets) -> Rect {
     rect(f.rect().to_rect()) + growth
 }
 
+/// Decimals of the warped border of a mask's region.
 const DECIMALS: u8 = 9;
 
 /// Intervals on each side of a region, at whose ends the map is evaluated.
 const SAMPLES: usize = 16;
 
 /// Attributes for the region of a mask, which covers all of its content after the warp.
-pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, String)> {
-    let m = &input.scene.masks[i];
+pub(super) fn region(input: &WriteInput<'_>, mask: usize) -> Vec<(&'static str, String)> {
+    let m = &input.scene.masks[mask];
     let mut area = m.rect;
     if input.changes(m.parts.clone()) {
         let from_root = input.written(m.slot, m.frame).inverse();
@@ -145,8 +152,8 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
                 (_, Some(outline)) => outline.bounding_box().abs(),
                 (Some(s), None) => {
                     let width = f64::from(s.width().get()) * stroke_scale(warped);
-                    let reach = width * f64::from(s.miterlimit().get());
-                    part_box(p, warped).inflate(reach, reach)
+                    let extent = width * f64::from(s.miterlimit().get());
+                    part_box(p, warped).inflate(extent, extent)
                 }
                 (None, None) => part_box(p, warped),
             };
@@ -154,14 +161,14 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
         }
         // A filter in the mask may fill the region.
         if let Some(Bend { map, .. }) = input.bend(m.parts.clone()) {
-            let along = |i: usize, side: usize| {
-                let a = i as f64 / SAMPLES as f64;
-                let [x, y] = [[a, 0.0], [1.0, a], [a, 1.0], [0.0, a]][side];
+            let border_point = |side: usize, i: usize| {
+                let t = i as f64 / SAMPLES as f64;
+                let [x, y] = [[t, 0.0], [1.0, t], [t, 1.0], [0.0, t]][side];
                 Point::new(m.rect.x0 + x * m.rect.width(), m.rect.y0 + y * m.rect.height())
             };
-            let border = (0..4).flat_map(|side| (0..=SAMPLES).map(move |i| (i, side)));
-            let seen = border.map(|(i, side)| from_root * map.point(m.frame * along(i, side)));
-            area = seen.filter(|p| p.is_finite()).fold(area, |area, p| area.union_pt(p));
+            let border = (0..4).flat_map(|side| (0..=SAMPLES).map(move |i| border_point(side, i)));
+            let image = border.map(|p| from_root * map.point(m.frame * p));
+            area = image.filter(|p| p.is_finite()).fold(area, |area, p| area.union_pt(p));
         }
         // A region larger than necessary only costs rendering time.
         let margin = 0.01 * area.width().max(area.height());
@@ -171,10 +178,9 @@ pub(super) fn region(input: &WriteInput<'_>, i: usize) -> Vec<(&'static str, Str
 }
 
 /// Path data for the warped border of a mask's region, if the border clips the content.
-pub(super) fn edge(input: &WriteInput<'_>, i: usize) -> Option<String> {
-    let m = &input.scene.masks[i];
-    let inside = m.rect.union(m.content) == m.rect;
-    if inside || !input.changes(m.parts.clone()) {
+pub(super) fn edge(input: &WriteInput<'_>, mask: usize) -> Option<String> {
+    let m = &input.scene.masks[mask];
+    if m.rect.contains_rect(m.content) || !input.changes(m.parts.clone()) {
         return None;
     }
     let Bend { map, options } = input.bend(m.parts.clone())?;

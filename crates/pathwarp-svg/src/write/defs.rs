@@ -18,6 +18,7 @@ type ServerKey = (usize, [u64; 6]);
 type FilterKey = (usize, [u64; 4]);
 
 /// Definitions written so far. Each one is written once, for the first reference to it.
+#[derive(Default)]
 pub(super) struct Definitions {
     /// Text of the definitions.
     pub(super) text: String,
@@ -45,32 +46,16 @@ pub(super) struct Definitions {
 
 /// An element of the source that is being replaced, so that its ids become free.
 pub(super) struct Replaced {
-    range: Range<usize>,
-    /// Elements inside whose ids have been written.
-    named: BTreeSet<ElementId>,
-}
-
-impl Replaced {
-    pub(super) fn new(range: Range<usize>) -> Self {
-        Self { range, named: BTreeSet::new() }
-    }
+    pub(super) range: Range<usize>,
+    /// Elements in this range whose ids have been written.
+    pub(super) named: BTreeSet<ElementId>,
 }
 
 impl Definitions {
     pub(super) fn new(source: &SourceText, scene: &Scene, in_source: bool) -> Self {
-        Self {
-            text: String::new(),
-            taken: if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() },
-            numbers: HashMap::new(),
-            clip_ids: vec![None; scene.clips.len()],
-            mask_ids: vec![None; scene.masks.len()],
-            servers: HashMap::new(),
-            meshes: HashMap::new(),
-            filters: HashMap::new(),
-            regions: BTreeMap::new(),
-            in_source,
-            replaced: None,
-        }
+        let taken = if in_source { source.by_id().keys().cloned().collect() } else { HashSet::new() };
+        let (clip_ids, mask_ids) = (vec![None; scene.clips.len()], vec![None; scene.masks.len()]);
+        Self { taken, clip_ids, mask_ids, in_source, ..Self::default() }
     }
 
     /// Returns `id` if it is free, or else with a number appended.
@@ -92,11 +77,11 @@ impl Definitions {
     /// The id of a source element as an attribute, for the element that replaces it; empty if the id is not free.
     pub(super) fn id_attribute(&mut self, source: &SourceText, e: ElementId) -> String {
         let Some(id) = source.attr(e, "id").filter(|i| !i.is_empty()) else { return String::new() };
-        let free = match &mut self.replaced {
+        let is_free = match &mut self.replaced {
             Some(r) => r.range.contains(&source.elements[e].range.start) && r.named.insert(e),
             None => !self.in_source && self.taken.insert(id.to_string()),
         };
-        if free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
+        if is_free { format!(" id=\"{}\"", escape(&id)) } else { String::new() }
     }
 
     /// Enlarges the region of a filter of the source to contain `region`.
@@ -128,12 +113,12 @@ pub(super) fn has_usable_stops(source: &SourceText, id: &str, stops: usize) -> b
     /// Longest chain of links followed.
     const LONGEST: usize = 16;
     let count = |e| source.descendants(e).filter(|s| *source.elements[*s].tag == *"stop").count();
-    let (mut next, mut given) = (Some(id.to_owned()), 0);
+    let (mut next, mut last_count) = (Some(id.to_owned()), 0);
     for _ in 0..LONGEST {
-        let Some(id) = next else { return given >= stops };
+        let Some(id) = next else { return last_count >= stops };
         match source.by_id().get(&id).map(Vec::as_slice) {
             Some(&[e]) if source.elements[e].tag.ends_with("Gradient") => {
-                given = Some(count(e)).filter(|n| *n > 0).unwrap_or(given);
+                last_count = Some(count(e)).filter(|n| *n > 0).unwrap_or(last_count);
                 next = source.href(e);
             }
             _ => return false,

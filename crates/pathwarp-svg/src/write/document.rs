@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 /// Writes the document to `out`, with warnings, skipped elements, and artwork that lies past the page or has moved onto it.
 pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<(), Error> {
     let structure = input.options.structure;
-    let unread = unread_images(input.drawing, input.options).chain(elements(input));
+    let unread = unread_images(input.drawing, input.options).chain(unknown_elements(input));
     let mut notes = Notes::default();
     for note in &input.scene.notes {
         notes.add(note.text, &note.name);
@@ -54,9 +54,11 @@ pub(crate) fn write(input: &WriteInput<'_>, out: &mut WarpedDocument) -> Result<
             flatten(input, written, &mut out.skipped, &mut notes)
         }
     };
-    out.skipped.extend(styles(input));
-    note_private(input, &mut notes);
-    note_style_sheets(input, &mut notes);
+    out.skipped.extend(unsupported_styles(input));
+    if input.outcomes.iter().any(|o| o.warped().is_some()) {
+        note_private(input.source, &mut notes);
+        note_style_sheets(input.source, &mut notes);
+    }
     out.warnings.extend(notes.warnings());
     out.back = page::back(input);
     if input.options.overhang && out.back.is_none() {
@@ -108,10 +110,10 @@ fn flatten(
     let page = change.map_or_else(Vec::new, |change| page::attributes(input, change));
     for name in ["id", "class", "width", "height", "viewBox", "preserveAspectRatio"] {
         let new = page.iter().find(|p| p.0 == name).map(|p| Cow::Borrowed(p.1.as_str()));
-        if let Some(v) = new.or_else(|| source.attr(0, name)) {
-            let _ = write!(out, " {name}=\"{}\"", escape(&v));
+        if let Some(value) = new.or_else(|| source.attr(0, name)) {
+            let _ = write!(out, " {name}=\"{}\"", escape(&value));
             if name == "id" {
-                w.defs.taken.insert(v.into_owned());
+                w.defs.taken.insert(value.into_owned());
             }
         }
     }
@@ -154,13 +156,12 @@ fn unknown_content(source: &SourceText, e: ElementId) -> Option<&'static str> {
 }
 
 /// Notes private data from which Illustrator would restore the unwarped artwork.
-fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
+fn note_private(source: &SourceText, notes: &mut Notes) {
     let is_illustrator = |e: ElementId| {
-        input.source.elements[e].tag == "foreignObject"
-            && input.source.attr(e, "requiredExtensions").is_some_and(|x| x.contains("AdobeIllustrator"))
+        source.elements[e].tag == "foreignObject"
+            && source.attr(e, "requiredExtensions").is_some_and(|x| x.contains("AdobeIllustrator"))
     };
-    let all = 0..input.source.elements.len();
-    if all.into_iter().any(is_illustrator) && input.outcomes.iter().any(|o| o.warped().is_some()) {
+    if (0..source.elements.len()).any(is_illustrator) {
         notes.add(
             "Illustrator opens the private data that the file holds (i:pgf) instead of the warped artwork; save the original \
              without “Preserve Illustrator Editing Capabilities”",
@@ -169,21 +170,18 @@ fn note_private(input: &WriteInput<'_>, notes: &mut Notes) {
     }
 }
 
-/// Notes unsupported rules of the style sheets, and what reading the source noted, if anything is warped.
-fn note_style_sheets(input: &WriteInput<'_>, notes: &mut Notes) {
-    if !input.outcomes.iter().any(|o| o.warped().is_some()) {
-        return;
-    }
-    for (_, why) in input.source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
+/// Notes unsupported rules of the style sheets, and what reading the source noted.
+fn note_style_sheets(source: &SourceText, notes: &mut Notes) {
+    for (_, why) in source.unsupported_style.iter().filter(|(element, _)| element.is_none()) {
         notes.add("the style sheets ask for more than is supported", why);
     }
-    for (text, name) in &input.source.notes {
+    for (text, name) in &source.notes {
         notes.add(text, name);
     }
 }
 
 /// Lists the selected elements with an unsupported style.
-pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
+fn unsupported_styles(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
     let unsupported = || source.unsupported_style.iter().filter_map(|(e, why)| Some(((*e)?, why)));
     if unsupported().next().is_none() {
@@ -195,18 +193,19 @@ pub(super) fn styles(input: &WriteInput<'_>) -> Vec<Skipped> {
 }
 
 /// Lists the selected elements that are not warped because the renderer does not know them or their paint.
-pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
+fn unknown_elements(input: &WriteInput<'_>) -> Vec<Skipped> {
     let source = input.source;
-    let known = |e: ElementId| unknown_content(source, e).is_none() && unknown_paint(&source.elements[e].tag).is_none();
+    let is_known =
+        |e: ElementId| unknown_content(source, e).is_none() && unknown_paint(&source.elements[e].tag).is_none();
     let all = 0..source.elements.len();
-    if all.clone().all(known) {
+    if all.clone().all(is_known) {
         return Vec::new();
     }
     let selected = input.options.selection.resolve(source);
     let parts = input.scene.parts.iter().zip(input.outcomes);
     let warped: HashSet<ElementId> =
         parts.filter(|(_, o)| o.warped().is_some()).filter_map(|(p, _)| p.element()).collect();
-    let unknown = |e: ElementId, property: &str| {
+    let unknown_server = |e: ElementId, property: &str| {
         let server = source.paint_server(e, property)?;
         unknown_paint(&source.elements[server].tag).filter(|_| source.mesh(server).is_none())
     };
@@ -215,8 +214,8 @@ pub(super) fn elements(input: &WriteInput<'_>) -> Vec<Skipped> {
             return Some(why.to_owned());
         }
         let tag = source.elements[e].tag.as_ref();
-        let painted = ["fill", "stroke"].into_iter().filter(|_| is_shape(tag) || tag == "text");
-        let (name, kind) = { painted }.find_map(|name| Some((name, unknown(e, name)?)))?;
+        let mut painted = ["fill", "stroke"].into_iter().filter(|_| is_shape(tag) || tag == "text");
+        let (name, kind) = painted.find_map(|name| Some((name, unknown_server(e, name)?)))?;
         Some(if warped.contains(&e) {
             format!("only in its outline; its {name}, {kind}, is unchanged")
         } else {

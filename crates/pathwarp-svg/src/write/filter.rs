@@ -11,43 +11,42 @@ use usvg::filter::{
     Input, Kind, LightSource, MorphologyOperator, Primitive, TransferFunction, Turbulence, TurbulenceKind,
 };
 
-/// Writes a `<filter>` with the region `all`. `pictures` holds the link attributes of its `feImage`s in order. For a `layer`, the part
-/// drawn beneath or above the filter's graphic, only the primitives that it needs are written, followed by `more`, which draws it.
+/// Writes a `<filter>` with a region. `pictures` holds the link attributes of its `feImage`s in order. For a `layer`, the part drawn
+/// beneath or above the filter's graphic, only the primitives that it needs are written, followed by those that draw it.
 pub(super) fn element(
     markup: &Markup<'_>,
     f: &Filter,
-    all: Rect,
+    region: Rect,
     id: &str,
     pictures: Vec<String>,
     layer: Option<&Layer>,
 ) -> String {
     let mut pictures = pictures.into_iter();
-    let primitives = f.primitives().iter().enumerate().map(|(at, p)| {
+    let primitives = f.primitives().iter().enumerate().map(|(i, p)| {
         let space = match p.color_interpolation() {
             ColorInterpolation::SRGB => "sRGB",
             ColorInterpolation::LinearRGB => "linearRGB",
         };
         let begin = |tag: &str| {
-            let tag = markup.element(tag).with_all(rectangle(areas::primitive_region(f, p, all)));
+            let tag = markup.element(tag).with_all(rectangle(areas::primitive_region(f, p, region)));
             tag.with("color-interpolation-filters", space)
         };
-        let (tag, content) = primitive(markup, &begin, p, &mut pictures);
-        // Keeps the smooth edges of an opaque graphic. An uncut composite passes its input on: the graphic hides the rest.
-        let smooth = |m| layer.and_then(|l| l.smooth(m));
-        let (tag, content) = match (layer.map(|l| l.need(at)), p.kind()) {
+        let (mut tag, content) = primitive(markup, &begin, p, &mut pictures);
+        match (layer.map(|l| l.need(i)), p.kind()) {
             (Some(Need::Nothing), _) => return String::new(),
-            (Some(_), Kind::ColorMatrix(m)) if let Some(kind) = smooth(m) => {
-                (color_matrix(begin("feColorMatrix").input("in", m.input()), &kind), content)
+            (Some(_), Kind::ColorMatrix(m)) if let Some(kind) = layer.and_then(|l| l.with_smooth_edges(m)) => {
+                tag = color_matrix(begin("feColorMatrix").input("in", m.input()), &kind);
             }
-            (Some(Need::Uncut), Kind::Composite(c)) => (begin("feOffset").input("in", c.input1()), content),
-            _ => (tag, content),
-        };
+            // A composite that is not cut out passes its input on: the graphic hides the rest.
+            (Some(Need::Uncut), Kind::Composite(c)) => tag = begin("feOffset").input("in", c.input1()),
+            _ => {}
+        }
         let tag = tag.with("result", p.result());
         if content.is_empty() { tag.empty() } else { tag.around(&content) }
     });
     let primitives: String = primitives.collect();
     let filter = markup.element("filter").with("id", id).with("filterUnits", "userSpaceOnUse");
-    filter.with_all(rectangle(all)).around(&(primitives + layer.map_or("", |l| &l.more)))
+    filter.with_all(rectangle(region)).around(&(primitives + layer.map_or("", |l| &l.drawing)))
 }
 
 /// The element of a primitive, begun by `begin`, with its content. An `feImage` takes the next of `pictures`, even if it is left out.
@@ -127,6 +126,7 @@ fn primitive(
 }
 
 impl Tag {
+    /// Adds an attribute for the input of a primitive.
     pub(super) fn input(self, name: &str, i: &Input) -> Self {
         match i {
             Input::SourceGraphic => self.with(name, "SourceGraphic"),
@@ -135,6 +135,7 @@ impl Tag {
         }
     }
 
+    /// Adds an attribute for a list of numbers.
     pub(super) fn numbers(self, name: &str, values: &[f32]) -> Self {
         self.with(name, &singles(values).join(" "))
     }
@@ -213,10 +214,7 @@ fn light(markup: &Markup<'_>, l: LightSource) -> String {
             let tag = tag.numbers("pointsAtX", &[l.points_at_x]).numbers("pointsAtY", &[l.points_at_y]);
             let tag = tag.numbers("pointsAtZ", &[l.points_at_z]);
             let tag = tag.numbers("specularExponent", &[l.specular_exponent.get()]);
-            match l.limiting_cone_angle {
-                Some(angle) => tag.numbers("limitingConeAngle", &[angle]),
-                None => tag,
-            }
+            l.limiting_cone_angle.iter().fold(tag, |tag, angle| tag.numbers("limitingConeAngle", &[*angle]))
         }
     };
     tag.empty()
@@ -255,6 +253,7 @@ fn saturate(s: f32) -> [f32; 20] {
             *v = l - l * s + if row == column { s } else { 0.0 };
         }
     }
+    // Alpha stays.
     out[18] = 1.0;
     out
 }

@@ -1,13 +1,15 @@
 //! Writes resolved geometry: groups, parts, and the definitions that they refer to.
 //!
 //! Group transforms are kept, and the geometry inside is written in the groups' user space, so that strokes, filters and paint
-//! servers keep their frames. Groups refer to definitions, which hold groups in turn; the whole recursion is in this file.
+//! servers keep their frames. Groups refer to definitions, which hold groups in turn; the whole recursion is in this file. Parts, clip
+//! paths, masks and bitmaps are given by their indices in the scene, `i`.
 
 use super::defs::{Definitions, filter_key, has_usable_stops, server_key};
 use super::input::WriteInput;
 use super::layers::Layer;
 use super::markup::{
-    self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, part_data, stroke_scale,
+    self, CssPaint, CssPaints, Markup, Properties, bent_attributes, bent_url, color, data_url, fill_rule, part_data,
+    stroke_scale, svg,
 };
 use super::surroundings::Surroundings;
 use super::{boxes, filter, mesh};
@@ -17,8 +19,7 @@ use crate::bend::outcome::{Notes, Skipped, StrokeOutcome, WarpedPart};
 use crate::bend::pictures::BentImage;
 use crate::bend::shading::{Shading, Stop};
 use crate::scene::geometry::{affine, rect};
-use crate::scene::model::Tiles;
-use crate::scene::model::{Group, Node, Part};
+use crate::scene::model::{Group, Node, Part, Tiles};
 use crate::source::markup::Tag;
 use crate::source::mesh::MeshGradient;
 use crate::source::number::{MAX_DECIMALS, outline_data, rectangle, short, shorts, single, singles};
@@ -29,15 +30,14 @@ use pathwarp_reader::xml::escape;
 use std::fmt::Write as _;
 use std::sync::Arc;
 use usvg::filter::Filter;
-use usvg::{BaseGradient, SpreadMethod};
-use usvg::{BlendMode, FillRule, ImageKind, ImageRendering, Paint, PaintOrder};
+use usvg::{BaseGradient, BlendMode, FillRule, ImageKind, ImageRendering, Paint, PaintOrder, SpreadMethod};
 
 pub(super) const FILTERS: &str = "filters follow the warp as a whole: their regions and lengths are not bent";
 const PATTERNS: &str = "patterns follow the warp as a whole: their tiles are not bent";
 const CLIPPED_TWICE: &str = "a shape in a clip path has two clip paths of its own; one is left out";
 
-/// Content of a clipped group, with its opacity.
-struct Clipped {
+/// Content that takes the place of a paint, and is clipped to the shape; with its opacity.
+struct PaintContent {
     content: String,
     opacity: f32,
 }
@@ -66,28 +66,17 @@ impl<'a> Writer<'a> {
         Self { input, markup, defs, surroundings: None, skipped, notes }
     }
 
-    fn push_nodes(&mut self, nodes: &[Node], out: &mut String) {
-        for n in nodes {
-            let text = self.node(n);
-            if out.is_empty() {
-                *out = text;
-            } else {
-                out.push_str(&text);
-            }
-        }
-    }
-
     pub(super) fn node(&mut self, n: &Node) -> String {
         match n {
             Node::Group(g) => self.group(g, ""),
             Node::Part(i) => self.part(*i),
             Node::Image(i) => self.image(*i),
             Node::Text { element, content, .. } => {
-                let inside = self.surroundings.map(|s| s.for_text(self.input.source, *element));
-                let around = std::mem::replace(&mut self.surroundings, inside);
+                let of_text = self.surroundings.map(|s| s.for_text(self.input.source, *element));
+                let surroundings = std::mem::replace(&mut self.surroundings, of_text);
                 let id = element.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
                 let inner = self.group(content, "");
-                self.surroundings = around;
+                self.surroundings = surroundings;
                 self.markup.named_group(&id, inner)
             }
         }
@@ -98,11 +87,18 @@ impl<'a> Writer<'a> {
         self.group_with(g, extra, "")
     }
 
+    /// Writes a group that other elements refer to, so that it keeps no declarations of its surroundings.
+    fn group_for_reference(&mut self, g: &Group, extra: &str) -> String {
+        let surroundings = self.surroundings.take();
+        let text = self.group(g, extra);
+        self.surroundings = surroundings;
+        text
+    }
+
     /// Writes a group with `lead` before its content.
     pub(super) fn group_with(&mut self, g: &Group, extra: &str, lead: &str) -> String {
         let head = self.head(g, extra);
-        let mut inner = String::new();
-        self.push_nodes(&g.children, &mut inner);
+        let inner = g.children.iter().map(|n| self.node(n)).collect();
         let inner = self.with_pictures(g, inner);
         self.wrapped(g, &head, lead.to_owned() + &inner)
     }
@@ -122,6 +118,7 @@ impl<'a> Writer<'a> {
         self.wrapped(g, &head, content)
     }
 
+    /// Wraps content in the group's element, unless that has no attributes.
     fn wrapped(&self, g: &Group, head: &str, content: String) -> String {
         if head.is_empty() {
             return content;
@@ -130,6 +127,7 @@ impl<'a> Writer<'a> {
         self.markup.element(tag).raw(head).around(&content)
     }
 
+    /// The attributes of a group.
     fn head(&mut self, g: &Group, extra: &str) -> String {
         let mut properties = Properties::new();
         if g.opacity < 1.0 {
@@ -189,44 +187,42 @@ impl<'a> Writer<'a> {
             return self.markup.named_group(&id, pieces);
         }
         let mut properties = self.properties(i);
-        let outlined = warped.and_then(|w| w.stroke.outline()).zip(p.stroke.as_ref());
-        let area = warped.and_then(|w| w.fill.as_ref());
-        let Some(warped) = warped.filter(|_| outlined.is_some() || area.is_some()) else {
+        let outline = warped.and_then(|w| w.stroke.outline()).filter(|_| p.stroke.is_some());
+        let fill_area = warped.and_then(|w| w.fill.as_ref());
+        let Some(warped) = warped.filter(|_| outline.is_some() || fill_area.is_some()) else {
             return self.markup.path(&d, &id, &properties);
         };
-        let (top, over) = match outlined {
-            Some((outline, _)) => (warped.text(outline), self.outlined(i)),
+        let (stroke_data, stroke_properties) = match outline {
+            Some(outline) => (warped.text(outline), self.outlined(i)),
             None => {
-                let mut over = properties.clone();
-                over.retain(|p| !p.0.starts_with("fill"));
-                over.push(("fill", "none".into()));
-                (d.clone(), over)
+                let mut of_stroke = properties.clone();
+                of_stroke.retain(|p| !p.0.starts_with("fill"));
+                of_stroke.push(("fill", "none".into()));
+                (d.clone(), of_stroke)
             }
         };
-        if p.fill.is_none() || area.is_some_and(|a| a.elements().is_empty()) {
-            return self.markup.path(&top, &id, &over);
+        if p.fill.is_none() || fill_area.is_some_and(|a| a.elements().is_empty()) {
+            return self.markup.path(&stroke_data, &id, &stroke_properties);
         }
-        let top = self.markup.path(&top, "", &over);
-        properties.retain(|p| p.0 == "fill" || !p.0.starts_with("stroke") && p.0 != "paint-order");
+        let stroke = self.markup.path(&stroke_data, "", &stroke_properties);
+        properties.retain(|p| !p.0.starts_with("stroke") && p.0 != "paint-order");
         properties.push(("stroke", "none".into()));
-        let base = self.markup.path(&area.map_or(d, |a| warped.text(a)), "", &properties);
-        let both =
-            if p.paint_order == PaintOrder::StrokeAndFill { format!("{top}{base}") } else { format!("{base}{top}") };
-        self.markup.named_group(&id, both)
+        let fill = self.markup.path(&fill_area.map_or(d, |a| warped.text(a)), "", &properties);
+        self.markup.named_group(&id, painted(p, fill, stroke))
     }
 
     /// Writes a part's fill and stroke one after the other: patterns as geometry and gradients as pictures, clipped to the shape.
     fn pieces(&mut self, i: usize, warped: &WarpedPart, d: &str) -> String {
         let fill = self.fill_piece(i, warped, d);
         let stroke = self.stroke_piece(i, warped, d);
-        if self.input.part(i).paint_order == PaintOrder::StrokeAndFill { stroke + &fill } else { fill + &stroke }
+        painted(self.input.part(i), fill, stroke)
     }
 
     /// The tiles that replace a paint, or else its picture.
-    fn piece(&mut self, tiles: Option<&Tiles>, picture: Option<&BentImage>, opacity: f32) -> Option<Clipped> {
+    fn piece(&mut self, tiles: Option<&Tiles>, picture: Option<&BentImage>, opacity: f32) -> Option<PaintContent> {
         match tiles {
-            Some(t) => Some(Clipped { content: self.group(&t.content, ""), opacity: t.opacity }),
-            None => picture.map(|b| Clipped { content: bent_image(&self.markup, b, Affine::IDENTITY), opacity }),
+            Some(t) => Some(PaintContent { content: self.group(&t.content, ""), opacity: t.opacity }),
+            None => picture.map(|b| PaintContent { content: bent_image(&self.markup, b, Affine::IDENTITY), opacity }),
         }
     }
 
@@ -238,10 +234,7 @@ impl<'a> Writer<'a> {
         let area = warped.fill.as_ref().map_or_else(|| d.to_owned(), |a| warped.text(a));
         match (p.fill.as_ref().filter(|_| !area.is_empty()), content) {
             (None, _) => String::new(),
-            (Some(f), Some(content)) => {
-                let rule = if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" };
-                self.clipped_to(&area, rule, &content, i)
-            }
+            (Some(f), Some(content)) => self.clipped_to(&area, fill_rule(f.rule()), &content, i),
             (Some(_), None) => {
                 let fill = self.fill(i);
                 let paints = CssPaints { fill, stroke: None };
@@ -272,22 +265,20 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes content clipped to an outline.
-    fn clipped_to(&mut self, d: &str, rule: &'static str, inner: &Clipped, i: usize) -> String {
+    /// Writes the content that takes the place of a paint of part `i`, clipped to an outline.
+    fn clipped_to(&mut self, d: &str, rule: &'static str, inner: &PaintContent, i: usize) -> String {
         let p = self.input.part(i);
         let name = p.source.or(p.owner).and_then(|e| self.input.source.attr(e, "id")).filter(|n| !n.is_empty());
         let id = self.defs.new_id(&name.map_or_else(|| "shape-edge".to_owned(), |n| format!("{n}-edge")));
         let mut properties = Properties::new();
-        if rule != "nonzero" || self.markup.may_inherit("clip-rule") {
-            properties.push(("clip-rule", rule.into()));
-        }
+        self.markup.push_unless_default("clip-rule", rule, "nonzero", &mut properties);
         let path = self.markup.path(d, "", &properties);
         self.defs.push(&self.markup.element("clipPath").with("id", &id).around(&path));
-        let mut outer = vec![("clip-path", format!("url(#{id})"))];
+        let mut properties = vec![("clip-path", format!("url(#{id})"))];
         if inner.opacity < 1.0 {
-            outer.push(("opacity", single(f64::from(inner.opacity))));
+            properties.push(("opacity", single(f64::from(inner.opacity))));
         }
-        self.markup.element("g").raw(&self.markup.attributes(&outer)).around(&inner.content)
+        self.markup.element("g").raw(&self.markup.attributes(&properties)).around(&inner.content)
     }
 
     /// The resolved presentation of a part.
@@ -315,19 +306,20 @@ impl<'a> Writer<'a> {
         Some(self.css_paint(i, [Stroke, StrokeOpacity], (stroke.paint(), stroke.opacity()), as_fill))
     }
 
-    /// A paint as declared in the source, if that means the same for the new element, or else as resolved. `moves` if it is written to
-    /// another property.
+    /// A paint as declared in the source, if that means the same for the new element, or else as resolved. With `to_other`, it is written
+    /// to another property.
     fn css_paint(
         &mut self,
         i: usize,
         [paint_property, opacity_property]: [PaintProperty; 2],
         (paint, opacity): (&Paint, usvg::Opacity),
-        moves: bool,
+        to_other: bool,
     ) -> CssPaint {
         let p = self.input.part(i);
         let around = self.surroundings.filter(|_| matches!(paint, Paint::Color(_)));
         if let Some((around, words)) = around.and_then(|a| Some((a, a.words_of(self.input.source, p)?))) {
-            let inherits = |p| around.is_parent && !moves && words.inherits(p, around.words);
+            let inherits = |p| around.is_parent && !to_other && words.inherits(p, around.words);
+            // `Some(None)` is a value that need not be written, and `None` one that cannot be kept.
             let value =
                 |p| if inherits(p) { Some(None) } else { Some(Some(words.taken_over(p, around.words)?.to_owned())) };
             let has_opacity = words.says(opacity_property) || inherits(opacity_property);
@@ -353,11 +345,8 @@ impl<'a> Writer<'a> {
             if self.markup.in_source && fit == Affine::IDENTITY {
                 return format!("url(#{})", server_id(paint));
             }
-            return self.mesh(
-                paint,
-                &mesh.on(p.local.bounding_box().unwrap_or_default()).transformed(fit),
-                MAX_DECIMALS,
-            );
+            let placed = mesh.on(p.local.bounding_box().unwrap_or_default()).transformed(fit);
+            return self.mesh(paint, &placed, MAX_DECIMALS);
         }
         match paint {
             Paint::Color(c) => color(*c),
@@ -375,9 +364,9 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Refers to a gradient, writing it if necessary.
-    fn gradient(&mut self, tag: &str, g: &BaseGradient, at: usize, geometry: &[(&str, f32)], fit: Affine) -> String {
-        let key = server_key(at, fit);
+    /// Refers to a gradient, writing it if necessary. `ptr` is its address, which identifies it.
+    fn gradient(&mut self, tag: &str, g: &BaseGradient, ptr: usize, geometry: &[(&str, f32)], fit: Affine) -> String {
+        let key = server_key(ptr, fit);
         if let Some(id) = self.defs.servers.get(&key) {
             return format!("url(#{id})");
         }
@@ -394,24 +383,20 @@ impl<'a> Writer<'a> {
             SpreadMethod::Reflect => tag.with("spreadMethod", "reflect"),
             SpreadMethod::Repeat => tag.with("spreadMethod", "repeat"),
         };
-        let foreign = self.input.scene.foreign.contains(&at);
-        let shares = || has_usable_stops(self.input.source, g.id(), g.stops().len());
-        let text = if self.markup.in_source && !foreign && shares() {
-            // Share the stops of the original.
+        let is_foreign = self.input.scene.foreign.contains(&ptr);
+        let shares_stops = || has_usable_stops(self.input.source, g.id(), g.stops().len());
+        let text = if self.markup.in_source && !is_foreign && shares_stops() {
             tag.with(self.markup.link(), &format!("#{}", g.id())).empty()
         } else {
-            tag.around(&g.stops().iter().map(|s| self.stop(s)).collect::<String>())
+            let stop = |s: &usvg::Stop| self.stop(s.offset().get().into(), s.color(), s.opacity().get().into());
+            tag.around(&g.stops().iter().map(stop).collect::<String>())
         };
         self.defs.push(&text);
         self.defs.servers.insert(key, id.clone());
         format!("url(#{id})")
     }
 
-    fn stop(&self, s: &usvg::Stop) -> String {
-        self.stop_with(s.offset().get().into(), s.color(), s.opacity().get().into())
-    }
-
-    fn stop_with(&self, offset: f64, stop_color: usvg::Color, opacity: f64) -> String {
+    fn stop(&self, offset: f64, stop_color: usvg::Color, opacity: f64) -> String {
         let mut properties = vec![("stop-color", color(stop_color))];
         if opacity < 1.0 || self.markup.styled {
             properties.push(("stop-opacity", short(opacity)));
@@ -431,9 +416,9 @@ impl<'a> Writer<'a> {
             tag = tag.with("gradientTransform", &matrix(bent.inside.inverse()));
         }
         let stop = |s: &Stop| {
-            let [r, g, b] = [0, 1, 2].map(|k| (s.color[k] * 255.0).round() as u8);
-            let fine = |v: f64| (v * 1e6).round() / 1e6;
-            self.stop_with(fine(s.offset), usvg::Color::new_rgb(r, g, b), fine(s.color[3]))
+            let [r, g, b] = [0, 1, 2].map(|channel| (s.color[channel] * 255.0).round() as u8);
+            let rounded = |v: f64| (v * 1e6).round() / 1e6;
+            self.stop(rounded(s.offset), usvg::Color::new_rgb(r, g, b), rounded(s.color[3]))
         };
         let stops: String = bent.stops.iter().map(stop).collect();
         self.defs.push(&tag.around(&stops));
@@ -473,9 +458,7 @@ impl<'a> Writer<'a> {
         if t != Affine::IDENTITY {
             head = head.with("patternTransform", &matrix(t));
         }
-        let around = self.surroundings.take();
-        let inner = self.group(&tile.root, "");
-        self.surroundings = around;
+        let inner = self.group_for_reference(&tile.root, "");
         self.defs.push(&head.around(&inner));
         format!("url(#{id})")
     }
@@ -492,7 +475,7 @@ impl<'a> Writer<'a> {
         id
     }
 
-    /// Writes a clip path. As it must not contain groups, all transforms are on its paths.
+    /// Writes a clip path with the attributes `head`. As it must not contain groups, all transforms are on its paths.
     pub(super) fn clip(&mut self, i: usize, head: &str) -> String {
         let c = &self.input.scene.clips[i];
         let mut tag = self.markup.element("clipPath").raw(head);
@@ -508,51 +491,44 @@ impl<'a> Writer<'a> {
         tag.around(&paths)
     }
 
-    /// Writes the parts of a group in a clip path. `clip` is a clip path of an enclosing group, with the transform that leads out of that
-    /// group.
-    fn clip_children(&mut self, g: &Group, t: Affine, clip: Option<(usize, Affine)>, out: &mut String) {
+    /// Writes the parts of a group in a clip path. `to_clip` leads from the group to the clip path. `clip` is the clip path of an enclosing
+    /// group, with the transform that leads from that group.
+    fn clip_children(&mut self, g: &Group, to_clip: Affine, clip: Option<(usize, Affine)>, out: &mut String) {
         if clip.is_some() && g.clip.is_some() {
             self.notes.add(CLIPPED_TWICE, "");
         }
-        let clip = g.clip.map(|c| (c, t)).or(clip);
+        let clip = g.clip.map(|c| (c, to_clip)).or(clip);
         for n in &g.children {
             match n {
-                Node::Group(g) => self.clip_children(g, t * g.transform, clip, out),
-                Node::Text { content, .. } => self.clip_children(content, t * content.transform, clip, out),
-                Node::Part(i) if self.input.part(*i).visible => {
-                    let path = self.clip_part(*i, t, clip);
-                    out.push_str(&path);
-                }
+                Node::Group(g) => self.clip_children(g, to_clip * g.transform, clip, out),
+                Node::Text { content, .. } => self.clip_children(content, to_clip * content.transform, clip, out),
+                Node::Part(i) if self.input.part(*i).visible => out.push_str(&self.clip_part(*i, to_clip, clip)),
                 Node::Part(_) | Node::Image(_) => {}
             }
         }
     }
 
     /// Writes a part of a clip path. A clip path on it refers to the coordinates in which its path is written.
-    fn clip_part(&mut self, i: usize, t: Affine, clip: Option<(usize, Affine)>) -> String {
+    fn clip_part(&mut self, i: usize, to_clip: Affine, clip: Option<(usize, Affine)>) -> String {
         let p = self.input.part(i);
         let mut properties = Properties::new();
-        let rule = p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule);
-        if rule == FillRule::EvenOdd {
-            properties.push(("clip-rule", "evenodd".into()));
-        } else if self.markup.may_inherit("clip-rule") {
-            properties.push(("clip-rule", "nonzero".into()));
-        }
-        let mut written = t;
-        if let Some((i, around)) = clip {
+        let rule = fill_rule(p.fill.as_ref().map_or(FillRule::NonZero, usvg::Fill::rule));
+        self.markup.push_unless_default("clip-rule", rule, "nonzero", &mut properties);
+        let mut transform = to_clip;
+        if let Some((i, from_group)) = clip {
             let id = self.clip_id(i);
             properties.push(("clip-path", format!("url(#{id})")));
-            written = around;
+            transform = from_group;
         }
         let mut head = p.source.map_or(String::new(), |e| self.defs.id_attribute(self.input.source, e));
-        if written != Affine::IDENTITY {
-            let _ = write!(head, " transform=\"{}\"", matrix(written));
+        if transform != Affine::IDENTITY {
+            let _ = write!(head, " transform=\"{}\"", matrix(transform));
         }
         let warped = self.input.warped(i);
         let d = match warped {
-            _ if written == t => part_data(p, warped, self.input.source),
-            Some(w) => w.text(&(written.inverse() * t * w.path.clone())),
-            None => outline_data(&p.local.transformed(written.inverse() * t)),
+            _ if transform == to_clip => part_data(p, warped, self.input.source),
+            Some(w) => w.text(&(transform.inverse() * to_clip * w.path.clone())),
+            None => outline_data(&p.local.transformed(transform.inverse() * to_clip)),
         };
         self.markup.path(&d, &head, &properties)
     }
@@ -569,6 +545,7 @@ impl<'a> Writer<'a> {
         id
     }
 
+    /// Writes a mask with the attributes `head`.
     pub(super) fn mask(&mut self, i: usize, head: &str) -> String {
         let m = &self.input.scene.masks[i];
         let region = boxes::region(&self.input, i);
@@ -580,9 +557,7 @@ impl<'a> Writer<'a> {
             let id = self.mask_id(next);
             properties.push(("mask", format!("url(#{id})")));
         }
-        let around = self.surroundings.take();
-        let mut inner = self.group(&m.root, "");
-        self.surroundings = around;
+        let mut inner = self.group_for_reference(&m.root, "");
         if let Some(edge) = boxes::edge(&self.input, i) {
             let id = self.defs.new_id(&format!("{}-edge", m.id));
             let path = self.markup.path(&edge, "", &Properties::new());
@@ -598,8 +573,15 @@ impl<'a> Writer<'a> {
     pub(super) fn filters(&mut self, g: &Group) -> String {
         self.note_filters(g);
         let growth = boxes::growth(&self.input, g);
-        let list: Vec<String> = g.filters.iter().map(|f| self.filter(f, boxes::grown(f, growth))).collect();
-        list.join(" ")
+        let url = |f: &Arc<Filter>| {
+            let region = boxes::grown(f, growth);
+            if self.keeps_filter(f) {
+                self.defs.grow(f, region);
+                return format!("url(#{})", f.id());
+            }
+            format!("url(#{})", self.filter_id(f, region))
+        };
+        g.filters.iter().map(url).collect::<Vec<_>>().join(" ")
     }
 
     /// Notes that the filters of a group do not look right.
@@ -609,20 +591,13 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn filter(&mut self, f: &Arc<Filter>, region: Rect) -> String {
-        if self.keeps_filter(f) {
-            self.defs.grow(f, region);
-            return format!("url(#{})", f.id());
-        }
-        format!("url(#{})", self.filter_id(f, region))
-    }
-
     /// Returns `true` if a filter of the source remains in use.
     pub(super) fn keeps_filter(&self, f: &Arc<Filter>) -> bool {
         let source = self.input.source;
-        let has_id = source.by_id().get(f.id()).is_some_and(|v| v.iter().any(|&e| source.elements[e].tag == "filter"));
-        let foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
-        self.markup.in_source && has_id && !foreign && !self.input.shows_warped(f)
+        let is_filter = |v: &Vec<usize>| v.iter().any(|&e| source.elements[e].tag == "filter");
+        let is_foreign = self.input.scene.foreign.contains(&(Arc::as_ptr(f) as usize));
+        let is_in_source = self.markup.in_source && source.by_id().get(f.id()).is_some_and(is_filter);
+        is_in_source && !is_foreign && !self.input.shows_warped(f)
     }
 
     /// The id of a filter in user space with the given region, which is written if necessary.
@@ -651,18 +626,13 @@ impl<'a> Writer<'a> {
 
     /// An SVG drawing of the area `view` of a group with its filters, or of a layer of its only filter.
     pub(super) fn layer_drawing(&mut self, g: &Group, layer: Option<&Layer>, view: Rect) -> String {
-        let mut inner = String::new();
-        self.push_nodes(&g.children, &mut inner);
+        let inner: String = g.children.iter().map(|n| self.node(n)).collect();
         let growth = boxes::growth(&self.input, g);
         let urls = g.filters.iter().map(|f| format!("url(#{})", self.new_filter(f, boxes::grown(f, growth), layer)));
         let urls: Vec<String> = urls.collect();
         let content = Tag::new("g").with("filter", &urls.join(" ")).around(&inner);
-        let [x, y, width, height] = rectangle(view);
-        let view_box = [&x, &y, &width, &height].map(|side| side.1.as_str()).join(" ");
-        let size = [width, height];
-        let svg = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
-        let svg = svg.with("xmlns:xlink", "http://www.w3.org/1999/xlink").with_all(size).with("viewBox", &view_box);
-        svg.around(&format!("<defs>{}</defs>{content}", self.defs.text))
+        let [_, _, width, height] = rectangle(view);
+        svg(view).with_all([width, height]).around(&format!("<defs>{}</defs>{content}", self.defs.text))
     }
 
     /// Writes bitmap `i`, bent or not.
@@ -691,6 +661,7 @@ impl<'a> Writer<'a> {
             let stored = drawing.turned.and_then(|turned| turned(data, &drawing.budget.limits()));
             data_url(media_type, stored.as_deref().unwrap_or(data))
         };
+        // The file as it was before the reader turned it by its EXIF orientation.
         let url = match image.kind() {
             ImageKind::JPEG(d) => file("image/jpeg", d),
             ImageKind::PNG(d) => file("image/png", d),
@@ -708,25 +679,25 @@ impl<'a> Writer<'a> {
         };
         let [width, height] = [image.size().width(), image.size().height()].map(|side| single(side.into()));
         let tag = self.markup.element("image").with("width", &width).with("height", &height);
-        let style = rendering.map(|how| ("style", format!("image-rendering:{how}")));
+        let style = rendering.map(|keyword| ("style", format!("image-rendering:{keyword}")));
         tag.with_all(style).raw(&format!(" {}=\"{url}\"", self.markup.link())).empty()
     }
 
-    /// Writes a bent bitmap, and as a definition the outline that clips it.
-    pub(super) fn clipped_image(&mut self, image: &BentImage, clip: Option<&str>, to: Affine) -> String {
-        let Some(data) = clip else { return bent_image(&self.markup, image, to) };
-        let id = self.outline_id(data, to);
+    /// Writes a bent bitmap, and as a definition the outline that clips it. `to_user` leads from the coordinates of both to user space.
+    pub(super) fn clipped_image(&mut self, image: &BentImage, clip: Option<&str>, to_user: Affine) -> String {
+        let text = bent_image(&self.markup, image, to_user);
+        let Some(data) = clip else { return text };
+        let id = self.outline_id(data, to_user);
         let clip = self.markup.attributes(&vec![("clip-path", format!("url(#{id})"))]);
-        let text = bent_image(&self.markup, image, to);
         self.markup.element("g").raw(&clip).around(&text)
     }
 
-    /// Writes an outline in user space as a clip path. Returns its id.
-    pub(super) fn outline_id(&mut self, data: &str, to: Affine) -> String {
+    /// Writes an outline as a clip path, which `to_user` takes to user space. Returns its id.
+    pub(super) fn outline_id(&mut self, data: &str, to_user: Affine) -> String {
         let id = self.defs.new_id("outline");
         let mut path = self.markup.element("path").with("d", data);
-        if to != Affine::IDENTITY {
-            path = path.with("transform", &matrix(to));
+        if to_user != Affine::IDENTITY {
+            path = path.with("transform", &matrix(to_user));
         }
         let clip = self.markup.element("clipPath").with("id", &id).around(&path.empty());
         self.defs.push(&clip);
@@ -739,19 +710,24 @@ impl<'a> Writer<'a> {
             return String::new();
         };
         let id = self.defs.new_id("picture");
-        let around = self.surroundings.take();
-        let text = self.group(picture, &format!(" id=\"{id}\""));
-        self.surroundings = around;
+        let text = self.group_for_reference(picture, &format!(" id=\"{id}\""));
         self.defs.push(&text);
         format!(" {}=\"#{id}\"", self.markup.link())
     }
 }
 
-pub(super) fn bent_image(markup: &Markup<'_>, bent: &BentImage, to: Affine) -> String {
-    let tag = markup.element("image").with_all(bent_attributes(bent, to));
+/// Writes a bent bitmap as an element whose user space `to_user` leads to.
+pub(super) fn bent_image(markup: &Markup<'_>, bent: &BentImage, to_user: Affine) -> String {
+    let tag = markup.element("image").with_all(bent_attributes(bent, to_user));
     tag.raw(&format!(" {}=\"{}\"", markup.link(), bent_url(bent))).empty()
 }
 
+/// The elements of a part's fill and stroke in painting order.
+fn painted(p: &Part, fill: String, stroke: String) -> String {
+    if p.paint_order == PaintOrder::StrokeAndFill { stroke + &fill } else { fill + &stroke }
+}
+
+/// The id of a paint, as the source of new ids.
 fn server_id(paint: &Paint) -> &str {
     match paint {
         Paint::LinearGradient(g) => g.id(),

@@ -23,13 +23,17 @@ pub(crate) struct WriteInput<'a> {
     pub(super) drawing: &'a Drawing,
     pub(super) source: &'a SourceText,
     pub(super) scene: &'a Scene,
+    /// The results for the parts, bitmaps and slots of the scene, by their indices there.
     pub(super) outcomes: &'a [PartOutcome],
     pub(super) images: &'a [EmbeddedImage],
     pub(super) slots: &'a [PlacedSlot],
     pub(super) bends: &'a Bends<'a>,
+    /// For every part, the index of its bend; `None` if it is not bent.
     pub(super) part_bends: &'a [Option<usize>],
+    /// The results for filters, by the index of their slot.
     pub(super) filters: &'a BTreeMap<usize, FilterOutcome>,
     pub(super) united: &'a United,
+    /// The line around the artwork.
     pub(super) line: Option<&'a Line>,
     pub(super) options: &'a WarpOptions,
 }
@@ -68,7 +72,7 @@ impl<'a> WriteInput<'a> {
 
     /// The bend of the first of these parts that is bent.
     pub(super) fn bend(&self, parts: Range<usize>) -> Option<&'a Bend<'a>> {
-        self.part_bends[parts].iter().find_map(|k| k.map(|k| &self.bends.each[k]))
+        self.part_bends[parts].iter().find_map(|i| i.map(|i| &self.bends.each[i]))
     }
 
     /// The image of a part; `None` if it is unchanged.
@@ -78,15 +82,16 @@ impl<'a> WriteInput<'a> {
 
     /// Returns `true` if all of a node has become part of another shape.
     pub(super) fn is_absorbed(&self, n: &Node) -> bool {
-        let all = |nodes: &[Node]| !nodes.is_empty() && nodes.iter().all(|n| self.is_absorbed(n));
         match n {
             Node::Part(i) => self.united.absorbs(*i),
-            Node::Group(g) => all(&g.children),
-            Node::Text { content, .. } => all(&content.children),
+            Node::Group(g) | Node::Text { content: g, .. } => {
+                !g.children.is_empty() && g.children.iter().all(|n| self.is_absorbed(n))
+            }
             Node::Image(_) => false,
         }
     }
 
+    /// Returns `true` if any of these parts is warped.
     pub(super) fn changes(&self, parts: Range<usize>) -> bool {
         self.outcomes[parts].iter().any(|o| o.warped().is_some())
     }
@@ -102,7 +107,7 @@ impl<'a> WriteInput<'a> {
         fit.filter(|f| p.local.bounding_box().is_none_or(|b| !f.is_identity(b)))
     }
 
-    /// The gradient that replaces a paint of the part, if there is one.
+    /// The gradient that replaces a paint of the part, if there is one. `paint` is that of its fill or its stroke.
     pub(super) fn bent_gradient<'w>(&self, paint: &Paint, p: &Part, warped: &'w WarpedPart) -> Option<&'w NewGradient> {
         match &p.fill {
             Some(f) if std::ptr::eq(f.paint(), paint) => warped.fill_gradient.as_ref(),
@@ -112,8 +117,8 @@ impl<'a> WriteInput<'a> {
 
     /// Returns `true` if a part is written in several pieces: its fill or stroke consists of tiles or a picture.
     pub(super) fn in_pieces(&self, i: usize) -> bool {
-        let pictured = |d: &WarpedPart| d.fill_image.is_some() || d.stroke_image.is_some();
-        self.warped(i).is_some_and(pictured) || self.fill_tiles(i).is_some() || self.stroke_tiles(i).is_some()
+        let has_picture = |d: &WarpedPart| d.fill_image.is_some() || d.stroke_image.is_some();
+        self.warped(i).is_some_and(has_picture) || self.fill_tiles(i).is_some() || self.stroke_tiles(i).is_some()
     }
 
     /// The tiles of a part's fill, if all of them are warped.
@@ -156,8 +161,8 @@ impl<'a> WriteInput<'a> {
         let images = filters.flat_map(|&e| source.descendants(e));
         let shown = images.filter_map(|e| source.by_id().get(&source.href(e)?)).flatten();
         shown.map(|&e| &source.elements[e].range).any(|range| {
-            let inside = |p: &Part| p.element().is_some_and(|e| range.contains(&source.elements[e].range.start));
-            self.scene.parts.iter().zip(self.outcomes).any(|(p, o)| o.warped().is_some() && inside(p))
+            let is_inside = |p: &Part| p.element().is_some_and(|e| range.contains(&source.elements[e].range.start));
+            self.scene.parts.iter().zip(self.outcomes).any(|(p, o)| o.warped().is_some() && is_inside(p))
         })
     }
 }

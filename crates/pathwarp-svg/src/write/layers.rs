@@ -15,9 +15,9 @@ pub(super) struct Layer {
     /// The need for each primitive.
     needs: Vec<Need>,
     /// Further primitives, the last of which draws the layer.
-    pub(super) more: String,
+    pub(super) drawing: String,
     /// `true` if nothing shines through the graphic where it paints.
-    opaque: bool,
+    is_opaque: bool,
 }
 
 /// The need of a layer for a primitive, in increasing order.
@@ -34,31 +34,36 @@ pub(super) enum Need {
 }
 
 impl Layer {
-    pub(super) fn need(&self, at: usize) -> Need {
-        self.needs[at]
+    /// The need for a primitive.
+    pub(super) fn need(&self, primitive: usize) -> Need {
+        self.needs[primitive]
     }
 
     /// The matrix that keeps the edges of an opaque graphic smooth in place of one that makes its alpha full, as in Figma's shadows.
-    pub(super) fn smooth(&self, m: &ColorMatrix) -> Option<ColorMatrixKind> {
+    pub(super) fn with_smooth_edges(&self, m: &ColorMatrix) -> Option<ColorMatrixKind> {
         let (ColorMatrixKind::Matrix(v), Input::SourceAlpha) = (m.kind(), m.input()) else { return None };
-        let is_full = matches!(v[15..], [0.0, 0.0, 0.0, factor, 0.0] if factor > 1.0);
-        (self.opaque && is_full).then(|| ColorMatrixKind::Matrix([&v[..18], &[1.0, 0.0]].concat()))
+        let makes_full = matches!(v[15..], [0.0, 0.0, 0.0, factor, 0.0] if factor > 1.0);
+        (self.is_opaque && makes_full).then(|| ColorMatrixKind::Matrix([&v[..18], &[1.0, 0.0]].concat()))
     }
 }
 
+/// An image in the stack that a filter draws.
 enum Stacked<'a> {
     Nothing,
+    /// The graphic.
     Source,
+    /// The result of a primitive.
     Result(usize),
     Shadow(&'a DropShadow, ColorInterpolation),
 }
 
 /// The layers that a filter draws beneath and above its graphic, as far as there are any. Returns `None` if it changes or cuts the graphic.
-pub(super) fn layers_around(f: &Filter, content: Rect, opaque: bool) -> Option<[Option<Layer>; 2]> {
+/// `content` is the graphic's box.
+pub(super) fn layers_around(f: &Filter, content: Rect, is_opaque: bool) -> Option<[Option<Layer>; 2]> {
     /// Limit on primitives, as the time grows with their number squared.
-    const MOST: usize = 1000;
+    const MAX_PRIMITIVES: usize = 1000;
     let all = f.primitives();
-    if all.len() > MOST {
+    if all.len() > MAX_PRIMITIVES {
         return None;
     }
     let region = rect(f.rect().to_rect());
@@ -70,18 +75,18 @@ pub(super) fn layers_around(f: &Filter, content: Rect, opaque: bool) -> Option<[
     let mut stack = Vec::new();
     push(f, all.len().checked_sub(1)?, &mut stack)?;
     let mut sources = stack.iter().enumerate().filter(|(_, s)| matches!(s, Stacked::Source));
-    let (Some((at, _)), None) = (sources.next(), sources.next()) else { return None };
-    let layers = [layer(f, &stack[..at], opaque, opaque), layer(f, &stack[at + 1..], false, opaque)];
+    let (Some((source, _)), None) = (sources.next(), sources.next()) else { return None };
+    let layers = [layer(f, &stack[..source], is_opaque, is_opaque), layer(f, &stack[source + 1..], false, is_opaque)];
     // Results are composited in sRGB.
-    let linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
-    (!linear || (opaque && layers[1].is_none())).then_some(layers)
+    let is_linear = all.iter().any(|p| p.color_interpolation() == ColorInterpolation::LinearRGB);
+    (!is_linear || (is_opaque && layers[1].is_none())).then_some(layers)
 }
 
-/// Adds the stack of a primitive, from the bottom to the top. Returns `None` if it is not a stack on the graphic.
-fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> {
+/// Adds the stack of primitive `i`, from the bottom to the top. Returns `None` if it is not a stack on the graphic.
+fn push<'a>(f: &'a Filter, i: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> {
     /// Most layers; references can ask for any number.
     const MAX_LAYERS: usize = 64;
-    let p = &f.primitives()[at];
+    let p = &f.primitives()[i];
     // Makes the limit count each call.
     out.push(Stacked::Nothing);
     let layer = |input: &'a Input| match input {
@@ -91,7 +96,7 @@ fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> 
         }
         // A silhouette covers the graphic.
         Input::SourceAlpha => None,
-        Input::Reference(name) => push(f, last_named(f, name, at)?, out),
+        Input::Reference(name) => push(f, last_named(f, name, i)?, out),
     };
     match p.kind() {
         Kind::Merge(_) | Kind::Blend(_) | Kind::Composite(_) if is_stack(p) => {
@@ -104,13 +109,14 @@ fn push<'a>(f: &'a Filter, at: usize, out: &mut Vec<Stacked<'a>>) -> Option<()> 
         // An empty background.
         Kind::Flood(flood) if flood.opacity().get() == 0.0 => {}
         _ => {
-            (last_named(f, p.result(), f.primitives().len()) == Some(at)).then_some(())?;
-            out.push(Stacked::Result(at));
+            (last_named(f, p.result(), f.primitives().len()) == Some(i)).then_some(())?;
+            out.push(Stacked::Result(i));
         }
     }
     (out.len() <= MAX_LAYERS).then_some(())
 }
 
+/// Returns `true` if a primitive lays its inputs upon one another.
 fn is_stack(p: &Primitive) -> bool {
     matches!(p.kind(), Kind::Merge(_))
         || matches!(p.kind(), Kind::Blend(b) if b.mode() == BlendMode::Normal)
@@ -143,41 +149,42 @@ fn inputs(kind: &Kind) -> Vec<&Input> {
     }
 }
 
-/// The layer of a part of a stack; `hidden` if the graphic covers it. Returns `None` if it draws nothing.
-fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Option<Layer> {
+/// The layer of a part of a stack; `is_hidden` if the graphic covers it. Returns `None` if it draws nothing.
+fn layer(f: &Filter, stack: &[Stacked<'_>], is_hidden: bool, is_opaque: bool) -> Option<Layer> {
     let mut needs = vec![Need::Nothing; f.primitives().len()];
-    let (mut more, mut nodes) = (String::new(), String::new());
+    let (mut drawing, mut nodes) = (String::new(), String::new());
     let begin = |tag: &str| Tag::new(tag).with("color-interpolation-filters", "sRGB");
-    for (k, layer) in stack.iter().enumerate() {
-        let result = match layer {
+    for (number, image) in stack.iter().enumerate() {
+        let result = match image {
             Stacked::Nothing | Stacked::Source => continue,
-            Stacked::Result(at) => {
-                needs[*at] = if hidden { Need::Visible } else { Need::Result };
-                f.primitives()[*at].result().to_owned()
+            Stacked::Result(i) => {
+                needs[*i] = if is_hidden { Need::Visible } else { Need::Result };
+                f.primitives()[*i].result().to_owned()
             }
             Stacked::Shadow(s, space) => {
-                let [offset, flood, result] = ["o", "f", "s"].map(|part| format!("pathwarp-{k}{part}"));
+                let [offset, flood, result] = ["o", "f", "s"].map(|part| format!("pathwarp-{number}{part}"));
                 let blur = begin("feGaussianBlur").input("in", s.input());
-                more += &blur.numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()]).empty();
-                let by = begin("feOffset").numbers("dx", &[s.dx()]).numbers("dy", &[s.dy()]);
-                more += &by.with("result", &offset).empty();
+                drawing += &blur.numbers("stdDeviation", &[s.std_dev_x().get(), s.std_dev_y().get()]).empty();
+                let shift = begin("feOffset").numbers("dx", &[s.dx()]).numbers("dy", &[s.dy()]);
+                drawing += &shift.with("result", &offset).empty();
                 let color = begin("feFlood").with("flood-color", &shadow_color(s, *space));
-                more += &color.numbers("flood-opacity", &[s.opacity().get()]).with("result", &flood).empty();
-                let cut = begin("feComposite").with("in", &flood).with("in2", &offset).with("operator", "in");
-                more += &cut.with("result", &result).empty();
+                drawing += &color.numbers("flood-opacity", &[s.opacity().get()]).with("result", &flood).empty();
+                let shadow = begin("feComposite").with("in", &flood).with("in2", &offset).with("operator", "in");
+                drawing += &shadow.with("result", &result).empty();
                 result
             }
         };
         nodes += &Tag::new("feMergeNode").with("in", &result).empty();
     }
-    for at in (0..needs.len()).rev() {
-        let kind = f.primitives()[at].kind();
-        let current = needs[at];
+    // Inputs come before the primitives that need them.
+    for i in (0..needs.len()).rev() {
+        let kind = f.primitives()[i].kind();
+        let current = needs[i];
         let (mut all, mut need) = (inputs(kind), Need::Result);
         if current == Need::Visible {
-            if cuts_out(f, at) {
+            if cuts_out_graphic(f, i) {
                 all.truncate(1);
-                needs[at] = Need::Uncut;
+                needs[i] = Need::Uncut;
             }
             if is_local(kind) {
                 need = Need::Visible;
@@ -185,13 +192,14 @@ fn layer(f: &Filter, stack: &[Stacked<'_>], hidden: bool, opaque: bool) -> Optio
         }
         for input in all.into_iter().filter(|_| current != Need::Nothing) {
             if let Input::Reference(name) = input
-                && let Some(i) = last_named(f, name, at)
+                && let Some(source) = last_named(f, name, i)
             {
-                needs[i] = needs[i].max(need);
+                needs[source] = needs[source].max(need);
             }
         }
     }
-    (!nodes.is_empty()).then(|| Layer { needs, more: more + &begin("feMerge").around(&nodes), opaque })
+    drawing += &begin("feMerge").around(&nodes);
+    (!nodes.is_empty()).then_some(Layer { needs, drawing, is_opaque })
 }
 
 /// Returns `true` if a pixel of the result depends on the same pixel of the inputs only.
@@ -200,11 +208,12 @@ pub(super) fn is_local(kind: &Kind) -> bool {
     matches!(kind, Blend(_) | ColorMatrix(_) | ComponentTransfer(_) | Composite(_) | Merge(_))
 }
 
-fn cuts_out(f: &Filter, at: usize) -> bool {
-    let Kind::Composite(c) = f.primitives()[at].kind() else { return false };
+/// Returns `true` if a primitive cuts the area of the graphic out of its first input.
+fn cuts_out_graphic(f: &Filter, i: usize) -> bool {
+    let Kind::Composite(c) = f.primitives()[i].kind() else { return false };
     let is_graphic = match c.input2() {
         Input::SourceGraphic | Input::SourceAlpha => true,
-        Input::Reference(name) => last_named(f, name, at).is_some_and(|i| {
+        Input::Reference(name) => last_named(f, name, i).is_some_and(|i| {
             let p = &f.primitives()[i];
             // The last value of the fourth row is the alpha of transparent pixels.
             matches!(p.kind(), Kind::ColorMatrix(m) if !matches!(m.input(), Input::Reference(_))

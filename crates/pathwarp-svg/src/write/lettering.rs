@@ -1,7 +1,8 @@
 //! Writes lettering as an SVG drawing with data attributes for baselines, heights and letters.
 
+use super::markup::number;
 use crate::bend::path::WarpedPath;
-use crate::source::number::{path_data, push};
+use crate::source::number::path_data;
 use pathwarp::Error;
 use pathwarp::kurbo::{Rect, Shape, Vec2};
 use pathwarp::param::LengthUnit;
@@ -58,7 +59,7 @@ const DIGITS: i32 = 10;
 /// ```
 ///
 /// # Errors
-/// Returns [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
+/// [`Error::Usage`] when the fill is not a colour, or the margin is negative or not finite.
 pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> Result<String, Error> {
     let page = lettering.ink().filter(|_| options.around_ink).unwrap_or_else(|| lettering.page());
     let mut sheet = Sheet::new(page, &lettering.text, options)?;
@@ -66,17 +67,17 @@ pub fn write_lettering(lettering: &OutlinedText, options: &LetteringOptions) -> 
     Ok(sheet.finish())
 }
 
-/// Lettering as a group of elements, as [`write_lettering`] has it, for a drawing that has other content: with ids `ID`, `ID-line-1` and so on for
-/// its lines, and `ID-1` and so on for its letters; moved, and in a CSS colour.
+/// The group of elements that [`write_lettering`] writes, for a drawing with other content. It is moved by `by` and filled with a CSS
+/// colour. Its id is `ID`, its lines have the ids `ID-line-1` and so on, and its letters `ID-1` and so on.
 ///
 /// # Errors
-/// Returns [`Error::Usage`] if the fill is not a colour.
+/// [`Error::Usage`] when the fill is not a colour.
 pub fn lettering_group(lettering: &OutlinedText, id: &str, fill: &str, by: Vec2) -> Result<String, Error> {
     let options = LetteringOptions { fill: Some(fill.to_owned()), ..LetteringOptions::default() };
     let mut sheet = Sheet::new(lettering.page(), "", &options)?;
     sheet.out.clear();
-    let place = format!(" id=\"{id}\" transform=\"translate({})\" stroke=\"none\"", sheet.numbers(&[by.x, by.y]));
-    sheet.lettering(lettering, &place, Some(id));
+    let attributes = format!(" id=\"{id}\" transform=\"translate({})\" stroke=\"none\"", sheet.numbers(&[by.x, by.y]));
+    sheet.lettering(lettering, &attributes, Some(id));
     Ok(sheet.out)
 }
 
@@ -108,7 +109,7 @@ pub struct SetGroup {
 /// that holds its paths.
 ///
 /// # Errors
-/// [`Error::Usage`] if the fill is not a colour, or the margin is negative or not finite.
+/// [`Error::Usage`] when the fill is not a colour, or the margin is negative or not finite.
 pub fn write_set_groups(title: &str, groups: &[SetGroup], options: &LetteringOptions) -> Result<String, Error> {
     let drawn = groups.iter().flat_map(|g| &g.paths).filter(|p| !p.path.path.is_empty());
     let bounds = drawn.map(|p| {
@@ -136,6 +137,7 @@ pub fn write_set_groups(title: &str, groups: &[SetGroup], options: &LetteringOpt
 /// A drawing of lettering while it is written.
 struct Sheet {
     out: String,
+    /// The attribute `fill` of texts; empty for the renderer's default.
     fill: String,
     decimals: u8,
 }
@@ -148,11 +150,8 @@ impl Sheet {
                 format!(" fill=\"{}\"", escape(fill))
             }
             Some(fill) => {
-                return Err(Error::usage(
-                    "fill",
-                    fill,
-                    "is not a CSS colour such as #c00, navy, rgb(0,0,0) or currentColor",
-                ));
+                let why = "is not a CSS colour such as #c00, navy, rgb(0,0,0) or currentColor";
+                return Err(Error::usage("fill", fill, why));
             }
             None => String::new(),
         };
@@ -162,24 +161,17 @@ impl Sheet {
         let page = page.inflate(options.margin, options.margin);
         let largest = [page.x0, page.y0, page.x1, page.y1].into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
         let decimals = (DIGITS - largest.log10().ceil() as i32).clamp(0, DIGITS) as u8;
-        let mut sheet = Self { out: String::new(), fill, decimals };
-        let (w, h) = (sheet.numbers(&[page.width()]), sheet.numbers(&[page.height()]));
-        let (view, unit) =
-            (sheet.numbers(&[page.x0, page.y0, page.width(), page.height()]), options.unit.map_or("", page_unit));
-        sheet.out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{view}\">\n<title>{}</title>\n",
-            escape(&title.replace('\n', " "))
+        let [x, y, w, h] = [page.x0, page.y0, page.width(), page.height()].map(|v| number(v, decimals));
+        let (unit, title) = (options.unit.map_or("", page_unit), escape(&title.replace('\n', " ")));
+        let out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}{unit}\" height=\"{h}{unit}\" viewBox=\"{x} {y} {w} {h}\">\n\
+             <title>{title}</title>\n"
         );
-        Ok(sheet)
+        Ok(Self { out, fill, decimals })
     }
 
-    fn numbers(&self, v: &[f64]) -> String {
-        let number = |v: &f64| {
-            let mut out = String::new();
-            push(&mut out, *v, self.decimals);
-            out
-        };
-        v.iter().map(number).collect::<Vec<_>>().join(" ")
+    fn numbers(&self, values: &[f64]) -> String {
+        values.iter().map(|v| number(*v, self.decimals)).collect::<Vec<_>>().join(" ")
     }
 
     /// Writes the group of a text, with these attributes, and with ids for its lines and letters if it has one.
@@ -187,24 +179,24 @@ impl Sheet {
         let heights = |sheet: &Self, scale: f64| {
             let m = lettering.metrics.scaled(scale);
             let [ascent, descent, cap, x] =
-                [m.ascent, m.descent, m.cap_height, m.x_height].map(|v| sheet.numbers(&[v]));
+                [m.ascent, m.descent, m.cap_height, m.x_height].map(|v| number(v, sheet.decimals));
             format!(
                 " data-ascent=\"{ascent}\" data-descent=\"{descent}\" data-cap-height=\"{cap}\" data-x-height=\"{x}\""
             )
         };
-        let own = |name: String| id.map_or_else(String::new, |id| format!(" id=\"{id}-{name}\""));
+        let id_attribute = |name: String| id.map_or_else(String::new, |id| format!(" id=\"{id}-{name}\""));
         self.begin(&lettering.text, &(attributes.to_owned() + &heights(self, 1.0)));
         let mut letters = 0;
         for (i, line) in lettering.lines.iter().enumerate() {
             let heights = if line.scale == 1.0 { String::new() } else { heights(self, line.scale) };
             let baseline = self.numbers(&[line.start.x, line.start.y, line.end.x, line.end.y]);
-            let id = own(format!("line-{}", i + 1));
+            let id = id_attribute(format!("line-{}", i + 1));
             let _ = writeln!(self.out, "<g{id} data-baseline=\"{baseline}\"{heights}>");
             for c in line.clusters.iter().filter(|c| !c.outline.is_empty()) {
                 letters += 1;
                 let origin = self.numbers(&[c.origin.x, c.origin.y, c.advance]);
-                let place = format!("{} data-glyph=\"{origin}\"", own(letters.to_string()));
-                self.letter(&c.text, &place, &path_data(&c.outline, self.decimals));
+                let attributes = format!("{} data-glyph=\"{origin}\"", id_attribute(letters.to_string()));
+                self.letter(&c.text, &attributes, &path_data(&c.outline, self.decimals));
             }
             self.out.push_str("</g>\n");
         }

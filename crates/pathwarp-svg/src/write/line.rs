@@ -1,11 +1,12 @@
-//! Writes the line around artwork as a new layer, with the bleed and the marks that printers and cutters need.
+//! Writes the line around artwork as a new layer, with the bleed and the marks that printers and cutters need, and the marks for the
+//! position of an anamorphosis's viewer.
 
 use super::fragment::Writer;
 use super::input::WriteInput;
+use super::markup::{data_url, svg};
 use crate::bend::line::Line;
 use crate::bend::outcome::{Notes, Skipped};
 use crate::scene::geometry::stretch;
-use crate::source::markup::Tag;
 use crate::source::number::{path_data, rectangle, single};
 use pathwarp::deform::SightMark;
 use pathwarp::kurbo::{Point, Rect, Shape};
@@ -26,9 +27,9 @@ const RADIUS: f64 = 1.5;
 /// The box of the line with its bleed and marks.
 pub(super) fn bounds(input: &WriteInput<'_>, line: &Line) -> Rect {
     let bounds = line.bled.as_ref().map_or(line.bounds, |b| b.1);
-    let by = if input.options.line.marks { (GAP + ARM) * MM * unit(input) } else { 0.0 };
-    let width = 0.5 * HAIRLINE * unit(input);
-    bounds.inflate(by + width, by + width)
+    let marks = if input.options.line.marks { (GAP + ARM) * MM * unit(input) } else { 0.0 };
+    let half_width = 0.5 * HAIRLINE * unit(input);
+    bounds.inflate(marks + half_width, marks + half_width)
 }
 
 /// A px in root user units.
@@ -56,9 +57,10 @@ pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
 pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
     /// The width of a letter, as a fraction of its height.
     const LETTER: f64 = 0.6;
-    let ((at, text), size) = (&sight.label, sight.size);
+    let ((middle, text), size) = (&sight.label, sight.size);
     let half = 0.5 * LETTER * size * text.chars().count() as f64;
-    let text = Rect::new(at.x - half, at.y - size, at.x + half, at.y + 0.3 * size);
+    // Letters descend by about three tenths of their size.
+    let text = Rect::new(middle.x - half, middle.y - size, middle.x + half, middle.y + 0.3 * size);
     sight.path.bounding_box().union(text).inflate(size, size)
 }
 
@@ -66,8 +68,8 @@ pub(super) fn sight_bounds(sight: &SightMark) -> Rect {
 fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     let path = w.markup.element("path").with("d", &path_data(&sight.path, 4));
     let path = path.with("style", &format!("fill:none;stroke:#000;stroke-width:{}", single(0.04 * sight.size)));
-    let (at, text) = &sight.label;
-    let label = w.markup.element("text").with("x", &single(at.x)).with("y", &single(at.y));
+    let (position, text) = &sight.label;
+    let label = w.markup.element("text").with("x", &single(position.x)).with("y", &single(position.y));
     let label = label.with(
         "style",
         &format!("font-family:sans-serif;font-size:{}px;text-anchor:middle;fill:#000", single(sight.size)),
@@ -76,16 +78,14 @@ fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     group.around(&(path.empty() + &label.around(text))) + "\n"
 }
 
+/// A layer of Inkscape's with a hairline. `spot` names its colour for printers.
 fn layer(w: &mut Writer<'_>, name: &str, (color, data): (&str, &str), spot: Option<&str>) -> String {
     let id: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let group = w.defs.new_id(&id);
     let width = single(HAIRLINE * unit(&w.input));
     let path = w.markup.element("path").with("id", &w.defs.new_id(&format!("{id}-line"))).with("d", data);
     let path = path.with("style", &format!("fill:none;stroke:{color};stroke-width:{width}"));
-    let path = match spot {
-        Some(name) => path.with("data-spot", name),
-        None => path,
-    };
+    let path = path.with_all(spot.map(|name| ("data-spot", name)));
     let path = if w.input.options.line.knockout { path.with("data-knockout", "true") } else { path };
     let inkscape = " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" inkscape:groupmode=\"layer\"";
     let group = w.markup.element("g").with("id", &group).with("data-contour", name).raw(inkscape);
@@ -106,18 +106,14 @@ fn marks(line: Rect, bled: Rect, mm: f64) -> String {
             stroke(Point::new(x, above), Point::new(x, below));
         }
     }
-    let (middle, reach, r) = (line.center(), 0.5 * ARM * mm, RADIUS * mm);
-    let beside = [
-        (near.x0 - reach, middle.y),
-        (near.x1 + reach, middle.y),
-        (middle.x, near.y0 - reach),
-        (middle.x, near.y1 + reach),
-    ];
-    for (x, y) in beside {
-        stroke(Point::new(x - reach, y), Point::new(x + reach, y));
-        stroke(Point::new(x, y - reach), Point::new(x, y + reach));
+    let (middle, half, r) = (line.center(), 0.5 * ARM * mm, RADIUS * mm);
+    let around = near.inflate(half, half);
+    let centers = [(around.x0, middle.y), (around.x1, middle.y), (middle.x, around.y0), (middle.x, around.y1)];
+    for (x, y) in centers {
+        stroke(Point::new(x - half, y), Point::new(x + half, y));
+        stroke(Point::new(x, y - half), Point::new(x, y + half));
     }
-    for (x, y) in beside {
+    for (x, y) in centers {
         let [left, right, y, r] = [x - r, x + r, y, r].map(single);
         let _ = write!(out, "M{left},{y} A{r} {r} 0 0 1 {right} {y} A{r} {r} 0 0 1 {left} {y} Z ");
     }
@@ -130,13 +126,9 @@ fn bleed(w: &mut Writer<'_>, line: &Line) -> Option<String> {
     let (mut skipped, mut notes) = (Vec::new(), Notes::default());
     let mut plain = Writer::new(WriteInput { line: None, ..input }, false, &mut skipped, &mut notes);
     let body: String = input.scene.root.children.iter().map(|n| plain.node(n)).collect();
-    let view = rectangle(*area).map(|side| side.1).join(" ");
-    let root =
-        Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg").with("xmlns:xlink", "http://www.w3.org/1999/xlink");
-    let text = root.with("viewBox", &view).around(&format!("<defs>{}</defs>{body}", plain.defs.text));
+    let text = svg(*area).around(&format!("<defs>{}</defs>{body}", plain.defs.text));
     let size = area.size() / unit(&input);
-    let painted = input.options.painter.as_ref()?.continued(&text, [size.width, size.height]);
-    let png = match painted {
+    let png = match input.options.painter.as_ref()?.continued(&text, [size.width, size.height]) {
         Ok(png) => png,
         Err(why) => {
             w.skipped.push(Skipped { id: "the bleed".into(), why: why.to_string() });
@@ -145,7 +137,7 @@ fn bleed(w: &mut Writer<'_>, line: &Line) -> Option<String> {
     };
     let id = w.defs.new_id("bleed-edge");
     let clip = w.markup.element("clipPath").with("id", &id).around(&w.markup.element("path").with("d", data).empty());
-    let url = super::markup::data_url("image/png", &png);
+    let url = data_url("image/png", &png);
     let image = w.markup.element("image").with_all(rectangle(*area)).with("preserveAspectRatio", "none");
     let image = image.raw(&format!(" {}=\"{url}\"", w.markup.link())).empty();
     let group = w.markup.element("g").with("id", &w.defs.new_id("Bleed")).with("clip-path", &format!("url(#{id})"));

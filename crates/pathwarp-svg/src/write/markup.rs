@@ -4,7 +4,7 @@ use crate::bend::outcome::WarpedPart;
 use crate::bend::pictures::BentImage;
 use crate::scene::model::Part;
 use crate::source::markup::Tag;
-use crate::source::number::{outline_data, rectangle, single};
+use crate::source::number::{outline_data, push, rectangle, single};
 use crate::source::text::SourceText;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -12,7 +12,6 @@ use pathwarp::kurbo::{Affine, Rect, Shape as _};
 use pathwarp_reader::xml::escape;
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::fmt::Write as _;
 use usvg::filter::{ColorInterpolation, DropShadow};
 use usvg::{FillRule, LineCap, LineJoin, PaintOrder, ShapeRendering};
 
@@ -28,7 +27,7 @@ pub(super) struct Markup<'a> {
     pub(super) in_source: bool,
     /// `true` if properties are written to style attributes, which style sheets cannot override.
     pub(super) styled: bool,
-    /// Cache: properties that occur in the source.
+    /// Cache: for a property, `true` if its name occurs in the source.
     mentioned: RefCell<HashMap<&'static str, bool>>,
 }
 
@@ -49,6 +48,14 @@ impl<'a> Markup<'a> {
         self.in_source && *self.mentioned.borrow_mut().entry(name).or_insert_with(is_mentioned)
     }
 
+    /// Adds a property, unless it has its default and no ancestor in the source may set it.
+    pub(super) fn push_unless_default(&self, name: &'static str, value: &str, default: &str, out: &mut Properties) {
+        if value != default || self.may_inherit(name) {
+            out.push((name, value.to_owned()));
+        }
+    }
+
+    /// Begins an element.
     pub(super) fn element(&self, name: &str) -> Tag {
         Tag::new(format!("{}{name}", self.prefix))
     }
@@ -64,50 +71,32 @@ impl<'a> Markup<'a> {
         self.element("title").around(&escape(text))
     }
 
-    /// Wraps content in a group with an id attribute, if there is one.
+    /// Wraps content in a group with the attribute `id`, unless that is empty.
     pub(super) fn named_group(&self, id: &str, content: String) -> String {
         if id.is_empty() { content } else { self.element("g").raw(id).around(&content) }
     }
 
+    /// Properties as attributes, or as a style attribute if style sheets could override those.
     pub(super) fn attributes(&self, properties: &Properties) -> String {
+        if self.styled && !properties.is_empty() {
+            let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
+            return format!(" style=\"{}\"", escape(&all.join(";")));
+        }
         let mut out = String::new();
-        self.push_attributes(properties, &mut out);
-        out
-    }
-
-    fn push_attributes(&self, properties: &Properties, out: &mut String) {
-        if self.styled {
-            if !properties.is_empty() {
-                let all: Vec<String> = properties.iter().map(|(n, v)| format!("{n}:{v}")).collect();
-                let _ = write!(out, " style=\"{}\"", escape(&all.join(";")));
-            }
-        } else {
-            for (n, v) in properties {
-                // These properties have no presentation attribute.
-                if matches!(*n, "mix-blend-mode" | "isolation") {
-                    let _ = write!(out, " style=\"{n}:{v}\"");
-                } else {
-                    push_all(out, [" ", n, "=\"", &escape(v), "\""]);
-                }
+        for (n, v) in properties {
+            // These properties have no presentation attribute.
+            if matches!(*n, "mix-blend-mode" | "isolation") {
+                out.extend([" style=\"", n, ":", v, "\""]);
+            } else {
+                out.extend([" ", n, "=\"", &escape(v), "\""]);
             }
         }
+        out
     }
 
     /// Writes a path with the attribute `id` (empty for none).
     pub(super) fn path(&self, d: &str, id: &str, properties: &Properties) -> String {
-        /// Typical length of the attributes, for the capacity.
-        const USUAL: usize = 64;
-        let mut out = String::with_capacity(d.len() + id.len() + USUAL);
-        push_all(&mut out, ["<", &self.prefix, "path", id, " d=\"", d, "\""]);
-        self.push_attributes(properties, &mut out);
-        out.push_str("/>");
-        out
-    }
-}
-
-pub(super) fn push_all<const N: usize>(out: &mut String, parts: [&str; N]) {
-    for p in parts {
-        out.push_str(p);
+        ["<", &self.prefix, "path", id, " d=\"", d, "\"", &self.attributes(properties), "/>"].concat()
     }
 }
 
@@ -124,23 +113,16 @@ pub(super) struct CssPaints {
     pub(super) stroke: Option<CssPaint>,
 }
 
-/// Properties common to the fill and the expanded stroke of a part.
+/// Properties common to a part and its expanded stroke. Defaults are left out unless an ancestor may set the property.
 fn shared(markup: &Markup<'_>, p: &Part) -> Properties {
     let mut out = Properties::new();
-    if !p.visible {
-        out.push(("visibility", "hidden".into()));
-    } else if markup.may_inherit("visibility") {
-        out.push(("visibility", "visible".into()));
-    }
-    match p.rendering {
-        ShapeRendering::GeometricPrecision => {
-            if markup.may_inherit("shape-rendering") {
-                out.push(("shape-rendering", "auto".into()));
-            }
-        }
-        ShapeRendering::OptimizeSpeed => out.push(("shape-rendering", "optimizeSpeed".into())),
-        ShapeRendering::CrispEdges => out.push(("shape-rendering", "crispEdges".into())),
-    }
+    markup.push_unless_default("visibility", if p.visible { "visible" } else { "hidden" }, "visible", &mut out);
+    let rendering = match p.rendering {
+        ShapeRendering::GeometricPrecision => "auto",
+        ShapeRendering::OptimizeSpeed => "optimizeSpeed",
+        ShapeRendering::CrispEdges => "crispEdges",
+    };
+    markup.push_unless_default("shape-rendering", rendering, "auto", &mut out);
     if markup.may_inherit("marker") {
         out.extend(["marker-start", "marker-mid", "marker-end"].map(|n| (n, "none".to_owned())));
     }
@@ -165,7 +147,7 @@ pub(super) fn part_style(markup: &Markup<'_>, p: &Part, paints: CssPaints, scale
         (Some(f), Some(css)) => {
             all.extend(css.paint.map(|v| ("fill", v)));
             all.extend(css.opacity.map(|v| ("fill-opacity", v)));
-            all.push(("fill-rule", if f.rule() == FillRule::EvenOdd { "evenodd" } else { "nonzero" }.into()));
+            all.push(("fill-rule", fill_rule(f.rule()).into()));
         }
         _ => all.push(("fill", "none".into())),
     }
@@ -225,9 +207,9 @@ fn is_default(name: &str, value: &str) -> bool {
     value == default
 }
 
-/// Position of a bent bitmap as attributes of its element.
-pub(super) fn bent_attributes(bent: &BentImage, to: Affine) -> [(&'static str, String); 5] {
-    let [x, y, width, height] = rectangle(to.transform_rect_bbox(bent.area));
+/// Position of a bent bitmap as attributes of its element, whose user space `to_user` leads to.
+pub(super) fn bent_attributes(bent: &BentImage, to_user: Affine) -> [(&'static str, String); 5] {
+    let [x, y, width, height] = rectangle(to_user.transform_rect_bbox(bent.area));
     [x, y, width, height, ("preserveAspectRatio", "none".into())]
 }
 
@@ -251,12 +233,11 @@ pub(super) fn part_box(p: &Part, warped: Option<&WarpedPart>) -> Rect {
 
 /// Path data of a part. If it is unchanged, its original text is used where possible.
 pub(super) fn part_data(p: &Part, warped: Option<&WarpedPart>, source: &SourceText) -> String {
-    let original = |e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path");
-    match (warped, p.drawn.and_then(original)) {
-        (Some(w), _) => w.data.clone().unwrap_or_else(|| w.text(&w.path)),
-        (None, Some(d)) => escape(&d),
-        (None, None) => outline_data(&p.local),
+    if let Some(w) = warped {
+        return w.data.clone().unwrap_or_else(|| w.text(&w.path));
     }
+    let original = p.drawn.and_then(|e| source.attr(e, "d").filter(|_| source.elements[e].tag == "path"));
+    original.map_or_else(|| outline_data(&p.local), |d| escape(&d))
 }
 
 /// Factor for the width and dashes of a part's stroke.
@@ -264,9 +245,29 @@ pub(super) fn stroke_scale(warped: Option<&WarpedPart>) -> f64 {
     warped.map_or(1.0, |w| w.stroke.scale())
 }
 
+/// The dashes of a stroke multiplied by `scale`, as the value of `stroke-dasharray`.
 pub(super) fn dashes(s: &usvg::Stroke, scale: f64) -> String {
-    s.dasharray()
-        .map_or("none".into(), |list| list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(","))
+    let Some(list) = s.dasharray() else { return "none".into() };
+    list.iter().map(|d| single(f64::from(*d) * scale)).collect::<Vec<_>>().join(",")
+}
+
+/// Begins an SVG drawing of an area.
+pub(super) fn svg(view: Rect) -> Tag {
+    let tag = Tag::new("svg").with("xmlns", "http://www.w3.org/2000/svg");
+    let tag = tag.with("xmlns:xlink", "http://www.w3.org/1999/xlink");
+    tag.with("viewBox", &rectangle(view).map(|side| side.1).join(" "))
+}
+
+/// A number rounded to decimals.
+pub(super) fn number(v: f64, decimals: u8) -> String {
+    let mut out = String::new();
+    push(&mut out, v, decimals);
+    out
+}
+
+/// A fill rule as a CSS value.
+pub(super) fn fill_rule(rule: FillRule) -> &'static str {
+    if rule == FillRule::EvenOdd { "evenodd" } else { "nonzero" }
 }
 
 /// A colour as `#rrggbb`.

@@ -1,9 +1,9 @@
 //! Writes mesh gradients in the form that Inkscape reads.
 
-use super::markup::{Markup, color};
+use super::markup::{Markup, color, number};
 use crate::source::markup::Tag;
 use crate::source::mesh::{MeshGradient, Rgba, reversed};
-use crate::source::number::{push, short};
+use crate::source::number::short;
 use pathwarp::kurbo::{CubicBez, Point};
 
 /// Begins a mesh gradient in user space.
@@ -25,21 +25,22 @@ pub(super) fn content(markup: &Markup<'_>, mesh: &MeshGradient, decimals: u8) ->
 
 /// Writes the sides of a patch that no earlier patch has, clockwise from the top. Each has the colour of the corner at which it begins,
 /// unless an earlier patch has that.
-fn patch(markup: &Markup<'_>, mesh: &MeshGradient, [r, c]: [usize; 2], decimals: u8) -> String {
-    let stop = |side: CubicBez, corner: Option<Rgba>| stop(markup, side, corner, decimals);
-    let new = |row: usize, column: usize, is_new: bool| is_new.then(|| mesh.colors[row][column]);
+fn patch(markup: &Markup<'_>, mesh: &MeshGradient, [row, column]: [usize; 2], decimals: u8) -> String {
+    let stop = |side: CubicBez, color: Option<Rgba>| stop(markup, side, color, decimals);
+    let (is_first_row, is_first_column) = (row == 0, column == 0);
     let mut stops = String::new();
-    if r == 0 {
-        stops += &stop(mesh.across[0][c], new(0, 0, c == 0));
+    if is_first_row {
+        stops += &stop(mesh.across[0][column], is_first_column.then(|| mesh.colors[0][0]));
     }
-    stops += &stop(mesh.down[r][c + 1], new(0, c + 1, r == 0));
-    stops += &stop(reversed(mesh.across[r + 1][c]), new(r + 1, c + 1, true));
-    if c == 0 {
-        stops += &stop(reversed(mesh.down[r][0]), new(r + 1, 0, true));
+    stops += &stop(mesh.down[row][column + 1], is_first_row.then(|| mesh.colors[0][column + 1]));
+    stops += &stop(reversed(mesh.across[row + 1][column]), Some(mesh.colors[row + 1][column + 1]));
+    if is_first_column {
+        stops += &stop(reversed(mesh.down[row][0]), Some(mesh.colors[row + 1][0]));
     }
     markup.element("meshpatch").around(&stops)
 }
 
+/// Writes a side of a patch with the colour of the corner at which it begins, if that is new.
 fn stop(markup: &Markup<'_>, side: CubicBez, corner: Option<Rgba>, decimals: u8) -> String {
     let point = |p: Point| format!("{},{}", number(p.x, decimals), number(p.y, decimals));
     let points = [side.p1, side.p2, side.p3].map(point).join(" ");
@@ -53,10 +54,4 @@ fn stop(markup: &Markup<'_>, side: CubicBez, corner: Option<Rgba>, decimals: u8)
         }
     }
     tag.raw(&markup.attributes(&properties)).empty()
-}
-
-fn number(v: f64, decimals: u8) -> String {
-    let mut out = String::new();
-    push(&mut out, v, decimals);
-    out
 }

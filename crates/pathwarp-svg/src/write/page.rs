@@ -1,6 +1,6 @@
 //! Fits the page to the warped artwork, and measures how far the artwork extends past it.
 
-use super::boxes::{self, bound, box_under, painted_box, paints_in, path};
+use super::boxes::{self, box_under, painted_box, paints_in, path, quick_box};
 use super::input::WriteInput;
 use super::line;
 use crate::bend::bends::Bend;
@@ -19,7 +19,7 @@ use svgtypes::LengthUnit;
 
 /// Smallest visible overhang as a fraction of the page: one pixel in a thousand.
 const VISIBLE: f64 = 1e-3;
-/// Overhang as a fraction of the page that is ignored, since rounding makes it in icons.
+/// Overhang as a fraction of the page that is ignored, since rounding causes as much in icons.
 const SLIVER: f64 = 0.1 * VISIBLE;
 
 /// Rules for measuring the artwork's bounding box.
@@ -28,7 +28,7 @@ struct Measure<'a> {
     /// For every element, `true` if it counts.
     counts: &'a [bool],
     /// Parts certain to be inside this area need no exact measurement.
-    room: Option<Rect>,
+    covered: Option<Rect>,
     /// The visible area before the warp, if only artwork from there counts.
     page: Option<Rect>,
 }
@@ -72,44 +72,45 @@ fn auto_page(input: &WriteInput<'_>, page: Rect) -> Option<Rect> {
         let [x1, y1] = [r.x1, r.y1].map(|v| (v - slack).ceil());
         Rect::new(x0, y0, x1, y1)
     };
-    if !shows(input, &input.scene.root, seen_part(page)) {
+    if !shows(input, &input.scene.root, seen_part(page), &guideless(input)) {
         return Some(outwards(artwork(input, None)?));
     }
-    let near = tolerated(input, page);
-    if holds(near, all) {
+    let tolerated = tolerated(input, page);
+    if tolerated.contains_rect(all) {
         return None;
     }
-    let (kept, whole) = (all.inflate(margin, margin), outwards(all));
+    // Only the sides that the artwork with its margin passes move.
+    let (needed, whole) = (all.inflate(margin, margin), outwards(all));
     let out = Rect::new(
-        if kept.x0 < near.x0 { whole.x0 } else { page.x0 },
-        if kept.y0 < near.y0 { whole.y0 } else { page.y0 },
-        if kept.x1 > near.x1 { whole.x1 } else { page.x1 },
-        if kept.y1 > near.y1 { whole.y1 } else { page.y1 },
+        if needed.x0 < tolerated.x0 { whole.x0 } else { page.x0 },
+        if needed.y0 < tolerated.y0 { whole.y0 } else { page.y0 },
+        if needed.x1 > tolerated.x1 { whole.x1 } else { page.x1 },
+        if needed.y1 > tolerated.y1 { whole.y1 } else { page.y1 },
     );
     (out.origin() != page.origin() || !input.drawing.shares_window()).then_some(out)
 }
 
 /// The area that the artwork of a page may cover: the page with a sliver and the curves' tolerance around it.
 fn tolerated(input: &WriteInput<'_>, page: Rect) -> Rect {
-    let by = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
-    page.inflate(by, by)
+    let slack = SLIVER * page.width().max(page.height()) + input.options.refit.tolerance;
+    page.inflate(slack, slack)
 }
 
 /// The transform that takes the artwork back onto its page, if it leaves it.
 pub(super) fn back(input: &WriteInput<'_>) -> Option<Affine> {
     let page = input.drawing.specified_area().filter(|_| input.options.page == PageFit::Shrink && has_moved(input))?;
     let all = artwork(input, Some(page))?;
-    if holds(tolerated(input, page), all) {
+    if tolerated(input, page).contains_rect(all) {
         return None;
     }
     let margin = margin(input, page);
     let room = page.inflate(-margin, -margin);
-    let by = (room.width() / all.width()).min(room.height() / all.height()).min(1.0);
-    let (center, half) = (all.center(), all.size() * (0.5 * by));
+    let scale = (room.width() / all.width()).min(room.height() / all.height()).min(1.0);
+    let (center, half) = (all.center(), all.size() * (0.5 * scale));
     let x = center.x.clamp(room.x0 + half.width, (room.x1 - half.width).max(room.x0 + half.width));
     let y = center.y.clamp(room.y0 + half.height, (room.y1 - half.height).max(room.y0 + half.height));
-    let to = Affine::translate((x, y)) * Affine::scale(by) * Affine::translate(-center.to_vec2());
-    (by > 0.0 && to.is_finite()).then_some(to)
+    let back = Affine::translate((x, y)) * Affine::scale(scale) * Affine::translate(-center.to_vec2());
+    (scale > 0.0 && back.is_finite()).then_some(back)
 }
 
 /// The page without a border in which artwork is too small to be seen.
@@ -120,9 +121,10 @@ fn seen_part(page: Rect) -> Rect {
 
 /// Returns `true` if nothing of the drawing lies on its page `shown`, if it specifies one.
 pub(super) fn is_blank(input: &WriteInput<'_>, shown: Rect) -> bool {
-    input.drawing.specified_area().is_some() && !shows(input, &input.scene.root, seen_part(shown))
+    input.drawing.specified_area().is_some() && !shows(input, &input.scene.root, seen_part(shown), &guideless(input))
 }
 
+/// Returns `true` if anything of the drawing is not where it was.
 fn has_moved(input: &WriteInput<'_>) -> bool {
     input.options.grown.is_some()
         || input.line.is_some()
@@ -200,18 +202,17 @@ fn margin(input: &WriteInput<'_>, page: Rect) -> f64 {
 }
 
 /// Bounding box of the artwork before the warp.
-fn original(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
-    let (outcomes, images): (Vec<_>, Vec<_>) = (
-        input.outcomes.iter().map(|_| PartOutcome::Kept).collect(),
-        input.images.iter().map(|_| EmbeddedImage::Placed).collect(),
-    );
-    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], line: None, ..*input }, room)
+fn original(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
+    let outcomes: Vec<_> = input.outcomes.iter().map(|_| PartOutcome::Kept).collect();
+    let images: Vec<_> = input.images.iter().map(|_| EmbeddedImage::Placed).collect();
+    artwork(&WriteInput { outcomes: &outcomes, images: &images, slots: &[], line: None, ..*input }, covered)
 }
 
-/// Bounding box of everything painted, strokes included, in root user space. Guides do not count.
-fn artwork(input: &WriteInput<'_>, room: Option<Rect>) -> Option<Rect> {
+/// Bounding box of everything painted, strokes included, in root user space. Guides do not count. Artwork inside the area `covered` is
+/// not measured exactly.
+fn artwork(input: &WriteInput<'_>, covered: Option<Rect>) -> Option<Rect> {
     let counts = guideless(input);
-    let measure = Measure { counts: &counts, room, page: input.options.grown.or(input.drawing.specified_area()) };
+    let measure = Measure { counts: &counts, covered, page: input.options.grown.or(input.drawing.specified_area()) };
     let line = input.line.map(|l| line::bounds(input, l));
     let sight = input.options.sight.as_ref().map(line::sight_bounds);
     let drawn = group_box(input, &input.scene.root, measure);
@@ -227,55 +228,51 @@ fn guideless(input: &WriteInput<'_>) -> Vec<bool> {
 /// result. Returns `None` if the page showed nothing.
 fn part_from_page(input: &WriteInput<'_>, i: usize, frame: Affine, page: Rect) -> Option<Rect> {
     let p = input.part(i);
-    let nearly = nearly(page);
-    let cheap = bound(p, None, p.frame);
-    let painted = if holds(nearly, cheap) { cheap } else { painted_box(p, None, p.frame) };
+    let slivered = with_slivers(page);
+    let quick = quick_box(p, None, p.frame);
+    let painted = if slivered.contains_rect(quick) { quick } else { painted_box(p, None, p.frame) };
     // Letters placed one by one do not go through the whole map.
     let bend = input.bend(i..i + 1).filter(|_| input.warped(i).is_some());
-    let whole = holds(nearly, painted) || bend.is_some_and(|b| !b.options.letters.places.is_empty());
-    image_from_page(bend, painted, whole, page, frame * p.frame.inverse())
+    let is_whole = slivered.contains_rect(painted) || bend.is_some_and(|b| !b.options.letters.places.is_empty());
+    image_from_page(bend, painted, is_whole, page, frame * p.frame.inverse())
 }
 
-/// A bound on the image of the area of an object that the page showed, unbounded if it showed the `whole` object. `painted` is the
-/// object's box before the warp. The map of `bend` moves it or, without one, `fit`.
-fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, whole: bool, page: Rect, fit: Affine) -> Option<Rect> {
+/// A bound on the image of the area of an object that the page showed, unbounded if it showed the whole object (`is_whole`). `painted` is
+/// the object's box before the warp. The map of `bend` moves it or, without one, `fit`.
+fn image_from_page(bend: Option<&Bend<'_>>, painted: Rect, is_whole: bool, page: Rect, fit: Affine) -> Option<Rect> {
     let everything = Rect::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY);
     let shown = overlap(painted, page)?;
     match bend {
-        _ if whole => Some(everything),
+        _ if is_whole => Some(everything),
         Some(bend) => image_box(bend, shown),
         None => Some(fit.transform_rect_bbox(shown)),
     }
 }
 
 /// The page with the slivers around it that are ignored.
-fn nearly(page: Rect) -> Rect {
+fn with_slivers(page: Rect) -> Rect {
     page.inflate(SLIVER * page.width(), SLIVER * page.height())
-}
-
-fn holds(outer: Rect, inner: Rect) -> bool {
-    outer.union(inner) == outer
 }
 
 /// Bounding box of the image of an area of root user space.
 fn image_box(bend: &Bend<'_>, area: Rect) -> Option<Rect> {
-    /// Steps between samples along a side. The image hardly bulges between them.
-    const N: u32 = 64;
-    /// Steps between samples inside, whose images can be extreme only where the map folds.
-    const INSIDE: u32 = 4;
-    let at = |k: u32| f64::from(k) / f64::from(N);
-    let point = |(i, j): (u32, u32)| Point::new(area.x0 + at(i) * area.width(), area.y0 + at(j) * area.height());
+    /// Intervals between samples along a side. The image hardly bulges between them.
+    const INTERVALS: u32 = 64;
+    /// Intervals from one sample to the next inside, where images can be extreme only if the map folds.
+    const INNER_STEP: u32 = 4;
+    let share = |k: u32| f64::from(k) / f64::from(INTERVALS);
+    let point = |(i, j): (u32, u32)| Point::new(area.x0 + share(i) * area.width(), area.y0 + share(j) * area.height());
     let is_sampled = |(i, j): &(u32, u32)| {
-        let is_edge = |k: u32| k == 0 || k == N;
-        is_edge(*i) || is_edge(*j) || (i % INSIDE == 0 && j % INSIDE == 0)
+        let is_edge = |k: u32| k == 0 || k == INTERVALS;
+        is_edge(*i) || is_edge(*j) || (i % INNER_STEP == 0 && j % INNER_STEP == 0)
     };
-    let copies = |q: Point| {
+    let copies = |p: Point| {
         let all = &bend.options.copies;
-        let first = all.is_empty().then_some(Affine::IDENTITY);
-        all.iter().copied().chain(first).map(move |c| c * q)
+        let only = all.is_empty().then_some(Affine::IDENTITY);
+        all.iter().copied().chain(only).map(move |c| c * p)
     };
-    let grid = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j))).filter(is_sampled);
-    let points: Vec<Point> = grid.flat_map(|k| copies(point(k))).collect();
+    let grid = (0..=INTERVALS).flat_map(|j| (0..=INTERVALS).map(move |i| (i, j))).filter(is_sampled);
+    let points: Vec<Point> = grid.flat_map(|node| copies(point(node))).collect();
     let mut images = points.clone();
     bend.map.points(&points, &mut images);
     images.into_iter().filter(|q| q.is_finite()).map(|q| Rect::from_points(q, q)).reduce(|a, b| a.union(b))
@@ -294,24 +291,18 @@ fn image_boxes(input: &WriteInput<'_>, i: usize) -> Option<(Rect, Rect)> {
     b.image.is_visible().then(|| (b.frame.transform_rect_bbox(area), after))
 }
 
-/// Returns `true` if anything of a group is seen in an area.
-fn shows(input: &WriteInput<'_>, g: &Group, area: Rect) -> bool {
-    let counts = guideless(input);
-    shows_within(input, g, area, &counts)
-}
-
-fn shows_within(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) -> bool {
+/// Returns `true` if anything of a group is seen in an area. `counts` is `true` for every element that counts.
+fn shows(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) -> bool {
     if g.opacity <= 0.0 {
         return false;
     }
     if !g.filters.is_empty() || g.mask.is_some() {
-        let all = group_box(input, g, Measure { counts, room: None, page: None });
+        let all = group_box(input, g, Measure { counts, covered: None, page: None });
         return all.is_some_and(|b| overlap(b, area).is_some());
     }
     let Some(area) = g.clip.map_or(Some(area), |i| overlap(area, warped_clip(input, i)?)) else { return false };
     g.children.iter().any(|n| match n {
-        Node::Group(g) => shows_within(input, g, area, counts),
-        Node::Text { content, .. } => shows_within(input, content, area, counts),
+        Node::Group(g) | Node::Text { content: g, .. } => shows(input, g, area, counts),
         Node::Image(i) => image_boxes(input, *i).is_some_and(|(_, after)| overlap(after, area).is_some()),
         Node::Part(i) => {
             let p = input.part(*i);
@@ -321,6 +312,7 @@ fn shows_within(input: &WriteInput<'_>, g: &Group, area: Rect, counts: &[bool]) 
     })
 }
 
+/// The box of a clip path after the warp.
 fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
     clip_box(input.scene, clip, &|i| {
         let p = input.part(i);
@@ -328,22 +320,23 @@ fn warped_clip(input: &WriteInput<'_>, clip: usize) -> Option<Rect> {
     })
 }
 
+/// Bounding box of what a group paints, in root user space.
 fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> {
     let scene = input.scene;
     if g.opacity <= 0.0 {
         return None;
     }
-    let one = |n: &Node, m: Measure<'_>| match n {
-        Node::Group(g) => group_box(input, g, m),
-        Node::Text { content, .. } => group_box(input, content, m),
+    let node_box = |n: &Node, m: Measure<'_>| match n {
+        Node::Group(g) | Node::Text { content: g, .. } => group_box(input, g, m),
         Node::Part(i) => {
             let p = &scene.parts[*i];
-            let seen = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
+            let counts = is_seen(p) && p.role == PartRole::Paint && p.owner.or(p.source).is_none_or(|e| m.counts[e]);
             let frame = input.written(p.slot, p.frame);
             let warped = input.warped(*i);
-            let seen = seen && warped.is_none_or(WarpedPart::draws);
-            let near = |r: Rect| Some(bound(p, warped, frame)).filter(|b| r.union(*b) == r);
-            let all = seen.then(|| m.room.and_then(near).unwrap_or_else(|| painted_box(p, warped, frame)))?;
+            let is_painted = counts && warped.is_none_or(WarpedPart::draws);
+            let covered = |r: Rect| Some(quick_box(p, warped, frame)).filter(|b| r.contains_rect(*b));
+            let all =
+                is_painted.then(|| m.covered.and_then(covered).unwrap_or_else(|| painted_box(p, warped, frame)))?;
             m.page.map_or(Some(all), |page| overlap(all, part_from_page(input, *i, frame, page)?))
         }
         Node::Image(i) => {
@@ -351,16 +344,16 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
             let Some(page) = m.page else { return Some(after) };
             let is_bent = matches!(input.images[*i], EmbeddedImage::Bent { .. });
             let b = &scene.bitmaps[*i];
-            let bend = input.bends.bend_of(b.owner).map(|k| &input.bends.each[k]).filter(|_| is_bent);
+            let bend = input.bends.bend_of(b.owner).map(|i| &input.bends.each[i]).filter(|_| is_bent);
             let fit = input.written(b.slot, b.frame) * b.frame.inverse();
-            overlap(after, image_from_page(bend, before, holds(nearly(page), before), page, fit)?)
+            overlap(after, image_from_page(bend, before, with_slivers(page).contains_rect(before), page, fit)?)
         }
     };
     let mut all: Option<Rect> = None;
     for n in &g.children {
         // Parts inside the box so far need no exact measurement either.
-        let room = m.room.map(|room| all.map_or(room, |a| room.union(a)));
-        if let Some(b) = one(n, Measure { room, ..m }).filter(Rect::is_finite) {
+        let covered = m.covered.map(|covered| all.map_or(covered, |a| covered.union(a)));
+        if let Some(b) = node_box(n, Measure { covered, ..m }).filter(Rect::is_finite) {
             all = Some(all.map_or(b, |a| a.union(b)));
         }
     }
@@ -388,17 +381,13 @@ fn group_box(input: &WriteInput<'_>, g: &Group, m: Measure<'_>) -> Option<Rect> 
         });
         all = overlap(all, boxes.reduce(|a, b| a.union(b))?)?;
         let region = m.frame.transform_rect_bbox(m.rect);
-        all = overlap(
-            all,
-            match input.bend(m.parts.clone()).filter(|_| input.changes(m.parts.clone())) {
-                Some(bend) => image_box(bend, region)?,
-                None => region,
-            },
-        )?;
+        let bend = input.bend(m.parts.clone()).filter(|_| input.changes(m.parts.clone()));
+        all = overlap(all, bend.map_or(Some(region), |bend| image_box(bend, region))?)?;
     }
     (all.width() >= 0.0 && all.height() >= 0.0).then_some(all)
 }
 
+/// The unit in the page's width and height.
 fn unit(unit: LengthUnit) -> &'static str {
     match unit {
         LengthUnit::None | LengthUnit::Percent => "",
@@ -426,24 +415,24 @@ fn add_arrivals(input: &WriteInput<'_>, g: &Group, (page, shown): (Rect, Rect), 
     if g.opacity <= 0.0 || g.mask.is_some() {
         return;
     }
-    let Some(room) = g.clip.map_or(Some(shown), |i| overlap(shown, warped_clip(input, i)?)) else { return };
-    let deep = VISIBLE * page.width().max(page.height());
-    let shows = |after| overlap(after, room).is_some_and(|o| o.width().max(o.height()) > deep);
+    let Some(visible) = g.clip.map_or(Some(shown), |i| overlap(shown, warped_clip(input, i)?)) else { return };
+    let least = VISIBLE * page.width().max(page.height());
+    let shows = |after| overlap(after, visible).is_some_and(|o| o.width().max(o.height()) > least);
+    let is_off = |before| overlap(before, page).is_none();
     for n in &g.children {
         match n {
-            Node::Group(g) => add_arrivals(input, g, (page, room), found),
-            Node::Text { content, .. } => add_arrivals(input, content, (page, room), found),
+            Node::Group(g) | Node::Text { content: g, .. } => add_arrivals(input, g, (page, visible), found),
             Node::Image(i) => {
-                let came = image_boxes(input, *i).is_some_and(|(b, after)| overlap(b, page).is_none() && shows(after));
-                found.extend(input.scene.bitmaps[*i].owner.filter(|_| came));
+                let arrived = image_boxes(input, *i).is_some_and(|(before, after)| is_off(before) && shows(after));
+                found.extend(input.scene.bitmaps[*i].owner.filter(|_| arrived));
             }
             Node::Part(i) => {
                 let p = input.part(*i);
-                let cheap = bound(p, None, p.frame);
-                let off = || overlap(cheap, page).is_none() || overlap(painted_box(p, None, p.frame), page).is_none();
+                let quick = quick_box(p, None, p.frame);
+                let was_off = || is_off(quick) || is_off(painted_box(p, None, p.frame));
                 let after = || painted_box(p, input.warped(*i), input.written(p.slot, p.frame));
-                let paints = is_seen(p) && p.role == PartRole::Paint && page.union(cheap) != page;
-                found.extend(p.owner.or(p.source).filter(|_| paints && off() && shows(after())));
+                let may_arrive = is_seen(p) && p.role == PartRole::Paint && !page.contains_rect(quick);
+                found.extend(p.owner.or(p.source).filter(|_| may_arrive && was_off() && shows(after())));
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::scene::areas;
 use crate::scene::geometry::{rect, stretch};
 use crate::scene::model::{Group, Node};
 use crate::source::elements::is_shape;
-use pathwarp::kurbo::Rect;
+use pathwarp::kurbo::{Affine, Rect};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use usvg::filter::{Filter, Kind, Primitive};
@@ -22,25 +22,24 @@ use usvg::{BlendMode, Paint, Stop};
 /// The results for the filters of a drawing, by the index of their slot. Filters without one follow the fit and look different.
 pub(crate) fn outcomes(input: &WriteInput<'_>) -> BTreeMap<usize, FilterOutcome> {
     let mut groups = Vec::new();
-    let asks = input.bends.each.iter().any(|b| b.options.filters != Filters::Affine);
-    if asks {
-        filtered(&input.scene.root, &mut groups);
+    if input.bends.each.iter().any(|b| b.options.filters != Filters::Affine) {
+        add_filtered(&input.scene.root, &mut groups);
     }
-    let unbent = if groups.is_empty() { None } else { Some(BentDrawing::unbent(input.scene)) };
-    let Some(unbent) = unbent else { return BTreeMap::new() };
+    if groups.is_empty() {
+        return BTreeMap::new();
+    }
+    let unbent = BentDrawing::unbent(input.scene);
     let original = WriteInput::new(input.drawing, &unbent, input.bends);
     let outcome = |(slot, g): &(usize, &Group)| Some((*slot, outcome(input, &original, (*slot, *g), groups.len())?));
     groups.iter().filter_map(outcome).collect()
 }
 
-/// Lists the groups with filters that have a slot.
-fn filtered<'a>(g: &'a Group, out: &mut Vec<(usize, &'a Group)>) {
+/// Lists the groups with filters that have a slot, with its index.
+fn add_filtered<'a>(g: &'a Group, out: &mut Vec<(usize, &'a Group)>) {
     out.extend(g.slot.filter(|_| !g.filters.is_empty()).map(|s| (s, g)));
     for n in &g.children {
-        match n {
-            Node::Group(g) => filtered(g, out),
-            Node::Text { content, .. } => filtered(content, out),
-            Node::Part(_) | Node::Image(_) => {}
+        if let Node::Group(g) | Node::Text { content: g, .. } = n {
+            add_filtered(g, out);
         }
     }
 }
@@ -51,6 +50,7 @@ fn drawing(input: &WriteInput<'_>, g: &Group, layer: Option<&Layer>, view: Rect)
     Writer::new(*input, false, &mut skipped, &mut notes).layer_drawing(g, layer, view)
 }
 
+/// The result for the filters of one of `among` groups. Returns `None` if they follow the fit and look different.
 fn outcome(
     input: &WriteInput<'_>,
     original: &WriteInput<'_>,
@@ -61,22 +61,24 @@ fn outcome(
     let bend = &input.bends.each[fits::slot_bend(s, input.scene, input.bends, input.part_bends)?];
     let painter = bend.options.painter.as_ref().filter(|_| bend.options.filters != Filters::Affine)?;
     let always = bend.options.filters == Filters::Picture;
+<<<<<<< HEAD
     let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
     let unfit = nests(group) || displaces(group) || !takes_pictures(input, slot);
     if bend.is_identity() || s.fits_outside || repeated || unfit {
+=======
+    let is_repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
+    let refuses_pictures = has_inner_filters(group) || displaces(group) || !takes_pictures(input, slot);
+    if bend.is_identity() || s.before || is_repeated || refuses_pictures {
+>>>>>>> w7
         return None;
     }
     let content = content(original, group, s.frame.inverse())?;
     let painted = |area: Option<Rect>, f: &Arc<Filter>| areas::filter_box(f, rect(f.rect().to_rect()), area?);
     let area = group.filters.iter().fold(Some(content), painted)?;
-    let write = input.written(Some(slot), s.frame);
-    if !always
-        && moves_little(
-            group,
-            (content, area),
-            fits::distance_from_translation(area, s.frame, write, bend.map) * stretch(input.scene.to_px * write),
-        )
-    {
+    let to_root = input.written(Some(slot), s.frame);
+    let to_px = stretch(input.scene.to_px * to_root);
+    let bending = || fits::distance_from_translation(area, s.frame, to_root, bend.map) * to_px;
+    if !always && moves_little(group, (content, area), bending()) {
         return Some(FilterOutcome::Fits);
     }
     let layers = match group.filters.as_slice() {
@@ -96,9 +98,9 @@ fn outcome(
         graphic: content,
         placed: s.frame,
         map: bend.map,
-        after: write.inverse(),
+        after: to_root.inverse(),
         to_px: input.scene.to_px,
-        page: input.drawing.view_box().area() / write.determinant().abs(),
+        page: input.drawing.view_box().area() / to_root.determinant().abs(),
         among,
     };
     let Some(mut pictures) = painter.filter(&request).ok()?.map(Vec::into_iter) else {
@@ -112,14 +114,16 @@ fn outcome(
 }
 
 /// Returns `true` if the fit moves the drawing of filters by less than is visible from where the map takes it: if they only move and blur,
-/// and the map hardly bends over that distance. `bends` is the change of a unit in px.
-fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
+/// and the map hardly bends over that distance. `content` is the box of the graphic, `area` that of the drawing, and `bending` the change
+/// of a unit in px.
+fn moves_little(g: &Group, (content, area): (Rect, Rect), bending: f64) -> bool {
     /// Largest invisible distance, in px.
-    const UNSEEN: f64 = 0.5;
+    const INVISIBLE: f64 = 0.5;
     /// Ratio of a blur's deviation to its reach.
     const BLUR: f64 = 1.0 / 3.0;
     let [x, y] = [(content.x0 - area.x0).max(area.x1 - content.x1), (content.y0 - area.y0).max(area.y1 - content.y1)];
-    let moves = |k: &Kind| matches!(k, Kind::DropShadow(_) | Kind::Flood(_) | Kind::GaussianBlur(_) | Kind::Offset(_));
+    let moves_or_blurs =
+        |k: &Kind| matches!(k, Kind::DropShadow(_) | Kind::Flood(_) | Kind::GaussianBlur(_) | Kind::Offset(_));
     let primitives = || g.filters.iter().flat_map(|f| f.primitives()).map(Primitive::kind);
     let offset = |k: &Kind| match k {
         Kind::Offset(o) => o.dx().hypot(o.dy()),
@@ -128,7 +132,8 @@ fn moves_little(g: &Group, (content, area): (Rect, Rect), bends: f64) -> bool {
     };
     let reach = x.max(y).max(0.0);
     let offset = primitives().map(offset).map(f64::from).sum::<f64>().min(reach);
-    primitives().all(|k| is_local(k) || moves(k)) && bends * (offset + BLUR * (reach - offset)) < UNSEEN
+    let is_simple = primitives().all(|k| is_local(k) || moves_or_blurs(k));
+    is_simple && bending * (offset + BLUR * (reach - offset)) < INVISIBLE
 }
 
 /// Returns `true` if pictures can replace the filters of a slot.
@@ -143,7 +148,7 @@ fn takes_pictures(input: &WriteInput<'_>, slot: usize) -> bool {
 }
 
 /// The box that a group paints, in the user space of its filters.
-fn content(original: &WriteInput<'_>, g: &Group, from_root: pathwarp::kurbo::Affine) -> Option<Rect> {
+fn content(original: &WriteInput<'_>, g: &Group, from_root: Affine) -> Option<Rect> {
     let one = |n: &Node| match n {
         Node::Group(c) | Node::Text { content: c, .. } => content(original, c, from_root),
         Node::Part(i) => {
@@ -164,10 +169,9 @@ fn displaces(g: &Group) -> bool {
 }
 
 /// Returns `true` if anything inside a group has filters.
-fn nests(g: &Group) -> bool {
+fn has_inner_filters(g: &Group) -> bool {
     g.children.iter().any(|n| match n {
-        Node::Group(c) => !c.filters.is_empty() || nests(c),
-        Node::Text { content, .. } => !content.filters.is_empty() || nests(content),
+        Node::Group(c) | Node::Text { content: c, .. } => !c.filters.is_empty() || has_inner_filters(c),
         Node::Part(_) | Node::Image(_) => false,
     })
 }
@@ -181,21 +185,15 @@ fn is_opaque(input: &WriteInput<'_>, g: &Group) -> bool {
         Paint::RadialGradient(g) => stops(g.stops()),
         Paint::Pattern(_) => false,
     };
-    let plain = |p: &Paint, opacity: f32| opacity >= 1.0 && covers(p);
-    let group = |g: &Group| {
-        g.opacity >= 1.0
-            && g.mask.is_none()
-            && g.blend == BlendMode::Normal
-            && g.filters.is_empty()
-            && is_opaque(input, g)
-    };
     g.children.iter().all(|n| match n {
-        Node::Group(g) => group(g),
-        Node::Text { content, .. } => group(content),
+        Node::Group(g) | Node::Text { content: g, .. } => {
+            let is_plain = g.opacity >= 1.0 && g.blend == BlendMode::Normal;
+            is_plain && g.mask.is_none() && g.filters.is_empty() && is_opaque(input, g)
+        }
         Node::Part(i) => {
             let p = input.part(*i);
-            p.fill.as_ref().is_none_or(|f| plain(f.paint(), f.opacity().get()))
-                && p.stroke.as_ref().is_none_or(|s| plain(s.paint(), s.opacity().get()))
+            p.fill.as_ref().is_none_or(|f| f.opacity().get() >= 1.0 && covers(f.paint()))
+                && p.stroke.as_ref().is_none_or(|s| s.opacity().get() >= 1.0 && covers(s.paint()))
         }
         Node::Image(_) => false,
     })

@@ -44,6 +44,7 @@ impl<'a> Surroundings<'a> {
         Self { text_element: text, ..self }
     }
 
+    /// The declarations of paint that a part has in the source. Returns `None` if they cannot be told.
     pub(super) fn words_of(&self, source: &'a SourceText, p: &Part) -> Option<Cow<'a, Words>> {
         let e = p.source.or(p.drawn).or(self.text_element)?;
         let words: &Words = source.words.get(e)?;

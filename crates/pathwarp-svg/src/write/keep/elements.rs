@@ -1,6 +1,6 @@
-//! Walks over the scene and patches each element.
+//! Walks over the scene and patches each element. In every function, `k` is the keeper of the edits, and `e` the patched element.
 
-use super::keeper::{self, Keeper};
+use super::keeper::{self, GEOMETRY, Keeper};
 use super::text;
 use crate::bend::fits::{EmbeddedImage, FilterOutcome};
 use crate::bend::options::Clones;
@@ -25,7 +25,7 @@ pub(super) fn patch_group(k: &mut Keeper<'_, '_>, g: &Group) {
     if matches!(k.input.filter_outcome(g), Some(FilterOutcome::Whole(_))) {
         return;
     }
-    // Shapes with their markers, in painting order.
+    // Shapes with markers: the nodes of the shape and its markers, in painting order.
     let mut marked: BTreeMap<ElementId, Vec<&Node>> = BTreeMap::new();
     for n in &g.children {
         match n {
@@ -106,7 +106,7 @@ fn replace_filters(k: &mut Keeper<'_, '_>, g: &Group) {
     if matches!(k.tag(e), "g" | "a") {
         k.edits.wrap_content(e, beneath, above);
     } else {
-        k.around.insert(e, [beneath, above]);
+        k.pictures.insert(e, [beneath, above]);
     }
 }
 
@@ -116,9 +116,9 @@ const MARKERS: [&str; 3] = ["marker-start", "marker-mid", "marker-end"];
 fn patch_shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let p = k.input.part(i);
     let Some(warped) = k.input.warped(i) else { return };
-    let outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
-    let separate_fill = warped.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
-    if k.input.in_pieces(i) || outlined || separate_fill || k.around.contains_key(&e) {
+    let is_outlined = p.stroke.is_some() && warped.stroke.outline().is_some();
+    let has_separate_fill = warped.fill.as_ref().is_some_and(|f| !f.elements().is_empty());
+    if k.input.in_pieces(i) || is_outlined || has_separate_fill || k.pictures.contains_key(&e) {
         let content = k.written_inside(e, |w| w.part(i));
         let content = k.between_pictures(e, content);
         k.make_group(e, content);
@@ -127,7 +127,7 @@ fn patch_shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
     let tag = k.tag(e);
     if tag != "path" {
         k.edits.rename(e, "path");
-        k.remove_geometry(e);
+        k.remove_attributes(e, &GEOMETRY);
         // Unlike a path, these shapes have no markers.
         if matches!(tag, "rect" | "circle" | "ellipse")
             && k.source.attr(e, "style").is_some_and(|s| s.contains("marker-"))
@@ -146,19 +146,19 @@ fn patch_shape(k: &mut Keeper<'_, '_>, e: ElementId, i: usize) {
 fn patch_paint(k: &mut Keeper<'_, '_>, e: ElementId, i: usize, p: &Part, warped: &WarpedPart) {
     let paints = [("fill", p.fill.as_ref().map(Fill::paint)), ("stroke", p.stroke.as_ref().map(Stroke::paint))];
     for (name, paint) in paints {
-        let moves = |paint: &&usvg::Paint| {
-            let fitted = k.input.paint_fit(paint, p, Some(warped)).is_some();
-            fitted || k.input.bent_gradient(paint, p, warped).is_some()
+        let changes = |paint: &&usvg::Paint| {
+            let is_fitted = k.input.paint_fit(paint, p, Some(warped)).is_some();
+            is_fitted || k.input.bent_gradient(paint, p, warped).is_some()
         };
-        if let Some(paint) = paint.filter(moves) {
+        if let Some(paint) = paint.filter(changes) {
             let paint = k.writer.paint(paint, p, Some(warped));
             k.edits.set_property(e, name, paint);
         }
     }
     // A shape without width or height shows the fallback colour of a paint server in box units. The warped shape may have
     // both, and must not show the paint server.
-    let flat = p.local.bounding_box().is_some_and(|b| b.width() == 0.0 || b.height() == 0.0);
-    if flat && (k.source.text.contains("objectBoundingBox") || k.source.text.contains("Gradient")) {
+    let is_flat = p.local.bounding_box().is_some_and(|b| b.width() == 0.0 || b.height() == 0.0);
+    if is_flat && (k.source.text.contains("objectBoundingBox") || k.source.text.contains("Gradient")) {
         for (name, value) in k.writer.properties(i) {
             if matches!(name, "fill" | "stroke") {
                 k.edits.set_property(e, name, value);
@@ -210,9 +210,7 @@ fn patch_bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
             let has = |name: &str| k.source.property(e, name).is_some_and(|v| v.trim() != "none");
             if clip.is_some() && (has("clip-path") || has("filter")) {
                 let content = k.writer.clipped_image(image, clip.as_deref(), Affine::IDENTITY);
-                for name in ["href", "preserveAspectRatio"] {
-                    k.edits.remove_attr(e, name);
-                }
+                k.remove_attributes(e, &["href", "preserveAspectRatio"]);
                 k.make_group(e, content);
             } else {
                 for (name, value) in bent_attributes(image, Affine::IDENTITY) {
@@ -242,9 +240,7 @@ fn patch_bitmap(k: &mut Keeper<'_, '_>, g: &Group, i: usize) {
 fn patch_drawing(k: &mut Keeper<'_, '_>, e: ElementId, n: &Node, g: &Group) {
     if k.changed(n) {
         let content = k.writer.group(g, "");
-        for name in ["href", "preserveAspectRatio"] {
-            k.edits.remove_attr(e, name);
-        }
+        k.remove_attributes(e, &["href", "preserveAspectRatio"]);
         k.make_group(e, content);
     }
 }
@@ -260,10 +256,10 @@ fn is_original_unchanged(k: &Keeper<'_, '_>, e: ElementId) -> bool {
     // An original that shows others counts as changed if anything is.
     let shows_others = |o: &ElementId| k.tag(*o) == "use" || source.descendants(*o).any(|d| k.tag(d) == "use");
     let ranges: Vec<_> = originals.iter().map(|&o| &source.elements[o].range).collect();
-    let inside = |o: ElementId| ranges.iter().any(|r| r.contains(&source.elements[o].range.start));
-    let anywhere = originals.is_empty() || originals.iter().any(shows_others);
+    let is_in_original = |e: ElementId| ranges.iter().any(|r| r.contains(&source.elements[e].range.start));
+    let may_show_any = originals.is_empty() || originals.iter().any(shows_others);
     let warped = scene.parts.iter().zip(outcomes).filter(|(_, o)| o.warped().is_some());
-    !warped.map(|(p, _)| p.element()).any(|o| anywhere || o.is_none_or(inside))
+    !warped.map(|(p, _)| p.element()).any(|e| may_show_any || e.is_none_or(is_in_original))
 }
 
 /// Replaces a `use` by a group with its resolved content, if that is no longer a copy of the original.
@@ -278,17 +274,16 @@ fn patch_copy(k: &mut Keeper<'_, '_>, e: ElementId, g: &Group) {
     let is_kept =
         |name: &str| name == "id" || name == "class" || name.starts_with("data-") || name.starts_with("aria-");
     let el = &source.elements[e];
-    let head: String = el
+    let kept = el
         .attrs
         .iter()
-        .filter(|a| is_kept(a.name(text)) || matches!(a.namespace, Namespace::Inkscape | Namespace::Sodipodi))
         .filter(|a| !is_live(a, text))
-        .map(|a| format!(" {}", &text[a.range.clone()]))
-        .collect();
+        .filter(|a| is_kept(a.name(text)) || matches!(a.namespace, Namespace::Inkscape | Namespace::Sodipodi));
+    let head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
     let united = united_attributes(k.input, e).into_iter();
     let head = united.fold(head, |head, (name, value)| format!("{head} {name}=\"{}\"", escape(&value)));
     let title = el.title.as_ref().map_or(String::new(), |t| k.writer.markup.title(t));
-    k.fragments.insert(e);
+    k.new_groups.insert(e);
     let lead = title + &keeper::kept_animations(source, e);
     k.writer.surroundings = Surroundings::of_copy(source, e);
     let text = k.writer.group_with(g, &head, &lead);
@@ -318,17 +313,17 @@ pub(super) fn name_united(k: &mut Keeper<'_, '_>) {
 fn united_attributes(input: WriteInput<'_>, e: ElementId) -> Vec<(&'static str, String)> {
     let Some(all) = input.united.merged.get(&e) else { return Vec::new() };
     let values = |name: &'static str| all.iter().filter_map(move |e| input.source.attr(*e, name));
-    let joined = |name: &'static str| {
+    let distinct_words = |name: &'static str| {
         let mut seen = BTreeSet::new();
         let values: Vec<_> = values(name).collect();
         let words = values.iter().flat_map(|v| v.split_ascii_whitespace());
         words.filter(|w| seen.insert(*w)).collect::<Vec<_>>().join(" ")
     };
-    let class = (!input.source.has_css()).then(|| ("class", joined("class")));
+    let class = (!input.source.has_css()).then(|| ("class", distinct_words("class")));
     // Letters make words.
     let is_letter = |e: &ElementId| input.source.attr(*e, "data-glyph").is_some();
     let word = all.iter().all(is_letter).then(|| ("aria-label", values("aria-label").collect::<String>()));
-    let all = [("data-united", joined("id"))].into_iter().chain(class).chain(word);
+    let all = [("data-united", distinct_words("id"))].into_iter().chain(class).chain(word);
     all.filter(|(_, words)| !words.is_empty()).collect()
 }
 
@@ -358,6 +353,7 @@ pub(super) fn patch_clips(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     Ok(())
 }
 
+/// Patches the definition of clip path `i`: the shapes in it, or else it is written anew.
 fn patch_clip(k: &mut Keeper<'_, '_>, i: usize, c: &Clip, def: ElementId) {
     k.writer.defs.clip_ids[i] = Some(c.id.clone());
     let units = k.source.attr(def, "clipPathUnits");
@@ -378,16 +374,12 @@ pub(super) fn patch_masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
         let def = k.definition(&m.id, "mask");
         // A mask in box units hides a box without area completely. The result's box may have an area, so write a new mask.
         let in_box_units = def.is_none_or(|d| k.source.attr(d, "maskUnits").is_none_or(|u| u != "userSpaceOnUse"));
-        if in_box_units && m.root.children.is_empty() {
-            let id = k.writer.mask_id(i);
-            redirect(k, &m.referrers, "mask", &id)?;
-            continue;
-        }
-        if !k.input.changes(m.parts.clone()) {
+        let hides_all = in_box_units && m.root.children.is_empty();
+        if !hides_all && !k.input.changes(m.parts.clone()) {
             k.writer.defs.mask_ids[i] = def.map(|_| m.id.clone());
             continue;
         }
-        match def {
+        match def.filter(|_| !hides_all) {
             Some(def) if patched.insert(def) => patch_mask(k, i, m, def),
             _ => {
                 let id = k.writer.mask_id(i);
@@ -398,11 +390,11 @@ pub(super) fn patch_masks(k: &mut Keeper<'_, '_>) -> Result<(), Unpatchable> {
     Ok(())
 }
 
+/// Patches the definition of mask `i`: its region and content, or else it is written anew.
 fn patch_mask(k: &mut Keeper<'_, '_>, i: usize, m: &Mask, def: ElementId) {
     k.writer.defs.mask_ids[i] = Some(m.id.clone());
     let units = k.source.attr(def, "maskContentUnits");
-    let plain = units.is_none_or(|u| u != "objectBoundingBox") && boxes::edge(&k.input, i).is_none();
-    if plain {
+    if units.is_none_or(|u| u != "objectBoundingBox") && boxes::edge(&k.input, i).is_none() {
         for (name, value) in boxes::region(&k.input, i) {
             k.edits.set_attr(def, name, value);
         }
@@ -471,11 +463,11 @@ fn patch_viewport(k: &mut Keeper<'_, '_>, i: usize) -> Result<(), Unpatchable> {
 fn fits_edge(k: &Keeper<'_, '_>, e: ElementId, edge: Range<usize>) -> bool {
     let scene = k.input.scene;
     let Some(edge) = scene.parts.get(edge.start).and_then(|p| p.outline().bounding_box()) else { return false };
-    let inside = k.source.elements[e].range.clone();
+    let range = k.source.elements[e].range.clone();
     scene.parts.iter().filter(|p| !p.in_tile).all(|p| {
-        let is_inside = p.element().is_some_and(|s| inside.contains(&k.source.elements[s].range.start));
-        let reach = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get() * s.miterlimit().get()));
-        let reach = reach * stretch(p.frame);
-        !is_inside || p.outline().bounding_box().is_none_or(|b| edge.union(b.inflate(reach, reach)) == edge)
+        let is_content = p.element().is_some_and(|s| range.contains(&k.source.elements[s].range.start));
+        let extent = p.stroke.as_ref().map_or(0.0, |s| f64::from(s.width().get() * s.miterlimit().get()));
+        let extent = extent * stretch(p.frame);
+        !is_content || p.outline().bounding_box().is_none_or(|b| edge.contains_rect(b.inflate(extent, extent)))
     })
 }

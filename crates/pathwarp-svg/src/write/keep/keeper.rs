@@ -12,8 +12,8 @@ use crate::write::surroundings::Surroundings;
 use pathwarp::kurbo::Affine;
 use std::collections::{BTreeSet, HashMap};
 
-/// Geometry attributes, which a shape loses when it becomes a path.
-const GEOMETRY: [&str; 15] =
+/// Geometry attributes, which a shape loses when it becomes a path. The first alone is that of a path.
+pub(super) const GEOMETRY: [&str; 15] =
     ["d", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r", "x1", "y1", "x2", "y2", "points"];
 
 /// Data attributes of lettering.
@@ -27,15 +27,16 @@ pub(super) struct Keeper<'a, 'w> {
     pub(super) edits: Edits<'a>,
     pub(super) writer: &'w mut Writer<'a>,
     /// Elements that have become groups. Animations of their paint are removed.
-    pub(super) fragments: BTreeSet<ElementId>,
+    pub(super) new_groups: BTreeSet<ElementId>,
     /// Pictures beneath and above the content of elements that become groups.
-    pub(super) around: HashMap<ElementId, [String; 2]>,
+    pub(super) pictures: HashMap<ElementId, [String; 2]>,
 }
 
 impl<'a, 'w> Keeper<'a, 'w> {
     pub(super) fn new(input: WriteInput<'a>, writer: &'w mut Writer<'a>) -> Self {
         let source = input.source;
-        Self { input, source, edits: Edits::new(source), writer, fragments: BTreeSet::new(), around: HashMap::new() }
+        let (new_groups, pictures) = (BTreeSet::new(), HashMap::new());
+        Self { input, source, edits: Edits::new(source), writer, new_groups, pictures }
     }
 
     pub(super) fn tag(&self, e: ElementId) -> &'a str {
@@ -46,12 +47,11 @@ impl<'a, 'w> Keeper<'a, 'w> {
     pub(super) fn changed(&self, n: &Node) -> bool {
         match n {
             Node::Part(i) => self.input.warped(*i).is_some(),
-            Node::Group(g) => g.children.iter().any(|n| self.changed(n)),
-            Node::Text { content, .. } => content.children.iter().any(|n| self.changed(n)),
+            Node::Group(g) | Node::Text { content: g, .. } => g.children.iter().any(|n| self.changed(n)),
             Node::Image(i) => {
                 let slot = self.input.scene.bitmaps[*i].slot;
-                let moved = slot.is_some_and(|s| self.input.slots[s].fit != Affine::IDENTITY);
-                moved || matches!(self.input.images[*i], EmbeddedImage::Bent { .. })
+                let is_moved = slot.is_some_and(|s| self.input.slots[s].fit != Affine::IDENTITY);
+                is_moved || matches!(self.input.images[*i], EmbeddedImage::Bent { .. })
             }
         }
     }
@@ -59,8 +59,9 @@ impl<'a, 'w> Keeper<'a, 'w> {
     /// Writes the replacement of an element. The ids inside become free, unless style sheets or animations refer to them:
     /// the replacement specifies its appearance and position itself.
     pub(super) fn replacement(&mut self, e: ElementId, write: impl FnOnce(&mut Writer<'a>) -> String) -> String {
-        let free = !self.source.has_css() && !self.source.animated;
-        self.writer.defs.replaced = free.then(|| Replaced::new(self.source.elements[e].range.clone()));
+        let frees_ids = !self.source.has_css() && !self.source.animated;
+        let range = self.source.elements[e].range.clone();
+        self.writer.defs.replaced = frees_ids.then_some(Replaced { range, named: BTreeSet::new() });
         let text = write(self.writer);
         self.writer.defs.replaced = None;
         text
@@ -81,7 +82,7 @@ impl<'a, 'w> Keeper<'a, 'w> {
 
     /// The content of an element between its pictures.
     pub(super) fn between_pictures(&self, e: ElementId, content: String) -> String {
-        match self.around.get(&e) {
+        match self.pictures.get(&e) {
             Some([beneath, above]) => format!("{beneath}{content}{above}"),
             None => content,
         }
@@ -95,8 +96,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
         text
     }
 
-    pub(super) fn remove_geometry(&mut self, e: ElementId) {
-        for name in GEOMETRY {
+    pub(super) fn remove_attributes(&mut self, e: ElementId, names: &[&'static str]) {
+        for name in names {
             self.edits.remove_attr(e, name);
         }
     }
@@ -107,10 +108,8 @@ impl<'a, 'w> Keeper<'a, 'w> {
             return;
         }
         for a in self.source.ancestors(e) {
-            for name in LETTERING {
-                if self.source.attr(a, name).is_some() {
-                    self.edits.remove_attr(a, name);
-                }
+            for name in LETTERING.into_iter().filter(|name| self.source.attr(a, name).is_some()) {
+                self.edits.remove_attr(a, name);
             }
         }
     }
@@ -118,9 +117,9 @@ impl<'a, 'w> Keeper<'a, 'w> {
     /// Turns a shape element into a group. Its attributes and children stay, and `content` replaces its geometry.
     pub(super) fn make_group(&mut self, e: ElementId, content: String) {
         self.remove_lettering(e);
-        self.fragments.insert(e);
+        self.new_groups.insert(e);
         self.edits.rename(e, "g");
-        self.remove_geometry(e);
+        self.remove_attributes(e, &GEOMETRY);
         self.edits.wrap_content(e, String::new(), content);
     }
 }
@@ -128,9 +127,9 @@ impl<'a, 'w> Keeper<'a, 'w> {
 /// Flags for every element of the source.
 pub(super) struct Warped {
     /// `true` if the element is warped.
-    pub(super) itself: Vec<bool>,
+    itself: Vec<bool>,
     /// `true` if it is warped or contains anything warped.
-    pub(super) within: Vec<bool>,
+    within: Vec<bool>,
 }
 
 impl Warped {
@@ -154,8 +153,8 @@ impl Warped {
     }
 }
 
-/// Removes live attributes from all elements that are warped or contain warped ones. The other elements of a live group lose the
-/// attributes that mean nothing without the group.
+/// Removes live attributes, from which Inkscape computes shapes anew, from all elements that are warped or contain warped ones. The other
+/// elements of a live group lose the attributes that mean nothing without the group.
 pub(super) fn remove_live_attributes(k: &mut Keeper<'_, '_>, warped: &Warped) {
     let source = k.source;
     // No element is live without a declared namespace, and most drawings have none.
@@ -165,9 +164,8 @@ pub(super) fn remove_live_attributes(k: &mut Keeper<'_, '_>, warped: &Warped) {
     for e in (0..source.elements.len()).filter(|&e| warped.within[e]) {
         if is_shape(k.tag(e)) && source.attr_in(e, Namespace::Sodipodi, "type").is_some() {
             // A rectangle with a path effect is a `path` with the attributes of a `rect`; a linked offset has a link.
-            for name in GEOMETRY.into_iter().filter(|n| *n != "d").chain(["href"]) {
-                k.edits.remove_attr(e, name);
-            }
+            k.remove_attributes(e, &GEOMETRY[1..]);
+            k.edits.remove_attr(e, "href");
         }
         k.edits.remove_attrs(e, |a| is_live(a, &source.text));
         release_orphans(k, e, warped);
@@ -183,21 +181,21 @@ fn release_orphans(k: &mut Keeper<'_, '_>, group: ElementId, warped: &Warped) {
         return;
     }
     for e in source.descendants(group).filter(|&e| !warped.within[e]) {
-        let is_orphan = |a: &Attr| match (a.namespace, a.name(&source.text)) {
+        let is_orphaned = |a: &Attr| match (a.namespace, a.name(&source.text)) {
             (Namespace::Sodipodi, "type") | (Namespace::Inkscape, "box3dsidetype") => is_box,
             (Namespace::Inkscape, "original-d") => !has_effect(e),
             _ => false,
         };
-        k.edits.remove_attrs(e, is_orphan);
+        k.edits.remove_attrs(e, is_orphaned);
     }
 }
 
-const OF_GEOMETRY: &str = "animations of a shape's geometry are dropped, as the shape is warped";
-const OF_POSITION: &str = "animations that move warped shapes along straight lines are dropped";
-const OF_PAINT: &str =
+const DROPPED_GEOMETRY: &str = "animations of a shape's geometry are dropped, as the shape is warped";
+const DROPPED_POSITION: &str = "animations that move warped shapes along straight lines are dropped";
+const DROPPED_PAINT: &str =
     "animations of fill and stroke are dropped where a shape, text or copy has become a group of several";
 
-/// Property changed by an animation.
+/// Kind of property that an animation changes.
 enum Animated {
     Geometry,
     Position,
@@ -205,8 +203,8 @@ enum Animated {
     Other,
 }
 
-/// Removes animations that no longer fit.
-pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
+/// Removes animations that no longer fit their elements.
+pub(super) fn remove_outdated_animations(k: &mut Keeper<'_, '_>, warped: &Warped) {
     let source = k.source;
     if !source.animated {
         return;
@@ -218,9 +216,9 @@ pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
         };
         let Some(target) = target else { continue };
         let why = match animated(source, a) {
-            Animated::Geometry if warped.itself[target] => OF_GEOMETRY,
-            Animated::Position if warped.within[target] => OF_POSITION,
-            Animated::Paint if k.fragments.contains(&target) => OF_PAINT,
+            Animated::Geometry if warped.itself[target] => DROPPED_GEOMETRY,
+            Animated::Position if warped.within[target] => DROPPED_POSITION,
+            Animated::Paint if k.new_groups.contains(&target) => DROPPED_PAINT,
             _ => continue,
         };
         k.edits.replace(a, String::new());
@@ -230,13 +228,13 @@ pub(super) fn remove_unfit(k: &mut Keeper<'_, '_>, warped: &Warped) {
 
 /// The animations among the children of an element whose content is replaced, except the ones that no longer fit.
 pub(super) fn kept_animations(source: &SourceText, e: ElementId) -> String {
-    let children = source
-        .descendants(e)
-        .filter(|&c| source.elements[c].parent == Some(e) && is_animation(&source.elements[c].tag));
+    let is_animating = |&c: &ElementId| source.elements[c].parent == Some(e) && is_animation(&source.elements[c].tag);
+    let children = source.descendants(e).filter(is_animating);
     let kept = children.filter(|&c| matches!(animated(source, c), Animated::Other));
     kept.map(|c| &source.text[source.elements[c].range.clone()]).collect()
 }
 
+/// The kind of property that animation `a` changes.
 fn animated(source: &SourceText, a: ElementId) -> Animated {
     if matches!(source.elements[a].tag.as_ref(), "animateTransform" | "animateMotion") {
         return Animated::Position;

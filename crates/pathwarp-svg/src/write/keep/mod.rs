@@ -28,7 +28,7 @@ pub(super) fn write(
     let mut writer = Writer::new(*input, true, skipped, notes);
     let mut k = Keeper::new(*input, &mut writer);
     if let Some((_, after)) = change {
-        pages::hold(&mut k, after.size());
+        pages::fix_percentages(&mut k, after.size());
     }
     elements::patch_clips(&mut k)?;
     elements::patch_masks(&mut k)?;
@@ -46,11 +46,11 @@ pub(super) fn write(
         }
         k.edits.wrap_content(0, String::new(), above);
     }
-    slots(&mut k);
-    regions(&mut k);
+    move_slots(&mut k);
+    enlarge_regions(&mut k);
     let warped = Warped::new(input);
     keeper::remove_live_attributes(&mut k, &warped);
-    keeper::remove_unfit(&mut k, &warped);
+    keeper::remove_outdated_animations(&mut k, &warped);
     if let Some(change) = change {
         for (name, value) in page::attributes(input, change) {
             if name == "viewBox" {
@@ -59,7 +59,7 @@ pub(super) fn write(
                 k.edits.set_page_side(name, value);
             }
         }
-        pages::follow(&mut k, change);
+        pages::move_pages_and_guides(&mut k, change);
     }
     let edits = k.edits;
     let defs = std::mem::take(&mut writer.defs.text);
@@ -70,8 +70,8 @@ pub(super) fn write(
     if !input.source.has_css() {
         return Ok(text);
     }
-    let before = input.source.positions_in_file(starts.iter().map(|(e, _)| input.source.elements[*e].range.start));
-    let starts: Vec<_> = before.into_iter().zip(starts.iter().map(|s| s.1)).collect();
+    let old_starts = input.source.positions_in_file(starts.iter().map(|(e, _)| input.source.elements[*e].range.start));
+    let starts: Vec<_> = old_starts.into_iter().zip(starts.iter().map(|s| s.1)).collect();
     let guarded = guarded(&input.source.as_in_file(), &text, &starts, &input.drawing.budget);
     let Ok(guarded) = guarded else {
         notes.add("the style sheets are too long to see whether their rules now apply to other elements (--limit comparisons=…)", "");
@@ -81,7 +81,7 @@ pub(super) fn write(
 }
 
 /// Applies the fits of filtered elements and images to their transforms.
-fn slots(k: &mut Keeper<'_, '_>) {
+fn move_slots(k: &mut Keeper<'_, '_>) {
     for (s, placed) in k.input.scene.slots.iter().zip(k.input.slots) {
         if let (None, Some(e)) = (s.owner, s.element)
             && placed.fit != Affine::IDENTITY
@@ -93,7 +93,7 @@ fn slots(k: &mut Keeper<'_, '_>) {
 }
 
 /// Enlarges the regions of filters in user space. Regions in box units follow the boxes of the filtered elements.
-fn regions(k: &mut Keeper<'_, '_>) {
+fn enlarge_regions(k: &mut Keeper<'_, '_>) {
     for (id, region) in std::mem::take(&mut k.writer.defs.regions) {
         if let Some(e) = k.definition(&id, "filter").filter(|&e| k.source.in_user_space(e, "filterUnits") == Some(true))
         {
@@ -104,7 +104,8 @@ fn regions(k: &mut Keeper<'_, '_>) {
     }
 }
 
-/// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child.
+/// Adds the new definitions to the file's `<defs>`, or else at its end, so that the title stays the first child. Returns the text, and
+/// where the elements of the source begin in it.
 fn finish(
     source: &SourceText,
     mut edits: Edits<'_>,
@@ -115,10 +116,9 @@ fn finish(
         return Ok(edits.apply());
     }
     // Elements that the reader added are not in the file.
-    let is_home = |e: &Element| e.tag == "defs" && e.parent == Some(0) && e.close.is_some() && source.is_in_file(e);
-    let home = source.elements.iter().position(is_home);
-    match home {
-        Some(home) => edits.wrap_content(home, String::new(), defs.to_owned()),
+    let is_defs = |e: &Element| e.tag == "defs" && e.parent == Some(0) && e.close.is_some() && source.is_in_file(e);
+    match source.elements.iter().position(is_defs) {
+        Some(e) => edits.wrap_content(e, String::new(), defs.to_owned()),
         None if source.elements[0].close.is_some() => {
             edits.wrap_content(0, String::new(), format!("<{prefix}defs>\n{defs}</{prefix}defs>\n"));
         }

@@ -2,34 +2,17 @@
 
 use super::keeper::Keeper;
 use crate::scene::geometry::Dimension::{self, Diagonal, Height, Width};
-use crate::source::elements::ElementId;
-use crate::source::elements::declared;
+use crate::source::elements::{ElementId, declared};
 use crate::source::number::{rectangle, short};
 use crate::source::text::SourceText;
 use pathwarp::kurbo::{Rect, Size, Vec2};
 
 /// Attributes that may be percentages of the viewport, alone or in lists.
+#[rustfmt::skip]
 const LENGTHS: &[(&str, Dimension)] = &[
-    ("x", Width),
-    ("y", Height),
-    ("width", Width),
-    ("height", Height),
-    ("x1", Width),
-    ("y1", Height),
-    ("x2", Width),
-    ("y2", Height),
-    ("cx", Width),
-    ("cy", Height),
-    ("rx", Width),
-    ("ry", Height),
-    ("r", Diagonal),
-    ("fx", Width),
-    ("fy", Height),
-    ("fr", Diagonal),
-    ("dx", Width),
-    ("dy", Height),
-    ("markerWidth", Width),
-    ("markerHeight", Height),
+    ("x", Width), ("y", Height), ("width", Width), ("height", Height), ("x1", Width), ("y1", Height), ("x2", Width), ("y2", Height),
+    ("cx", Width), ("cy", Height), ("rx", Width), ("ry", Height), ("r", Diagonal), ("fx", Width), ("fy", Height), ("fr", Diagonal),
+    ("dx", Width), ("dy", Height), ("markerWidth", Width), ("markerHeight", Height),
 ];
 
 /// Properties that may be percentages of the viewport's diagonal.
@@ -41,20 +24,19 @@ const OF_GRADIENTS: [(&str, &[(&str, &str)]); 2] =
 
 /// Replaces percentages of the root's viewport by numbers if its size changes. Must come before other edits, which start from lengths that
 /// usvg has resolved.
-pub(super) fn hold(k: &mut Keeper<'_, '_>, after: Size) {
+pub(super) fn fix_percentages(k: &mut Keeper<'_, '_>, after: Size) {
     let before = k.input.drawing.reader().root_size();
     if after == before {
         return;
     }
     for e in 1..k.source.elements.len() {
         if has_percentages(k.source, e) && refers_to_root(k.source, e) && is_in_user_space(k.source, e) {
-            hold_lengths(k, e, before);
-            hold_defaults(k, e, before);
+            fix_lengths(k, e, before);
         }
     }
     if k.source.text.contains('%') {
         for name in PROPERTIES {
-            hold_property(k, name, Diagonal.in_view(before));
+            fix_property(k, name, Diagonal.in_view(before));
         }
     }
 }
@@ -81,24 +63,22 @@ fn refers_to_root(source: &SourceText, e: ElementId) -> bool {
 
 /// Returns `true` unless the lengths of an element are fractions of a box.
 fn is_in_user_space(source: &SourceText, e: ElementId) -> bool {
-    let tag = |e: ElementId| source.elements[e].tag.as_ref();
-    let (owner, name, default) = match tag(e) {
-        "linearGradient" | "radialGradient" => (e, "gradientUnits", false),
-        "pattern" => (e, "patternUnits", false),
-        "mask" => (e, "maskUnits", false),
-        "filter" => (e, "filterUnits", false),
-        primitive if primitive.starts_with("fe") => match source.elements[e].parent {
-            Some(filter) => (filter, "primitiveUnits", true),
-            None => return true,
-        },
+    let name = match source.elements[e].tag.as_ref() {
+        "linearGradient" | "radialGradient" => "gradientUnits",
+        "pattern" => "patternUnits",
+        "mask" => "maskUnits",
+        "filter" => "filterUnits",
+        primitive if primitive.starts_with("fe") => {
+            return source.elements[e].parent.and_then(|f| source.in_user_space(f, "primitiveUnits")).unwrap_or(true);
+        }
         _ => return true,
     };
-    source.in_user_space(owner, name).unwrap_or(default)
+    source.in_user_space(e, name).unwrap_or(false)
 }
 
-/// The text with its percentages replaced by numbers. Returns `None` if it has none.
+/// The text with its percentages of `full` replaced by numbers. Returns `None` if it has none.
 fn numbers(text: &str, full: f64) -> Option<String> {
-    let number = |part: &str| Some(short(part.strip_suffix('%')?.trim_end().parse::<f64>().ok()? / 100.0 * full));
+    let number = |part: &str| Some(short((part.strip_suffix('%')?.trim_end().parse::<f64>().ok()? / 100.0) * full));
     let parts = || text.split([' ', ',', '\t', '\n', '\r']).filter(|p| !p.is_empty());
     parts().any(|p| number(p).is_some()).then(|| {
         let all = parts().map(|p| number(p).unwrap_or_else(|| p.to_owned()));
@@ -106,16 +86,8 @@ fn numbers(text: &str, full: f64) -> Option<String> {
     })
 }
 
-fn hold_lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
-    for &(name, dimension) in LENGTHS {
-        if let Some(new) = k.source.attr(e, name).and_then(|text| numbers(&text, dimension.in_view(view))) {
-            k.edits.set_attr(e, name, new);
-        }
-    }
-}
-
 /// Replaces percentages of a property in attributes and styles, and overrides those of style sheets.
-fn hold_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
+fn fix_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     if !k.source.text.contains(name) {
         return;
     }
@@ -134,10 +106,10 @@ fn hold_property(k: &mut Keeper<'_, '_>, name: &'static str, diagonal: f64) {
     }
 }
 
-/// Writes numbers for lengths that are not given and whose default is a percentage.
-fn hold_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
+/// Writes numbers for lengths that are percentages, or that are not given and whose default is one.
+fn fix_lengths(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
     let target = || k.source.target(e);
-    let missing: &[(&str, &str)] = match k.tag(e) {
+    let defaults: &[(&str, &str)] = match k.tag(e) {
         "svg" => &[("width", "100%"), ("height", "100%")],
         "use" if target().is_some_and(|t| k.tag(t) == "symbol") => &[("width", "100%"), ("height", "100%")],
         // Another gradient that it refers to may give them.
@@ -145,10 +117,9 @@ fn hold_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
         _ => &[],
     };
     for &(name, dimension) in LENGTHS {
-        if let Some((_, default)) = missing.iter().find(|m| m.0 == name)
-            && k.source.attr(e, name).is_none()
-            && let Some(new) = numbers(default, dimension.in_view(view))
-        {
+        let default = defaults.iter().find(|d| d.0 == name).map(|d| d.1.into());
+        let value = k.source.attr(e, name).or(default);
+        if let Some(new) = value.and_then(|v| numbers(&v, dimension.in_view(view))) {
             k.edits.set_attr(e, name, new);
         }
     }
@@ -158,11 +129,13 @@ fn hold_defaults(k: &mut Keeper<'_, '_>, e: ElementId, view: Size) {
 const SAME: f64 = 1e-6;
 
 /// Moves pages and guide lines with the page.
-pub(super) fn follow(k: &mut Keeper<'_, '_>, (before, after): (Rect, Rect)) {
-    let namedview = |e: ElementId| k.source.elements[e].parent.is_some_and(|p| name(k, p) == "sodipodi:namedview");
-    let found: Vec<ElementId> = (0..k.source.elements.len()).filter(|&e| namedview(e)).collect();
-    for e in found {
-        match name(k, e) {
+pub(super) fn move_pages_and_guides(k: &mut Keeper<'_, '_>, (before, after): (Rect, Rect)) {
+    let source = k.source;
+    // The names with the prefixes that Inkscape writes.
+    let name = |e: ElementId| &source.text[source.elements[e].qname.clone()];
+    let is_in_view = |e: &ElementId| source.elements[*e].parent.is_some_and(|p| name(p) == "sodipodi:namedview");
+    for e in (0..source.elements.len()).filter(is_in_view) {
+        match name(e) {
             "inkscape:page" => move_page(k, e, before, after),
             "sodipodi:guide" => move_guide_line(k, e, before, after),
             _ => {}
@@ -170,23 +143,15 @@ pub(super) fn follow(k: &mut Keeper<'_, '_>, (before, after): (Rect, Rect)) {
     }
 }
 
-/// The name of an element as Inkscape writes it.
-fn name<'a>(k: &Keeper<'a, '_>, e: ElementId) -> &'a str {
-    &k.source.text[k.source.elements[e].qname.clone()]
-}
-
-fn number(k: &Keeper<'_, '_>, e: ElementId, name: &str) -> Option<f64> {
-    k.source.attr(e, name)?.trim().parse().ok()
-}
-
+/// Moves a page of Inkscape's, or resizes it if it is as large as the visible area.
 fn move_page(k: &mut Keeper<'_, '_>, e: ElementId, before: Rect, after: Rect) {
-    let values = ["x", "y", "width", "height"].map(|n| number(k, e, n));
-    let [Some(x), Some(y), Some(w), Some(h)] = values else { return };
+    let number = |name: &str| k.source.attr(e, name)?.trim().parse::<f64>().ok();
+    let [Some(x), Some(y), Some(w), Some(h)] = ["x", "y", "width", "height"].map(number) else { return };
     let old = Rect::new(x, y, x + w, y + h);
     let whole = Rect::from_origin_size((0.0, 0.0), before.size());
-    let near = SAME * (before.width() + before.height());
-    let is_whole = [old.x0 - whole.x0, old.y0 - whole.y0, old.x1 - whole.x1, old.y1 - whole.y1];
-    let new = if is_whole.iter().all(|d| d.abs() <= near) {
+    let slack = SAME * (before.width() + before.height());
+    let differences = [old.x0 - whole.x0, old.y0 - whole.y0, old.x1 - whole.x1, old.y1 - whole.y1];
+    let new = if differences.iter().all(|d| d.abs() <= slack) {
         Rect::from_origin_size((0.0, 0.0), after.size())
     } else {
         old + Vec2::new(before.x0 - after.x0, before.y0 - after.y0)

@@ -16,6 +16,7 @@ struct TextSpan {
     content: Vec<SpanItem>,
 }
 
+/// A part of a span's content.
 #[derive(Clone, Copy)]
 enum SpanItem {
     /// Index of an outline.
@@ -28,31 +29,28 @@ enum SpanItem {
 struct SpanTree(Vec<TextSpan>);
 
 impl SpanTree {
-    fn new(text: ElementId) -> Self {
-        Self(vec![TextSpan { element: text, content: Vec::new() }])
-    }
-
     /// The index of the innermost span of a chain of elements, `path`, outermost first. Adds a span that is missing or, with `reopen`, is
     /// no longer the last of its parent; its element then gets a second group.
     fn find_or_add(&mut self, path: &[ElementId], reopen: bool) -> usize {
-        let mut here = 0;
+        let mut span = 0;
         for &e in path {
-            let inside = &self.0[here].content;
-            let is = |i: &SpanItem| matches!(i, SpanItem::Span(s) if self.0[*s].element == e).then_some(*i);
-            let found = match inside.last() {
-                Some(last) if reopen => is(last),
-                _ => inside.iter().rev().find_map(is),
+            let content = &self.0[span].content;
+            let span_of = |item: &SpanItem| match *item {
+                SpanItem::Span(s) if self.0[s].element == e => Some(s),
+                _ => None,
             };
-            here = if let Some(SpanItem::Span(s)) = found {
-                s
-            } else {
+            let found = match content.last() {
+                Some(last) if reopen => span_of(last),
+                _ => content.iter().rev().find_map(span_of),
+            };
+            span = found.unwrap_or_else(|| {
                 let new = self.0.len();
                 self.0.push(TextSpan { element: e, content: Vec::new() });
-                self.0[here].content.push(SpanItem::Span(new));
+                self.0[span].content.push(SpanItem::Span(new));
                 new
-            };
+            });
         }
-        here
+        span
     }
 }
 
@@ -65,7 +63,7 @@ pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, 
     let words = words(source, e);
     let inner = if owners.len() == content.children.len() {
         let spans = span_tree(source, e, owners);
-        let written = SpanWriter { k, spans: &spans, content, owners, seen: Vec::new() }.items(0);
+        let written = SpanWriter { k, spans: &spans, content, owners, written: Vec::new() }.items(0);
         k.writer.group_around(content, &written)
     } else {
         // The outlines keep the text's declarations of paint, such as `currentColor`.
@@ -78,13 +76,11 @@ pub(super) fn patch_text(k: &mut Keeper<'_, '_>, e: ElementId, content: &Group, 
     let title = source.elements[e].title.as_ref().unwrap_or(&words);
     let title = if title.is_empty() { String::new() } else { k.writer.markup.title(title) };
     k.edits.rename(e, "g");
-    for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
-        k.edits.remove_attr(e, name);
-    }
+    k.remove_attributes(e, &["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"]);
     if !words.is_empty() && source.attr(e, "aria-label").is_none() {
         k.edits.set_attr(e, "aria-label", words);
     }
-    k.fragments.insert(e);
+    k.new_groups.insert(e);
     let animations = keeper::kept_animations(source, e);
     k.edits.set_content(e, format!("{title}{inner}{animations}"));
     move_html(k, e);
@@ -99,8 +95,8 @@ fn move_html(k: &mut Keeper<'_, '_>, text: ElementId) {
     let map = k.input.bends.bend_of(Some(text)).map(|i| k.input.bends.each[i].map.class());
     match (frame, map) {
         (Some(frame), Some(Class::Affine(map))) => {
-            let moved = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
-            k.edits.set_attr(html, "transform", matrix(moved));
+            let transform = frame.inverse() * map * frame * k.input.drawing.own_transform(html);
+            k.edits.set_attr(html, "transform", matrix(transform));
         }
         _ => k.edits.replace(html, String::new()),
     }
@@ -108,10 +104,10 @@ fn move_html(k: &mut Keeper<'_, '_>, text: ElementId) {
 
 /// Sorts the outlines of a text into spans.
 fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> SpanTree {
-    let mut spans = SpanTree::new(text);
+    let mut spans = SpanTree(vec![TextSpan { element: text, content: Vec::new() }]);
     let path = |element: ElementId| {
-        let up = source.ancestors(element).take_while(|&a| a != text);
-        let mut path: Vec<ElementId> = up.filter(|&a| is_named(source, a)).collect();
+        let ancestors = source.ancestors(element).take_while(|&a| a != text);
+        let mut path: Vec<ElementId> = ancestors.filter(|&a| is_named(source, a)).collect();
         path.reverse();
         path
     };
@@ -126,13 +122,14 @@ fn span_tree(source: &SourceText, text: ElementId, owners: &[ElementId]) -> Span
     spans
 }
 
+/// Writes the spans of a text.
 struct SpanWriter<'s, 'k, 'a, 'w> {
     k: &'k mut Keeper<'a, 'w>,
     spans: &'s SpanTree,
     content: &'s Group,
     owners: &'s [ElementId],
     /// Elements written so far.
-    seen: Vec<ElementId>,
+    written: Vec<ElementId>,
 }
 
 impl SpanWriter<'_, '_, '_, '_> {
@@ -159,13 +156,13 @@ impl SpanWriter<'_, '_, '_, '_> {
         let element = self.spans.0[span].element;
         let el = &source.elements[element];
         // An element with several spans has its id and title on the first. Attributes that warping makes untrue are left out.
-        let again = self.seen.contains(&element);
-        self.seen.push(element);
+        let is_again = self.written.contains(&element);
+        self.written.push(element);
         let text = &source.text;
         let kept =
-            el.attrs.iter().filter(|a| is_naming(a, text) && !is_live(a, text) && !(again && a.name(text) == "id"));
+            el.attrs.iter().filter(|a| is_naming(a, text) && !is_live(a, text) && !(is_again && a.name(text) == "id"));
         let head: String = kept.map(|a| format!(" {}", &text[a.range.clone()])).collect();
-        let title = el.title.as_ref().filter(|_| !again);
+        let title = el.title.as_ref().filter(|_| !is_again);
         let title = title.map_or(String::new(), |t| self.k.writer.markup.title(t));
         let inner = self.items(span);
         self.k.writer.markup.element("g").raw(&head).around(&(title + &inner))
@@ -199,19 +196,19 @@ fn words(source: &SourceText, e: ElementId) -> String {
         .map(|c| &source.elements[c])
         .filter(|c| matches!(c.tag.as_ref(), "title" | "desc" | "metadata" | "style" | "script"));
     // Text to skip, and positions of line breaks.
-    let mut gaps: Vec<Range<usize>> =
-        hidden.map(|h| h.range.clone()).chain(line_starts(source, e).into_iter().map(|at| at..at)).collect();
+    let breaks = line_starts(source, e).into_iter().map(|start| start..start);
+    let mut gaps: Vec<Range<usize>> = hidden.map(|h| h.range.clone()).chain(breaks).collect();
     gaps.sort_by_key(|g| g.start);
     let mut raw = String::new();
-    let mut at = el.open_end;
+    let mut copied_to = el.open_end;
     for gap in gaps {
-        raw.push_str(&source.part_in_file(at..gap.start.max(at)));
+        raw.push_str(&source.part_in_file(copied_to..gap.start.max(copied_to)));
         if gap.is_empty() {
             raw.push(' ');
         }
-        at = at.max(gap.end);
+        copied_to = copied_to.max(gap.end);
     }
-    raw.push_str(&source.part_in_file(at..close.start.max(at)));
+    raw.push_str(&source.part_in_file(copied_to..close.start.max(copied_to)));
     let mut out = String::new();
     let mut in_tag = false;
     for c in raw.chars() {
