@@ -102,14 +102,8 @@ const LEAST_GROWTH: f64 = 1e-4;
 /// are measured in the filters' user space, which follows the affine fit of the map.
 pub(super) fn growth(input: &WriteInput<'_>, g: &Group) -> Insets {
     let slot = g.slot.filter(|_| !g.filters.is_empty()).map(|i| &input.scene.slots[i]);
-<<<<<<< HEAD
     let Some(slot) = slot.filter(|s| !s.fits_outside && input.changes(s.parts.clone())) else { return Insets::ZERO };
-    let from = slot.frame.inverse();
-    let to = input.written(g.slot, slot.frame).inverse();
-=======
-    let Some(slot) = slot.filter(|s| !s.before && input.changes(s.parts.clone())) else { return Insets::ZERO };
     let (from_root, from_new_root) = (slot.frame.inverse(), input.written(g.slot, slot.frame).inverse());
->>>>>>> w7
     let painted = slot.parts.clone().filter(|&i| {
         let p = input.part(i);
         p.role == PartRole::Paint && is_seen(p) && input.warped(i).is_none_or(WarpedPart::draws)

@@ -61,15 +61,9 @@ fn outcome(
     let bend = &input.bends.each[fits::slot_bend(s, input.scene, input.bends, input.part_bends)?];
     let painter = bend.options.painter.as_ref().filter(|_| bend.options.filters != Filters::Affine)?;
     let always = bend.options.filters == Filters::Picture;
-<<<<<<< HEAD
-    let repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
-    let unfit = nests(group) || displaces(group) || !takes_pictures(input, slot);
-    if bend.is_identity() || s.fits_outside || repeated || unfit {
-=======
     let is_repeated = bend.options.copies.len() > 1 || !bend.options.letters.places.is_empty();
     let refuses_pictures = has_inner_filters(group) || displaces(group) || !takes_pictures(input, slot);
-    if bend.is_identity() || s.before || is_repeated || refuses_pictures {
->>>>>>> w7
+    if bend.is_identity() || s.fits_outside || is_repeated || refuses_pictures {
         return None;
     }
     let content = content(original, group, s.frame.inverse())?;
