@@ -5,11 +5,12 @@
 //! curves.
 
 use crate::chore::{Chore, workspace};
+use crate::shell::{ends_in, files_below};
 use clap::Command as ChoreCommand;
 use pathwarp::Outline;
 use pathwarp::kurbo::Affine;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 pub(crate) const CHORE: Chore = Chore {
@@ -47,15 +48,8 @@ fn fetch_all() -> io::Result<String> {
     let mut lines = Vec::new();
     for set in &SETS {
         let work = folder.join(set.package);
-        std::fs::create_dir_all(&work)?;
         fetch(set.package, &work)?;
-        let mut files: Vec<PathBuf> = std::fs::read_dir(work.join(set.folder))?
-            .map(|e| e.map(|e| e.path()))
-            .collect::<io::Result<Vec<_>>>()?
-            .into_iter()
-            .filter(|p| p.extension().is_some_and(|e| e == "svg"))
-            .collect();
-        files.sort();
+        let files = files_below(&work.join(set.folder), |f| ends_in(f, &["svg"])).map_err(io::Error::other)?;
         for file in files.iter().step_by(set.every) {
             let text = std::fs::read_to_string(file)?;
             lines.extend(path_data(&text).map(|d| normalised(d, BOX / set.side)).filter(|d| !d.is_empty()));
@@ -74,6 +68,7 @@ fn fetch(package: &str, work: &Path) -> io::Result<()> {
     if work.join("package").is_dir() {
         return Ok(());
     }
+    std::fs::create_dir_all(work)?;
     let packed = output_of(Command::new("npm").args(["pack", "--silent", package]).current_dir(work))?;
     let archive = packed.lines().last().unwrap_or_default().trim().to_owned();
     output_of(Command::new("tar").args(["xzf", &archive]).current_dir(work))?;

@@ -3,7 +3,6 @@
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
 use crate::hostile::measure;
-use crate::process::Usage;
 use crate::shell;
 use crate::speed::generated::Random;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -56,14 +55,16 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
         let files = folder.join(kind);
         std::fs::create_dir_all(&files).map_err(at(&files))?;
         make(kind, &files)?;
-        let (mut count, mut largest, mut before) = (0, 0.0_f64, refused.len());
+        let (mut count, mut largest, refused_before) = (0, 0.0_f64, refused.len());
+        // For time and memory: the largest fraction of what is promised, and a text with both numbers.
         let mut most = [(0.0, String::new()), (0.0, String::new())];
         for file in shell::files_below(&files, |_| true)? {
             let used = measure(&program, line, &file, scratch.path())?;
             let size = std::fs::metadata(&file).map_err(at(&file))?.len() as f64;
             let (size, promised) = promise(&file, size)?;
             (count, largest) = (count + 1, largest.max(size));
-            for (most, (used, promised, unit)) in most.iter_mut().zip(compared(&used, promised)) {
+            let measured = [(used.cpu, promised[0], "s"), (used.megabytes(), promised[1], "MB")];
+            for (most, (used, promised, unit)) in most.iter_mut().zip(measured) {
                 if used / promised > most.0 {
                     *most = (used / promised, format!("{used:.1} of {promised:.0} {unit}"));
                 }
@@ -73,17 +74,13 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
                 refused.push(format!("{}: {:?}", file.display(), used.code));
             }
         }
-        before = refused.len() - before;
+        let refused = refused.len() - refused_before;
         let unit = if kind == photographs.0 { "megapixels" } else { "MB" };
         let [(_, time), (_, memory)] = most;
-        let _ = writeln!(table, "| {kind} | `{line}` | {count} | {largest:.1} {unit} | {before} | {time} | {memory} |");
+        let _ =
+            writeln!(table, "| {kind} | `{line}` | {count} | {largest:.1} {unit} | {refused} | {time} | {memory} |");
     }
     if refused.is_empty() { Ok(table) } else { Err(format!("{table}\nrefused: {}", refused.join("; "))) }
-}
-
-/// Time and memory: used, promised, and the unit.
-fn compared(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
-    [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
 
 /// The size of a file in megabytes or megapixels, and the seconds and megabytes that `docs/security.md` (*Work*) promises for it.
@@ -122,12 +119,12 @@ fn make(kind: &str, folder: &Path) -> Result<(), ChoreError> {
 /// A photograph of 5·n megapixels: soft light, sometimes with grain, in the ratio 3:2.
 fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
     let height = (f64::from(u32::try_from(n).unwrap_or(1)) * 5e6 / 1.5).sqrt() as u32;
-    let (width, grain) = (height * 3 / 2, u64::from(n % 4 == 3));
+    let (width, has_grain) = (height * 3 / 2, n % 4 == 3);
     let mut pixmap = Pixmap::new(width, height).ok_or(pathwarp_raster::Error::Renderer)?;
     let mut random = Random(n as u64);
     for (i, pixel) in pixmap.data_mut().chunks_exact_mut(4).enumerate() {
         let (x, y) = (i as u64 % u64::from(width), i as u64 / u64::from(width));
-        let noise = if grain == 1 { (random.next() * 24.0) as u64 } else { 0 };
+        let noise = if has_grain { (random.next() * 24.0) as u64 } else { 0 };
         let light = |a: u64, b: u64| ((a * x + b * y) * 200 / (10 * u64::from(width)) + noise).min(255) as u8;
         pixel.copy_from_slice(&[light(7, 2), light(4, 4), light(1, 8), 255]);
     }

@@ -140,6 +140,7 @@ fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, to_page: &impl Fn
 fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn Map, tolerance: f64) -> f64 {
     let lengths: Vec<f64> = pieces.iter().map(|p| p.arclen(1e-6)).collect();
     let total: f64 = lengths.iter().sum();
+    // An error of the tolerance has this height, so that a quarter of the chart is left for larger ones.
     let (left, width, middle, height) = (40.0, SIDE - 80.0, SIDE + CHART / 2.0, CHART * 0.38);
     for (k, colour, dash) in [(-1.0, "#cc3344", "5 4"), (0.0, "#8a93a3", "none"), (1.0, "#cc3344", "5 4")] {
         let y = middle - k * height;
@@ -193,6 +194,7 @@ fn nearest(seg: &Seg, map: &dyn Map, p: Point) -> (f64, Point) {
     let coarse = (0..=COARSE).map(|i| i as f64 / COARSE as f64);
     let best = coarse.min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p))).unwrap_or(0.0);
     let (mut lo, mut hi) = ((best - 1.0 / COARSE as f64).max(0.0), (best + 1.0 / COARSE as f64).min(1.0));
+    // Each step keeps 1/φ = 0.618 of the interval.
     for _ in 0..50 {
         let (a, b) = (lo + 0.382 * (hi - lo), hi - 0.382 * (hi - lo));
         if at(a).distance(p) < at(b).distance(p) { hi = b } else { lo = a }

@@ -124,7 +124,7 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
-/// Draws a photograph, and beside it at the same height the result of a command.
+/// Draws a photograph and, beside it at the same height, the result of a command on it.
 fn beside(root: &Path, program: &Path, png: &Path, (photograph, made): (&str, &[u8])) -> Result<(), ChoreError> {
     /// The height of both, and the space between them.
     const HEIGHT: f64 = 300.0;

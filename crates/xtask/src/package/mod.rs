@@ -163,10 +163,7 @@ fn reproducible_command() -> Command {
 fn reproducible(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = workspace().canonicalize().map_err(|e| e.to_string())?;
     let temporary = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let folder = match arguments.get_one::<PathBuf>("in") {
-        Some(folder) => folder.clone(),
-        None => temporary.path().to_owned(),
-    };
+    let folder = arguments.get_one::<PathBuf>("in").map_or(temporary.path(), PathBuf::as_path);
     let time = &time(&root)?;
     let mut sums = Vec::new();
     for name in COPIES {
