@@ -74,9 +74,9 @@ impl<'a> Survey<'a> {
     /// # Errors
     /// [`GeometryError::Limit`] when the work exceeds the limit.
     pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
-        /// Work of a sample taken in a batch, as a share of a single one.
+        /// Work of a sample taken in a batch, as a fraction of a single one.
         const SAMPLE: f64 = 0.25;
-        /// Share of the grid over a shape's box that lies inside the shape, with the work of finding these points.
+        /// Fraction of the grid over a shape's box that lies inside the shape, with the work of finding these points.
         const FILLED: f64 = 0.5;
         let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
         let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
@@ -96,7 +96,7 @@ impl<'a> Survey<'a> {
                 let samples = outline.segs().count() * (PER_SEGMENT + 1);
                 Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
             }
-            Knowledge::Nothing => self.sampled(outline, filled),
+            Knowledge::Nothing => self.sample(outline, filled),
         }
     }
 
@@ -105,7 +105,7 @@ impl<'a> Survey<'a> {
     pub fn orientation_of_copies(&self, outline: &Outline, places: &[Affine], filled: bool) -> Orientation {
         match (places, &self.knowledge) {
             ([], _) => self.orientation(outline, filled),
-            (_, Knowledge::Nothing) => self.sampled(&outline.repeated(places), filled),
+            (_, Knowledge::Nothing) => self.sample(&outline.repeated(places), filled),
             ([first, ..], _) => {
                 let one = self.orientation(outline, filled);
                 Orientation {
@@ -119,15 +119,16 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+    /// Samples a shape along its outline and, if it is filled, inside.
+    fn sample(&self, outline: &Outline, filled: bool) -> Orientation {
         if self.map.prefers_batches() {
-            return self.sampled_at_once(outline, filled);
+            return self.sample_at_once(outline, filled);
         }
         let map = self.map;
         let mut out = Orientation::default();
         let mut jets = [Jet::default(); PER_SEGMENT + 1];
         for seg in outline.segs() {
-            let points = along(seg);
+            let points = samples_of(seg);
             map.jets(&points, &mut jets);
             out.add(&points, &jets);
         }
@@ -144,8 +145,8 @@ impl<'a> Survey<'a> {
     }
 
     /// Samples a shape with one call of the map.
-    fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
-        let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
+    fn sample_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
+        let mut points: Vec<Point> = outline.segs().flat_map(samples_of).collect();
         let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
         if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
             for row in interior(outline, bounds, GRID) {
@@ -166,8 +167,7 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// Returns the samples of a segment.
-fn along(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
+fn samples_of(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
     std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64))
 }
 
@@ -239,8 +239,8 @@ impl Orientation {
     #[must_use]
     pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
         let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
-        let turned = self.positive > 0 && self.negative > self.positive;
-        if turned && corners.into_iter().all(|c| map.jet(c.into()).det() > 0.0) {
+        let is_mostly_negative = self.positive > 0 && self.negative > self.positive;
+        if is_mostly_negative && corners.into_iter().all(|c| map.jet(c.into()).det() > 0.0) {
             return Self { positive: self.negative, ..*self };
         }
         *self
@@ -268,10 +268,11 @@ fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
     rows.points()
 }
 
-/// The crossings of each row: the abscissa, and 1 for downwards or −1 for upwards.
+/// The rows of an `n` × `n` grid.
 struct Rows {
     bounds: Rect,
     n: usize,
+    /// Where the outline crosses each row: the abscissa, and 1 for downwards or −1 for upwards.
     crossings: Vec<Vec<(f64, i32)>>,
 }
 
@@ -284,8 +285,8 @@ impl Rows {
         self.bounds.y0 + self.bounds.height() * (k as f64 + 0.5) / self.n as f64
     }
 
-    /// Returns the first row at or below `y`.
-    fn first_from(&self, y: f64) -> usize {
+    /// Returns the first row at or below `y`; y points downwards.
+    fn first_row_below(&self, y: f64) -> usize {
         let k = ((y - self.bounds.y0) / self.bounds.height() * self.n as f64 - 0.5).ceil();
         k.clamp(0.0, self.n as f64) as usize
     }
@@ -294,7 +295,7 @@ impl Rows {
     fn add(&mut self, a: Point, b: Point) {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
         if top.y < bottom.y {
-            for k in self.first_from(top.y)..self.first_from(bottom.y) {
+            for k in self.first_row_below(top.y)..self.first_row_below(bottom.y) {
                 let t = (self.y(k) - top.y) / (bottom.y - top.y);
                 self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
             }
