@@ -153,14 +153,15 @@ impl Formula for Inner {
 struct SwirlMap(Inner);
 
 impl SwirlMap {
-    fn within(&self, p: Point) -> bool {
+    /// Returns `true` inside the disc.
+    fn contains(&self, p: Point) -> bool {
         (p - self.0.center).hypot() < self.0.radius
     }
 }
 
 impl Formula for SwirlMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        if self.within(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
+        if self.contains(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
     }
 
     fn class(&self) -> Class {
@@ -173,7 +174,7 @@ impl Formula for SwirlMap {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Some(if self.within(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
+        Some(if self.contains(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
