@@ -133,7 +133,13 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Error> {
-        self.build_parts(registry, &self.source_frame(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
+        // Only the frame of the source is known.
+        let mut frames = vec![None; self.steps.len()];
+        if let Some(known) = if self.is_inverse() { frames.last_mut() } else { frames.first_mut() } {
+            *known = Some(frame);
+        }
+        let all = Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() };
+        self.build_parts(registry, &frames, &[all], budget).map(|b| b.whole)
     }
 
     /// Builds steps that apply to parts of the artwork, within a budget; see [`Recipe::build_within`]. `start` has the frame of every step
@@ -178,11 +184,6 @@ impl Recipe {
         self.steps.len() > 1 && self.steps.iter().all(|s| s.inverse)
     }
 
-    /// The artwork as one portion to which every step applies.
-    fn all_of<'a>(&self, artwork: &(impl Iterator<Item = &'a Outline> + Clone)) -> Portion<'a> {
-        Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() }
-    }
-
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
     /// after the earlier steps.
     ///
@@ -199,16 +200,6 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
         self.build_within(registry, frame, artwork, &Arc::new(Budget::new(Limits::none())))
-    }
-
-    /// The known frames of a recipe whose steps apply to all artwork: only the frame of the source.
-    fn source_frame(&self, source: Frame) -> Vec<Option<Frame>> {
-        let mut frames = vec![None; self.steps.len()];
-        let known = if self.is_inverse() { frames.last_mut() } else { frames.first_mut() };
-        if let Some(frame) = known {
-            *frame = Some(source);
-        }
-        frames
     }
 
     /// The frames of inverse steps, in their order, for artwork that is a result; and the largest change of a frame in the last iteration,

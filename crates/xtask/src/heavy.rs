@@ -142,33 +142,33 @@ fn color(random: &mut Random) -> String {
 /// `count` words of two to nine letters.
 fn words(count: usize, random: &mut Random) -> String {
     let letter = |r: &mut Random| char::from(b'a' + (26.0 * r.next()) as u8);
-    let word = |r: &mut Random| (0..2 + (8.0 * r.next()) as usize).map(|_| letter(r)).collect::<String>();
-    (0..count).map(|_| word(random) + " ").collect()
+    (0..count)
+        .map(|_| (0..2 + (8.0 * random.next()) as usize).map(|_| letter(random)).collect::<String>() + " ")
+        .collect()
 }
 
 /// Up to 27,000 characters.
 fn poster(n: usize, random: &mut Random) -> String {
-    let line =
-        |i: usize, r: &mut Random| format!("<text x='5' y='{}' font-size='3'>{}</text>", 4 + 3 * i, words(13, r));
-    (0..16 * n).map(|i| line(i, random)).collect()
+    let y = |i: usize| 4 + 3 * i;
+    (0..16 * n).map(|i| format!("<text x='5' y='{}' font-size='3'>{}</text>", y(i), words(13, random))).collect()
 }
 
 /// Up to 100,000 words, as plotting libraries write them.
 fn plot(n: usize, random: &mut Random) -> String {
-    let mut word = || {
+    let style = "font-family:'DejaVu Sans';font-size:4px;text-anchor:middle;fill:#333333";
+    let word = |_| {
         let ([x, y], text) = (point(random), words(1, random));
-        let style = "font-family:'DejaVu Sans';font-size:4px;text-anchor:middle;fill:#333333";
+        let text = text.trim();
         format!(
-            "<g id='text_{x}'><text style=\"{style}\" x='{x}' y='{y}' transform='rotate(-30 {x} {y})'>{}</text></g>\n",
-            text.trim()
+            "<g id='text_{x}'><text style=\"{style}\" x='{x}' y='{y}' transform='rotate(-30 {x} {y})'>{text}</text></g>\n"
         )
     };
-    (0..5_000 * n).map(|_| word()).collect()
+    (0..5_000 * n).map(word).collect()
 }
 
 /// Coasts of up to 60,000 points in total.
 fn map(n: usize, random: &mut Random) -> String {
-    let mut coast = |_| {
+    let coast = |_| {
         let ([x, y], fill, mut r) = (point(random), color(random), 5.0 + 20.0 * random.next());
         let mut d = String::from("M");
         for k in 0..300 {
@@ -178,12 +178,12 @@ fn map(n: usize, random: &mut Random) -> String {
         }
         format!("<path fill='{fill}' stroke='#333' stroke-width='.2' d='{}Z'/>", d.trim_end_matches('L'))
     };
-    (0..10 * n).map(&mut coast).collect()
+    (0..10 * n).map(coast).collect()
 }
 
 /// Lines, arcs, circles and dashes, with dimensions.
 fn cad(n: usize, random: &mut Random) -> String {
-    let mut part = |_| {
+    let part = |_| {
         let ([x, y], [u, v]) = (point(random), point(random));
         format!(
             "<path d='M{x} {y}L{u} {v}A60 50 0 0 1 {y} {x}' /><circle cx='{x}' cy='{v}' r='{:.1}'/>\
@@ -191,29 +191,28 @@ fn cad(n: usize, random: &mut Random) -> String {
             1.0 + u / 40.0
         )
     };
-    let parts: String = (0..100 * n).map(&mut part).collect();
+    let parts: String = (0..100 * n).map(part).collect();
     format!("<g fill='none' stroke='#000' stroke-width='.35'>{parts}</g>")
 }
 
 /// Staves, and notes with reused heads and stems.
 fn score(n: usize, random: &mut Random) -> String {
     let head = "<defs><path id='h' d='M-4 2C-4-2 4-4 4-1C4 3-4 4-4 2Z'/></defs>";
-    let mut note = |i: usize| {
-        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * ((i / 80) % 16));
-        let up = (8.0 * random.next()) as usize * 3;
-        let y = y + up;
+    let note = |i: usize| {
+        let pitch = (8.0 * random.next()) as usize * 3;
+        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * ((i / 80) % 16) + pitch);
         format!("<use href='#h' x='{x}' y='{y}'/><path d='M{} {y}v-25' stroke='#000'/>", x + 4)
     };
     let staff = |i: usize| {
         format!("<path d='M10 {y}H990' stroke='#000' stroke-width='.5'/>", y = 20 + 60 * (i / 5) + 6 * (i % 5))
     };
-    let (staves, notes) = ((0..80).map(staff).collect::<String>(), (0..200 * n).map(&mut note).collect::<String>());
+    let (staves, notes) = ((0..80).map(staff).collect::<String>(), (0..200 * n).map(note).collect::<String>());
     format!("{head}{staves}{notes}")
 }
 
 /// Faces with gradients, clips and opacity.
 fn emoji(n: usize, random: &mut Random) -> String {
-    let mut face = |i: usize| {
+    let face = |i: usize| {
         let ([x, y], a, b) = (point(random), color(random), color(random));
         format!(
             "<radialGradient id='g{i}'><stop stop-color='{a}'/><stop offset='1' stop-color='{b}'/></radialGradient>\
@@ -223,28 +222,28 @@ fn emoji(n: usize, random: &mut Random) -> String {
              <path clip-path='url(#c{i})' fill='#fff6' d='M{x} {y}h20v20h-20z'/>"
         )
     };
-    (0..10 * n).map(&mut face).collect()
+    (0..10 * n).map(face).collect()
 }
 
 /// Up to two dozen blurred blobs.
 fn blurred(n: usize, random: &mut Random) -> String {
     let blur =
         "<filter id='b' x='-50%' y='-50%' width='200%' height='200%'><feGaussianBlur stdDeviation='30'/></filter>";
-    let mut blob = |_| {
+    let blob = |_| {
         let ([x, y], fill) = (point(random), color(random));
         format!("<circle cx='{x}' cy='{y}' r='{:.0}' fill='{fill}' filter='url(#b)'/>", 50.0 + 250.0 * random.next())
     };
-    format!("{blur}{}", (0..4 + n).map(&mut blob).collect::<String>())
+    format!("{blur}{}", (0..4 + n).map(blob).collect::<String>())
 }
 
 /// Fifty symbols, used over and over.
 fn icons(n: usize, random: &mut Random) -> String {
-    let mut symbol = |i: usize| {
+    let symbol = |i: usize| {
         let [a, b, c, d] = [0; 4].map(|_| (24.0 * random.next()).round());
         let path = format!("<path d='M2 2C{a} {b} {c} {d} 9 9S{d} {a} 20 20Z'/>");
         format!("<symbol id='s{i}' viewBox='0 0 24 24'>{path}<rect x='4' y='4' width='9' height='7' rx='2'/></symbol>")
     };
-    let symbols: String = (0..50).map(&mut symbol).collect();
+    let symbols: String = (0..50).map(symbol).collect();
     let shown = |i: usize| {
         format!("<use href='#s{}' x='{}' y='{}' width='12' height='12'/>", i % 50, 14 * (i % 70), 14 * (i / 70))
     };
@@ -254,7 +253,7 @@ fn icons(n: usize, random: &mut Random) -> String {
 /// Boxes with words, and arrows.
 fn diagram(n: usize, random: &mut Random) -> String {
     let arrow = "<marker id='a' markerWidth='6' markerHeight='6' refX='5' refY='3' orient='auto'><path d='M0 0L6 3L0 6Z'/></marker>";
-    let mut shape = |_| {
+    let shape = |_| {
         let ([x, y], [u, v], label) = (point(random), point(random), words(2, random));
         format!(
             "<rect x='{x}' y='{y}' width='60' height='24' rx='4' fill='#eef' stroke='#336'/>\
@@ -264,5 +263,5 @@ fn diagram(n: usize, random: &mut Random) -> String {
             y + 15.0
         )
     };
-    format!("{arrow}{}", (0..60 * n).map(&mut shape).collect::<String>())
+    format!("{arrow}{}", (0..60 * n).map(shape).collect::<String>())
 }

@@ -40,18 +40,16 @@ pub fn entry(entry: &dyn Deformation) -> Vec<String> {
 /// Runs every check of `entry`, and hands over each one as soon as it is done.
 pub fn report(entry: &dyn Deformation, mut done: impl FnMut(Check)) {
     table(entry.info()).into_iter().for_each(&mut done);
-    let mut build = Check::new("build");
     match entry.build_from(&Args::from_pairs(entry.info().demo), &frame()) {
         Ok(built) => {
-            build.detail = "from the defaults and the demo".into();
-            done(build);
+            done(Check::new("build", "from the defaults and the demo"));
             if !map(&built, frame().rect, &mut done) {
                 return;
             }
         }
         Err(e) => {
-            build.fault(format!("does not build from its defaults and demo: {e}"));
-            done(build);
+            let fault = format!("does not build from its defaults and demo: {e}");
+            done(Check { faults: vec![fault], ..Check::new("build", "") });
         }
     }
     done(laws(entry));
@@ -81,8 +79,8 @@ pub struct Check {
 const LISTED: usize = 3;
 
 impl Check {
-    fn new(name: &'static str) -> Self {
-        Self { name, detail: String::new(), faults: Vec::new(), faulty: Vec::new() }
+    fn new(name: &'static str, detail: impl Into<String>) -> Self {
+        Self { name, detail: detail.into(), faults: Vec::new(), faulty: Vec::new() }
     }
 
     fn fault(&mut self, what: impl Into<String>) {
@@ -122,8 +120,8 @@ pub fn table(info: &Info) -> [Check; 2] {
 
 /// Checks the texts for people, and the guides, of which `usual` is the default number.
 fn help(info: &Info) -> Check {
-    let mut check = Check::new("help");
-    check.detail = format!("title, group, about, source, {} examples", info.examples.len());
+    let detail = format!("title, group, about, source, {} examples", info.examples.len());
+    let mut check = Check::new("help", detail);
     if !is_kebab(info.name) {
         check.fault("its name is not kebab-case");
     }
@@ -142,8 +140,7 @@ fn help(info: &Info) -> Check {
 
 /// Checks the parameters and their defaults.
 fn parameters(info: &Info) -> Check {
-    let mut check = Check::new("parameters");
-    check.detail = info.params.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
+    let mut check = Check::new("parameters", info.params.iter().map(|p| p.name).collect::<Vec<_>>().join(", "));
     let mut names = Vec::new();
     for p in info.params {
         if !is_kebab(p.name) || names.contains(&p.name) {
@@ -190,7 +187,7 @@ pub fn map(built: &Built, frame: Rect, mut done: impl FnMut(Check)) -> bool {
     let tested = Tested::new(built, frame);
     if let Some(fault) = tested.two_answers(&[]) {
         let detail = format!("{} points", tested.samples.len());
-        done(Check { detail, faults: vec![fault], ..Check::new("values") }.unless_failed(built));
+        done(Check { faults: vec![fault], ..Check::new("values", detail) }.unless_failed(built));
         return false;
     }
     let mut is_sound = |check: fn(&Tested<'_>) -> Check| {
@@ -307,16 +304,16 @@ fn skipped(count: usize) -> String {
 
 /// Looks for kinks and jumps that the map does not declare.
 fn creases(t: &Tested<'_>) -> Check {
-    let mut check = Check::new("creases");
-    check.detail = format!("{} are declared; others were looked for on lines across the box", t.creases.items().len());
+    let declared = t.creases.items().len();
+    let detail = format!("{declared} are declared; others were looked for on lines across the box");
+    let mut check = Check::new("creases", detail);
     (check.faults, check.faulty) = breaks::undeclared(t).into_iter().unzip();
     check
 }
 
 fn exact_images(tested: &Tested<'_>) -> Check {
     let map = tested.map;
-    let mut check = Check::new("images");
-    check.detail = "it gives no exact images of curves".into();
+    let mut check = Check::new("images", "it gives no exact images of curves");
     let segs = [
         Seg::Line(Line::new((5.0, 10.0), (60.0, 40.0))),
         Seg::Cubic(CubicBez::new((10.0, 20.0), (40.0, 0.0), (70.0, 80.0), (30.0, 90.0))),
@@ -340,11 +337,8 @@ fn exact_images(tested: &Tested<'_>) -> Check {
 }
 
 fn inverse(t: &Tested<'_>) -> Check {
-    let mut check = Check::new("inverse");
-    let Some(back) = t.map.inverse() else {
-        check.detail = "it gives none; Newton's method finds it".into();
-        return check;
-    };
+    let mut check = Check::new("inverse", "it gives none; Newton's method finds it");
+    let Some(back) = t.map.inverse() else { return check };
     let mut largest: f64 = 0.0;
     let (mut wrong, mut first) = (0, None);
     for (p, image) in t.samples.iter().zip(&t.images) {
@@ -381,9 +375,8 @@ fn refitting(t: &Tested<'_>) -> Check {
     const DETAILS: [u32; 12] = [1, 3, 8, 17, 34, 51, 68, 85, 102, 144, 233, 400];
     /// The number of samples of a detail, to which a prime number is added for each line.
     const SAMPLES: u32 = 12;
-    let mut check = Check::new("refitting");
+    let mut check = Check::new("refitting", "a circle and 12 lines");
     let (map, frame) = (t.map, t.frame);
-    check.detail = "a circle and 12 lines".to_owned();
     // A point inside the domain, so that short lines lie in it.
     let inner = t.samples.get(t.samples.len() / 2).copied();
     let center = inner.filter(|_| !t.contains(frame.center())).unwrap_or(frame.center());
@@ -493,8 +486,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Checks the laws.
 fn laws(entry: &dyn Deformation) -> Check {
-    let mut check = Check::new("laws");
-    check.detail = format!("{} of them", entry.info().laws.len());
+    let mut check = Check::new("laws", format!("{} of them", entry.info().laws.len()));
     let outside: usize = entry.info().laws.iter().map(|law| check_law(entry, law, &mut check)).sum();
     check.detail += &skipped(outside);
     check
@@ -502,8 +494,7 @@ fn laws(entry: &dyn Deformation) -> Check {
 
 /// Checks the known values.
 fn cases(entry: &dyn Deformation) -> Check {
-    let mut check = Check::new("cases");
-    check.detail = format!("{} known values", entry.info().cases.len());
+    let mut check = Check::new("cases", format!("{} known values", entry.info().cases.len()));
     for case in entry.info().cases {
         let args = json(case.args);
         match build(entry, case.args) {

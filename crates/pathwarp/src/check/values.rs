@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 
 /// Checks values and derivatives at the samples.
 pub(super) fn values(t: &Tested<'_>) -> Check {
-    let mut check = Check::new("values");
     let count = t.samples.len();
+    let mut check = Check::new("values", "");
     if !t.has_values() {
         let (places, f) = (if count == 0 { t.outside } else { count }, t.frame);
         check

@@ -1,8 +1,7 @@
 //! The bilinear map of a rectangle onto four corners, which divides all four sides evenly.
 //!
-//! F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S.
-//! Lines along the rectangle's sides stay straight and are divided evenly; other lines become parabolas. The image of a curve of
-//! degree n is exactly a curve of degree 2n.
+//! F(u, v) = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S. Lines along the rectangle's sides stay straight and are divided
+//! evenly; other lines become parabolas. The image of a curve of degree n is exactly a curve of degree 2n.
 //!
 //! For the inverse, let q = F − P. Eliminating v from q − u·a = v·(b + u·c) leaves k₂u² + k₁u + k₀ = 0 with k₂ = −a×c, k₁ = q×c − a×b and
 //! k₀ = q×b. At a root 2k₂u + k₁ = −det F', so the root is chosen by the side of the fold on which the corners lie. See G. Wolberg,

@@ -45,18 +45,11 @@ impl Expr {
         Self { frame, x: None, y: None, definitions: Vec::new() }
     }
 
-    /// Sets the formula for x'. Default: `x`.
-    #[must_use]
-    pub fn x(mut self, formula: &str) -> Self {
-        self.x = Some(formula.to_owned());
-        self
-    }
-
-    /// Sets the formula for y'. Default: `y`.
-    #[must_use]
-    pub fn y(mut self, formula: &str) -> Self {
-        self.y = Some(formula.to_owned());
-        self
+    setters! {
+        /// Sets the formula for x'. Default: `x`.
+        x(formula: &str) => x: Some(formula.to_owned());
+        /// Sets the formula for y'. Default: `y`.
+        y(formula: &str) => y: Some(formula.to_owned());
     }
 
     /// Defines a name by a formula, for use in the formulas after it.

@@ -1,18 +1,9 @@
 //! Changes of lens, which make fisheye pictures and straighten them.
 //!
-//! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle:
-//!
-//! | lens | ρ(θ) | reaches |
-//! |---|---|---|
-//! | rectilinear (a pinhole; straight lines stay straight) | tan θ | θ < 90° |
-//! | stereographic (small shapes are kept) | 2·tan(θ/2) | θ < 180° |
-//! | equidistant (angles from the axis to scale) | θ | θ < 180° |
-//! | equisolid (areas to scale) | 2·sin(θ/2) | θ < 180° |
-//! | orthographic | sin θ | θ < 90° |
-//!
-//! The change from the lens ρ to the lens ρ' takes the distance r to r' = f'·ρ'(ρ⁻¹(r/f)) and keeps directions. The inverse exchanges
-//! the lenses. The five projections are in Kannala & Brandt, *A generic camera model and calibration method for conventional,
-//! wide-angle, and fish-eye lenses*, IEEE PAMI 28 (2006), equations (1)–(5).
+//! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle, where f is the focal length and
+//! ρ depends on the [`LensModel`]. The change from the lens ρ to the lens ρ' takes the distance r to r' = f'·ρ'(ρ⁻¹(r/f)) and keeps
+//! directions. The inverse exchanges the lenses. The five projections are in Kannala & Brandt, *A generic camera model and calibration
+//! method for conventional, wide-angle, and fish-eye lenses*, IEEE PAMI 28 (2006), equations (1)–(5).
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;

@@ -1,13 +1,8 @@
 //! Polar coordinates: a rectangle is bent into a sector of a ring, or into the whole ring.
 //!
-//! Verticals become rays and horizontals become circles. With κ = sweep / width and x measured from the artwork's middle, the angle
-//! from the vertical is φ = κ·x. With y measured upwards from the inner edge, the radius is
-//!
-//! - even: r = ρ + g·y, which divides verticals evenly; g = 1 unless both radii are given,
-//! - conformal: r = ρ·exp(κ·y), the complex exponential, which keeps angles; heights grow with the radius.
-//!
-//! With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
-//! inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the artwork's middle, at height yₘ, as
+//! In the formulas of [`Polar`], x is measured from the artwork's middle, and g = 1 unless both radii are given. The conformal radius is
+//! that of the complex exponential: heights grow with it. With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes
+//! r and κ negative; the top edge is then the inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the artwork's middle, at height yₘ, as
 //! F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the centre C far away. The inverse
 //! takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn meets itself: artwork that
 //! crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
@@ -24,7 +19,8 @@ parameters! {
     /// Polar coordinates: a box bent into a sector of a ring, or into the whole ring.
     ///
     /// Verticals become rays and horizontals become arcs about one centre: the angle from the vertical is φ = κ·x with κ =
-    /// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge.
+    /// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge and g the gain of
+    /// radius per height.
     ///
     /// ```
     /// use pathwarp::{deform::Polar, kurbo::{Point, Rect}, map::Map};

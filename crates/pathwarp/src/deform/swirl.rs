@@ -1,13 +1,8 @@
 //! A swirl: artwork is turned about a centre, by an angle that decreases with the distance.
 //!
-//! In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), with one of
-//!
-//! - soft: f(ρ) = (1 − ρ²)² inside the disc ρ < 1, 0 outside; value and slope vanish at the rim, the curvature jumps,
-//! - sharp: f(ρ) = 1 − ρ inside, 0 outside; the slope jumps at the rim,
-//! - endless: f(ρ) = exp(−2ρ²), smooth everywhere.
-//!
-//! The map keeps r and areas, being a shear in r²/2 and θ; the inverse is the swirl by −α. It is the twist of A. Barr, *Global and
-//! local deformations of solid primitives*, SIGGRAPH 1984, with the radius in the role of the axis.
+//! The map keeps the distance r from the centre, and areas, being a shear in r²/2 and the polar angle; its inverse is the swirl by the
+//! opposite angle. It is the twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius in the
+//! role of the axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;

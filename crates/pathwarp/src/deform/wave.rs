@@ -1,13 +1,9 @@
 //! A sine wave: artwork is pushed to and fro across the direction in which the wave runs, or along it.
 //!
-//! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from the start of
-//! the artwork,
-//!
-//! shear: F(p) = p + a(s)·sin(2π·s/λ + φ)·n,  push: F(p) = p + a(s)·sin(2π·s/λ + φ)·d,
-//!
-//! with a(s) = h·(1 − g + g·s/S), where S is the artwork's extent along d. With g = 1 the wave grows from nothing, like a flag at its
-//! pole. The shear keeps s: its determinant is 1, and its inverse is the wave with −h. A. Barr, *Global and local deformations of
-//! solid primitives*, SIGGRAPH 1984, has such waves as profiles of offsets along an axis.
+//! In the formula of [`Wave`], s = (p − o)·d with the unit vector d along the wave, and n is a quarter turn to its left on the screen for a
+//! shear, or d for a push. With g = 1 the wave grows from nothing, like a flag at its pole. The shear keeps s: its determinant is 1, and
+//! its inverse is the wave with −h. A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, has such waves as profiles
+//! of offsets along an axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;

@@ -94,7 +94,12 @@ impl<'a> Survey<'a> {
             Knowledge::Affine => Orientation::default(),
             Knowledge::Sign(sign) => {
                 let samples = outline.segs().count() * (PER_SEGMENT + 1);
-                Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
+                let first = outline.segs().next().map(Seg::start);
+                if sign > 0.0 {
+                    Orientation { positive: samples, first_positive: first, ..Orientation::default() }
+                } else {
+                    Orientation { negative: samples, first_negative: first, ..Orientation::default() }
+                }
             }
             Knowledge::Nothing => self.sample(outline, filled),
         }
@@ -190,16 +195,6 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// Returns the orientation of `count` samples with the same sign, the first of them at `first`.
-    fn uniform(sign: f64, count: usize, first: Option<Point>) -> Self {
-        let first = first.filter(|_| count > 0);
-        if sign > 0.0 {
-            Self { positive: count, first_positive: first, ..Self::default() }
-        } else {
-            Self { negative: count, first_negative: first, ..Self::default() }
-        }
-    }
-
     /// Adds a row of neighbouring samples.
     fn add(&mut self, points: &[Point], jets: &[Jet]) {
         let mut last = 0.0;

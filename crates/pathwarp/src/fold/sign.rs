@@ -26,8 +26,8 @@ const ROUNDING: f64 = 1e-10;
 pub(super) fn proven(map: &dyn Map, bounds: Rect, samples: usize) -> Option<f64> {
     let mut jets_left = samples;
     let mut common = None;
-    for (cell, piece) in pieces(map, bounds, samples)? {
-        let sign = Proof::new(&*piece, cell, &mut jets_left)?.sign(cell, MAX_DEPTH)?;
+    for (cell, branch) in pieces(map, bounds, samples)? {
+        let sign = Proof::new(branch.as_deref().unwrap_or(map), cell, &mut jets_left)?.sign(cell, MAX_DEPTH)?;
         if *common.get_or_insert(sign) != sign {
             return None;
         }
@@ -35,27 +35,13 @@ pub(super) fn proven(map: &dyn Map, bounds: Rect, samples: usize) -> Option<f64>
     common
 }
 
-/// A smooth piece of a map, borrowed if it is the map itself.
-enum Piece<'a> {
-    Whole(&'a dyn Map),
-    Branch(Arc<dyn Map>),
-}
-
-impl<'a> std::ops::Deref for Piece<'a> {
-    type Target = dyn Map + 'a;
-
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Whole(m) => *m,
-            Self::Branch(m) => &**m,
-        }
-    }
-}
+/// A cell, and the branch of the map that is smooth on it; `None` if the map itself is.
+type Piece = (Rect, Option<Arc<dyn Map>>);
 
 /// Divides `bounds` along the creases. `None` if a crease is not parallel to an axis, or if there would be more than `max` pieces.
-fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_>)>> {
+fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<Piece>> {
     if map.branch(bounds.center()).is_none() {
-        return Some(vec![(bounds, Piece::Whole(map))]);
+        return Some(vec![(bounds, None)]);
     }
     let mut creases = Creases::default();
     map.creases(&mut creases);
@@ -84,7 +70,7 @@ fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_
     for y in ys.windows(2) {
         for x in xs.windows(2) {
             let cell = Rect::new(x[0], y[0], x[1], y[1]);
-            out.push((cell, Piece::Branch(map.branch(cell.center())?)));
+            out.push((cell, Some(map.branch(cell.center())?)));
         }
     }
     Some(out)

@@ -223,13 +223,6 @@ struct Rule {
     y: Option<String>,
 }
 
-impl Rule {
-    /// Returns `false` if the formulas do not use the point's position.
-    fn depends_on_position(&self) -> bool {
-        self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
-    }
-}
-
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Shift {
@@ -396,6 +389,8 @@ impl Style {
         }
         for (rules, absolute) in [(&self.points, true), (&self.moves, false)] {
             for rule in rules {
+                // Formulas that do not use the point's position are evaluated once.
+                let is_constant = !rule.x.iter().chain(&rule.y).any(|f| f.contains(['u', 'v']));
                 let mut known = None;
                 for (j, c) in selected(&rule.at)? {
                     names.set("u", third(c));
@@ -403,7 +398,7 @@ impl Style {
                     let value = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
                     let both = || Ok::<_, FormulaError>((value(&rule.x)?, value(&rule.y)?));
                     let (x, y) = known.map_or_else(both, Ok)?;
-                    known = (!rule.depends_on_position()).then_some((x, y));
+                    known = is_constant.then_some((x, y));
                     let p = &mut net[j][c];
                     *p = if absolute {
                         Point::new(x.unwrap_or(p.x), y.unwrap_or(p.y))
