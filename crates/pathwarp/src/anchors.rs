@@ -245,10 +245,7 @@ impl FourToFour {
 
 /// Reads `base` and `target` with four anchors each. Without a base, the frame's corners are taken.
 pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
-    let base = match from_settings(s, "base", "base-as-drawn")? {
-        Some(b) => b,
-        None => frame_corners(s.frame())?,
-    };
+    let base = from_settings(s, "base", "base-as-drawn")?.map_or_else(|| frame_corners(s.frame()), Ok)?;
     let missing = || Error::missing("target", "four anchors, the images of the base's");
     let target = from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
     Ok(FourToFour { from: four("base", &base)?, to: four("target", &target)?, frame: s.frame().rect })

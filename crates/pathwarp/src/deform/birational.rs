@@ -312,18 +312,18 @@ const BENT: Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,10
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
     let meet = s.given("meet").then(|| s.point("meet")).transpose()?;
-    let halved = |row: &[Point]| row.iter().map(|p| p.midpoint(meet.unwrap_or(*p))).collect::<Vec<_>>();
-    let (rows, first, second) = match (top?, bottom?, left?, right?) {
-        (Some(a), None, None, None) if meet.is_some() => (Rows::TopBottom, a.clone(), halved(&a)),
-        (None, Some(b), None, None) if meet.is_some() => (Rows::TopBottom, halved(&b), b),
-        (None, None, Some(a), None) if meet.is_some() => (Rows::LeftRight, a.clone(), halved(&a)),
-        (None, None, None, Some(b)) if meet.is_some() => (Rows::LeftRight, halved(&b), b),
-        _ if meet.is_some() => {
+    let mut given = [row(s, "top")?, row(s, "bottom")?, row(s, "left")?, row(s, "right")?];
+    if let Some(meet) = meet {
+        let rows: Vec<usize> = (0..4).filter(|i| given[*i].is_some()).collect();
+        let [i] = rows[..] else {
             let problem = "takes the place of a row: give one row with it";
             return Err(Error::usage("meet", s.texts("meet").join(" "), problem));
-        }
+        };
+        // The facing row is this one, halved towards the point.
+        given[i ^ 1] = given[i].as_ref().map(|row| row.iter().map(|p| p.midpoint(meet)).collect());
+    }
+    let (rows, first, second) = match given.into() {
         (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
         (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
         (None, None, None, None) => {

@@ -51,18 +51,14 @@ pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Aroun
     let offset = Offset { by: contour.by.abs(), join: Join::Round, side, even_odd: false, open: OpenPaths::Close };
     let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?;
     let (mut report, arc_tolerance) = (path.report, ARCS * options.tolerance);
-    if !contour.holes {
-        outline = outermost(&outline, arc_tolerance);
-    }
+    let without_holes = |o: Outline| if contour.holes { o } else { outermost(&o, arc_tolerance) };
+    outline = without_holes(outline);
     let mut area = Area::of(&outline, false, options.tolerance)?;
     if contour.join && area.counts()[0] > 1 {
         let necks = necks(&area, contour.by.abs(), options)?;
         let necks = Area::union(&necks, options.tolerance)?;
         area = Area::union([&area, &necks], options.tolerance)?;
-        outline = area.with_arcs_of(&outline, options.tolerance);
-        if !contour.holes {
-            outline = outermost(&outline, arc_tolerance);
-        }
+        outline = without_holes(area.with_arcs_of(&outline, options.tolerance));
     }
     let islands = area.counts()[0];
     report.segments_out = outline.segs().count();

@@ -257,68 +257,36 @@ const FLATNESS: f64 = 1e-3;
 /// Every line of the flattened outline is visited once and recorded in the rows that it crosses. The cost is the number of lines and
 /// crossings, whereas a winding number for each point would cost segments times points.
 fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
-    let mut rows = Rows { bounds, n, crossings: vec![Vec::new(); n] };
+    let x = |i: usize| bounds.x0 + bounds.width() * (i as f64 + 0.5) / n as f64;
+    let y = |k: usize| bounds.y0 + bounds.height() * (k as f64 + 0.5) / n as f64;
+    let first_row_below = |y: f64| {
+        let k = ((y - bounds.y0) / bounds.height() * n as f64 - 0.5).ceil();
+        k.clamp(0.0, n as f64) as usize
+    };
+    // Where lines cross each row: the abscissa, and 1 for downwards or −1 for upwards.
+    let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); n];
     let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
-    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| rows.add(a, b));
-    rows.points()
-}
-
-/// The rows of an `n` × `n` grid.
-struct Rows {
-    bounds: Rect,
-    n: usize,
-    /// Where the outline crosses each row: the abscissa, and 1 for downwards or −1 for upwards.
-    crossings: Vec<Vec<(f64, i32)>>,
-}
-
-impl Rows {
-    fn x(&self, i: usize) -> f64 {
-        self.bounds.x0 + self.bounds.width() * (i as f64 + 0.5) / self.n as f64
-    }
-
-    fn y(&self, k: usize) -> f64 {
-        self.bounds.y0 + self.bounds.height() * (k as f64 + 0.5) / self.n as f64
-    }
-
-    /// Returns the first row at or below `y`; y points downwards.
-    fn first_row_below(&self, y: f64) -> usize {
-        let k = ((y - self.bounds.y0) / self.bounds.height() * self.n as f64 - 0.5).ceil();
-        k.clamp(0.0, self.n as f64) as usize
-    }
-
-    /// Records the crossings of a line with rows.
-    fn add(&mut self, a: Point, b: Point) {
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
         if top.y < bottom.y {
-            for k in self.first_row_below(top.y)..self.first_row_below(bottom.y) {
-                let t = (self.y(k) - top.y) / (bottom.y - top.y);
-                self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+            for k in first_row_below(top.y)..first_row_below(bottom.y) {
+                let t = (y(k) - top.y) / (bottom.y - top.y);
+                crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
             }
         }
-    }
-
-    /// Returns the points of every row at which the winding number is not 0.
-    fn points(mut self) -> Vec<Vec<Point>> {
-        let mut out = Vec::with_capacity(self.n);
-        for k in 0..self.n {
-            let mut crossings = std::mem::take(&mut self.crossings[k]);
-            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let (mut winding, mut next) = (0, 0);
-            let mut row = Vec::new();
-            for i in 0..self.n {
-                let p = Point::new(self.x(i), self.y(k));
-                while next < crossings.len() && crossings[next].0 <= p.x {
-                    winding += crossings[next].1;
-                    next += 1;
-                }
-                if winding != 0 {
-                    row.push(p);
-                }
+    });
+    let row = |(k, mut crossings): (usize, Vec<(f64, i32)>)| {
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut crossings, mut winding) = (crossings.into_iter().peekable(), 0);
+        let is_inside = |p: &Point| {
+            while let Some((_, direction)) = crossings.next_if(|(x, _)| *x <= p.x) {
+                winding += direction;
             }
-            out.push(row);
-        }
-        out
-    }
+            winding != 0
+        };
+        (0..n).map(|i| Point::new(x(i), y(k))).filter(is_inside).collect()
+    };
+    crossings.into_iter().enumerate().map(row).collect()
 }
 
 #[cfg(test)]

@@ -176,11 +176,8 @@ impl Judge {
     fn try_all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
         let mut drawings = Vec::new();
         for input in inputs {
-            if input.is_dir() {
-                drawings.extend(shell::files_below(input, |f| shell::ends_in(f, &["svg"]))?);
-            } else {
-                drawings.push(input.clone());
-            }
+            let is_svg = |f: &Path| shell::ends_in(f, &["svg"]);
+            drawings.extend(if input.is_dir() { shell::files_below(input, is_svg)? } else { vec![input.clone()] });
         }
         if drawings.is_empty() {
             return Err("there is no drawing".into());
@@ -227,18 +224,15 @@ impl Judge {
         if broken {
             return Ok(self.ways.iter().map(|way| finding(*way, None)).collect());
         }
-        let mut found = Vec::new();
-        for way in &self.ways {
+        let compared = |way: &Way| {
             let mut finding = finding(*way, None);
-            let gap = if way.1.is_some() {
-                self.compare_warped(&file, (size, scale), &before, &mut finding)
-            } else {
-                self.compare_drawn(&file, scale, &mut finding)
-            };
-            finding.gap = Some(gap);
-            found.push(finding);
-        }
-        Ok(found)
+            finding.gap = Some(match way.1 {
+                Some(_) => self.compare_warped(&file, (size, scale), &before, &mut finding),
+                None => self.compare_drawn(&file, scale, &mut finding),
+            });
+            finding
+        };
+        Ok(self.ways.iter().map(compared).collect())
     }
 
     /// Warps a drawing and compares the pictures. The page has this size in px, and `scale` pixels per px.

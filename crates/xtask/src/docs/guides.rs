@@ -45,28 +45,18 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             let photograph = words.iter().find(|w| w.ends_with(".jpg"));
             if COOKBOOKS.contains(&guide) && photograph.is_none() {
                 shell::preview(root, program, command.trim_start_matches("pathwarp "), &png)?;
-                continue;
-            }
-            if MANY.iter().any(|option| command.contains(option)) {
+            } else if MANY.iter().any(|option| command.contains(option)) {
                 sheet(root, program, &png, command)?;
-                continue;
-            }
-            if command.contains(PREVIEW) {
+            } else if command.contains(PREVIEW) {
                 preview(root, program, &png, command)?;
-                continue;
+            } else if words.get(1).is_some_and(|subcommand| subcommand == "simplify") && words.len() > 2 {
+                nodes(root, program, &png, (&words[2], command))?;
+            } else if let Some(photograph) = photograph {
+                beside(root, program, &png, (photograph, &written(root, program, command)?))?;
+            } else {
+                let width = if guide == COMPARISON { SMALL } else { WIDTH };
+                shell::render(root, program, &written(root, program, command)?, width, &png)?;
             }
-            if let [_, simplify, source, ..] = &words[..]
-                && simplify == "simplify"
-            {
-                nodes(root, program, &png, (source, command))?;
-                continue;
-            }
-            let drawing = written(root, program, command)?;
-            if let Some(photograph) = photograph {
-                beside(root, program, &png, (photograph, &drawing))?;
-                continue;
-            }
-            shell::render(root, program, &drawing, if guide == COMPARISON { SMALL } else { WIDTH }, &png)?;
         }
     }
     Ok(())
