@@ -11,8 +11,8 @@ const INTERVALS: u32 = 192;
 const MAX_PEAKS: usize = 24;
 /// The number of halvings of such an interval.
 const HALVINGS: usize = 20;
-/// The number of halvings after which changes of slope are compared: in a smooth map they have fallen to 1/128, at a kink they are the same,
-/// and at a jump they have grown to 128 times.
+/// The number of halvings after which changes of slope are compared: in a smooth map they have fallen to 1/128, at a kink they are the
+/// same, and at a jump they have grown to 128 times.
 const COMPARED: usize = 7;
 /// The least change of slope that counts, as a fraction of the slope or of 1.
 const LEAST: f64 = 1e-4;

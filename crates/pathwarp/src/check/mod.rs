@@ -439,8 +439,8 @@ fn refitting(t: &Tested<'_>) -> Check {
     check
 }
 
-/// The length of the shortest wave of a map on lines of a length through a point, from the numbers of inflections of their images; `None` if
-/// ever finer samples do not agree on these numbers.
+/// The length of the shortest wave of a map on lines of a length through a point, from the numbers of inflections of their images; `None`
+/// if ever finer samples do not agree on these numbers.
 fn shortest_wave(map: &dyn Map, p: Point, length: f64) -> Option<f64> {
     let inflections = |along: Vec2, n: usize| {
         let samples: Vec<Point> = (0..=n).map(|i| p + along * (i as f64 / n as f64 - 0.5)).collect();

@@ -8,7 +8,7 @@
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Choice as _, Kind, choice, parameters};
+use crate::param::{Choice as _, Frame, Kind, choice, parameters};
 use kurbo::{Affine, Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -231,8 +231,7 @@ impl Formula for LensMap {
 
     /// A quarter of the focal length or of the distance to the rim, within which angles are analytic functions of the distance.
     fn detail(&self, area: Rect) -> Option<f64> {
-        let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x0, area.y1), (area.x1, area.y1)];
-        let farthest = corners.into_iter().map(|p| self.center.distance(p.into())).fold(0.0, f64::max);
+        let farthest = Frame::new(area).corners().map(|p| self.center.distance(p)).into_iter().fold(0.0, f64::max);
         Some(0.25 * self.f.min(self.max_radius() - farthest).max(0.0))
     }
 

@@ -65,8 +65,7 @@ impl Mls {
     /// equal first points, and [`GeometryError::Collinear`] when they lie on one line with [`Stiffness::Affine`].
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        let Self { handles, stiffness, alpha, .. } = self;
-        let (stiffness, alpha) = (*stiffness, *alpha);
+        let Self { ref handles, stiffness, alpha, .. } = *self;
         let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
         if handles.len() > MAX_HANDLES {
             let problem = format!("pairs are too many: at most {MAX_HANDLES}");

@@ -1,11 +1,11 @@
 //! Polar coordinates: a rectangle is bent into a sector of a ring, or into the whole ring.
 //!
 //! In the formulas of [`Polar`], x is measured from the artwork's middle, and g = 1 unless both radii are given. The conformal radius is
-//! that of the complex exponential: heights grow with it. With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes
-//! r and κ negative; the top edge is then the inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the artwork's middle, at height yₘ, as
-//! F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the centre C far away. The inverse
-//! takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn meets itself: artwork that
-//! crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
+//! that of the complex exponential: heights grow with it. With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r
+//! and κ negative; the top edge is then the inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the
+//! artwork's middle, at height yₘ, as F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the
+//! centre C far away. The inverse takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn
+//! meets itself: artwork that crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
 use crate::error::{Error, show};

@@ -17,7 +17,7 @@ parameters! {
     /// A sine wave: artwork pushed to and fro across the direction of the wave, or along it.
     ///
     /// F(p) = p + a(s)·sin(2π·s/λ + φ)·n with s counted along the wave from where the artwork begins, n the unit vector across
-    /// (or along) it, λ its length, φ its phase, and a(s) = h·(1 − g + g·s/S): h is its height, g its growth, S the artwork's extent along it.
+    /// (or along) it, λ its length, φ its phase, and a(s) = h·(1 − g + g·s/S), with its height h, its growth g and the artwork's extent S.
     ///
     /// ```
     /// use pathwarp::{deform::Wave, kurbo::{Point, Rect}, map::Map};

@@ -157,8 +157,8 @@ impl Area {
     }
 }
 
-/// Returns `true` if two segments are nearer than `width`, or slightly farther apart: their boxes are compared, and the longer one is halved
-/// until both are small.
+/// Returns `true` if two segments are nearer than `width`, or slightly farther apart: their boxes are compared, and the longer one is
+/// halved until both are small.
 fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
     let [a_box, b_box] = [a, b].map(PathSeg::bounding_box);
     let [a_side, b_side] = [a_box, b_box].map(|b| b.size().max_side());

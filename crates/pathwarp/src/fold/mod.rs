@@ -12,6 +12,7 @@ use crate::budget::Budget;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, boundary};
+use crate::param::Frame;
 use kurbo::{Affine, Point, Rect};
 
 /// Returns the orientation of one shape, by a [`Survey`] of this shape alone.
@@ -233,12 +234,10 @@ impl Orientation {
     /// the map turns over most of the artwork but not the corners of the artwork's box, `bounds`.
     #[must_use]
     pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
-        let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
         let is_mostly_negative = self.positive > 0 && self.negative > self.positive;
-        if is_mostly_negative && corners.into_iter().all(|c| map.jet(c.into()).det() > 0.0) {
-            return Self { positive: self.negative, ..*self };
-        }
-        *self
+        let are_corners_positive = || Frame::new(bounds).corners().into_iter().all(|c| map.jet(c).det() > 0.0);
+        let positive = if is_mostly_negative && are_corners_positive() { self.negative } else { self.positive };
+        Self { positive, ..*self }
     }
 
     /// Returns a point of this shape that is turned over relative to most samples of the artwork, `all`.

@@ -43,7 +43,7 @@ const MAX_PAGE: f64 = 8000.0;
 /// Length of the shift, as a fraction of the page's width.
 const SHIFT: f64 = 0.04;
 
-/// A way to try a drawing: its name, and the value of `--strokes` if the drawing is warped. Otherwise the name is the format it is drawn in.
+/// A way to try a drawing: its name, and the value of `--strokes` if the drawing is warped. Otherwise the name is the format drawn.
 type Way = (&'static str, Option<&'static str>);
 
 const WAYS: [Way; 5] =

@@ -165,15 +165,12 @@ fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str
 
 /// Draws the picture for a command on a model, by its option for previews.
 fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
-    let folder = std::env::temp_dir().join(format!("pathwarp-docs-{}", std::process::id()));
-    fs::create_dir_all(&folder).map_err(at(&folder))?;
-    let drawn = format!("--preview {}", png.display());
-    let command = command.replace(PREVIEW, &drawn).replace(" -o out.", &format!(" -o {}/out.", folder.display()));
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     // The output needs a real name: its extension gives the format.
-    let words = words(&command);
-    let done = pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop);
-    let _ = fs::remove_dir_all(&folder);
-    done
+    let output = format!(" -o {}/out.", folder.path().display());
+    let drawn = format!("--preview {}", png.display());
+    let words = words(&command.replace(PREVIEW, &drawn).replace(" -o out.", &output));
+    pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop)
 }
 
 /// Every picture of a page, with the command that draws it: the one in its table row, else the next line that starts with `pathwarp`.

@@ -331,35 +331,35 @@ impl Style {
     pub(in crate::deform) fn net(&self, w: f64, h: f64, with: &StyleParams) -> Result<Net, StyleError> {
         let [horizontal, vertical] = with.distortion;
         if !with.vertical {
-            return self.distorted(w, h, with.bend, [horizontal, vertical], |n| {
-                with_scaled_rows(&with_scaled_columns(n, horizontal), vertical)
-            });
+            return self.distorted(w, h, with.bend, [horizontal, vertical], true);
         }
         // The horizontal distortion always comes first; here it scales rows of the transposed net.
-        let net = self.distorted(h, w, with.bend, [vertical, horizontal], |n| {
-            with_scaled_columns(&with_scaled_rows(n, horizontal), vertical)
-        })?;
+        let net = self.distorted(h, w, with.bend, [vertical, horizontal], false)?;
         let shift = self.shift(h, w, with.bend)?;
         Ok(transposed(&mapped(&net, |_, _, p| p + shift)))
     }
 
-    /// Returns the net under `distortion`, which scales columns and rows by these amounts.
+    /// Returns the net under a distortion that scales columns and rows by these amounts, columns or rows first.
     fn distorted(
         &self,
         w: f64,
         h: f64,
         b: f64,
         [columns, rows]: [f64; 2],
-        distortion: impl Fn(&Net) -> Net,
+        columns_first: bool,
     ) -> Result<Net, StyleError> {
+        let scaled = |net: &Net| match columns_first {
+            true => with_scaled_rows(&with_scaled_columns(net, columns), rows),
+            false => with_scaled_columns(&with_scaled_rows(net, rows), columns),
+        };
         let rest: Net = std::array::from_fn(|j| std::array::from_fn(|c| Point::new(w * third(c), h * third(j))));
         let net = self.undistorted(&rest, w, h, b)?;
         Ok(match self.family {
-            Family::Boundary => complete_net(distortion(&net)),
-            Family::Points => distortion(&net),
-            Family::Frame => mapped(&distortion(&rest), |j, c, p| {
-                p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j))
-            }),
+            Family::Boundary => complete_net(scaled(&net)),
+            Family::Points => scaled(&net),
+            Family::Frame => {
+                mapped(&scaled(&rest), |j, c, p| p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j)))
+            }
         })
     }
 
