@@ -21,11 +21,10 @@ pub struct Counted(pub f64);
 
 /// Counts an operation: 0 for a product, 1 for a sum, 2 for a difference.
 fn count(kind: usize) {
-    COUNT.with(|c| {
-        c.update(|mut n| {
-            n[kind] += 1;
-            n
-        })
+    COUNT.with(|counts| {
+        let mut n = counts.get();
+        n[kind] += 1;
+        counts.set(n);
     });
 }
 

@@ -268,9 +268,10 @@ fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
     boundary(outline.to_bez_path(tolerance), tolerance, |a, b| {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
         if top.y < bottom.y {
-            for k in first_row_below(top.y)..first_row_below(bottom.y) {
+            let rows = first_row_below(top.y)..first_row_below(bottom.y);
+            for (k, row) in rows.clone().zip(&mut crossings[rows]) {
                 let t = (y(k) - top.y) / (bottom.y - top.y);
-                crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+                row.push((top.x + (bottom.x - top.x) * t, direction));
             }
         }
     });
