@@ -299,8 +299,8 @@ mod tests {
             "M50,0 A100,0.01 30 0 1 -50,9",
         ] {
             let turned = path(turned);
-            let apart = symmetric(&turned, &turned).unwrap();
-            assert!(apart < 1e-9, "{turned:?} is {apart} from itself");
+            let distance = symmetric(&turned, &turned).unwrap();
+            assert!(distance < 1e-9, "{turned:?} is {distance} from itself");
         }
         assert_eq!(symmetric(&ring(1.0), &Outline::default()), None);
         assert_eq!(symmetric(&path("M3,4"), &path("M0,0M9,0H8")), Some(52.0_f64.sqrt()));

@@ -203,8 +203,8 @@ impl Recipe {
     }
 
     /// The frames of inverse steps, in their order, for artwork that is a result; and the largest change of a frame in the last iteration,
-    /// as a fraction of its size. `start` has the frames of the source. The first guess are the frames of the reversed recipe for artwork
-    /// that fills the source's box.
+    /// as a fraction of its size. `start` has the frames of the source. The iteration begins with the frames of the inverted recipe for
+    /// artwork that fills the source's box.
     fn frames_of_inverse_steps(
         &self,
         registry: &Registry,
@@ -212,6 +212,7 @@ impl Recipe {
         portions: &[Portion<'_>],
         budget: &Arc<Budget>,
     ) -> Result<(Vec<Option<Frame>>, f64), Error> {
+        // Portions whose last step has no known frame take that of others.
         let any_frame = || start.iter().flatten().next();
         let source_box = |p: &Portion<'_>| {
             let source = p.steps.last().and_then(|&i| start[i].as_ref()).or_else(any_frame);

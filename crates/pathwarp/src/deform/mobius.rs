@@ -293,9 +293,9 @@ mod tests {
         let three = [(0.0, 50.0), (50.0, 40.0), (100.0, 50.0)].map(Point::from);
         let moved = [(5.0, 10.0), (50.0, 40.0), (95.0, 10.0)].map(Point::from);
         let pair = |by: Vec2| {
-            let there = |p: [Point; 3]| p.map(|p| p + by);
+            let shifted = |p: [Point; 3]| p.map(|p| p + by);
             let pole = Mobius::by_pole(frame + by, Point::new(60.0, 250.0) + by).build().unwrap().map;
-            [pole, Mobius::by_points(frame + by, there(three), there(moved)).build().unwrap().map]
+            [pole, Mobius::by_points(frame + by, shifted(three), shifted(moved)).build().unwrap().map]
         };
         for (near, away) in pair(Vec2::ZERO).iter().zip(pair(far)) {
             for (near, away) in [(near.clone(), away.clone()), (near.inverse().unwrap(), away.inverse().unwrap())] {

@@ -376,15 +376,15 @@ mod tests {
             let warped = refit::warp_path(&art, &built.map, &refit::Options::new(0.01)).unwrap();
             assert!(warped.report.unresolved.is_empty() && warped.report.max_error <= 0.01, "{:?}", warped.report);
             // The distance from 0,0 is the height, the angle from the vertical, turned back, the width.
-            let mut apart: f64 = 0.0;
+            let mut largest: f64 = 0.0;
             for p in art.segs().flat_map(|s| (1..200).map(move |i| s.eval(f64::from(i) / 200.0))) {
                 let angle = (p.x.atan2(-p.y) + 10_f64.to_radians() + 3.0 * PI).rem_euclid(TAU) - PI;
                 let to = Point::new(150.0 + 300.0 * angle / TAU, 70.0 - (p.to_vec2().hypot() - 20.0));
                 let near =
                     warped.path.segments().map(|s| s.nearest(to, 1e-6).distance_sq.sqrt()).fold(f64::MAX, f64::min);
-                apart = apart.max(near);
+                largest = largest.max(near);
             }
-            assert!(apart < 0.0101, "{apart}");
+            assert!(largest < 0.0101, "{largest}");
             (built.steps[0].explanation.warnings.clone(), warped.report.segments_out)
         };
         let (warnings, segments) = unroll("M-31.37,40 H8.63 V80 H-31.37 Z");

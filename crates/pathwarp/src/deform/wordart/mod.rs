@@ -133,7 +133,7 @@ impl WordArt {
         Ok(built)
     }
 
-    /// Returns the box in which the shape is drawn, for artwork divided at `cuts`.
+    /// Returns the box in which the shape is drawn, for artwork divided into bands at the heights `cuts`.
     fn placed_box(&self, cuts: &[f64], guides: &dyn Fn(f64, f64) -> Result<Guides, Error>) -> Result<Rect, Error> {
         let rect = self.frame;
         match self.shape_box {
