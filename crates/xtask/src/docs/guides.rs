@@ -5,7 +5,7 @@ use crate::shell::{self, pipe, stages, words};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The guides. They name their pictures by relative paths.
 const GUIDES: [&str; 9] = [
@@ -37,7 +37,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         let page = root.join(guide);
         let page = fs::read_to_string(&page).map_err(at(&page))?;
         for (png, command) in pictures(&page) {
-            let png = folder_of(root, guide).join(png);
+            let png = root.join(guide).with_file_name(png);
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
             }
@@ -72,11 +72,6 @@ fn written(root: &Path, program: &Path, command: &str) -> Result<Vec<u8>, ChoreE
     }
     all.iter().try_fold(Vec::new(), |drawing, stage| pipe(root, program, stage, &drawing))?;
     fs::read(&file).map_err(at(&file))
-}
-
-/// The folder of a guide.
-fn folder_of(root: &Path, guide: &str) -> PathBuf {
-    root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
 }
 
 /// Draws the picture for a command that makes many drawings: the drawings of a folder in a row above their results, or the results of a
@@ -208,7 +203,7 @@ mod tests {
             let mut expected: Vec<String> = all.iter().map(|(png, _)| (*png).to_owned()).collect();
             expected.sort();
             let folder = Path::new(&expected[0]).parent().unwrap();
-            let files = fs::read_dir(folder_of(&root, guide).join(folder)).unwrap();
+            let files = fs::read_dir(root.join(guide).with_file_name(folder)).unwrap();
             let name = |f: fs::DirEntry| format!("{}/{}", folder.display(), f.file_name().into_string().unwrap());
             let mut found: Vec<String> = files.map(|f| name(f.unwrap())).collect();
             found.sort();

@@ -346,12 +346,10 @@ fn distortion(rect: Rect, map: &dyn Map) -> (f64, f64) {
     (cost / count, area / count)
 }
 
-/// A line of lettering.
+/// A line of lettering: its baseline, and the y of the highest and the lowest point of its letters.
 pub(super) struct TextLine {
     baseline: f64,
-    /// The y of the highest point of its letters.
     top: f64,
-    /// The y of the lowest point of its letters.
     bottom: f64,
 }
 
