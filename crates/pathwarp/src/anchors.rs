@@ -11,10 +11,10 @@ use crate::param::{Frame, NamedPath, Settings};
 use kurbo::{Affine, Line, Point, Rect};
 use std::sync::Arc;
 
-/// Anchors closer than this share of their spread coincide; three anchors whose triangle is smaller than this share of their
+/// Anchors closer than this fraction of their spread coincide; three anchors whose triangle is smaller than this fraction of their
 /// spread squared lie on a line. Well above rounding, well below intentional distances.
 const NEAR: f64 = 1e-9;
-/// A closing line shorter than this share of the path's box is a drawing program's rounding, not a side.
+/// A closing line shorter than this fraction of the path's box is a drawing program's rounding, not a side.
 const STRAY: f64 = 1e-5;
 
 /// Two or four anchors, in the order the deformation uses them.
@@ -45,8 +45,8 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     };
     let mut sub = sub.clone();
     let size = path.outline.bounding_box().map_or(0.0, |b| b.width().hypot(b.height()));
-    let stray = |s: &Seg| s.start().distance(s.end()) <= STRAY * size;
-    if sub.closed && sub.segs.len() > 1 && matches!(sub.segs.last(), Some(s @ Seg::Line(_)) if stray(s)) {
+    let is_stray = |s: &Seg| s.start().distance(s.end()) <= STRAY * size;
+    if sub.closed && sub.segs.len() > 1 && matches!(sub.segs.last(), Some(s @ Seg::Line(_)) if is_stray(s)) {
         sub.segs.pop();
         if let Some(last) = sub.segs.last_mut() {
             *last = ending_at(last, sub.start);
@@ -55,24 +55,22 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     Ok(sub)
 }
 
-/// Returns the only run of a path that is closed, returns to its start, or is a polyline of a number of lines that `polyline` accepts:
+/// Returns the only run of a path that is closed, returns to its start, or is a polyline of a number of lines that `is_polygon` accepts:
 /// plain points cannot be closed explicitly.
 pub(crate) fn closed_subpath(
     path: &NamedPath,
     expected: &'static str,
-    polyline: impl Fn(usize) -> bool,
+    is_polygon: impl Fn(usize) -> bool,
 ) -> Result<Subpath, Error> {
     let mut sub = only_subpath(path, expected)?;
-    let lines = !sub.closed && polyline(sub.segs.len()) && sub.segs.iter().all(|g| matches!(g, Seg::Line(_)));
-    if lines && sub.start != sub.end() {
+    let is_polyline = !sub.closed && sub.segs.iter().all(|g| matches!(g, Seg::Line(_)));
+    if is_polyline && is_polygon(sub.segs.len()) && sub.start != sub.end() {
         let closed = Outline::from_points(&sub.anchors(), true);
         sub = only_subpath(&NamedPath { name: path.name.clone(), outline: closed }, expected)?;
     }
-    if !sub.closed && sub.end().distance(sub.start) <= 1e-9 * sub.start.to_vec2().hypot().max(1.0) && sub.segs.len() > 1
-    {
-        // A path that returns to its start counts as closed.
-        sub.closed = true;
-    }
+    // A path that returns to its start counts as closed.
+    let returns = sub.end().distance(sub.start) <= 1e-9 * sub.start.to_vec2().hypot().max(1.0);
+    sub.closed |= returns && sub.segs.len() > 1;
     if !sub.closed {
         return Err(GeometryError::NotClosed { path: path.name.clone(), start: sub.start, end: sub.end() }.into());
     }
@@ -152,7 +150,7 @@ fn spread(a: &[Point]) -> f64 {
 /// An order of four corners that begins with one end of the bottom side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Arrangement {
-    /// The bottom side: 0 to 3, as drawn.
+    /// The bottom side: 0 to 3, counted as drawn.
     pub(crate) bottom: usize,
     /// `true` to run the path against its drawn direction.
     pub(crate) reversed: bool,
@@ -170,7 +168,7 @@ impl Arrangement {
         Self { bottom, reversed: corners[bottom].x > corners[(bottom + 1) % 4].x }
     }
 
-    /// Returns the corner indices in order: bottom start, bottom end, then on around.
+    /// Returns the corners' indices in order: the bottom's start and end, and the other two on the way around.
     pub(crate) fn order(&self) -> [usize; 4] {
         let b = self.bottom;
         if self.reversed {
@@ -247,10 +245,7 @@ impl FourToFour {
 
 /// Reads `base` and `target` with four anchors each. Without a base, the frame's corners are taken.
 pub(crate) fn four_to_four(s: &Settings<'_>) -> Result<FourToFour, Error> {
-    let base = match from_settings(s, "base", "base-as-drawn")? {
-        Some(b) => b,
-        None => frame_corners(s.frame())?,
-    };
+    let base = from_settings(s, "base", "base-as-drawn")?.map_or_else(|| frame_corners(s.frame()), Ok)?;
     let missing = || Error::missing("target", "four anchors, the images of the base's");
     let target = from_settings(s, "target", "target-as-drawn")?.ok_or_else(missing)?;
     Ok(FourToFour { from: four("base", &base)?, to: four("target", &target)?, frame: s.frame().rect })
@@ -268,9 +263,9 @@ fn four(name: &str, a: &Anchors) -> Result<[Point; 4], Error> {
 pub(crate) fn to_standard(name: &str, a: &Anchors) -> Result<Arc<dyn Map>, Error> {
     match *a {
         Anchors::Two([p, q]) => {
-            // Mirrored first, so that the similitude is direct in the sense of the screen.
-            let up = |p: Point| Point::new(p.x, -p.y);
-            let m = AffineMap::similitude(up(p), up(q), Point::ORIGIN, Point::new(1.0, 0.0))
+            // The points are mirrored first, so that the similitude is direct in the sense of the screen.
+            let mirrored = |p: Point| Point::new(p.x, -p.y);
+            let m = AffineMap::similitude(mirrored(p), mirrored(q), Point::ORIGIN, Point::new(1.0, 0.0))
                 .ok_or_else(|| GeometryError::Coincident { path: name.to_owned(), which: [1, 2], at: p })?;
             Ok(Arc::new(AffineMap(m.0 * Affine::FLIP_Y)))
         }

@@ -69,14 +69,12 @@ impl Limit {
     }
 
     /// The unit in messages, in the plural.
-    fn things(self) -> &'static str {
+    fn unit(self) -> &'static str {
         match self {
-            Self::Bytes => "bytes",
-            Self::Elements => "elements",
-            Self::Pixels => "pixels",
             Self::Work => "units of work",
             Self::Seconds => "seconds of processor time",
             Self::Memory => "bytes of memory",
+            Self::Bytes | Self::Elements | Self::Pixels => self.name(),
         }
     }
 
@@ -122,11 +120,13 @@ impl fmt::Display for Limit {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
+    /// The limits that were set, in the order of [`Limit::ALL`].
     given: [Option<f64>; Limit::ALL.len()],
     /// The factor on the limits that are not given.
     scale: f64,
     /// The number of pixels of the input's pictures.
     pixels: f64,
+    /// A switch that makes every limit exceeded.
     stop: Option<Stop>,
 }
 
@@ -215,7 +215,7 @@ impl Limits {
 
 /// More work than a limit allows.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{}{} {}, and the limit `{limit}` is {}", if *.cut { "at least " } else { "" }, rounded(*.needed), .limit.things(), rounded(*.most))]
+#[error("{}{} {}, and the limit `{limit}` is {}", if *.cut { "at least " } else { "" }, rounded(*.needed), .limit.unit(), rounded(*.most))]
 pub struct Exceeded {
     /// The limit that was exceeded.
     pub limit: Limit,
@@ -245,7 +245,7 @@ impl Exceeded {
     }
 }
 
-/// Formats a large number in three figures.
+/// Formats a number in three figures from a million on, below with two decimals at most.
 fn rounded(v: f64) -> String {
     if v < 1e6 { format!("{}", (v * 100.0).round() / 100.0) } else { format!("{v:.2e}") }
 }
@@ -345,9 +345,9 @@ impl PartialEq for Budget {
 }
 
 /// The work of a jet of a map of work 1, with the step of Newton's method around it.
-const JET: f64 = 0.4;
+const JET_WORK: f64 = 0.4;
 /// The work of looking at a starting point.
-const START: f64 = 0.01;
+const START_WORK: f64 = 0.01;
 /// The number of jets that usually find a preimage; the work of an inverse includes them.
 const USUAL_JETS: usize = 12;
 
@@ -369,7 +369,8 @@ impl Search {
 
     /// Charges the work beyond the usual work of `points` points, which callers charge. `work` is the work of a jet.
     pub fn spend(self, budget: Option<&Arc<Budget>>, points: usize, work: f64) {
-        let beyond = JET * work * self.jets.saturating_sub(USUAL_JETS * points) as f64 + START * self.starts as f64;
+        let jets = self.jets.saturating_sub(USUAL_JETS * points);
+        let beyond = JET_WORK * work * jets as f64 + START_WORK * self.starts as f64;
         if let Some(budget) = budget.filter(|_| beyond >= 1.0) {
             // An exceeded budget ends the next search.
             let _ = budget.spend(beyond);

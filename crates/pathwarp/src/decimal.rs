@@ -28,8 +28,8 @@ pub fn trimmed(v: f64, decimals: usize) -> String {
 /// assert!(together(&[0.1 + 0.2, -7.7e-16, 40.0], 9, 3).eq(["0.3", "0", "40"]));
 /// ```
 pub fn together(values: &[f64], digits: i32, more: i32) -> impl Iterator<Item = String> {
-    let most = decimals(values.iter().copied(), digits + more);
-    values.iter().map(move |v| trimmed(*v, decimals([*v], digits).min(most)))
+    let max_decimals = decimals(values.iter().copied(), digits + more);
+    values.iter().map(move |v| trimmed(*v, decimals([*v], digits).min(max_decimals)))
 }
 
 /// The number of decimals that the largest of these numbers needs for `digits` significant digits.
@@ -38,8 +38,8 @@ pub fn decimals(values: impl IntoIterator<Item = f64>, digits: i32) -> usize {
     /// The largest number of decimals: more resolve nothing that can occur in a drawing.
     const MOST: i32 = 30;
     let largest = values.into_iter().map(f64::abs).filter(|v| v.is_finite()).fold(0.0, f64::max);
-    let before = if largest > 0.0 { largest.log10().floor() as i32 + 1 } else { 0 };
-    usize::try_from((digits - before).clamp(0, MOST)).unwrap_or(0)
+    let before_point = if largest > 0.0 { largest.log10().floor() as i32 + 1 } else { 0 };
+    usize::try_from((digits - before_point).clamp(0, MOST)).unwrap_or(0)
 }
 
 /// Formats an affine map as `matrix(…)`: the images of both unit vectors with twelve significant digits each, the shift with twelve
@@ -55,10 +55,10 @@ pub fn decimals(values: impl IntoIterator<Item = f64>, digits: i32) -> usize {
 pub fn matrix(m: Affine) -> String {
     const DIGITS: i32 = 12;
     let [a, b, c, d, e, f] = m.as_coeffs();
-    let fine =
+    let format_pair =
         |pair: [f64; 2], among: &[f64]| pair.map(|v| trimmed(v, decimals(among.iter().copied(), DIGITS))).join(" ");
-    let [x, y] = [[a, b], [c, d]].map(|unit| fine(unit, &unit));
-    format!("matrix({x} {y} {})", fine([e, f], &[a, b, c, d, e, f]))
+    let [x, y] = [[a, b], [c, d]].map(|unit| format_pair(unit, &unit));
+    format!("matrix({x} {y} {})", format_pair([e, f], &[a, b, c, d, e, f]))
 }
 
 /// Returns an affine map known in single precision, with negligible coordinates set to 0: coordinates of the image of a unit vector, or of
@@ -73,8 +73,8 @@ pub fn matrix(m: Affine) -> String {
 #[must_use]
 pub fn single(m: Affine) -> Affine {
     let [a, b, c, d, e, f] = m.as_coeffs();
-    let beside = |v: f64, other: f64| if v.abs() < f64::from(f32::EPSILON) * other.abs() { 0.0 } else { v };
-    Affine::new([beside(a, b), beside(b, a), beside(c, d), beside(d, c), beside(e, f), beside(f, e)])
+    let cleaned = |v: f64, other: f64| if v.abs() < f64::from(f32::EPSILON) * other.abs() { 0.0 } else { v };
+    Affine::new([cleaned(a, b), cleaned(b, a), cleaned(c, d), cleaned(d, c), cleaned(e, f), cleaned(f, e)])
 }
 
 /// Appends [`trimmed`] text to `out`.

@@ -18,17 +18,17 @@ use kurbo::{Point, Rect, Vec2};
 /// The number of intervals per segment that [`symmetric`] samples.
 const PER_SEGMENT: usize = 64;
 /// The number of intervals between starting points of the search for the nearest point of a segment.
-const STRETCHES: usize = 16;
-/// The cosine of 45°. Stretches in which the curve turns by more are halved for further starting points.
+const INTERVALS: usize = 16;
+/// The cosine of 45°. Intervals in which the curve turns by more are halved for further starting points.
 const COS_TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// The limit on the depth of these halvings.
 const MAX_HALVINGS: u32 = 12;
 /// The limit on the steps of a search.
 const MAX_STEPS: usize = 24;
-/// A search ends with a step that gains no more than this share of the distance.
+/// A search ends with a step that gains no more than this fraction of the distance.
 const SETTLED: f64 = 1e-9;
-/// A search ends if a step of this share of the Gauss–Newton step gains nothing.
-const MIN_SHARE: f64 = 1e-3;
+/// A search ends if a step of this fraction of the Gauss–Newton step gains nothing.
+const MIN_DAMPING: f64 = 1e-3;
 
 /// The work of looking at a box, at a line, and at a point of a Bézier curve or of an arc, in comparisons of the budget.
 const BOX: f64 = 0.08;
@@ -54,22 +54,18 @@ pub fn symmetric(a: &Outline, b: &Outline) -> Option<f64> {
 /// # Errors
 /// [`Exceeded`] if `budget` does not allow so many comparisons.
 pub fn symmetric_within(a: &Outline, b: &Outline, budget: &Budget) -> Result<Option<f64>, Exceeded> {
-    let Some(there) = one_way(a, b, 0.0, budget)? else { return Ok(None) };
-    one_way(b, a, there, budget)
+    let Some(from_a) = one_way(a, b, 0.0, budget)? else { return Ok(None) };
+    one_way(b, a, from_a, budget)
 }
 
 /// The largest distance from a point of `from` to `to`, or `min` if that is larger.
 fn one_way(from: &Outline, to: &Outline, min: f64, budget: &Budget) -> Result<Option<f64>, Exceeded> {
-    let segs = to.segs().map(Target::of);
-    let dots = to.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
-    let mut targets = Targets::new(segs.chain(dots).collect());
+    let mut targets = Targets::new(parts(to, Target::with_starts).collect());
     if targets.all.is_empty() {
         return Ok(None);
     }
-    let samples = from.segs().map(|s| Target::Seg(s, Vec::new()));
-    let alone = from.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
     let mut largest = None;
-    for sampled in samples.chain(alone) {
+    for sampled in parts(from, |s| Target::Seg(s, Vec::new())) {
         let mut work = 0.0;
         for i in 0..=sampled.intervals() {
             let p = sampled.eval(i as f64 / PER_SEGMENT as f64);
@@ -81,6 +77,12 @@ fn one_way(from: &Outline, to: &Outline, min: f64, budget: &Budget) -> Result<Op
     Ok(largest)
 }
 
+/// The segments of a path, and its subpaths that are points.
+fn parts<'a>(path: &'a Outline, seg: fn(&'a Seg) -> Target<'a>) -> impl Iterator<Item = Target<'a>> {
+    let dots = path.subpaths.iter().filter(|s| s.segs.is_empty()).map(|s| Target::Dot(s.start));
+    path.segs().map(seg).chain(dots)
+}
+
 /// A part of a path: a segment with the further starting points of a search, or a subpath that is a point.
 enum Target<'a> {
     Seg(&'a Seg, Vec<f64>),
@@ -88,13 +90,13 @@ enum Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    fn of(seg: &'a Seg) -> Self {
+    fn with_starts(seg: &'a Seg) -> Self {
         let mut starts = Vec::new();
         if !matches!(seg, Seg::Line(_)) {
-            let ends: [_; STRETCHES + 1] =
-                std::array::from_fn(|i| i as f64 / STRETCHES as f64).map(|t| (t, seg.deriv(t)));
+            let ends: [_; INTERVALS + 1] =
+                std::array::from_fn(|i| i as f64 / INTERVALS as f64).map(|t| (t, seg.deriv(t)));
             for w in ends.windows(2) {
-                turns(seg, w[0], w[1], MAX_HALVINGS, &mut starts);
+                add_starts(seg, w[0], w[1], MAX_HALVINGS, &mut starts);
             }
         }
         Self::Seg(seg, starts)
@@ -107,6 +109,7 @@ impl<'a> Target<'a> {
         }
     }
 
+    /// The number of intervals between samples.
     fn intervals(&self) -> usize {
         if matches!(self, Self::Seg(..)) { PER_SEGMENT } else { 0 }
     }
@@ -137,6 +140,7 @@ struct Targets<'a> {
     boxes: Vec<Rect>,
     /// The nearest part to the last point: neighbouring samples have neighbouring foot points.
     last: usize,
+    /// The nodes that are still to be searched.
     pending: Vec<usize>,
 }
 
@@ -172,10 +176,10 @@ impl<'a> Targets<'a> {
                 continue;
             }
             if node < leaves {
-                let children = [2 * node, 2 * node + 1];
-                let nearer =
-                    usize::from(box_distance(&self.boxes[children[0]], p) > box_distance(&self.boxes[children[1]], p));
-                self.pending.extend([children[1 - nearer], children[nearer]]);
+                let (a, b) = (2 * node, 2 * node + 1);
+                let is_b_nearer = box_distance(&self.boxes[a], p) > box_distance(&self.boxes[b], p);
+                // The nearer child is searched first.
+                self.pending.extend(if is_b_nearer { [a, b] } else { [b, a] });
                 continue;
             }
             let Some(target) = self.all.get(node - leaves) else { continue };
@@ -194,24 +198,23 @@ fn box_distance(r: &Rect, p: Point) -> f64 {
     dx.hypot(dy)
 }
 
-/// Halves the part of a segment between two parameters, each with its derivative, wherever it turns sharply. A cubic does so at most
+/// Adds a start wherever the part of a segment between two parameters, each with its derivative, turns sharply. A cubic does so at most
 /// twice.
-fn turns(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut Vec<f64>) {
+fn add_starts(seg: &Seg, a: (f64, Vec2), b: (f64, Vec2), halvings: u32, starts: &mut Vec<f64>) {
     let t = 0.5 * (a.0 + b.0);
     let mid = (t, seg.deriv(t));
     // The derivative of a cubic is a parabola, whose directions are between those of its control points.
     let control = 2.0 * mid.1 - 0.5 * (a.1 + b.1);
     let is_sharp = |u: Vec2, v: Vec2| u.dot(v) < COS_TURN * u.hypot() * v.hypot();
-    let halves = halvings > 0 && (is_sharp(a.1, control) || is_sharp(control, b.1) || is_sharp(a.1, b.1));
+    let turns = halvings > 0 && (is_sharp(a.1, control) || is_sharp(control, b.1) || is_sharp(a.1, b.1));
     // A search cannot leave a point where the derivative is zero.
-    if halves || (a.1 == Vec2::ZERO) != (b.1 == Vec2::ZERO) {
+    if turns || (a.1 == Vec2::ZERO) != (b.1 == Vec2::ZERO) {
         starts.push(t);
     }
-    if !halves {
-        return;
+    if turns {
+        add_starts(seg, a, mid, halvings - 1, starts);
+        add_starts(seg, mid, b, halvings - 1, starts);
     }
-    turns(seg, a, mid, halvings - 1, starts);
-    turns(seg, mid, b, halvings - 1, starts);
 }
 
 /// The distance from `p` to `seg`, or `known` if that is smaller. Searches from `starts` as well. Adds to `work`.
@@ -223,37 +226,37 @@ fn to_segment(seg: &Seg, starts: &[f64], p: Point, known: f64, work: &mut f64) -
         let foot = if t.is_nan() { l.p0 } else { l.p0.lerp(l.p1, t) };
         return foot.distance(p).min(known);
     }
-    let each = if matches!(seg, Seg::Arc(_)) { ARC } else { CURVE };
-    *work += each * (STRETCHES + 1) as f64;
-    let at: [f64; STRETCHES + 1] = std::array::from_fn(|i| seg.eval(i as f64 / STRETCHES as f64).distance(p));
-    let mut best = at.iter().copied().fold(known, f64::min);
+    let point_work = if matches!(seg, Seg::Arc(_)) { ARC } else { CURVE };
+    *work += point_work * (INTERVALS + 1) as f64;
+    let distances: [f64; INTERVALS + 1] = std::array::from_fn(|i| seg.eval(i as f64 / INTERVALS as f64).distance(p));
+    let mut best = distances.iter().copied().fold(known, f64::min);
     // No point of the segment is farther than this from the nearest starting point.
-    let reach = max_speed(seg) * 0.5 / STRETCHES as f64;
-    *work += each * starts.len() as f64;
-    let regular = at.into_iter().enumerate().map(|(i, d)| (i as f64 / STRETCHES as f64, d));
+    let max_gap = max_speed(seg) * 0.5 / INTERVALS as f64;
+    *work += point_work * starts.len() as f64;
+    let regular = distances.into_iter().enumerate().map(|(i, d)| (i as f64 / INTERVALS as f64, d));
     for (mut t, mut d) in regular.chain(starts.iter().map(|&t| (t, seg.eval(t).distance(p)))) {
-        if d - reach >= best {
+        if d - max_gap >= best {
             continue;
         }
         // Gauss–Newton iteration for the foot point, with shorter steps where the curve turns too sharply for it.
-        let mut share = 1.0;
+        let mut damping = 1.0;
         for _ in 0..MAX_STEPS {
-            *work += STEP * each;
+            *work += STEP * point_work;
             let v = seg.deriv(t);
             let n = v.hypot2();
             if n == 0.0 {
                 break;
             }
-            let next = (t - share * (seg.eval(t) - p).dot(v) / n).clamp(0.0, 1.0);
-            let nd = seg.eval(next).distance(p);
-            if nd < d {
-                let settled = d - nd <= SETTLED * d;
-                (t, d, share) = (next, nd, (2.0 * share).min(1.0));
-                if settled {
+            let next_t = (t - damping * (seg.eval(t) - p).dot(v) / n).clamp(0.0, 1.0);
+            let next_d = seg.eval(next_t).distance(p);
+            if next_d < d {
+                let is_settled = d - next_d <= SETTLED * d;
+                (t, d, damping) = (next_t, next_d, (2.0 * damping).min(1.0));
+                if is_settled {
                     break;
                 }
-            } else if share > MIN_SHARE {
-                share *= 0.25;
+            } else if damping > MIN_DAMPING {
+                damping *= 0.25;
             } else {
                 break;
             }
@@ -296,8 +299,8 @@ mod tests {
             "M50,0 A100,0.01 30 0 1 -50,9",
         ] {
             let turned = path(turned);
-            let apart = symmetric(&turned, &turned).unwrap();
-            assert!(apart < 1e-9, "{turned:?} is {apart} from itself");
+            let distance = symmetric(&turned, &turned).unwrap();
+            assert!(distance < 1e-9, "{turned:?} is {distance} from itself");
         }
         assert_eq!(symmetric(&ring(1.0), &Outline::default()), None);
         assert_eq!(symmetric(&path("M3,4"), &path("M0,0M9,0H8")), Some(52.0_f64.sqrt()));

@@ -283,7 +283,7 @@ pub(crate) fn with_area(r: Rect) -> Result<Rect, GeometryError> {
 }
 
 /// Returns `value` if it is within the range, ends included.
-pub(crate) fn within(param: &str, value: f64, min: f64, max: f64) -> Result<f64, Error> {
+pub(crate) fn check_range(param: &str, value: f64, min: f64, max: f64) -> Result<f64, Error> {
     if (min..=max).contains(&value) {
         return Ok(value);
     }
@@ -306,6 +306,7 @@ fn show_all(points: &[Point]) -> String {
 
 /// Rounds to six decimals: enough to find a point, and short.
 fn round6(v: f64) -> f64 {
-    let r = (v * 1e6).round() / 1e6;
-    if r.is_finite() { r + 0.0 } else { v }
+    let rounded = (v * 1e6).round() / 1e6;
+    // Adding 0 removes the sign of -0.
+    if rounded.is_finite() { rounded + 0.0 } else { v }
 }

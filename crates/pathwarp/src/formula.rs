@@ -31,7 +31,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Returns `true` if `name` has the form of a name.
+/// Returns `true` if `name` consists of letters, digits and _, and starts with no digit.
 pub(crate) fn is_name(name: &str) -> bool {
     let mut c = name.chars();
     c.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_') && c.all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -42,6 +42,7 @@ pub(crate) fn is_function(name: &str) -> bool {
     function(name).is_some()
 }
 
+/// The meaning of a function's name.
 enum Function {
     One(Unary),
     Two(Binary),
@@ -91,16 +92,15 @@ pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Res
     if text.len() > MAX_BYTES {
         return Err(SyntaxError::new(0, Problem::TooLong(MAX_BYTES)));
     }
-    let mut p = Parser { text, at: 0, names, program, depth: 0 };
-    let value = p.expression(0)?;
-    match p.peek() {
-        None => Ok(value),
-        Some(')') => Err(SyntaxError::new(p.at, Problem::NeverOpened)),
-        Some(c) if c.is_alphanumeric() || c == '_' || c == '(' || c == '.' => {
-            Err(SyntaxError::new(p.at, Problem::MissingOperator))
-        }
-        Some(c) => Err(SyntaxError::new(p.at, Problem::Meaningless(c))),
-    }
+    let mut parser = Parser { text, at: 0, names, program, depth: 0 };
+    let value = parser.expression(0)?;
+    let problem = match parser.peek() {
+        None => return Ok(value),
+        Some(')') => Problem::NeverOpened,
+        Some(c) if c.is_alphanumeric() || c == '_' || c == '(' || c == '.' => Problem::MissingOperator,
+        Some(c) => Problem::Meaningless(c),
+    };
+    Err(SyntaxError::new(parser.at, problem))
 }
 
 /// A sum of plane waves with lengths from 1 to 2 in all directions, whose directions, lengths and phases are evenly spread without a
@@ -119,13 +119,14 @@ fn noise() -> String {
 
 struct Parser<'a> {
     text: &'a str,
+    /// The byte at which the unread rest of the text begins.
     at: usize,
     names: &'a Names<'a>,
     program: &'a mut Program,
     depth: usize,
 }
 
-/// Binding powers: sums, products, signs, powers.
+/// Binding powers. A left-associative operator takes a right operand that binds more tightly by 1.
 const SUM: u8 = 1;
 const PRODUCT: u8 = 3;
 const SIGN: u8 = 5;
@@ -145,11 +146,9 @@ impl Parser<'_> {
 
     fn eat(&mut self, token: &str) -> bool {
         self.peek();
-        let there = self.rest().starts_with(token);
-        if there {
-            self.at += token.len();
-        }
-        there
+        let is_next = self.rest().starts_with(token);
+        self.at += if is_next { token.len() } else { 0 };
+        is_next
     }
 
     /// Parses an expression whose operators bind at least as tightly as `min`.
@@ -160,22 +159,22 @@ impl Parser<'_> {
         }
         let mut left = self.operand()?;
         while let Some(c) = self.peek() {
-            let power = c == '^' || self.rest().starts_with("**");
-            let (binds, right, op) = match c {
-                _ if power => (POWER, POWER, Binary::Pow), // right-associative: 2^3^2 = 2^(3^2)
+            let is_power = c == '^' || self.rest().starts_with("**");
+            let (binding, min_right, op) = match c {
+                _ if is_power => (POWER, POWER, Binary::Pow), // right-associative: 2^3^2 = 2^(3^2)
                 '+' => (SUM, SUM + 1, Binary::Add),
                 '-' => (SUM, SUM + 1, Binary::Sub),
                 '*' => (PRODUCT, PRODUCT + 1, Binary::Mul),
                 '/' => (PRODUCT, PRODUCT + 1, Binary::Div),
                 _ => break,
             };
-            if binds < min {
+            if binding < min {
                 break;
             }
             let at = self.at;
-            self.at += if power && c == '*' { 2 } else { 1 };
-            let r = self.expression(right)?;
-            left = self.emit(at, |p| p.binary(op, left, r))?;
+            self.at += if is_power && c == '*' { 2 } else { 1 };
+            let right = self.expression(min_right)?;
+            left = self.emit(at, |p| p.binary(op, left, right))?;
         }
         self.depth -= 1;
         Ok(left)
@@ -206,6 +205,7 @@ impl Parser<'_> {
         }
     }
 
+    /// Reads the bracket that closes the one at `opened`.
     fn close(&mut self, opened: usize) -> Result<(), SyntaxError> {
         if self.eat(")") {
             return Ok(());
@@ -218,23 +218,17 @@ impl Parser<'_> {
     }
 
     fn number(&mut self) -> Result<u32, SyntaxError> {
-        let (at, b) = (self.at, self.rest().as_bytes());
-        let digits = |mut i: usize| {
-            while b.get(i).is_some_and(u8::is_ascii_digit) {
-                i += 1;
-            }
-            i
-        };
-        let mut end = digits(0);
-        if b.get(end) == Some(&b'.') {
-            end = digits(end + 1);
+        let (at, bytes) = (self.at, self.rest().as_bytes());
+        let end_of_digits = |from: usize| from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+        let mut end = end_of_digits(0);
+        if bytes.get(end) == Some(&b'.') {
+            end = end_of_digits(end + 1);
         }
         // Without digits after it, `e` is the constant, and an operator is missing.
-        if matches!(b.get(end), Some(b'e' | b'E')) {
-            let sign = usize::from(matches!(b.get(end + 1), Some(b'+' | b'-')));
-            let all = digits(end + 1 + sign);
-            if all > end + 1 + sign {
-                end = all;
+        if matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let exponent = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+            if bytes.get(exponent).is_some_and(u8::is_ascii_digit) {
+                end = end_of_digits(exponent);
             }
         }
         let value: f64 = self.rest()[..end].parse().map_err(|_| SyntaxError::new(at, Problem::NotANumber))?;
@@ -245,6 +239,7 @@ impl Parser<'_> {
         self.emit(at, |p| p.constant(value))
     }
 
+    /// Reads a name, or a function with its arguments.
     fn word(&mut self) -> Result<u32, SyntaxError> {
         let at = self.at;
         let len = self.rest().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').count();
@@ -253,7 +248,7 @@ impl Parser<'_> {
         if let Some(v) = self.names.get(&word) {
             return Ok(v);
         }
-        let Some(f) = function(&word) else {
+        let Some(function) = function(&word) else {
             let known: Vec<&str> = self.names.0.iter().map(|(n, _)| *n).collect();
             let problem = Problem::Unknown { word, names: known.join(" "), functions: FUNCTIONS };
             return Err(SyntaxError::new(at, problem));
@@ -262,7 +257,7 @@ impl Parser<'_> {
         if !self.eat("(") {
             return Err(SyntaxError::new(self.at, Problem::NoArguments(word)));
         }
-        let count = match f {
+        let count = match function {
             Function::One(_) => 1,
             Function::Two(_) => 2,
             Function::Formula(count, _) => count,
@@ -276,7 +271,7 @@ impl Parser<'_> {
             arguments.push(self.expression(0)?);
         }
         self.close(opened)?;
-        self.emit(at, |p| match f {
+        self.emit(at, |p| match function {
             Function::One(op) => p.unary(op, arguments[0]),
             Function::Two(op) => p.binary(op, arguments[0], arguments[1]),
             Function::Formula(_, text) => {
@@ -286,15 +281,14 @@ impl Parser<'_> {
         })
     }
 
+    /// Appends operations to the program; an error points at `at`.
     fn emit(&mut self, at: usize, f: impl FnOnce(&mut Program) -> Option<u32>) -> Result<u32, SyntaxError> {
         f(self.program).ok_or_else(|| SyntaxError::new(at, Problem::TooManyOperations))
     }
 }
 
-// A formula is a list of operations on earlier values. Several points are evaluated at a time, so that decoding the list costs
-// little.
-//
-// Equal operations are stored once, constants are folded.
+// A program is a list of operations on earlier values. Equal operations are stored once, constants are folded. Several points are evaluated
+// at a time, so that decoding the list costs little.
 
 /// The limit on the size, so that no formula makes a single point expensive.
 const MAX_OPS: usize = 2000;
@@ -364,7 +358,8 @@ impl Program {
         u32::try_from(self.ops.len() - 1).ok()
     }
 
-    fn value_of(&self, i: u32) -> Option<f64> {
+    /// Returns value `i` if it is a constant.
+    fn constant_at(&self, i: u32) -> Option<f64> {
         if let Some(Op::Const(c)) = self.ops.get(i as usize) { Some(*c) } else { None }
     }
 
@@ -386,8 +381,8 @@ impl Program {
     }
 
     pub(crate) fn unary(&mut self, op: Unary, a: u32) -> Option<u32> {
-        match self.value_of(a) {
-            Some(v) => self.constant(one(op, v)),
+        match self.constant_at(a) {
+            Some(v) => self.constant(apply_unary(op, v)),
             None => self.push(Op::One(op, a)),
         }
     }
@@ -395,9 +390,9 @@ impl Program {
     pub(crate) fn binary(&mut self, op: Binary, a: u32, b: u32) -> Option<u32> {
         /// Integer powers below this are accurate enough by repeated squaring.
         const WHOLE: f64 = 1e4;
-        match (self.value_of(a), self.value_of(b)) {
+        match (self.constant_at(a), self.constant_at(b)) {
             (Some(u), Some(v)) if op == Binary::Pow => self.constant(u.powf(v)),
-            (Some(u), Some(v)) => self.constant(two(op, u, v)),
+            (Some(u), Some(v)) => self.constant(apply_binary(op, u, v)),
             (None, Some(n)) if op == Binary::Pow && n.fract() == 0.0 && n.abs() < WHOLE => {
                 self.push(Op::Powi(a, n as i32))
             }
@@ -410,20 +405,20 @@ impl Program {
     pub(crate) fn run<S: Real, const N: usize>(&self, x: [S; N], y: [S; N]) -> Vec<[S; N]> {
         let mut out: Vec<[S; N]> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
-            let at = |i: u32| &out[i as usize];
+            let operand = |i: u32| &out[i as usize];
             let value = match *op {
                 Op::Const(c) => [S::from(c); N],
                 Op::X => x,
                 Op::Y => y,
                 // The most frequent operations have the dispatch outside the loop.
-                Op::Two(Binary::Add, a, b) => from_fn(|i| at(a)[i] + at(b)[i]),
-                Op::Two(Binary::Sub, a, b) => from_fn(|i| at(a)[i] - at(b)[i]),
-                Op::Two(Binary::Mul, a, b) => from_fn(|i| at(a)[i] * at(b)[i]),
-                Op::Two(f, a, b) => from_fn(|i| two(f, at(a)[i], at(b)[i])),
-                Op::One(f, a) => at(a).map(|v| one(f, v)),
-                Op::Powi(a, n) => at(a).map(|v| v.powi(n)),
-                Op::Powf(a, n) => at(a).map(|v| v.powf(n)),
-                Op::Same(a) => *at(a),
+                Op::Two(Binary::Add, a, b) => from_fn(|i| operand(a)[i] + operand(b)[i]),
+                Op::Two(Binary::Sub, a, b) => from_fn(|i| operand(a)[i] - operand(b)[i]),
+                Op::Two(Binary::Mul, a, b) => from_fn(|i| operand(a)[i] * operand(b)[i]),
+                Op::Two(f, a, b) => from_fn(|i| apply_binary(f, operand(a)[i], operand(b)[i])),
+                Op::One(f, a) => operand(a).map(|v| apply_unary(f, v)),
+                Op::Powi(a, n) => operand(a).map(|v| v.powi(n)),
+                Op::Powf(a, n) => operand(a).map(|v| v.powf(n)),
+                Op::Same(a) => *operand(a),
             };
             out.push(value);
         }
@@ -434,22 +429,22 @@ impl Program {
     pub(crate) fn undefined_at(&self, x: f64, y: f64) -> Option<String> {
         let values = self.run([Dual { v: x, x: 1.0, y: 0.0 }], [Dual { v: y, x: 0.0, y: 1.0 }]);
         let i = values.iter().position(|[d]| !(d.v.is_finite() && d.x.is_finite() && d.y.is_finite()))?;
-        let at = |i: u32| trimmed(values[i as usize][0].v, 6);
+        let shown = |i: u32| trimmed(values[i as usize][0].v, 6);
         let operation = match self.ops[i] {
-            Op::One(f, a) => format!("{}({})", format!("{f:?}").to_lowercase(), at(a)),
-            Op::Two(Binary::Div, a, b) => format!("{} / {}", at(a), at(b)),
-            Op::Two(f, a, b) => format!("{}({}, {})", format!("{f:?}").to_lowercase(), at(a), at(b)),
-            Op::Powi(a, n) => format!("({})^{n}", at(a)),
-            Op::Powf(a, n) => format!("({})^{n}", at(a)),
+            Op::One(f, a) => format!("{}({})", format!("{f:?}").to_lowercase(), shown(a)),
+            Op::Two(Binary::Div, a, b) => format!("{} / {}", shown(a), shown(b)),
+            Op::Two(f, a, b) => format!("{}({}, {})", format!("{f:?}").to_lowercase(), shown(a), shown(b)),
+            Op::Powi(a, n) => format!("({})^{n}", shown(a)),
+            Op::Powf(a, n) => format!("({})^{n}", shown(a)),
             Op::Const(_) | Op::X | Op::Y | Op::Same(_) => return None,
         };
         let what = if values[i][0].v.is_finite() { "has no finite derivative" } else { "has no finite value" };
         Some(format!("{operation} {what}"))
     }
 
-    /// Returns the kinks of the values `of` and of everything they depend on.
-    pub(crate) fn kinks(&self, of: [u32; 2]) -> Vec<Kink> {
-        let needed = self.needed(of);
+    /// Returns the kinks of two results and of everything they depend on.
+    pub(crate) fn kinks(&self, results: [u32; 2]) -> Vec<Kink> {
+        let needed = self.needed(results);
         let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
         ops.filter_map(|(_, op)| match *op {
             Op::One(Unary::Abs | Unary::Sign, a) => Some(Kink::Zero(a)),
@@ -460,11 +455,10 @@ impl Program {
         .collect()
     }
 
-    fn needed(&self, of: [u32; 2]) -> Vec<bool> {
+    /// Returns `true` for every value that the results depend on.
+    fn needed(&self, results: [u32; 2]) -> Vec<bool> {
         let mut needed = vec![false; self.ops.len()];
-        for i in of {
-            needed[i as usize] = true;
-        }
+        results.iter().for_each(|i| needed[*i as usize] = true);
         // Operands precede their users, so one pass from the end reaches everything.
         for i in (0..self.ops.len()).rev() {
             match self.ops[i] {
@@ -486,10 +480,10 @@ impl Program {
         let ops = self.ops.iter().map(|op| match *op {
             Op::One(Unary::Abs, a) if v[a as usize] < 0.0 => Op::One(Unary::Neg, a),
             Op::One(Unary::Abs, a) => Op::Same(a),
-            Op::One(f @ (Unary::Sign | Unary::Floor), a) => Op::Const(one(f, v[a as usize])),
+            Op::One(f @ (Unary::Sign | Unary::Floor), a) => Op::Const(apply_unary(f, v[a as usize])),
             Op::Two(f @ (Binary::Min | Binary::Max), a, b) => {
-                let first = (v[a as usize] <= v[b as usize]) == (f == Binary::Min);
-                Op::Same(if first { a } else { b })
+                let takes_a = (v[a as usize] <= v[b as usize]) == (f == Binary::Min);
+                Op::Same(if takes_a { a } else { b })
             }
             other => other,
         });
@@ -500,23 +494,23 @@ impl Program {
     pub(crate) fn affine(&self, i: u32) -> Option<[f64; 3]> {
         let mut forms: Vec<Option<[f64; 3]>> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
-            let at = |i: u32| forms[i as usize];
-            let constant = |i: u32| at(i).filter(|f| f[0] == 0.0 && f[1] == 0.0).map(|f| f[2]);
-            let scaled = |i: u32, k: f64| at(i).map(|f| f.map(|c| c * k));
+            let form = |i: u32| forms[i as usize];
+            let constant = |i: u32| form(i).filter(|f| f[0] == 0.0 && f[1] == 0.0).map(|f| f[2]);
+            let scaled = |i: u32, k: f64| form(i).map(|f| f.map(|c| c * k));
             forms.push(match *op {
                 Op::Const(c) => Some([0.0, 0.0, c]),
                 Op::X => Some([1.0, 0.0, 0.0]),
                 Op::Y => Some([0.0, 1.0, 0.0]),
-                Op::Same(a) => at(a),
+                Op::Same(a) => form(a),
                 Op::One(Unary::Neg, a) => scaled(a, -1.0),
-                Op::Two(Binary::Add, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] + b[i])),
-                Op::Two(Binary::Sub, a, b) => at(a).zip(at(b)).map(|(a, b)| from_fn(|i| a[i] - b[i])),
+                Op::Two(Binary::Add, a, b) => form(a).zip(form(b)).map(|(a, b)| from_fn(|i| a[i] + b[i])),
+                Op::Two(Binary::Sub, a, b) => form(a).zip(form(b)).map(|(a, b)| from_fn(|i| a[i] - b[i])),
                 Op::Two(Binary::Mul, a, b) => match (constant(a), constant(b)) {
                     (_, Some(k)) => scaled(a, k),
                     (Some(k), _) => scaled(b, k),
                     _ => None,
                 },
-                Op::Two(Binary::Div, a, b) => constant(b).and_then(|k| at(a).map(|f| f.map(|c| c / k))),
+                Op::Two(Binary::Div, a, b) => constant(b).and_then(|k| form(a).map(|f| f.map(|c| c / k))),
                 _ => None,
             });
         }
@@ -538,42 +532,42 @@ pub(crate) enum Kink {
 impl Kink {
     /// Evaluates a function that is zero at the kink.
     pub(crate) fn level<S: Real>(self, values: &[[S; 1]]) -> S {
-        let at = |i: u32| values[i as usize][0];
+        let value = |i: u32| values[i as usize][0];
         match self {
-            Self::Zero(a) => at(a),
-            Self::Integer(a) => (at(a) * PI).sin(),
-            Self::Equal(a, b) => at(a) - at(b),
+            Self::Zero(a) => value(a),
+            Self::Integer(a) => (value(a) * PI).sin(),
+            Self::Equal(a, b) => value(a) - value(b),
         }
     }
 }
 
-fn one<S: Real>(op: Unary, a: S) -> S {
-    let rest = |a: S| (-(a * a) + 1.0).sqrt();
-    // Both expressions hold on both sides, but only one does not overflow or cancel.
-    let side = if a.value() < 0.0 { -1.0 } else { 1.0 };
+fn apply_unary<S: Real>(op: Unary, a: S) -> S {
+    let cosine_of_asin = |a: S| (-(a * a) + 1.0).sqrt();
+    // tanh and asinh are odd; their formulas for |a| neither overflow nor cancel.
+    let sign = if a.value() < 0.0 { -1.0 } else { 1.0 };
     match op {
         Unary::Neg => -a,
         Unary::Sin => a.sin(),
         Unary::Cos => a.cos(),
         Unary::Tan => a.sin() / a.cos(),
-        Unary::Asin => a.atan2(rest(a)),
-        Unary::Acos => rest(a).atan2(a),
+        Unary::Asin => a.atan2(cosine_of_asin(a)),
+        Unary::Acos => cosine_of_asin(a).atan2(a),
         Unary::Atan => a.atan2(S::from(1.0)),
         Unary::Sqrt => a.sqrt(),
         Unary::Exp => a.exp(),
         Unary::Ln => a.ln(),
         Unary::Abs => a.abs(),
         Unary::Tanh => {
-            let e = (a * (-2.0 * side)).exp();
-            (S::from(2.0) / (e + 1.0) - 1.0) * side
+            let e = (a * (-2.0 * sign)).exp();
+            (S::from(2.0) / (e + 1.0) - 1.0) * sign
         }
-        Unary::Asinh => (a * side + (a.powi(2) + 1.0).sqrt()).ln() * side,
+        Unary::Asinh => (a * sign + (a.powi(2) + 1.0).sqrt()).ln() * sign,
         Unary::Sign => a.sign(),
         Unary::Floor => a.floor(),
     }
 }
 
-fn two<S: Real>(op: Binary, a: S, b: S) -> S {
+fn apply_binary<S: Real>(op: Binary, a: S, b: S) -> S {
     match op {
         Binary::Add => a + b,
         Binary::Sub => a - b,
@@ -587,9 +581,7 @@ fn two<S: Real>(op: Binary, a: S, b: S) -> S {
     }
 }
 
-// Formulas for single numbers, as in presets.
-
-/// Named values, and formulas over them.
+/// Named values, and formulas over them for single numbers, as in presets.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Calculator {
     values: Vec<(String, f64)>,
@@ -633,15 +625,13 @@ impl Calculator {
         for (name, v) in self.values.iter().map(|(n, v)| (n.as_str(), *v)).chain([("pi", PI)]) {
             names.set(name, program.constant(v).ok_or(FormulaError::TooLong)?);
         }
-        let at = parse(formula, &names, &mut program).map_err(|e| FormulaError::Syntax(formula.to_owned(), e))?;
-        let value = program.run([0.0], [0.0]).get(at as usize).map_or(f64::NAN, |v| v[0]);
+        let result = parse(formula, &names, &mut program).map_err(|e| FormulaError::Syntax(formula.to_owned(), e))?;
+        let value = program.run([0.0], [0.0]).get(result as usize).map_or(f64::NAN, |v| v[0]);
         if value.is_finite() { Ok(value) } else { Err(FormulaError::NotFinite(formula.to_owned())) }
     }
 }
 
-// Errors in formulas. Their messages continue a sentence about the formula or the file it is in.
-
-/// A definition or formula of a [`Calculator`] that has no value.
+/// A definition or formula of a [`Calculator`] that has no value. Messages continue a sentence about the formula or the file it is in.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub(crate) enum FormulaError {
     #[error("is not NAME = FORMULA")]

@@ -133,7 +133,13 @@ impl Recipe {
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
         budget: &Arc<Budget>,
     ) -> Result<BuiltRecipe, Error> {
-        self.build_parts(registry, &self.source_frame(frame), &[self.all_of(artwork)], budget).map(|b| b.whole)
+        // Only the frame of the source is known.
+        let mut frames = vec![None; self.steps.len()];
+        if let Some(known) = if self.is_inverse() { frames.last_mut() } else { frames.first_mut() } {
+            *known = Some(frame);
+        }
+        let all = Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() };
+        self.build_parts(registry, &frames, &[all], budget).map(|b| b.whole)
     }
 
     /// Builds steps that apply to parts of the artwork, within a budget; see [`Recipe::build_within`]. `start` has the frame of every step
@@ -149,41 +155,41 @@ impl Recipe {
         portions: &[Portion<'_>],
         budget: &Arc<Budget>,
     ) -> Result<BuiltParts, Error> {
-        let paths: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
-        budget.spend(PATH_SEGMENT_WORK * paths as f64).map_err(GeometryError::Limit)?;
-        let count = |out: &BuiltRecipe, portion: &Portion<'_>| {
-            let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
-            let places = out.placement.copies.len().max(1) as f64;
-            let work = SAMPLE_WORK * places * samples as f64 * out.map.cost().work;
-            budget.spend(work).map_err(GeometryError::Limit)
-        };
-        self.build_counted(registry, start, portions, (&count, budget))
+        let path_segments: usize = self.steps.iter().map(|s| s.args.path_segments()).sum();
+        budget.spend(PATH_SEGMENT_WORK * path_segments as f64).map_err(GeometryError::Limit)?;
+        if !self.is_inverse() {
+            return self.build_in(registry, start, portions, budget);
+        }
+        let (frames, change) = self.frames_of_inverse_steps(registry, start, portions, budget)?;
+        let mut out = self.build_in(registry, &frames, portions, budget)?;
+        if let Some(step) = out.whole.steps.last_mut().filter(|_| change > SETTLED) {
+            step.warn(format!(
+                "the boxes that percentages of the later steps refer to were not found again, and differ by {change:.1e} of their size: \
+                 the result is not the source; give those steps lengths instead"
+            ));
+        }
+        Ok(out)
     }
 
     /// Returns `true` if no part of the artwork to which step `i` applies has been moved by an earlier step; for a recipe of inverse steps
     /// alone, if none is moved by a later one. The frame of the step is then the source's.
     #[must_use]
     pub fn starts(&self, i: usize, portions: &[Portion<'_>]) -> bool {
-        let end = |p: &Portion<'_>| if self.undoes() { p.steps.last().copied() } else { p.steps.first().copied() };
-        portions.iter().filter(|p| p.steps.contains(&i)).all(|p| end(p) == Some(i))
+        let at_source = |p: &Portion<'_>| if self.is_inverse() { p.steps.last() } else { p.steps.first() }.copied();
+        portions.iter().filter(|p| p.steps.contains(&i)).all(|p| at_source(p) == Some(i))
     }
 
     /// Returns `true` if the recipe has several steps and all are inverse.
-    fn undoes(&self) -> bool {
+    fn is_inverse(&self) -> bool {
         self.steps.len() > 1 && self.steps.iter().all(|s| s.inverse)
-    }
-
-    /// The artwork as one portion to which every step applies.
-    fn all_of<'a>(&self, artwork: &(impl Iterator<Item = &'a Outline> + Clone)) -> Portion<'a> {
-        Portion { steps: (0..self.steps.len()).collect(), outlines: artwork.clone().collect() }
     }
 
     /// Builds every step. Percentages refer to `frame` in the first step, and in later ones to the bounding box of `artwork`
     /// after the earlier steps.
     ///
     /// A recipe of inverse steps alone undoes its reverse ([`Recipe::inverted`]): `artwork` is a result, `frame` that of its source, and
-    /// the frames of the other steps are the boxes of the artwork on its way back. Those depend on the inverses, and these on them: they
-    /// are found by iteration. A warning says so if they do not settle.
+    /// the frames of the other steps are the boxes of the artwork on its way back. The boxes depend on the inverses and the inverses on the
+    /// boxes, so both are found by iteration; pathwarp warns if it does not converge.
     ///
     /// # Errors
     /// [`Error::Input`] for an unknown deformation or a step that only the first can be, and any [`Error`] from building a step.
@@ -193,71 +199,40 @@ impl Recipe {
         frame: Frame,
         artwork: &(impl Iterator<Item = &'a Outline> + Clone),
     ) -> Result<BuiltRecipe, Error> {
-        let unlimited = Arc::new(Budget::new(Limits::none()));
-        let counting: Counting<'_> = (&|_, _| Ok(()), &unlimited);
-        self.build_counted(registry, &self.source_frame(frame), &[self.all_of(artwork)], counting).map(|b| b.whole)
+        self.build_within(registry, frame, artwork, &Arc::new(Budget::new(Limits::none())))
     }
 
-    /// The known frames of a recipe whose steps apply to all artwork: only the frame of the source.
-    fn source_frame(&self, source: Frame) -> Vec<Option<Frame>> {
-        let known = if self.undoes() { self.steps.len() - 1 } else { 0 };
-        let mut source = Some(source);
-        (0..self.steps.len()).map(|i| if i == known { source.take() } else { None }).collect()
-    }
-
-    /// Builds every step. Inverse steps alone are built in the frames on the way back.
-    fn build_counted(
+    /// The frames of inverse steps, in their order, for artwork that is a result; and the largest change of a frame in the last iteration,
+    /// as a fraction of its size. `start` has the frames of the source. The iteration begins with the frames of the inverted recipe for
+    /// artwork that fills the source's box.
+    fn frames_of_inverse_steps(
         &self,
         registry: &Registry,
         start: &[Option<Frame>],
         portions: &[Portion<'_>],
-        counting: Counting<'_>,
-    ) -> Result<BuiltParts, Error> {
-        if !self.undoes() {
-            return self.build_in(registry, start, portions, counting);
-        }
-        let (frames, off) = self.frames_on_the_way_back(registry, start, portions, counting)?;
-        let mut out = self.build_in(registry, &frames, portions, counting)?;
-        if let Some(step) = out.whole.steps.last_mut().filter(|_| off > SETTLED) {
-            step.warn(format!(
-                "the boxes that percentages of the later steps refer to were not found again, and differ by {off:.1e} of their size: \
-                 the result is not the source; give those steps lengths instead"
-            ));
-        }
-        Ok(out)
-    }
-
-    /// The frames of inverse steps, in their order, for artwork that is a result; and the distance by which the last iteration moved them,
-    /// as a share of their size. `start` has the frames of the source.
-    fn frames_on_the_way_back(
-        &self,
-        registry: &Registry,
-        start: &[Option<Frame>],
-        portions: &[Portion<'_>],
-        counting: Counting<'_>,
+        budget: &Arc<Budget>,
     ) -> Result<(Vec<Option<Frame>>, f64), Error> {
-        let turned = |i: usize| self.steps.len() - 1 - i;
-        let any = || start.iter().flatten().next();
-        let page = |p: &Portion<'_>| {
-            let source = p.steps.last().and_then(|&i| start[i].as_ref()).or_else(any);
+        // Portions whose last step has no known frame take that of others.
+        let any_frame = || start.iter().flatten().next();
+        let source_box = |p: &Portion<'_>| {
+            let source = p.steps.last().and_then(|&i| start[i].as_ref()).or_else(any_frame);
             let Rect { x0, y0, x1, y1 } = source.map_or(Rect::ZERO, |f| f.rect);
             Outline::from_points(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(Point::from), true)
         };
-        let pages: Vec<Outline> = portions.iter().map(page).collect();
-        let there: Vec<Portion<'_>> = std::iter::zip(portions, &pages)
-            .map(|(p, page)| Portion {
-                steps: p.steps.iter().rev().map(|&i| turned(i)).collect(),
-                outlines: vec![page],
+        let boxes: Vec<Outline> = portions.iter().map(source_box).collect();
+        let forward: Vec<Portion<'_>> = std::iter::zip(portions, &boxes)
+            .map(|(p, outline)| Portion {
+                steps: p.steps.iter().rev().map(|&i| self.steps.len() - 1 - i).collect(),
+                outlines: vec![outline],
             })
             .collect();
         let sources: Vec<Option<Frame>> = start.iter().rev().cloned().collect();
-        let there = self.inverted().build_in(registry, &sources, &there, counting)?.whole;
-        let mut frames: Vec<Frame> = there.frames.into_iter().rev().collect();
-        let (count, budget) = counting;
-        let mut off = f64::INFINITY;
-        for _ in 0..MAX_TURNS {
+        let forward = self.inverted().build_in(registry, &sources, &forward, budget)?.whole;
+        let mut frames: Vec<Frame> = forward.frames.into_iter().rev().collect();
+        let mut change = f64::INFINITY;
+        for _ in 0..MAX_ITERATIONS {
             let mut back: Vec<BuiltRecipe> = portions.iter().map(|_| BuiltRecipe::new(frames.len(), budget)).collect();
-            off = 0.0;
+            change = 0.0;
             for (i, step) in self.steps.iter().enumerate() {
                 let members: Vec<usize> = members(portions, i).collect();
                 // The frames of the source are known, and no step comes after them.
@@ -268,21 +243,20 @@ impl Recipe {
                 let map = inverse(&built, &frames[i], budget);
                 for &m in &members {
                     back[m].map.push(Arc::clone(&map));
-                    count(&back[m], &portions[m])?;
+                    back[m].charge_samples(&portions[m])?;
                 }
-                let found = members.iter().filter_map(|&m| back[m].image_box(portions[m].outlines.iter().copied()));
-                let Some(found) = found.reduce(|a, b| a.union(b)) else { continue };
-                let known = frames[i].rect;
-                let moved =
-                    (found.origin() - known.origin()).hypot().max((found.size() - known.size()).to_vec2().hypot());
-                off = f64::max(off, moved / known.size().to_vec2().hypot());
-                frames[i] = Frame::new(found).with_units_per_px(frames[i].units_per_px);
+                let images = members.iter().filter_map(|&m| back[m].image_box(portions[m].outlines.iter().copied()));
+                let Some(new) = images.reduce(|a, b| a.union(b)) else { continue };
+                let old = frames[i].rect;
+                let distance = (new.origin() - old.origin()).hypot().max((new.size() - old.size()).to_vec2().hypot());
+                change = f64::max(change, distance / old.size().to_vec2().hypot());
+                frames[i] = Frame::new(new).with_units_per_px(frames[i].units_per_px);
             }
-            if off <= SETTLED {
+            if change <= SETTLED {
                 break;
             }
         }
-        Ok((frames.into_iter().map(Some).collect(), off))
+        Ok((frames.into_iter().map(Some).collect(), change))
     }
 
     /// Builds every step in its frame from `start`, or else in the frame of the artwork after the earlier steps.
@@ -291,9 +265,8 @@ impl Recipe {
         registry: &Registry,
         start: &[Option<Frame>],
         portions: &[Portion<'_>],
-        counting: Counting<'_>,
+        budget: &Arc<Budget>,
     ) -> Result<BuiltParts, Error> {
-        let (count, budget) = counting;
         let new = || BuiltRecipe::new(self.steps.len(), budget);
         let mut out = BuiltParts { whole: new(), parts: portions.iter().map(|_| new()).collect() };
         let mut frame = Frame::new(Rect::ZERO);
@@ -304,25 +277,22 @@ impl Recipe {
             if let Some(given) = &start[i] {
                 frame = given.clone();
             } else {
-                all().try_for_each(|(part, portion)| count(part, portion))?;
+                all().try_for_each(|(part, portion)| part.charge_samples(portion))?;
                 let units_per_px = frame.units_per_px;
                 let images = all().filter_map(|(part, portion)| part.image_box(portion.outlines.iter().copied()));
                 let image = images.reduce(|a, b| a.union(b));
                 frame = image.map_or(frame, |b| Frame::new(b).with_units_per_px(units_per_px));
             }
             if entry.info().letters || entry.info().baseline.is_some() {
-                let dots = all().flat_map(|(part, portion)| ink(portion.outlines.iter().copied(), &part.map));
-                frame.ink = dots.collect();
+                let points = all().flat_map(|(part, portion)| ink(portion.outlines.iter().copied(), &part.map));
+                frame.ink = points.collect();
             }
             let mut built = entry.build_from(&step.args, &frame)?;
             let is_first = all().all(|(part, _)| part.steps.is_empty());
             check_placement(&built.placement, i, is_first, step)?;
             if step.inverse {
-                all().try_for_each(|(part, portion)| count(part, portion))?;
-                let torn = |(part, portion): (&BuiltRecipe, &Portion<'_>)| {
-                    part.torn_seam(portion.outlines.iter().copied(), &built, &step.deformation)
-                };
-                if let Some(warning) = all().find_map(torn) {
+                all().try_for_each(|(part, portion)| part.charge_samples(portion))?;
+                if let Some(warning) = all().find_map(|(part, portion)| part.torn_seam(portion, &built, step)) {
                     built.warn(warning);
                 }
                 built = inverted(built, &frame, &step.deformation, budget)?;
@@ -336,8 +306,8 @@ impl Recipe {
     /// Returns the recipe that undoes this one: the steps' inverses, the last first.
     #[must_use]
     pub fn inverted(&self) -> Self {
-        let turned = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
-        Self { steps: self.steps.iter().rev().map(turned).collect() }
+        let inverted = |s: &Step| Step { inverse: !s.inverse, ..s.clone() };
+        Self { steps: self.steps.iter().rev().map(inverted).collect() }
     }
 }
 
@@ -350,7 +320,7 @@ fn entry<'a>(registry: &'a Registry, i: usize, step: &Step) -> Result<&'a Arc<dy
     })
 }
 
-/// The portions to which step `i` applies.
+/// The indices of the portions to which step `i` applies.
 fn members<'p>(portions: &'p [Portion<'_>], i: usize) -> impl Iterator<Item = usize> + use<'p> {
     portions.iter().enumerate().filter(move |(_, p)| p.steps.contains(&i)).map(|(m, _)| m)
 }
@@ -398,6 +368,14 @@ impl BuiltRecipe {
             indices: Vec::with_capacity(steps),
             budget: Arc::clone(budget),
         }
+    }
+
+    /// Charges the budget for samples of the portion's image under the steps so far.
+    fn charge_samples(&self, portion: &Portion<'_>) -> Result<(), GeometryError> {
+        let samples = portion.outlines.iter().flat_map(|o| o.segs()).count() * (PER_SEGMENT + 1);
+        let copies = self.placement.copies.len().max(1) as f64;
+        let work = SAMPLE_WORK * copies * samples as f64 * self.map.cost().work;
+        self.budget.spend(work).map_err(GeometryError::Limit)
     }
 
     /// Adds step `i` of the recipe.
@@ -448,36 +426,30 @@ impl BuiltRecipe {
         let Some(first) = self.frames.first().filter(|_| !self.placement.letters.is_empty()) else {
             return image_box(artwork, &self.placement.copies, &self.map);
         };
-        // The letters of the frame are the letters of all artwork to which the first step applies.
+        // The frame has the letters of all artwork to which the first step applies: those of this artwork are found by where they start.
         let key = |s: &Subpath| [s.start.x.to_bits(), s.start.y.to_bits()];
-        let own: HashSet<[u64; 2]> = artwork.flat_map(|o| &o.subpaths).map(key).collect();
-        let placed = first.letters.iter().zip(&self.placement.letters);
-        let placed = placed.filter(|(l, _)| l.outline.subpaths.first().is_some_and(|s| own.contains(&key(s))));
-        let boxes = placed.filter_map(|(l, p)| image_box(std::iter::once(&l.outline), p, &self.after));
+        let keys: HashSet<[u64; 2]> = artwork.flat_map(|o| &o.subpaths).map(key).collect();
+        let letters = first.letters.iter().zip(&self.placement.letters);
+        let letters = letters.filter(|(l, _)| l.outline.subpaths.first().is_some_and(|s| keys.contains(&key(s))));
+        let boxes = letters.filter_map(|(l, copies)| image_box(std::iter::once(&l.outline), copies, &self.after));
         boxes.reduce(|a, b| a.union(b))
     }
 
-    /// Warns if the image under the steps so far crosses the seam of a deformation to be inverted.
-    fn torn_seam<'a>(
-        &self,
-        artwork: impl Iterator<Item = &'a Outline>,
-        built: &Built,
-        deformation: &str,
-    ) -> Option<String> {
+    /// Returns a warning if a portion's image under the steps so far crosses the seam of a deformation to be inverted.
+    fn torn_seam(&self, portion: &Portion<'_>, built: &Built, step: &Step) -> Option<String> {
         let Seam { end, through } = built.seam?;
-        let at = first_across(artwork, &self.placement.copies, &self.map, end, through - end)?;
+        let artwork = portion.outlines.iter().copied();
+        let crossing = first_crossing(artwork, &self.placement.copies, &self.map, end, through - end)?;
         Some(format!(
-            "{deformation}: undoing it cuts along the ray from {} through {}: artwork that crosses the cut, as at {}, is torn apart; \
+            "{}: undoing it cuts along the ray from {} through {}: artwork that crosses the cut, as at {}, is torn apart; \
              turn the map or cut the artwork there",
+            step.deformation,
             show(end),
             show(through),
-            show(at)
+            show(crossing)
         ))
     }
 }
-
-/// A function called before the artwork's image under the steps so far is sampled, and the budget of inverses.
-type Counting<'a> = (&'a dyn Fn(&BuiltRecipe, &Portion<'_>) -> Result<(), GeometryError>, &'a Arc<Budget>);
 
 /// The inverse of a map: its closed form, or Newton's method over the frame.
 fn inverse(built: &Built, frame: &Frame, budget: &Arc<Budget>) -> Arc<dyn Map> {
@@ -513,11 +485,11 @@ fn inverted(mut built: Built, frame: &Frame, deformation: &str, budget: &Arc<Bud
 /// The number of intervals between the samples of a segment.
 const PER_SEGMENT: usize = 16;
 
-/// Frames on the way back that move by no more than this share of their size have settled.
+/// Frames of inverse steps that an iteration changes by no more than this fraction of their size have settled.
 const SETTLED: f64 = 1e-9;
 
 /// The number of iterations after which frames count as not settling.
-const MAX_TURNS: usize = 64;
+const MAX_ITERATIONS: usize = 64;
 
 /// The work of building a map with a segment of a path that controls it, in evaluations of the budget: most maps measure its length.
 const PATH_SEGMENT_WORK: f64 = 4000.0;
@@ -528,40 +500,42 @@ const INVERTING_WORK: f64 = 150.0;
 /// The work of a sample, which is taken in a batch, in evaluations of the budget.
 const SAMPLE_WORK: f64 = 0.25;
 
-/// Every segment of the artwork, for each of its copies with the copy's position.
-fn placed<'a>(
+/// Every segment of the artwork with the position of each copy of it. Without copies, the artwork stays where it is.
+fn segs_of_copies<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
 ) -> impl Iterator<Item = (&'a Seg, Affine)> {
-    let places = if copies.is_empty() { &[Affine::IDENTITY][..] } else { copies };
-    artwork.flat_map(Outline::segs).flat_map(|s| places.iter().map(move |m| (s, *m)))
+    let copies = if copies.is_empty() { &[Affine::IDENTITY][..] } else { copies };
+    artwork.flat_map(Outline::segs).flat_map(|s| copies.iter().map(move |m| (s, *m)))
 }
 
 /// Samples of the image of a segment: accurate enough for warnings, not for proofs.
-fn image_of(seg: &Seg, place: Affine, map: &dyn Map) -> [Point; PER_SEGMENT + 1] {
-    let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| place * seg.eval(i as f64 / PER_SEGMENT as f64));
+fn sample_image(seg: &Seg, copy: Affine, map: &dyn Map) -> [Point; PER_SEGMENT + 1] {
+    let ps: [Point; PER_SEGMENT + 1] = std::array::from_fn(|i| copy * seg.eval(i as f64 / PER_SEGMENT as f64));
     let mut image = [Point::ORIGIN; PER_SEGMENT + 1];
     map.points(&ps, &mut image);
     image
 }
 
-/// Returns points of the artwork's image, evenly spaced along the artwork.
+/// Returns points of the artwork's image, about evenly spaced along the artwork.
 fn ink<'a>(artwork: impl Iterator<Item = &'a Outline> + Clone, map: &dyn Map) -> Vec<Point> {
     /// The approximate number of points.
     const POINTS: f64 = 1000.0;
-    let length = |s: &Seg| {
+    let length_of = |s: &Seg| {
         let ps = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| s.eval(t));
         ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>()
     };
-    let step = artwork.clone().flat_map(Outline::segs).map(length).sum::<f64>() / POINTS;
-    let (mut out, mut at) = (Vec::new(), 0.5 * step);
+    let step = artwork.clone().flat_map(Outline::segs).map(length_of).sum::<f64>() / POINTS;
+    // The length from the start of the segment to the next point.
+    let mut next = 0.5 * step;
+    let mut out = Vec::new();
     for s in artwork.flat_map(Outline::segs) {
-        let here = length(s);
-        while at < here {
-            out.push(map.point(s.eval(at / here)));
-            at += step;
+        let length = length_of(s);
+        while next < length {
+            out.push(map.point(s.eval(next / length)));
+            next += step;
         }
-        at -= here;
+        next -= length;
     }
     out.retain(|p| p.is_finite());
     out
@@ -573,23 +547,23 @@ fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], 
     const DIRECTIONS: [Vec2; 4] =
         [Vec2::new(1.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(0.0, -1.0)];
     if let Class::Affine(m) = map.class() {
-        let images = placed(artwork, copies).map(|(seg, place)| seg.transformed(m * place).bounding_box());
+        let images = segs_of_copies(artwork, copies).map(|(seg, copy)| seg.transformed(m * copy).bounding_box());
         return images.filter(Rect::is_finite).reduce(|a, b| a.union(b));
     }
     let mut extremes = [f64::NEG_INFINITY; 4];
-    for (seg, place) in placed(artwork, copies) {
-        let samples = image_of(seg, place, map);
+    for (seg, copy) in segs_of_copies(artwork, copies) {
+        let samples = sample_image(seg, copy, map);
         for (direction, extreme) in DIRECTIONS.iter().zip(&mut extremes) {
-            let reach = samples.map(|p| if p.is_finite() { direction.dot(p.to_vec2()) } else { f64::NEG_INFINITY });
-            *extreme = reach.iter().copied().fold(*extreme, f64::max);
+            let height = samples.map(|p| if p.is_finite() { direction.dot(p.to_vec2()) } else { f64::NEG_INFINITY });
+            *extreme = height.iter().copied().fold(*extreme, f64::max);
             for i in 0..=PER_SEGMENT {
                 let (before, after) = (i.saturating_sub(1), (i + 1).min(PER_SEGMENT));
-                // Twice the height of a parabola through three samples above them.
+                // Twice the most by which a parabola through three samples rises above them.
                 let k = i.clamp(1, PER_SEGMENT - 1);
-                let rise = 0.25 * (2.0 * reach[k] - reach[k - 1] - reach[k + 1]).abs();
-                if reach[i] >= reach[before] && reach[i] >= reach[after] && reach[i] + rise > *extreme {
-                    let f = |t: f64| direction.dot(map.point(place * seg.eval(t)).to_vec2());
-                    let top = highest(f, [before, after].map(|k| k as f64 / PER_SEGMENT as f64));
+                let rise = 0.25 * (2.0 * height[k] - height[k - 1] - height[k + 1]).abs();
+                if height[i] >= height[before] && height[i] >= height[after] && height[i] + rise > *extreme {
+                    let f = |t: f64| direction.dot(map.point(copy * seg.eval(t)).to_vec2());
+                    let top = maximum(f, [before, after].map(|k| k as f64 / PER_SEGMENT as f64));
                     *extreme = if top.is_finite() { extreme.max(top) } else { *extreme };
                 }
             }
@@ -599,8 +573,9 @@ fn image_box<'a>(artwork: impl Iterator<Item = &'a Outline>, copies: &[Affine], 
     x1.is_finite().then(|| Rect::new(-x0, -y0, x1, y1))
 }
 
-/// The highest value of a function with one maximum between two parameters.
-fn highest(f: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> f64 {
+/// The largest value of a function with one maximum between two parameters, by golden-section search.
+fn maximum(f: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> f64 {
+    /// 2 − φ, where φ is the golden ratio.
     const GOLDEN: f64 = 0.381_966_011_250_105;
     const STEPS: usize = 40;
     for _ in 0..STEPS {
@@ -611,7 +586,7 @@ fn highest(f: impl Fn(f64) -> f64, [mut a, mut b]: [f64; 2]) -> f64 {
 }
 
 /// Returns the first point where the artwork's image crosses the ray from `end` in the direction `along`.
-fn first_across<'a>(
+fn first_crossing<'a>(
     artwork: impl Iterator<Item = &'a Outline>,
     copies: &[Affine],
     map: &dyn Map,
@@ -619,13 +594,13 @@ fn first_across<'a>(
     along: Vec2,
 ) -> Option<Point> {
     let side = |p: Point| along.cross(p - end);
-    let cross = |a: Point, b: Point| {
+    let crossing = |a: Point, b: Point| {
         let (s, t) = (side(a), side(b));
-        let at = a.lerp(b, s / (s - t));
-        ((s < 0.0) != (t < 0.0) && along.dot(at - end) > 0.0).then_some(at)
+        let p = a.lerp(b, s / (s - t));
+        ((s < 0.0) != (t < 0.0) && along.dot(p - end) > 0.0).then_some(p)
     };
-    let mut images = placed(artwork, copies).map(|(seg, place)| image_of(seg, place, map));
-    images.find_map(|ps| ps.windows(2).find_map(|w| cross(w[0], w[1])))
+    let mut images = segs_of_copies(artwork, copies).map(|(seg, copy)| sample_image(seg, copy, map));
+    images.find_map(|ps| ps.windows(2).find_map(|w| crossing(w[0], w[1])))
 }
 
 // Finds points where undoing a map must go wrong: two points of the source have the same image, and the inverse can return only one
@@ -635,9 +610,9 @@ fn first_across<'a>(
 const GRID: usize = 32;
 /// The number of all samples.
 const SAMPLES: usize = GRID * GRID;
-/// A point and the preimage of its image are two points if they are farther apart than this share of the box's diagonal, far
-/// above the error of Newton's method.
-const APART: f64 = 1e-6;
+/// A point and the preimage of its image are two points if their distance exceeds this fraction of the box's diagonal, far above the error
+/// of Newton's method.
+const MIN_DISTANCE: f64 = 1e-6;
 
 /// A point of the source whose image comes back as another point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -653,22 +628,19 @@ fn ambiguity(map: &dyn Map, inverse: &dyn Map, frame: Rect) -> Option<Ambiguity>
     let mut creases = Creases::default();
     map.creases(&mut creases);
     // The middles of cells are sampled, since the two ends of a seam along the box's edge share their image by design.
-    let at = |i: usize, j: usize| {
-        let share = |n: usize| (n as f64 + 0.5) / GRID as f64;
-        Point::new(frame.x0 + frame.width() * share(i), frame.y0 + frame.height() * share(j))
+    let sample = |n: usize| {
+        let fraction = |i: usize| (i as f64 + 0.5) / GRID as f64;
+        Point::new(frame.x0 + frame.width() * fraction(n % GRID), frame.y0 + frame.height() * fraction(n / GRID))
     };
-    let sources: Vec<Point> = (0..SAMPLES).map(|n| at(n % GRID, n / GRID)).filter(|p| creases.defined_at(*p)).collect();
+    let sources: Vec<Point> = (0..SAMPLES).map(sample).filter(|p| creases.defined_at(*p)).collect();
     let mut images = vec![Point::ORIGIN; sources.len()];
     map.points(&sources, &mut images);
     let mut returned = vec![Point::ORIGIN; sources.len()];
     inverse.points(&images, &mut returned);
-    let apart = APART * frame.width().hypot(frame.height());
-    let all = sources.into_iter().zip(images).zip(returned).map(|((source, image), returned)| Ambiguity {
-        source,
-        returned,
-        image,
-    });
-    all.filter(|a| a.image.is_finite() && a.returned.is_finite()).find(|a| a.source.distance(a.returned) > apart)
+    let min_distance = MIN_DISTANCE * frame.width().hypot(frame.height());
+    let triples = sources.into_iter().zip(images).zip(returned);
+    let mut all = triples.map(|((source, image), returned)| Ambiguity { source, returned, image });
+    all.find(|a| a.image.is_finite() && a.returned.is_finite() && a.source.distance(a.returned) > min_distance)
 }
 
 #[cfg(test)]
@@ -756,9 +728,9 @@ mod tests {
         assert!(back.steps.iter().all(|s| s.explanation.warnings.is_empty()));
         for seg in art.segs() {
             let p = seg.eval(0.3);
-            let off = back.map.point(there.map.point(p)).distance(p);
+            let distance = back.map.point(there.map.point(p)).distance(p);
             // Boxes are sampled.
-            assert!(off < 0.02, "{p:?} comes back {off} away");
+            assert!(distance < 0.02, "{p:?} comes back {distance} away");
         }
     }
 

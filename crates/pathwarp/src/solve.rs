@@ -1,7 +1,7 @@
 //! Linear systems with more unknowns than equations: finds the smallest change that satisfies them.
 
-/// Eigenvalues below this share of the largest count as zero, as for two equations that are almost equal.
-const RANK: f64 = 1e-12;
+/// Eigenvalues below this fraction of the largest count as zero, as for two equations that are almost equal.
+const RANK_TOLERANCE: f64 = 1e-12;
 
 /// Returns the solution D of R·D = Δ of least squares and smallest norm, D = Rᵀ(R·Rᵀ)⁺Δ. `rows` holds the rows of R, all of one
 /// length, and `want` the rows of Δ.
@@ -19,7 +19,7 @@ pub fn smallest_change<const D: usize>(rows: &[Vec<f64>], want: &[[f64; D]]) -> 
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let gram: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
     let (values, vectors) = eigen(gram);
-    let min = RANK * values.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let min = RANK_TOLERANCE * values.iter().fold(0.0, |a: f64, b| a.max(*b));
     // First (R·Rᵀ)⁺·Δ, then back through Rᵀ.
     let mut y = vec![[0.0; D]; n];
     for (k, value) in values.iter().enumerate().filter(|(_, v)| **v > min) {
@@ -63,18 +63,19 @@ fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = a.len();
     let mut v: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     for _ in 0..MAX_SWEEPS {
-        let mut done = true;
+        let mut is_diagonal = true;
         for p in 0..n {
             for q in p + 1..n {
                 if a[p][q].abs() <= f64::EPSILON * (a[p][p] * a[q][q]).abs().sqrt() {
                     continue;
                 }
-                done = false;
+                is_diagonal = false;
+                // The rotation with tangent t, sine s and cosine c makes a[p][q] zero.
                 let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
                 let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
                 let s = t * c;
-                for row in &mut a {
+                for row in a.iter_mut().chain(&mut v) {
                     let (x, y) = (row[p], row[q]);
                     (row[p], row[q]) = (c * x - s * y, s * x + c * y);
                 }
@@ -82,13 +83,9 @@ fn eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
                 for (x, y) in above[p].iter_mut().zip(&mut below[0]) {
                     (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
                 }
-                for row in &mut v {
-                    let (x, y) = (row[p], row[q]);
-                    (row[p], row[q]) = (c * x - s * y, s * x + c * y);
-                }
             }
         }
-        if done {
+        if is_diagonal {
             break;
         }
     }

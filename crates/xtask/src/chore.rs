@@ -1,6 +1,6 @@
 //! Chores, and the common parts of their command lines.
 
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::{Path, PathBuf};
 
 /// An error message for the person at the terminal.
@@ -27,6 +27,11 @@ pub(crate) fn path_option(name: &'static str, value: &'static str) -> Arg {
 /// An option `--name N` that takes a count.
 pub(crate) fn count_option(name: &'static str, default: &'static str) -> Arg {
     Arg::new(name).long(name).value_name("N").value_parser(value_parser!(usize)).default_value(default)
+}
+
+/// An option `--name` without a value.
+pub(crate) fn flag_option(name: &'static str) -> Arg {
+    Arg::new(name).long(name).action(ArgAction::SetTrue)
 }
 
 /// The option `--program FILE`, which names the pathwarp to run.

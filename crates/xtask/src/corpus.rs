@@ -5,11 +5,12 @@
 //! curves.
 
 use crate::chore::{Chore, workspace};
+use crate::shell::{ends_in, files_below};
 use clap::Command as ChoreCommand;
 use pathwarp::Outline;
 use pathwarp::kurbo::Affine;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 pub(crate) const CHORE: Chore = Chore {
@@ -37,7 +38,7 @@ const SETS: [IconSet; 2] = [
 /// Side of the box that icons are scaled to.
 const BOX: f64 = 1000.0;
 
-/// Tolerance for arcs: any error is allowed, which gives one cubic per quarter turn.
+/// Tolerance for arcs that become cubics: any error is allowed, which gives one cubic per quarter turn.
 const ARC_TOLERANCE: f64 = f64::INFINITY;
 
 /// Fetches the icons, writes `corpus/icons.txt` beside the workspace's `Cargo.toml`, and returns a summary.
@@ -47,18 +48,14 @@ fn fetch_all() -> io::Result<String> {
     let mut lines = Vec::new();
     for set in &SETS {
         let work = folder.join(set.package);
-        std::fs::create_dir_all(&work)?;
         fetch(set.package, &work)?;
-        let mut files: Vec<PathBuf> = std::fs::read_dir(work.join(set.folder))?
-            .map(|e| e.map(|e| e.path()))
-            .collect::<io::Result<Vec<_>>>()?
-            .into_iter()
-            .filter(|p| p.extension().is_some_and(|e| e == "svg"))
-            .collect();
-        files.sort();
+        let files = files_below(&work.join(set.folder), |f| ends_in(f, &["svg"])).map_err(io::Error::other)?;
         for file in files.iter().step_by(set.every) {
             let text = std::fs::read_to_string(file)?;
-            lines.extend(path_data(&text).map(|d| normalised(d, BOX / set.side)).filter(|d| !d.is_empty()));
+            let scale = Affine::scale(BOX / set.side);
+            let data = text.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next());
+            let icons = data.map(|d| Outline::from_svg_lossy(d).transformed(scale).to_bez_path(ARC_TOLERANCE).to_svg());
+            lines.extend(icons.filter(|d| !d.is_empty()));
         }
     }
     let mut out = io::BufWriter::new(std::fs::File::create(folder.join("icons.txt"))?);
@@ -74,6 +71,7 @@ fn fetch(package: &str, work: &Path) -> io::Result<()> {
     if work.join("package").is_dir() {
         return Ok(());
     }
+    std::fs::create_dir_all(work)?;
     let packed = output_of(Command::new("npm").args(["pack", "--silent", package]).current_dir(work))?;
     let archive = packed.lines().last().unwrap_or_default().trim().to_owned();
     output_of(Command::new("tar").args(["xzf", &archive]).current_dir(work))?;
@@ -89,14 +87,4 @@ fn output_of(command: &mut Command) -> io::Result<String> {
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         Err(io::Error::other(format!("{command:?}: {message}")))
     }
-}
-
-/// The values of the `d` attributes in an SVG file.
-fn path_data(svg: &str) -> impl Iterator<Item = &str> {
-    svg.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next())
-}
-
-/// Scales path data and converts its arcs to cubics.
-fn normalised(d: &str, scale: f64) -> String {
-    Outline::from_svg_lossy(d).transformed(Affine::scale(scale)).to_bez_path(ARC_TOLERANCE).to_svg()
 }

@@ -3,7 +3,6 @@
 
 use crate::chore::{Chore, ChoreError, at, program_option, workspace};
 use crate::hostile::measure;
-use crate::process::Usage;
 use crate::shell;
 use crate::speed::generated::Random;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -56,14 +55,16 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
         let files = folder.join(kind);
         std::fs::create_dir_all(&files).map_err(at(&files))?;
         make(kind, &files)?;
-        let (mut count, mut largest, mut before) = (0, 0.0_f64, refused.len());
+        let (mut count, mut largest, refused_before) = (0, 0.0_f64, refused.len());
+        // For time and memory: the largest fraction of what is promised, and a text with both numbers.
         let mut most = [(0.0, String::new()), (0.0, String::new())];
         for file in shell::files_below(&files, |_| true)? {
             let used = measure(&program, line, &file, scratch.path())?;
             let size = std::fs::metadata(&file).map_err(at(&file))?.len() as f64;
             let (size, promised) = promise(&file, size)?;
             (count, largest) = (count + 1, largest.max(size));
-            for (most, (used, promised, unit)) in most.iter_mut().zip(compared(&used, promised)) {
+            let measured = [(used.cpu, promised[0], "s"), (used.megabytes(), promised[1], "MB")];
+            for (most, (used, promised, unit)) in most.iter_mut().zip(measured) {
                 if used / promised > most.0 {
                     *most = (used / promised, format!("{used:.1} of {promised:.0} {unit}"));
                 }
@@ -73,17 +74,13 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
                 refused.push(format!("{}: {:?}", file.display(), used.code));
             }
         }
-        before = refused.len() - before;
+        let refused = refused.len() - refused_before;
         let unit = if kind == photographs.0 { "megapixels" } else { "MB" };
         let [(_, time), (_, memory)] = most;
-        let _ = writeln!(table, "| {kind} | `{line}` | {count} | {largest:.1} {unit} | {before} | {time} | {memory} |");
+        let _ =
+            writeln!(table, "| {kind} | `{line}` | {count} | {largest:.1} {unit} | {refused} | {time} | {memory} |");
     }
     if refused.is_empty() { Ok(table) } else { Err(format!("{table}\nrefused: {}", refused.join("; "))) }
-}
-
-/// Time and memory: used, promised, and the unit.
-fn compared(used: &Usage, [seconds, megabytes]: [f64; 2]) -> [(f64, f64, &'static str); 2] {
-    [(used.cpu, seconds, "s"), (used.megabytes(), megabytes, "MB")]
 }
 
 /// The size of a file in megabytes or megapixels, and the seconds and megabytes that `docs/security.md` (*Work*) promises for it.
@@ -122,12 +119,12 @@ fn make(kind: &str, folder: &Path) -> Result<(), ChoreError> {
 /// A photograph of 5·n megapixels: soft light, sometimes with grain, in the ratio 3:2.
 fn photograph(n: usize) -> Result<Vec<u8>, pathwarp_raster::Error> {
     let height = (f64::from(u32::try_from(n).unwrap_or(1)) * 5e6 / 1.5).sqrt() as u32;
-    let (width, grain) = (height * 3 / 2, u64::from(n % 4 == 3));
+    let (width, has_grain) = (height * 3 / 2, n % 4 == 3);
     let mut pixmap = Pixmap::new(width, height).ok_or(pathwarp_raster::Error::Renderer)?;
     let mut random = Random(n as u64);
     for (i, pixel) in pixmap.data_mut().chunks_exact_mut(4).enumerate() {
         let (x, y) = (i as u64 % u64::from(width), i as u64 / u64::from(width));
-        let noise = if grain == 1 { (random.next() * 24.0) as u64 } else { 0 };
+        let noise = if has_grain { (random.next() * 24.0) as u64 } else { 0 };
         let light = |a: u64, b: u64| ((a * x + b * y) * 200 / (10 * u64::from(width)) + noise).min(255) as u8;
         pixel.copy_from_slice(&[light(7, 2), light(4, 4), light(1, 8), 255]);
     }
@@ -145,33 +142,33 @@ fn color(random: &mut Random) -> String {
 /// `count` words of two to nine letters.
 fn words(count: usize, random: &mut Random) -> String {
     let letter = |r: &mut Random| char::from(b'a' + (26.0 * r.next()) as u8);
-    let word = |r: &mut Random| (0..2 + (8.0 * r.next()) as usize).map(|_| letter(r)).collect::<String>();
-    (0..count).map(|_| word(random) + " ").collect()
+    (0..count)
+        .map(|_| (0..2 + (8.0 * random.next()) as usize).map(|_| letter(random)).collect::<String>() + " ")
+        .collect()
 }
 
 /// Up to 27,000 characters.
 fn poster(n: usize, random: &mut Random) -> String {
-    let line =
-        |i: usize, r: &mut Random| format!("<text x='5' y='{}' font-size='3'>{}</text>", 4 + 3 * i, words(13, r));
-    (0..16 * n).map(|i| line(i, random)).collect()
+    let y = |i: usize| 4 + 3 * i;
+    (0..16 * n).map(|i| format!("<text x='5' y='{}' font-size='3'>{}</text>", y(i), words(13, random))).collect()
 }
 
 /// Up to 100,000 words, as plotting libraries write them.
 fn plot(n: usize, random: &mut Random) -> String {
-    let mut word = || {
+    let style = "font-family:'DejaVu Sans';font-size:4px;text-anchor:middle;fill:#333333";
+    let word = |_| {
         let ([x, y], text) = (point(random), words(1, random));
-        let style = "font-family:'DejaVu Sans';font-size:4px;text-anchor:middle;fill:#333333";
+        let text = text.trim();
         format!(
-            "<g id='text_{x}'><text style=\"{style}\" x='{x}' y='{y}' transform='rotate(-30 {x} {y})'>{}</text></g>\n",
-            text.trim()
+            "<g id='text_{x}'><text style=\"{style}\" x='{x}' y='{y}' transform='rotate(-30 {x} {y})'>{text}</text></g>\n"
         )
     };
-    (0..5_000 * n).map(|_| word()).collect()
+    (0..5_000 * n).map(word).collect()
 }
 
 /// Coasts of up to 60,000 points in total.
 fn map(n: usize, random: &mut Random) -> String {
-    let mut coast = |_| {
+    let coast = |_| {
         let ([x, y], fill, mut r) = (point(random), color(random), 5.0 + 20.0 * random.next());
         let mut d = String::from("M");
         for k in 0..300 {
@@ -181,12 +178,12 @@ fn map(n: usize, random: &mut Random) -> String {
         }
         format!("<path fill='{fill}' stroke='#333' stroke-width='.2' d='{}Z'/>", d.trim_end_matches('L'))
     };
-    (0..10 * n).map(&mut coast).collect()
+    (0..10 * n).map(coast).collect()
 }
 
 /// Lines, arcs, circles and dashes, with dimensions.
 fn cad(n: usize, random: &mut Random) -> String {
-    let mut part = |_| {
+    let part = |_| {
         let ([x, y], [u, v]) = (point(random), point(random));
         format!(
             "<path d='M{x} {y}L{u} {v}A60 50 0 0 1 {y} {x}' /><circle cx='{x}' cy='{v}' r='{:.1}'/>\
@@ -194,29 +191,28 @@ fn cad(n: usize, random: &mut Random) -> String {
             1.0 + u / 40.0
         )
     };
-    let parts: String = (0..100 * n).map(&mut part).collect();
+    let parts: String = (0..100 * n).map(part).collect();
     format!("<g fill='none' stroke='#000' stroke-width='.35'>{parts}</g>")
 }
 
 /// Staves, and notes with reused heads and stems.
 fn score(n: usize, random: &mut Random) -> String {
     let head = "<defs><path id='h' d='M-4 2C-4-2 4-4 4-1C4 3-4 4-4 2Z'/></defs>";
-    let mut note = |i: usize| {
-        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * ((i / 80) % 16));
-        let up = (8.0 * random.next()) as usize * 3;
-        let y = y + up;
+    let note = |i: usize| {
+        let pitch = (8.0 * random.next()) as usize * 3;
+        let (x, y) = (20 + 12 * (i % 80), 30 + 60 * ((i / 80) % 16) + pitch);
         format!("<use href='#h' x='{x}' y='{y}'/><path d='M{} {y}v-25' stroke='#000'/>", x + 4)
     };
     let staff = |i: usize| {
         format!("<path d='M10 {y}H990' stroke='#000' stroke-width='.5'/>", y = 20 + 60 * (i / 5) + 6 * (i % 5))
     };
-    let (staves, notes) = ((0..80).map(staff).collect::<String>(), (0..200 * n).map(&mut note).collect::<String>());
+    let (staves, notes) = ((0..80).map(staff).collect::<String>(), (0..200 * n).map(note).collect::<String>());
     format!("{head}{staves}{notes}")
 }
 
 /// Faces with gradients, clips and opacity.
 fn emoji(n: usize, random: &mut Random) -> String {
-    let mut face = |i: usize| {
+    let face = |i: usize| {
         let ([x, y], a, b) = (point(random), color(random), color(random));
         format!(
             "<radialGradient id='g{i}'><stop stop-color='{a}'/><stop offset='1' stop-color='{b}'/></radialGradient>\
@@ -226,28 +222,28 @@ fn emoji(n: usize, random: &mut Random) -> String {
              <path clip-path='url(#c{i})' fill='#fff6' d='M{x} {y}h20v20h-20z'/>"
         )
     };
-    (0..10 * n).map(&mut face).collect()
+    (0..10 * n).map(face).collect()
 }
 
 /// Up to two dozen blurred blobs.
 fn blurred(n: usize, random: &mut Random) -> String {
     let blur =
         "<filter id='b' x='-50%' y='-50%' width='200%' height='200%'><feGaussianBlur stdDeviation='30'/></filter>";
-    let mut blob = |_| {
+    let blob = |_| {
         let ([x, y], fill) = (point(random), color(random));
         format!("<circle cx='{x}' cy='{y}' r='{:.0}' fill='{fill}' filter='url(#b)'/>", 50.0 + 250.0 * random.next())
     };
-    format!("{blur}{}", (0..4 + n).map(&mut blob).collect::<String>())
+    format!("{blur}{}", (0..4 + n).map(blob).collect::<String>())
 }
 
 /// Fifty symbols, used over and over.
 fn icons(n: usize, random: &mut Random) -> String {
-    let mut symbol = |i: usize| {
+    let symbol = |i: usize| {
         let [a, b, c, d] = [0; 4].map(|_| (24.0 * random.next()).round());
         let path = format!("<path d='M2 2C{a} {b} {c} {d} 9 9S{d} {a} 20 20Z'/>");
         format!("<symbol id='s{i}' viewBox='0 0 24 24'>{path}<rect x='4' y='4' width='9' height='7' rx='2'/></symbol>")
     };
-    let symbols: String = (0..50).map(&mut symbol).collect();
+    let symbols: String = (0..50).map(symbol).collect();
     let shown = |i: usize| {
         format!("<use href='#s{}' x='{}' y='{}' width='12' height='12'/>", i % 50, 14 * (i % 70), 14 * (i / 70))
     };
@@ -257,7 +253,7 @@ fn icons(n: usize, random: &mut Random) -> String {
 /// Boxes with words, and arrows.
 fn diagram(n: usize, random: &mut Random) -> String {
     let arrow = "<marker id='a' markerWidth='6' markerHeight='6' refX='5' refY='3' orient='auto'><path d='M0 0L6 3L0 6Z'/></marker>";
-    let mut shape = |_| {
+    let shape = |_| {
         let ([x, y], [u, v], label) = (point(random), point(random), words(2, random));
         format!(
             "<rect x='{x}' y='{y}' width='60' height='24' rx='4' fill='#eef' stroke='#336'/>\
@@ -267,5 +263,5 @@ fn diagram(n: usize, random: &mut Random) -> String {
             y + 15.0
         )
     };
-    format!("{arrow}{}", (0..60 * n).map(&mut shape).collect::<String>())
+    format!("{arrow}{}", (0..60 * n).map(shape).collect::<String>())
 }

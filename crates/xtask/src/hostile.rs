@@ -49,24 +49,17 @@ fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {
         let mut cells = Vec::new();
         for line in &lines {
             let used = measure(&program, line, &file, scratch.path())?;
-            if is_broken(&used) {
+            // The program's documented exit codes go up to 5.
+            if used.code.is_none_or(|c| c > 5) || used.cpu >= SECONDS || used.megabytes() >= MEGABYTES {
                 broken.push(format!("{name}: {line}"));
             }
-            cells.push(cell(&used));
+            let code = used.code.map_or_else(|| "killed".to_owned(), |c| c.to_string());
+            cells.push(format!("{code}: {:.2} s, {:.0} MB", used.cpu, used.megabytes()));
         }
         cells.resize(DRAWINGS.len(), String::new());
         let _ = writeln!(table, "| {name} | {:.1} kB | {} |", size as f64 / 1e3, cells.join(" | "));
     }
     if broken.is_empty() { Ok(table) } else { Err(format!("{table}\nthe promise is broken by {}", broken.join("; "))) }
-}
-
-fn is_broken(used: &Usage) -> bool {
-    used.code.is_none_or(|c| c > 5) || used.cpu >= SECONDS || used.megabytes() >= MEGABYTES
-}
-
-fn cell(used: &Usage) -> String {
-    let code = used.code.map_or_else(|| "killed".to_owned(), |c| c.to_string());
-    format!("{code}: {:.2} s, {:.0} MB", used.cpu, used.megabytes())
 }
 
 /// Runs a command line in which `IN` is the file and `OUT` a new one in `scratch`.

@@ -44,24 +44,17 @@ fn main() -> ExitCode {
         .arg_required_else_help(true)
         .subcommands(CHORES.iter().map(|chore| (chore.command)()))
         .get_matches();
+    // clap refuses all but these names.
     let Some((name, arguments)) = matches.subcommand() else { return ExitCode::FAILURE };
-    // clap has already refused any other name.
-    let Some(chore) = CHORES.iter().find(|chore| (chore.command)().get_name() == name) else {
-        return ExitCode::FAILURE;
+    let chosen = CHORES.iter().find(|chore| (chore.command)().get_name() == name);
+    let result = chosen.map_or_else(|| Err("unknown".into()), |chore| (chore.run)(arguments));
+    let (text, code) = match result {
+        Ok(summary) => (summary, ExitCode::SUCCESS),
+        Err(failure) => (format!("error: {failure}"), ExitCode::FAILURE),
     };
-    match (chore.run)(arguments) {
-        Ok(summary) => {
-            print(&summary);
-            ExitCode::SUCCESS
-        }
-        Err(failure) => {
-            print(&format!("error: {failure}"));
-            ExitCode::FAILURE
-        }
+    #[expect(clippy::print_stderr, reason = "messages of a program")]
+    {
+        eprintln!("{text}");
     }
-}
-
-#[expect(clippy::print_stderr, reason = "messages of a program")]
-fn print(text: &str) {
-    eprintln!("{text}");
+    code
 }

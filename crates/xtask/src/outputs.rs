@@ -197,7 +197,7 @@ fn hash_of(root: &Path, program: &Path, line: &str) -> Result<String, ChoreError
     let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     let inputs: Vec<&str> = INPUTS.into_iter().filter(|input| line.contains(input)).collect();
     for input in &inputs {
-        copy(&root.join(input), &folder.path().join(input))?;
+        shell::copy_folder(&root.join(input), &folder.path().join(input))?;
     }
     let mut hash = Sha256::new();
     let mut piped = Vec::new();
@@ -224,18 +224,6 @@ fn hash_of(root: &Path, program: &Path, line: &str) -> Result<String, ChoreError
         }
     }
     Ok(hex(&hash.finalize()))
-}
-
-/// Copies the files of a folder, without its subfolders.
-fn copy(from: &Path, to: &Path) -> Result<(), ChoreError> {
-    fs::create_dir_all(to).map_err(at(to))?;
-    for entry in fs::read_dir(from).map_err(at(from))? {
-        let entry = entry.map_err(at(from))?;
-        if entry.path().is_file() {
-            fs::copy(entry.path(), to.join(entry.file_name())).map_err(at(from))?;
-        }
-    }
-    Ok(())
 }
 
 /// A report without messages, times and version.
@@ -274,6 +262,13 @@ mod tests {
         let page = "pathwarp samples/ is prose\n```sh\npathwarp warp mine.svg\npathwarp warp samples/logo.svg\n```\n\
                 pathwarp text, too\n```json\npathwarp text json\n```\n```sh\npathwarp install gimp\npathwarp text word\n```\n";
         assert_eq!(guide_commands(page).collect::<Vec<_>>(), ["warp samples/logo.svg", "text word"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn samples_in_subfolders_are_read() {
+        let hash = |line: &str| hash_of(&workspace(), Path::new("/bin/cat"), line).unwrap();
+        assert_ne!(hash("samples/icons/sun.svg"), hash("samples/icons/cup.svg"));
     }
 
     #[test]

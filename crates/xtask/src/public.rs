@@ -1,7 +1,7 @@
 //! `cargo xtask public`: compares the public items of each library with the list in its folder, `public.txt`.
 
-use crate::chore::{Chore, ChoreError, at, workspace};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use crate::chore::{Chore, ChoreError, at, flag_option, workspace};
+use clap::{ArgMatches, Command};
 use std::fs;
 
 pub(crate) const CHORE: Chore = Chore { command, run };
@@ -21,7 +21,7 @@ const CRATES: [&str; 8] = [
 fn command() -> Command {
     Command::new("public")
         .about("Compare the libraries' public items with the lists beside them")
-        .arg(Arg::new("write").long("write").action(ArgAction::SetTrue).help("Rewrite the lists"))
+        .arg(flag_option("write").help("Rewrite the lists"))
 }
 
 fn run(arguments: &ArgMatches) -> Result<String, ChoreError> {

@@ -75,6 +75,7 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
     let controls = pieces.iter().map(PathSeg::to_cubic).flat_map(|c| [c.p0, c.p1, c.p2, c.p3]);
     let first = pieces[0].start();
     let bounds = controls.fold(Rect::from_points(first, first), |r, p| r.union_pt(p));
+    // A margin of 40 around the drawing.
     let scale = (SIDE - 80.0) / bounds.width().max(bounds.height());
     let to_page = |p: Point| Point::new(40.0 + (p.x - bounds.x0) * scale, 40.0 + (p.y - bounds.y0) * scale);
     draw_truth(&mut svg, &source, &*map, &to_page);
@@ -96,10 +97,8 @@ fn draw(path: &str, tolerance: f64, out: &Path) -> Result<String, ChoreError> {
 /// Draws the exact image as a wide pale line.
 fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, to_page: &impl Fn(Point) -> Point) {
     for seg in source.segs() {
-        let points: Vec<String> = (0..=400)
-            .map(|i| to_page(map.point(seg.eval(f64::from(i) / 400.0))))
-            .map(|p| format!("{:.2},{:.2}", p.x, p.y))
-            .collect();
+        let points = (0..=400).map(|i| to_page(map.point(seg.eval(f64::from(i) / 400.0))));
+        let points: Vec<String> = points.map(coordinates).collect();
         let _ = writeln!(
             svg,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"#d8dce3\" stroke-width=\"9\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>",
@@ -108,31 +107,27 @@ fn draw_truth(svg: &mut String, source: &Outline, map: &dyn Map, to_page: &impl 
     }
 }
 
+/// A point in path data.
+fn coordinates(p: Point) -> String {
+    format!("{:.2},{:.2}", p.x, p.y)
+}
+
 /// Draws one piece with its end nodes and handles.
 fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, to_page: &impl Fn(Point) -> Point) {
     let c = piece.to_cubic();
-    let [a, b, d, e] = [c.p0, c.p1, c.p2, c.p3].map(to_page);
+    let points = [c.p0, c.p1, c.p2, c.p3].map(to_page);
+    let [p0, p1, p2, p3] = points.map(coordinates);
     if matches!(piece, PathSeg::Cubic(_)) {
-        for (n, h) in [(a, b), (e, d)] {
+        for (node, handle, Point { x, y }) in [(&p0, &p1, points[1]), (&p3, &p2, points[2])] {
             let _ = writeln!(
                 svg,
-                "<path d=\"M{:.2},{:.2} L{:.2},{:.2}\" stroke=\"#8a93a3\" stroke-width=\"0.8\"/><circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"2.4\" fill=\"#fff\" stroke=\"#8a93a3\"/>",
-                n.x, n.y, h.x, h.y, h.x, h.y
+                "<path d=\"M{node} L{handle}\" stroke=\"#8a93a3\" stroke-width=\"0.8\"/><circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"2.4\" fill=\"#fff\" stroke=\"#8a93a3\"/>"
             );
         }
     }
-    let _ = writeln!(
-        svg,
-        "<path d=\"M{:.2},{:.2} C{:.2},{:.2} {:.2},{:.2} {:.2},{:.2}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\"/>",
-        a.x, a.y, b.x, b.y, d.x, d.y, e.x, e.y
-    );
-    for n in [a, e] {
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"7\" height=\"7\" fill=\"#2b2f36\"/>",
-            n.x - 3.5,
-            n.y - 3.5
-        );
+    let _ = writeln!(svg, "<path d=\"M{p0} C{p1} {p2} {p3}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\"/>");
+    for Point { x, y } in [points[0], points[3]].map(|p| p - Vec2::new(3.5, 3.5)) {
+        let _ = writeln!(svg, "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"7\" height=\"7\" fill=\"#2b2f36\"/>");
     }
 }
 
@@ -140,6 +135,7 @@ fn draw_piece(svg: &mut String, piece: &PathSeg, colour: &str, to_page: &impl Fn
 fn draw_error(svg: &mut String, pieces: &[PathSeg], source: &Outline, map: &dyn Map, tolerance: f64) -> f64 {
     let lengths: Vec<f64> = pieces.iter().map(|p| p.arclen(1e-6)).collect();
     let total: f64 = lengths.iter().sum();
+    // An error of the tolerance has this height, so that a quarter of the chart is left for larger ones.
     let (left, width, middle, height) = (40.0, SIDE - 80.0, SIDE + CHART / 2.0, CHART * 0.38);
     for (k, colour, dash) in [(-1.0, "#cc3344", "5 4"), (0.0, "#8a93a3", "none"), (1.0, "#cc3344", "5 4")] {
         let y = middle - k * height;
@@ -193,6 +189,7 @@ fn nearest(seg: &Seg, map: &dyn Map, p: Point) -> (f64, Point) {
     let coarse = (0..=COARSE).map(|i| i as f64 / COARSE as f64);
     let best = coarse.min_by(|a, b| at(*a).distance(p).total_cmp(&at(*b).distance(p))).unwrap_or(0.0);
     let (mut lo, mut hi) = ((best - 1.0 / COARSE as f64).max(0.0), (best + 1.0 / COARSE as f64).min(1.0));
+    // Each step keeps 1/φ = 0.618 of the interval.
     for _ in 0..50 {
         let (a, b) = (lo + 0.382 * (hi - lo), hi - 0.382 * (hi - lo));
         if at(a).distance(p) < at(b).distance(p) { hi = b } else { lo = a }

@@ -131,6 +131,7 @@ pub(crate) fn files_below(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Resu
     Ok(out)
 }
 
+/// Copies a folder with its subfolders.
 pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<(), ChoreError> {
     for file in files_below(from, |_| true)? {
         let copy = to.join(file.strip_prefix(from).unwrap_or(&file));

@@ -1,28 +1,30 @@
 //! Finds undeclared kinks and jumps along lines across the box of a map, and describes the creases to declare.
 
-use super::{Tested, number, place};
+use super::{Tested, coordinates, number};
 use kurbo::{Point, Vec2};
 
 /// The number of lines across the box in either direction.
 const LINES: u32 = 16;
 /// The number of intervals between the samples of a line.
 const INTERVALS: u32 = 192;
-/// The largest number of points on a line that are examined.
-const CLOSE: usize = 24;
-/// The number of halvings of the interval around such a point.
+/// The largest number of intervals of a line that are examined.
+const MAX_PEAKS: usize = 24;
+/// The number of halvings of such an interval.
 const HALVINGS: usize = 20;
-/// The number of halvings after which a kink is told from a bend: in a smooth map, the change of slope has fallen to 1/128.
-const APART: usize = 7;
-/// The least change of slope that counts, as a share of the slope or of 1.
+/// The number of halvings after which changes of slope are compared: in a smooth map they have fallen to 1/128, at a kink they are the
+/// same, and at a jump they have grown to 128 times.
+const COMPARED: usize = 7;
+/// The least change of slope that counts, as a fraction of the slope or of 1.
 const LEAST: f64 = 1e-4;
 
-/// A point on a line, with half the length of the interval around it.
+/// An interval of a line in which there may be a kink or jump.
 #[derive(Clone, Copy)]
-struct Place {
-    at: Point,
+struct Interval {
+    center: Point,
+    /// Half of the interval, along the line.
     half: Vec2,
-    /// The changes of slope in that interval, from the first halving on.
-    turns: [f64; HALVINGS],
+    /// The changes of slope in the interval, from the first halving on.
+    changes: [f64; HALVINGS],
 }
 
 /// A point where a map is not smooth.
@@ -36,18 +38,18 @@ struct Break {
 
 /// Describes every curve on which the map has a kink or jump that it does not declare, each with the point where it is worst.
 pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
-    let mut left = closer(tested, candidates(tested));
+    let mut left = refine(tested, candidates(tested));
     let size = tested.frame.size().to_vec2().hypot();
     let mut faults = Vec::new();
     while !left.is_empty() {
         let points: Vec<Point> = left.iter().map(|b| b.at).collect();
         let curve = curve_through_most(&points, 2e-7 * size);
-        // The remaining points lie on other curves.
+        // The other points lie on other curves, or on none.
         let (on, others): (Vec<Break>, Vec<Break>) =
             left.into_iter().partition(|b| curve.is_none_or(|c| c.distance(b.at) < 1e-5 * size));
         left = others;
         let Some(worst) = on.iter().copied().reduce(|a, b| if b.by > a.by { b } else { a }) else { break };
-        let (at, by) = (place(worst.at), number(worst.by));
+        let (at, by) = (coordinates(worst.at), number(worst.by));
         let (more, there) = match curve {
             Some(curve) => (String::new(), format!("at {}", curve.text())),
             None if on.len() == 1 => (String::new(), "there".to_owned()),
@@ -65,20 +67,20 @@ pub(super) fn undeclared(tested: &Tested<'_>) -> Vec<(String, Point)> {
     faults
 }
 
-/// The points on lines across the box where fourth differences of the values are largest.
-fn candidates(tested: &Tested<'_>) -> Vec<Place> {
+/// The intervals of lines across the box where fourth differences of the values are largest.
+fn candidates(tested: &Tested<'_>) -> Vec<Interval> {
     let frame = tested.frame;
     let mut all = Vec::new();
     for (k, along_x) in (0..LINES).flat_map(|k| [(k, true), (k, false)]) {
         // No line goes through the center or a corner.
-        let share = (f64::from(k) + 0.382) / f64::from(LINES);
-        let at = |i: u32| {
+        let across = (f64::from(k) + 0.382) / f64::from(LINES);
+        let sample = |i: u32| {
             let t = f64::from(i) / f64::from(INTERVALS);
-            let (x, y) = if along_x { (t, share) } else { (share, t) };
+            let (x, y) = if along_x { (t, across) } else { (across, t) };
             Point::new(frame.x0 + x * frame.width(), frame.y0 + y * frame.height())
         };
-        let places: Vec<Point> = (0..=INTERVALS).map(at).collect();
-        let values = tested.values(&places);
+        let samples: Vec<Point> = (0..=INTERVALS).map(sample).collect();
+        let values = tested.values(&samples);
         let fourth = |v: &[Point]| {
             let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|i| v[i].to_vec2());
             (a + e - 4.0 * (b + d) + 6.0 * c).hypot()
@@ -90,45 +92,46 @@ fn candidates(tested: &Tested<'_>) -> Vec<Place> {
         };
         let mut peaks: Vec<usize> = (0..fourth.len()).filter(is_peak).collect();
         peaks.sort_by(|a, b| fourth[*b].total_cmp(&fourth[*a]));
-        let half = places[2] - places[0];
-        all.extend(peaks.iter().take(CLOSE).map(|i| Place { at: places[i + 2], half, turns: [0.0; HALVINGS] }));
+        let (half, changes) = (samples[2] - samples[0], [0.0; HALVINGS]);
+        all.extend(peaks.iter().take(MAX_PEAKS).map(|i| Interval { center: samples[i + 2], half, changes }));
     }
     all
 }
 
-/// Halves the intervals around points towards the largest change of slope, and returns those where it does not vanish.
-fn closer(tested: &Tested<'_>, mut places: Vec<Place>) -> Vec<Break> {
+/// Halves intervals again and again towards the largest change of slope, and returns the points where it does not vanish.
+fn refine(tested: &Tested<'_>, mut intervals: Vec<Interval>) -> Vec<Break> {
     let size = tested.frame.size().to_vec2().hypot();
     let mut found = Vec::new();
     for round in 0..HALVINGS {
         // One more sample on either side, as rounding may push a jump over the end of the interval.
-        let around = |p: &Place| (-3..=3).map(|k| p.at + p.half * (0.5 * f64::from(k))).collect::<Vec<_>>();
-        let values = tested.values(&places.iter().flat_map(around).collect::<Vec<_>>());
+        let samples = |i: &Interval| (-3..=3).map(|k| i.center + i.half * (0.5 * f64::from(k))).collect::<Vec<_>>();
+        let values = tested.values(&intervals.iter().flat_map(samples).collect::<Vec<_>>());
         let mut kept = Vec::new();
-        for (p, v) in places.iter().zip(values.chunks_exact(7)) {
-            let half = 0.5 * p.half;
-            let turn =
+        for (interval, v) in intervals.iter().zip(values.chunks_exact(7)) {
+            let half = 0.5 * interval.half;
+            let change =
                 |k: usize| (v[k - 1].to_vec2() + v[k + 1].to_vec2() - 2.0 * v[k].to_vec2()).hypot() / half.hypot();
-            let larger = |a: usize, b: usize| if turn(b) > turn(a) { b } else { a };
-            let Some(k) = [3, 2, 4, 1, 5].into_iter().filter(|k| turn(*k).is_finite()).reduce(larger) else { continue };
-            let mut next = Place { at: p.at + half * (k as f64 - 3.0), half, ..*p };
-            next.turns[round] = turn(k);
-            let before = round.checked_sub(APART).map_or(0.0, |i| next.turns[i]);
-            let is_left = turn(k) > 0.05 * LEAST && turn(k) > 0.3 * before;
+            let larger = |a: usize, b: usize| if change(b) > change(a) { b } else { a };
+            let finite = [3, 2, 4, 1, 5].into_iter().filter(|k| change(*k).is_finite());
+            let Some(k) = finite.reduce(larger) else { continue };
+            let mut next = Interval { center: interval.center + half * (k as f64 - 3.0), half, ..*interval };
+            next.changes[round] = change(k);
+            let before = round.checked_sub(COMPARED).map_or(0.0, |i| next.changes[i]);
+            let is_left = change(k) > 0.05 * LEAST && change(k) > 0.3 * before;
             if is_left && round + 1 < HALVINGS {
                 kept.push(next);
-            } else if is_left && tested.contains(next.at) && !tested.declares(next.at, half) {
+            } else if is_left && tested.contains(next.center) && !tested.has_crease_near(next.center, half) {
                 let slope = (v[k + 1] - v[k - 1]).hypot() / (2.0 * half.hypot());
-                let is_jump = turn(k) > 32.0 * before;
-                let by = if is_jump { turn(k) * half.hypot() } else { turn(k) };
+                let is_jump = change(k) > 32.0 * before;
+                let by = if is_jump { change(k) * half.hypot() } else { change(k) };
                 // Two adjacent peaks lead to one point.
-                let is_new = found.iter().all(|b: &Break| b.at.distance(next.at) > 1e-5 * size);
+                let is_new = found.iter().all(|b: &Break| b.at.distance(next.center) > 1e-5 * size);
                 if is_new && by > if is_jump { 1e-7 * size } else { LEAST * slope.max(1.0) } {
-                    found.push(Break { at: next.at, by, is_jump });
+                    found.push(Break { at: next.center, by, is_jump });
                 }
             }
         }
-        places = kept;
+        intervals = kept;
     }
     found
 }
@@ -162,11 +165,11 @@ impl Curve {
     }
 }
 
-/// The line or circle that contains most of the points, at least four; `None` if there is none.
-fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
+/// The line or circle that contains most of the points within a distance, at least four; `None` if there is none.
+fn curve_through_most(points: &[Point], tolerance: f64) -> Option<Curve> {
     // Curves are drawn through up to 24 of the points.
     let tried: Vec<Point> = points.iter().step_by(points.len().div_ceil(24).max(1)).copied().collect();
-    let count = |c: &Curve| points.iter().filter(|p| c.distance(**p) < near).count();
+    let count = |c: &Curve| points.iter().filter(|p| c.distance(**p) < tolerance).count();
     let mut best: Option<(usize, Curve)> = None;
     let mut consider = |curve: Option<Curve>| {
         let counted = curve.map(|c| (count(&c), c)).filter(|(n, _)| *n >= 4);
@@ -174,19 +177,19 @@ fn curve_through_most(points: &[Point], near: f64) -> Option<Curve> {
     };
     for (i, a) in tried.iter().enumerate() {
         for (j, b) in tried.iter().enumerate().skip(i + 1) {
-            consider(line(*a, *b, near));
+            consider(line(*a, *b, tolerance));
             tried.iter().skip(j + 1).for_each(|c| consider(circle(*a, *b, *c)));
         }
     }
     best.map(|(_, curve)| curve)
 }
 
-/// The line through two points; `None` if they are too close to determine its direction.
-fn line(a: Point, b: Point, near: f64) -> Option<Curve> {
+/// The line through two points known within a tolerance; `None` if they are too close to determine its direction.
+fn line(a: Point, b: Point, tolerance: f64) -> Option<Curve> {
     let along = b - a;
     let n = along.turn_90() / along.x.abs().max(along.y.abs());
-    (along.hypot() > 1e5 * near).then(|| {
-        // Of both signs, the one that begins without a minus.
+    (along.hypot() > 1e5 * tolerance).then(|| {
+        // Of both signs of the equation, the one that begins without a minus.
         let n = if n.x < -1e-6 || (n.x.abs() <= 1e-6 && n.y < 0.0) { -n } else { n };
         Curve::Line([n.x, n.y, -n.dot(a.to_vec2())])
     })
@@ -195,12 +198,13 @@ fn line(a: Point, b: Point, near: f64) -> Option<Curve> {
 /// The circle through three points; `None` if they lie on a line, or nearly so.
 fn circle(a: Point, b: Point, c: Point) -> Option<Curve> {
     let (p, q) = (b - a, c - a);
-    let d = 2.0 * p.cross(q);
+    let twice_area = p.cross(q);
     let size = p.hypot().max(q.hypot());
-    if d.abs() < 1e-2 * size * size {
+    if (2.0 * twice_area).abs() < 1e-2 * size * size {
         return None;
     }
-    let to_center = Vec2::new(q.y * p.hypot2() - p.y * q.hypot2(), p.x * q.hypot2() - q.x * p.hypot2()) / d;
+    let to_center =
+        Vec2::new(q.y * p.hypot2() - p.y * q.hypot2(), p.x * q.hypot2() - q.x * p.hypot2()) / (2.0 * twice_area);
     let center = a + to_center;
     Some(Curve::Circle([center.x, center.y, to_center.hypot()]))
 }

@@ -8,7 +8,7 @@ thread_local! {
     static COUNT: Cell<[usize; 3]> = const { Cell::new([0; 3]) };
 }
 
-/// Returns the numbers of products (with quotients), sums and differences of `work`.
+/// Returns the numbers of products (with quotients), sums and differences that `work` takes.
 pub fn operations(work: impl FnOnce()) -> [usize; 3] {
     COUNT.with(|c| c.set([0; 3]));
     work();
@@ -19,11 +19,12 @@ pub fn operations(work: impl FnOnce()) -> [usize; 3] {
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Counted(pub f64);
 
+/// Counts an operation: 0 for a product, 1 for a sum, 2 for a difference.
 fn count(kind: usize) {
-    COUNT.with(|c| {
-        let mut n = c.get();
+    COUNT.with(|counts| {
+        let mut n = counts.get();
         n[kind] += 1;
-        c.set(n);
+        counts.set(n);
     });
 }
 
@@ -54,26 +55,18 @@ impl From<f64> for Counted {
     }
 }
 
+macro_rules! uncounted {
+    ($($method:ident)*) => {$(
+        fn $method(self) -> Self { Self(self.0.$method()) }
+    )*};
+}
+
 /// Only the operations of polynomials are counted.
 impl Real for Counted {
     fn value(self) -> f64 {
         self.0
     }
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
-    fn sin(self) -> Self {
-        Self(self.0.sin())
-    }
-    fn cos(self) -> Self {
-        Self(self.0.cos())
-    }
-    fn exp(self) -> Self {
-        Self(self.0.exp())
-    }
-    fn ln(self) -> Self {
-        Self(self.0.ln())
-    }
+    uncounted! { sqrt sin cos exp ln }
     fn atan2(self, x: Self) -> Self {
         Self(self.0.atan2(x.0))
     }

@@ -132,11 +132,11 @@ fn every_kind_of_fault_is_found() {
 
 /// The faults of a map, with the names of their checks.
 fn faults_of(map: impl Map + 'static) -> String {
-    let mut told = String::new();
+    let mut faults = String::new();
     super::map(&Built::new(Arc::new(map)), frame().rect, |check| {
-        check.faults.iter().for_each(|fault| told += &format!("{}: {fault}\n", check.name));
+        check.faults.iter().for_each(|fault| faults += &format!("{}: {fault}\n", check.name));
     });
-    told
+    faults
 }
 
 /// The faults of a map by its formula.
@@ -148,7 +148,7 @@ fn faults_by(f: impl Fn(f64, f64) -> (f64, f64) + Send + Sync + 'static) -> Stri
 #[test]
 fn undeclared_kinks_are_named() {
     let ring = |x: f64, y: f64, r: f64| (x - 40.0).hypot(y - 50.0).min(r);
-    for (told, curves) in [
+    for (faults, curves) in [
         (faults_by(|x, y| (x, y + 0.3 * (x - 50.0).abs())), vec!["has a kink", "declare a crease at line 1 0 -50"]),
         (faults_by(|x, y| (x, y + 0.3 * (0.6 * x + 0.8 * y - 50.0).abs())), vec!["line 0.75 1 -62.5"]),
         (faults_by(move |x, y| (x, y - 0.2 * ring(x, y, 25.0))), vec!["circle 40 50 25"]),
@@ -157,8 +157,8 @@ fn undeclared_kinks_are_named() {
         (faults_by(|x, y| (x + 10.0 * f64::from(u8::from(x > 50.0)), y)), vec!["jumps by 10 at 50", "line 1 0 -50"]),
         (faults_by(|x, y| (x, y + 0.3 * (y - 0.01 * x * x).abs())), vec!["31 other places", "declare a crease there"]),
     ] {
-        assert!(curves.iter().all(|c| told.contains(c)) && told.lines().count() < 3, "{curves:?}: {told}");
-        assert!(told.lines().all(|line| line.starts_with("creases: ")), "{told}");
+        assert!(curves.iter().all(|c| faults.contains(c)) && faults.lines().count() < 3, "{curves:?}: {faults}");
+        assert!(faults.lines().all(|line| line.starts_with("creases: ")), "{faults}");
     }
     for wave in [0.7, 2.0, 100.0 / 48.0, 10.0, 300.0] {
         let k = 2.0 * PI / wave;
@@ -173,7 +173,7 @@ fn bad_values_are_told_by_their_kind() {
     let wave = |x: f64, y: f64| (x + 3.0 * (y / 9.0).sin(), y);
     let transposed = |p: Point| [Vec2::new(1.0, (p.y / 9.0).cos() / 3.0), Vec2::new(0.0, 1.0)];
     let count = AtomicU32::new(0);
-    for (told, words) in [
+    for (faults, words) in [
         (faults_by(|_, _| (f64::NAN, f64::NAN)), "values: has no value at any of 81 places in the box 0,0 to 100,100"),
         (faults_by(|x, _| (x, f64::NAN)), "has no value at any"),
         (
@@ -194,8 +194,8 @@ fn bad_values_are_told_by_their_kind() {
             "values: gives two answers for the point 3.7,4.3: 3.7,4.3 and then 3.7,85.3; its answer may depend on nothing",
         ),
     ] {
-        assert!(told.starts_with(words) || told.contains(&format!(": {words}")), "{words}: {told}");
-        assert!(told.lines().all(|line| line.starts_with("values: ")), "{told}");
+        assert!(faults.starts_with(words) || faults.contains(&format!(": {words}")), "{words}: {faults}");
+        assert!(faults.lines().all(|line| line.starts_with("values: ")), "{faults}");
     }
 }
 
@@ -204,8 +204,8 @@ fn bad_values_are_told_by_their_kind() {
 fn answers_that_change_late_are_told() {
     let count = AtomicU32::new(0);
     let late = move |x: f64, y: f64| (x, y + f64::from(count.fetch_add(1, Relaxed) / 5000));
-    let told = faults_by(late);
-    assert!(told.lines().count() == 1 && told.contains("gives two answers for the point"), "{told}");
+    let faults = faults_by(late);
+    assert!(faults.lines().count() == 1 && faults.contains("gives two answers for the point"), "{faults}");
 }
 
 /// An inverse that holds in a part, and one that a fold makes impossible.
@@ -214,12 +214,12 @@ fn wrong_inverses_are_counted() {
     struct Square<const FOLDS: bool>;
     impl<const FOLDS: bool> Map for Square<FOLDS> {
         fn jet(&self, p: Point) -> Jet {
-            let from = if FOLDS { 50.0 } else { -1.0 };
-            Jet { p: self.point(p), dx: Vec2::new((p.x - from) / 25.0, 0.0), dy: Vec2::new(0.0, 1.0) }
+            let vertex = if FOLDS { 50.0 } else { -1.0 };
+            Jet { p: self.point(p), dx: Vec2::new((p.x - vertex) / 25.0, 0.0), dy: Vec2::new(0.0, 1.0) }
         }
         fn point(&self, p: Point) -> Point {
-            let from = if FOLDS { 50.0 } else { -1.0 };
-            Point::new((p.x - from).powi(2) / 50.0, p.y)
+            let vertex = if FOLDS { 50.0 } else { -1.0 };
+            Point::new((p.x - vertex).powi(2) / 50.0, p.y)
         }
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             Some(Arc::new(from_fn(|q| {
@@ -228,13 +228,11 @@ fn wrong_inverses_are_counted() {
             })))
         }
     }
-    let told = faults_of(Square::<false>);
-    assert!(told.contains("does not lead back at 36 of 81 places: it takes the image of 60.2,4.3"), "{told}");
-    let told = faults_of(Square::<true>);
-    assert!(
-        told.contains("at 45 of 81 places") && told.contains("96.3,4.3, which has the same image: the map folds"),
-        "{told}"
-    );
+    let faults = faults_of(Square::<false>);
+    assert!(faults.contains("does not lead back at 36 of 81 places: it takes the image of 60.2,4.3"), "{faults}");
+    let faults = faults_of(Square::<true>);
+    assert!(faults.contains("at 45 of 81 places"), "{faults}");
+    assert!(faults.contains("96.3,4.3, which has the same image: the map folds"), "{faults}");
 }
 
 /// If the declared detail is larger than the waves, the check names one that is not.
@@ -253,7 +251,7 @@ fn a_wrong_detail_is_corrected() {
             Some(1.0)
         }
     }
-    let told = faults_of(Ripples);
+    let faults = faults_of(Ripples);
     let advice = "its waves are down to 0.02 long there: declare a detail of 0.005 (1 is declared)";
-    assert!(told.contains("a curve fitted within 0.01 is 0.01") && told.contains(advice), "{told}");
+    assert!(faults.contains("a curve fitted within 0.01 is 0.01") && faults.contains(advice), "{faults}");
 }

@@ -46,7 +46,7 @@ parameters! {
     }
 }
 
-/// A determinant ad − bc below this share of |ad| + |bc| counts as zero.
+/// A determinant ad − bc below this fraction of |ad| + |bc| counts as zero, and so does the cosine of a skew.
 const FLAT: f64 = 1e-14;
 
 impl Default for Affine {
@@ -78,24 +78,19 @@ impl Affine {
         shift(by: impl Into<Vec2>) => shift: by.into();
     }
 
-    /// Returns the error for a matrix that leaves no area. It names the parameter to blame.
-    fn flat(&self, m: Matrix) -> Error {
-        let scales = [("scale-x", self.scale.x, "width"), ("scale-y", self.scale.y, "height")];
-        let zero = scales.into_iter().find(|(_, scale, _)| self.matrix.is_none() && *scale == 0.0);
-        match zero {
-            Some((name, _, side)) => {
-                Error::usage(name, "0", format!("leaves the artwork without {side}; 1 keeps it, and -1 mirrors it"))
-            }
-            None if self.matrix.is_some() => {
-                let text = m.as_coeffs().map(|c| c.to_string()).join(",");
-                Error::usage("matrix", text, "leaves the artwork without area: its determinant a·d - b·c is 0")
-            }
-            None => Error::usage(
-                "skew-x",
-                self.skew.x.to_string(),
-                "leaves the artwork without area, together with `skew-y`",
-            ),
+    /// Returns the error for a map that leaves no area. It names the parameter to blame.
+    fn flat(&self) -> Error {
+        if let Some(m) = self.matrix {
+            let text = m.as_coeffs().map(|c| c.to_string()).join(",");
+            return Error::usage("matrix", text, "leaves the artwork without area: its determinant a·d - b·c is 0");
         }
+        let scales = [("scale-x", self.scale.x, "width"), ("scale-y", self.scale.y, "height")];
+        if let Some((name, _, side)) = scales.into_iter().find(|(_, scale, _)| *scale == 0.0) {
+            let problem = format!("leaves the artwork without {side}; 1 keeps it, and -1 mirrors it");
+            return Error::usage(name, "0", problem);
+        }
+        let problem = "leaves the artwork without area, together with `skew-y`";
+        Error::usage("skew-x", self.skew.x.to_string(), problem)
     }
 
     /// Builds the map.
@@ -114,7 +109,8 @@ impl Affine {
             let o = self.about.to_vec2();
             let skew = Matrix::skew(self.skew.x.to_radians().tan(), self.skew.y.to_radians().tan());
             Matrix::translate(o + self.shift)
-                * Matrix::rotate(without_whole_turns(self.rotate).to_radians())
+                // Without whole turns, which are the identity to the last bit.
+                * Matrix::rotate((self.rotate % 360.0).to_radians())
                 * skew
                 * Matrix::scale_non_uniform(self.scale.x, self.scale.y)
                 * Matrix::translate(-o)
@@ -122,7 +118,7 @@ impl Affine {
         // Skews of 45° both ways are flat but for rounding.
         let [a, b, c, d, ..] = m.as_coeffs();
         if m.determinant().abs() <= FLAT * ((a * d).abs() + (b * c).abs()) {
-            return Err(self.flat(m));
+            return Err(self.flat());
         }
         Ok(Built::new(Arc::new(AffineMap(m))))
     }
@@ -171,8 +167,3 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     }
     Affine::read(s)?.build()
 });
-
-/// Removes whole turns, so that they are the identity to the last bit.
-fn without_whole_turns(degrees: f64) -> f64 {
-    degrees % 360.0
-}

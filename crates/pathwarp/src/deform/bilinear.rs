@@ -1,8 +1,7 @@
 //! The bilinear map of a rectangle onto four corners, which divides all four sides evenly.
 //!
-//! F(u, v) = (1−u)(1−v)·P + u(1−v)·Q + uv·R + (1−u)v·S = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S.
-//! Lines along the rectangle's sides stay straight and are divided evenly; other lines become parabolas. The image of a curve of
-//! degree n is exactly a curve of degree 2n.
+//! F(u, v) = P + u·a + v·b + uv·c with a = Q−P, b = S−P, c = P−Q+R−S. Lines along the rectangle's sides stay straight and are divided
+//! evenly; other lines become parabolas. The image of a curve of degree n is exactly a curve of degree 2n.
 //!
 //! For the inverse, let q = F − P. Eliminating v from q − u·a = v·(b + u·c) leaves k₂u² + k₁u + k₀ = 0 with k₂ = −a×c, k₁ = q×c − a×b and
 //! k₀ = q×b. At a root 2k₂u + k₁ = −det F', so the root is chosen by the side of the fold on which the corners lie. See G. Wolberg,
@@ -47,11 +46,12 @@ impl Bilinear {
     pub fn build(&self) -> Result<Built, Error> {
         let FourToFour { from, to, .. } = self.corners;
         self.corners.check()?;
-        let before = anchors::to_standard("base", &Anchors::Four(from))?;
+        let to_unit = anchors::to_standard("base", &Anchors::Four(from))?;
         let map = BilinearMap::new(to);
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
-        let mut built = self.corners.shown_on(Built::new(Arc::new(Chain::new([before, map.or_affine()]))));
-        if corners.iter().any(|d| *d > 0.0) && corners.iter().any(|d| *d < 0.0) {
+        // The determinant is bilinear, too, so its signs at the corners tell.
+        let dets = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| map.det(u, v));
+        let mut built = self.corners.shown_on(Built::new(Arc::new(Chain::new([to_unit, map.or_affine()]))));
+        if dets.iter().any(|d| *d > 0.0) && dets.iter().any(|d| *d < 0.0) {
             built.warn("bilinear: the target is not convex: the artwork folds over itself");
         }
         Ok(built)
@@ -161,28 +161,28 @@ impl Formula for BilinearMap {
 
     /// Returns up to two preimages, one on each side of the fold.
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-        let side = |side: f64| Map::point(&BilinearInverse { of: *self, side }, q);
-        Some([1.0, -1.0].map(side).into_iter().filter(|p| p.is_finite()).collect())
+        let on_side = |side: f64| Map::point(&BilinearInverse { map: *self, side }, q);
+        Some([1.0, -1.0].map(on_side).into_iter().filter(|p| p.is_finite()).collect())
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         let det = self.det(0.5, 0.5);
-        (det != 0.0 && det.is_finite())
-            .then(|| Arc::new(BilinearInverse { of: *self, side: det.signum() }) as Arc<dyn Map>)
+        let side = det.signum();
+        (det != 0.0 && det.is_finite()).then(|| Arc::new(BilinearInverse { map: *self, side }) as Arc<dyn Map>)
     }
 }
 
 /// The inverse on the side of the fold where the determinant has the sign `side`.
 #[derive(Debug, Clone, Copy)]
 struct BilinearInverse {
-    of: BilinearMap,
+    map: BilinearMap,
     side: f64,
 }
 
 impl BilinearInverse {
     /// Returns the coefficients k₂, k₁, k₀.
     fn quadratic<S: Real>(&self, qx: S, qy: S) -> [S; 3] {
-        let BilinearMap { a, b, c, .. } = self.of;
+        let BilinearMap { a, b, c, .. } = self.map;
         let cross = |v: Vec2| qx * v.y - qy * v.x;
         [S::from(-a.cross(c)), cross(c) - a.cross(b), cross(b)]
     }
@@ -190,7 +190,7 @@ impl BilinearInverse {
 
 impl Formula for BilinearInverse {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let BilinearMap { p, a, b, c } = self.of;
+        let BilinearMap { p, a, b, c } = self.map;
         let (qx, qy) = (x - p.x, y - p.y);
         let [k2, k1, k0] = self.quadratic(qx, qy);
         // det F' at the solution.
@@ -201,6 +201,7 @@ impl Formula for BilinearInverse {
         } else {
             -(k1 + det) / (k2 * 2.0)
         };
+        // q − u·a = v·e with e = b + u·c.
         let (ex, ey) = (u * c.x + b.x, u * c.y + b.y);
         let v = ((qx - u * a.x) * ex + (qy - u * a.y) * ey) / (ex * ex + ey * ey);
         (u, v)
@@ -208,16 +209,16 @@ impl Formula for BilinearInverse {
 
     /// Points beyond the image of the fold have no preimage.
     fn creases(&self, out: &mut Creases) {
-        let own = *self;
-        out.push(Crease::edge(Level::Field(Arc::new(move |at: Point| {
-            let q = at - own.of.p;
-            let [k2, k1, k0] = own.quadratic(q.x, q.y);
+        let inverse = *self;
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
+            let q = p - inverse.map.p;
+            let [k2, k1, k0] = inverse.quadratic(q.x, q.y);
             k1 * k1 - 4.0 * k2 * k0
         }))));
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.of))
+        Some(Arc::new(self.map))
     }
 }
 

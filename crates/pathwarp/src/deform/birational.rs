@@ -5,11 +5,11 @@
 //! *Birational 2D free-form deformation of degree 1×n*, CAGD 44 (2016), equations 11-13 and 26, to which numbers of equations refer;
 //! for degree 1×1 also of T. W. Sederberg, J. Zheng, *Birational quadrilateral maps*, CAGD 2015.
 
-use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role};
+use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Role};
 use super::ffd::{MAX_CELLS, MAX_DEGREE};
 use crate::error::{Error, GeometryError, show};
 use crate::map::{self, AffineMap, Class, Map, Rows};
-use crate::outline::Seg;
+use crate::outline::{Outline, Seg};
 use crate::param::{Kind, Settings, parameters};
 use crate::solve::{misses, smallest_change};
 use kurbo::{BezPath, Point, Rect};
@@ -111,7 +111,8 @@ impl Birational {
         if !(region.width() > 0.0 && region.height() > 0.0) {
             return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
         }
-        let map = self.spaced(map::Birational::new(*region, *rows, [first, second], *spline, *allow_poles, names)?)?;
+        let map = map::Birational::new(*region, *rows, [first, second], *spline, *allow_poles, names)?;
+        let map = self.with_weights(map)?;
         let mut notes = match map.axis() {
             _ if spline.is_some() => Vec::new(),
             [x, y, w] if w != 0.0 => {
@@ -119,58 +120,51 @@ impl Birational {
             }
             _ => vec!["the lines across the rows are parallel".to_owned()],
         };
-        let kink = map.kink().filter(|(angle, _)| *angle > VISIBLE_KINK);
-        let warnings = kink.map(|(angle, at)| {
-            format!(
-                "curves along the rows turn by up to {angle:.1} degrees where two pieces of the spline meet, near {}: place the points of \
-both rows opposite each other, on parallel lines or on lines through one point",
-                show(at)
-            )
-        });
         for (k, [a, b]) in map.weights().enumerate() {
             notes.push(format!("weights of piece {}: {a:.6?} and {b:.6?}", k + 1));
         }
-        let map: Arc<dyn Map> = match map.class() {
+        let kink = map.kink().filter(|(angle, _)| *angle > VISIBLE_KINK);
+        let mut built = Built::new(match map.class() {
             Class::Affine(m) => Arc::new(AffineMap(m)),
             _ => Arc::new(map),
-        };
-        let mut built = Built::new(map).explained(Explanation {
-            notes,
-            warnings: warnings.into_iter().collect(),
-            ..Explanation::default()
         });
+        built.explanation.notes = notes;
+        if let Some((angle, at)) = kink {
+            built.warn(format!(
+                "curves along the rows turn by up to {angle:.1} degrees where two pieces of the spline meet, near {}: place the points of \
+both rows opposite each other, on parallel lines or on lines through one point",
+                show(at)
+            ));
+        }
         built.overlay(Role::Base, kurbo::Shape::to_path(region, 0.0));
         built.overlay(Role::Cage, net(first, second));
         Ok(built)
     }
 
     /// Returns `map` with the given spacing, points or weights.
-    fn spaced(&self, map: map::Birational) -> Result<map::Birational, Error> {
+    fn with_weights(&self, map: map::Birational) -> Result<map::Birational, Error> {
         let Self { spacing, weights, .. } = self;
-        let is_spaced = *spacing != 1.0 || !weights.is_empty();
+        let has_weights = *spacing != 1.0 || !weights.is_empty();
         match (self.q0, self.q1) {
-            (None, None) if !is_spaced => return Ok(map),
+            (None, None) if !has_weights => return Ok(map),
             _ if self.spline.is_some() => {
-                return Err(Error::usage(
-                    "spline",
-                    "",
-                    "leaves no weight free: leave `spacing`, `q0`, `q1` and `weight` out",
-                ));
+                let problem = "leaves no weight free: leave `spacing`, `q0`, `q1` and `weight` out";
+                return Err(Error::usage("spline", "", problem));
             }
             (None, None) => {}
-            (Some(q0), Some(q1)) if !is_spaced => return self.between(&map, [q0, q1]),
+            (Some(q0), Some(q1)) if !has_weights => return self.between(&map, [q0, q1]),
             _ => return Err(Error::usage("q0", "", "goes with `q1`, and without `spacing` and `weight`")),
         }
-        // ln w = ln wᵢⱼ + ln kᵢ + j·ln g.
-        let own: Vec<[&[f64]; 2]> = map.weights().collect();
-        let (mut rows, mut want) = (vec![vec![0.0, 0.0, 1.0]], vec![[spacing.ln()]]);
-        if *spacing == 1.0 {
-            (rows, want) = (Vec::new(), Vec::new());
+        // New weights have ln w = ln wᵢⱼ + ln kᵢ + j·ln g; the unknowns are ln k₀, ln k₁ and ln g.
+        let piece = map.weights().next();
+        let (mut rows, mut want) = (Vec::new(), Vec::new());
+        if *spacing != 1.0 {
+            (rows, want) = (vec![vec![0.0, 0.0, 1.0]], vec![[spacing.ln()]]);
         }
         let wrong = |[i, j]: [usize; 2], w: f64, why: &str| Error::usage("weight", format!("{i},{j}:{w}"), why);
         for &([i, j], w) in weights {
-            let old =
-                own[0].get(i).and_then(|row| row.get(j)).ok_or_else(|| wrong([i, j], w, "is not a point of a row"))?;
+            let old = piece.and_then(|rows| rows.get(i)?.get(j));
+            let old = old.ok_or_else(|| wrong([i, j], w, "is not a point of a row"))?;
             if !(w > 0.0 && w.is_finite() && *old > 0.0) {
                 return Err(wrong([i, j], w, "is not a positive weight of a lattice without poles"));
             }
@@ -179,7 +173,7 @@ both rows opposite each other, on parallel lines or on lines through one point",
         }
         let change = smallest_change(&rows, &want);
         let misses = misses(&rows, &want, &change);
-        if let Some(([i, j], w)) = weights.last().filter(|_| misses.iter().any(|off| *off > 1e-9)) {
+        if let Some(([i, j], w)) = weights.last().filter(|_| misses.iter().any(|miss| *miss > 1e-9)) {
             return Err(wrong([*i, *j], *w, "contradicts the others: three weights determine all; leave one out"));
         }
         let [k0, k1, g] = [0, 1, 2].map(|k| change[k][0].exp());
@@ -199,11 +193,8 @@ both rows opposite each other, on parallel lines or on lines through one point",
             e => e.into(),
         })?;
         if !self.allow_poles && map.weights().flatten().flatten().any(|w| *w <= 0.0) {
-            return Err(wrong(
-                "q0",
-                q[0],
-                "or `q1` lies beyond the point in which the lines across meet, seen from the rows",
-            ));
+            let why = "or `q1` lies beyond the point in which the lines across meet, seen from the rows";
+            return Err(wrong("q0", q[0], why));
         }
         Ok(map)
     }
@@ -321,18 +312,18 @@ const BENT: Pairs = &[("top", "0,0 25,-20 60,15 80,-10"), ("bottom", "5,90 30,10
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let [top, bottom, left, right] = ["top", "bottom", "left", "right"].map(|n| row(s, n));
     let meet = s.given("meet").then(|| s.point("meet")).transpose()?;
-    let halved = |row: &[Point]| row.iter().map(|p| p.midpoint(meet.unwrap_or(*p))).collect::<Vec<_>>();
-    let (rows, first, second) = match (top?, bottom?, left?, right?) {
-        (Some(a), None, None, None) if meet.is_some() => (Rows::TopBottom, a.clone(), halved(&a)),
-        (None, Some(b), None, None) if meet.is_some() => (Rows::TopBottom, halved(&b), b),
-        (None, None, Some(a), None) if meet.is_some() => (Rows::LeftRight, a.clone(), halved(&a)),
-        (None, None, None, Some(b)) if meet.is_some() => (Rows::LeftRight, halved(&b), b),
-        _ if meet.is_some() => {
+    let mut given = [row(s, "top")?, row(s, "bottom")?, row(s, "left")?, row(s, "right")?];
+    if let Some(meet) = meet {
+        let rows: Vec<usize> = (0..4).filter(|i| given[*i].is_some()).collect();
+        let [i] = rows[..] else {
             let problem = "takes the place of a row: give one row with it";
             return Err(Error::usage("meet", s.texts("meet").join(" "), problem));
-        }
+        };
+        // The facing row is this one, halved towards the point.
+        given[i ^ 1] = given[i].as_ref().map(|row| row.iter().map(|p| p.midpoint(meet)).collect());
+    }
+    let (rows, first, second) = match given.into() {
         (Some(a), Some(b), None, None) => (Rows::TopBottom, a, b),
         (None, None, Some(a), Some(b)) => (Rows::LeftRight, a, b),
         (None, None, None, None) => {
@@ -383,14 +374,9 @@ fn row(s: &Settings<'_>, name: &str) -> Result<Option<Vec<Point>>, Error> {
 /// Draws both rows, and the lines between facing points.
 fn net(a: &[Point], b: &[Point]) -> BezPath {
     let mut p = BezPath::new();
-    for row in [a, b] {
-        for (k, q) in row.iter().enumerate() {
-            if k == 0 { p.move_to(*q) } else { p.line_to(*q) }
-        }
-    }
-    for (a, b) in a.iter().zip(b) {
-        p.move_to(*a);
-        p.line_to(*b);
+    let lines = a.iter().zip(b).map(|(a, b)| vec![*a, *b]);
+    for line in [a.to_vec(), b.to_vec()].into_iter().chain(lines) {
+        p.extend(Outline::from_points(&line, false).to_bez_path(0.0));
     }
     p
 }

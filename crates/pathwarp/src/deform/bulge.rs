@@ -116,10 +116,12 @@ struct Inner {
 }
 
 impl Inner {
-    fn within(&self, p: Point) -> bool {
+    /// Returns `true` inside the disc.
+    fn contains(&self, p: Point) -> bool {
         (p - self.center).hypot() < self.radius
     }
 
+    /// Adds the rim.
     fn crease(&self, out: &mut Creases) {
         let Self { center, radius, .. } = *self;
         out.push(Crease::kink(Level::Circle { center, radius }));
@@ -150,7 +152,7 @@ struct BulgeMap(Inner);
 
 impl Formula for BulgeMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        if self.0.within(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
+        if self.0.contains(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
     }
 
     fn class(&self) -> Class {
@@ -162,7 +164,7 @@ impl Formula for BulgeMap {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Some(if self.0.within(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
+        Some(if self.0.contains(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -186,7 +188,7 @@ impl SoftInverse {
         if target == 0.0 || target >= 1.0 {
             return p;
         }
-        // g(q) = ln q + 2·ln m·(1 − q)² − ln q' grows from −∞ to above 0 over (0, 1].
+        // g(q) = ln q + 2·ln m·(1 − q)² − ln q' grows from −∞ to above 0 over (0, 1]. Its root is q, and `target` is q'.
         let g = |q: f64| ((q / target).ln() + 2.0 * ln_m * (1.0 - q).powi(2), 1.0 / q - 4.0 * ln_m * (1.0 - q));
         let start = (target * (-2.0 * ln_m * (1.0 - target).powi(2)).exp()).clamp(f64::MIN_POSITIVE, 1.0);
         let q = increasing_root((0.0, 1.0), start, g, |q, _, step: f64| step.abs() <= 2.0 * f64::EPSILON * q);
@@ -196,7 +198,7 @@ impl SoftInverse {
 
 impl Map for SoftInverse {
     fn jet(&self, p: Point) -> Jet {
-        if !self.0.within(p) {
+        if !self.0.contains(p) {
             return Jet { p, dx: Vec2::new(1.0, 0.0), dy: Vec2::new(0.0, 1.0) };
         }
         let at = self.source(p);

@@ -45,18 +45,11 @@ impl Expr {
         Self { frame, x: None, y: None, definitions: Vec::new() }
     }
 
-    /// Sets the formula for x'. Default: `x`.
-    #[must_use]
-    pub fn x(mut self, formula: &str) -> Self {
-        self.x = Some(formula.to_owned());
-        self
-    }
-
-    /// Sets the formula for y'. Default: `y`.
-    #[must_use]
-    pub fn y(mut self, formula: &str) -> Self {
-        self.y = Some(formula.to_owned());
-        self
+    setters! {
+        /// Sets the formula for x'. Default: `x`.
+        x(formula: &str) => x: Some(formula.to_owned());
+        /// Sets the formula for y'. Default: `y`.
+        y(formula: &str) => y: Some(formula.to_owned());
     }
 
     /// Defines a name by a formula, for use in the formulas after it.
@@ -104,12 +97,12 @@ impl Expr {
         let texts =
             [("x", &self.x), ("y", &self.y)].map(|(name, text)| text.clone().unwrap_or_else(|| name.to_owned()));
         // Constants are folded when a formula is read, so there may be no operation to blame.
-        let whole = move |p: Point| {
+        let blamed_formula = move |p: Point| {
             let image = map.point(p);
             let blamed = if image.x.is_finite() { &texts[1] } else { &texts[0] };
             (!image.is_finite()).then(|| format!("{blamed} has no finite value"))
         };
-        built.undefined = Some(Arc::new(move |p| program.undefined_at(p.x, p.y).or_else(|| whole(p))));
+        built.undefined = Some(Arc::new(move |p| program.undefined_at(p.x, p.y).or_else(|| blamed_formula(p))));
         Ok(built)
     }
 }
@@ -201,10 +194,10 @@ fn builtin<'a>(p: &mut Program, r: Rect) -> Option<Names<'a>> {
     let (x, y) = (p.x()?, p.y()?);
     names.set("x", x);
     names.set("y", y);
-    for (name, of, from, size) in [("u", x, r.x0, r.width()), ("v", y, r.y0, r.height())] {
+    for (name, coordinate, from, size) in [("u", x, r.x0, r.width()), ("v", y, r.y0, r.height())] {
         let (from, size) = (p.constant(from)?, p.constant(size)?);
-        let off = p.binary(Binary::Sub, of, from)?;
-        names.set(name, p.binary(Binary::Div, off, size)?);
+        let distance = p.binary(Binary::Sub, coordinate, from)?;
+        names.set(name, p.binary(Binary::Div, distance, size)?);
     }
     let c = r.center();
     for (name, value) in [
@@ -233,7 +226,7 @@ struct ExprMap {
 const LANES: usize = 8;
 
 impl ExprMap {
-    fn some_jets<const N: usize>(&self, ps: [Point; N]) -> [Jet; N] {
+    fn jets_of<const N: usize>(&self, ps: [Point; N]) -> [Jet; N] {
         let x = ps.map(|p| Dual { v: p.x, x: 1.0, y: 0.0 });
         let y = ps.map(|p| Dual { v: p.y, x: 0.0, y: 1.0 });
         let values = self.program.run(x, y);
@@ -245,7 +238,7 @@ impl ExprMap {
         })
     }
 
-    fn some_points<const N: usize>(&self, ps: [Point; N]) -> [Point; N] {
+    fn points_of<const N: usize>(&self, ps: [Point; N]) -> [Point; N] {
         let values = self.program.run(ps.map(|p| p.x), ps.map(|p| p.y));
         let (x, y) = (values[self.x as usize], values[self.y as usize]);
         std::array::from_fn(|i| Point::new(x[i], y[i]))
@@ -261,19 +254,17 @@ impl Map for ExprMap {
     }
 
     fn jet(&self, p: Point) -> Jet {
-        let [j] = self.some_jets([p]);
-        j
+        self.jets_of([p])[0]
     }
 
     fn point(&self, p: Point) -> Point {
-        let [q] = self.some_points([p]);
-        q
+        self.points_of([p])[0]
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         for (ps, out) in ps.chunks(LANES).zip(out.chunks_mut(LANES)) {
             match <[Point; LANES]>::try_from(ps) {
-                Ok(all) => out.copy_from_slice(&self.some_jets(all)),
+                Ok(all) => out.copy_from_slice(&self.jets_of(all)),
                 Err(_) => ps.iter().zip(out).for_each(|(p, o)| *o = self.jet(*p)),
             }
         }
@@ -282,7 +273,7 @@ impl Map for ExprMap {
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         for (ps, out) in ps.chunks(LANES).zip(out.chunks_mut(LANES)) {
             match <[Point; LANES]>::try_from(ps) {
-                Ok(all) => out.copy_from_slice(&self.some_points(all)),
+                Ok(all) => out.copy_from_slice(&self.points_of(all)),
                 Err(_) => ps.iter().zip(out).for_each(|(p, o)| *o = self.point(*p)),
             }
         }
@@ -376,8 +367,8 @@ mod tests {
             ("smoothstep(1,0,y-2)+smoothstep(0,1,x+1)", 2.0, 0.0, 0.0),
         ] {
             let j = build(&[("x", text)]).unwrap().jet(p);
-            let off = (j.p.x - value).abs() + (j.dx.x - dx).abs() + (j.dy.x - dy).abs();
-            assert!(off < 1e-13, "{text}: {j:?}, wanted {value} {dx} {dy}");
+            let error = (j.p.x - value).abs() + (j.dx.x - dx).abs() + (j.dy.x - dy).abs();
+            assert!(error < 1e-13, "{text}: {j:?}, wanted {value} {dx} {dy}");
         }
     }
 
@@ -432,11 +423,9 @@ mod tests {
             ("1e999", 0, "too large"),
             ("", 0, "missing at the end"),
         ] {
-            let said = fault(text);
-            let lines: Vec<&str> = said.lines().collect();
-            assert!(said.contains(part), "{said}");
-            assert_eq!(lines[lines.len() - 1], format!("  {}^", " ".repeat(column)), "{said}");
-            assert_eq!(lines[lines.len() - 2], format!("  {text}"), "{said}");
+            let message = fault(text);
+            assert!(message.contains(part), "{message}");
+            assert!(message.ends_with(&format!("\n  {text}\n  {}^", " ".repeat(column))), "{message}");
         }
         let e = build(&[("let", "k = 2 +* 3"), ("x", "k")]).err().unwrap().to_string();
         assert!(e.starts_with("let: `k") && e.ends_with("\n         ^"), "{e}");

@@ -1,23 +1,14 @@
 //! Changes of lens, which make fisheye pictures and straighten them.
 //!
-//! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle:
-//!
-//! | lens | ρ(θ) | reaches |
-//! |---|---|---|
-//! | rectilinear (a pinhole; straight lines stay straight) | tan θ | θ < 90° |
-//! | stereographic (small shapes are kept) | 2·tan(θ/2) | θ < 180° |
-//! | equidistant (angles from the axis to scale) | θ | θ < 180° |
-//! | equisolid (areas to scale) | 2·sin(θ/2) | θ < 180° |
-//! | orthographic | sin θ | θ < 90° |
-//!
-//! The change from the lens ρ to the lens ρ' takes the distance r to r' = f'·ρ'(ρ⁻¹(r/f)) and keeps directions. The inverse exchanges
-//! the lenses. The five projections are in Kannala & Brandt, *A generic camera model and calibration method for conventional,
-//! wide-angle, and fish-eye lenses*, IEEE PAMI 28 (2006), equations (1)–(5).
+//! A ray that makes the angle θ with the axis meets the picture at a distance r = f·ρ(θ) from its middle, where f is the focal length and
+//! ρ depends on the [`LensModel`]. The change from the lens ρ to the lens ρ' takes the distance r to r' = f'·ρ'(ρ⁻¹(r/f)) and keeps
+//! directions. The inverse exchanges the lenses. The five projections are in Kannala & Brandt, *A generic camera model and calibration
+//! method for conventional, wide-angle, and fish-eye lenses*, IEEE PAMI 28 (2006), equations (1)–(5).
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
 use crate::map::{Class, Crease, Creases, Formula, Level, Map, Real};
-use crate::param::{Choice as _, Kind, choice, parameters};
+use crate::param::{Choice as _, Frame, Kind, choice, parameters};
 use kurbo::{Affine, Point, Rect};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -67,21 +58,21 @@ impl Lens {
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let Self { frame, center, from, to, .. } = *self;
-        let half = self.field.to_radians() / 2.0;
-        let shown = || format!("{:.6}", 2.0 * half.to_degrees());
+        let half_field = self.field.to_radians() / 2.0;
+        let degrees = || format!("{:.6}", 2.0 * half_field.to_degrees());
         for (name, lens) in [("from", from), ("to", to)] {
-            if half >= lens.max_angle() {
+            if half_field >= lens.max_angle() {
                 let limit = 2.0 * lens.max_angle().to_degrees();
                 let problem = format!("is more than the lens of `{name}` can see: it must be below {limit} degrees");
-                return Err(Error::usage("field", shown(), problem));
+                return Err(Error::usage("field", degrees(), problem));
             }
         }
         let corner = 0.5 * frame.width().hypot(frame.height());
         if corner <= 0.0 {
-            return Err(Error::usage("field", shown(), "spans artwork that has no size"));
+            return Err(Error::usage("field", degrees(), "spans artwork that has no size"));
         }
-        let f = corner / from.radius(half);
-        let f1 = if self.keep_middle { f } else { corner / to.radius(half) };
+        let f = corner / from.radius(half_field);
+        let f1 = if self.keep_middle { f } else { corner / to.radius(half_field) };
         let mut built = Built::new(Arc::new(LensMap { center, from, to, f, f1 }));
         built.note(format!("focal lengths {f:.6} and {f1:.6}"));
         Ok(built)
@@ -197,14 +188,14 @@ struct LensMap {
 
 impl LensMap {
     /// Returns the distance from the centre up to which both lenses see; infinite if it has no limit.
-    fn reach(&self) -> f64 {
+    fn max_radius(&self) -> f64 {
         let limit = self.from.max_angle().min(self.to.max_angle());
-        let ends = match self.from {
-            LensModel::Rectilinear => false,
-            LensModel::Stereographic => limit < PI,
-            _ => true,
+        let is_infinite = match self.from {
+            LensModel::Rectilinear => true,
+            LensModel::Stereographic => limit >= PI,
+            _ => false,
         };
-        if ends { self.f * self.from.radius(limit) } else { f64::INFINITY }
+        if is_infinite { f64::INFINITY } else { self.f * self.from.radius(limit) }
     }
 }
 
@@ -231,17 +222,17 @@ impl Formula for LensMap {
     }
 
     fn creases(&self, out: &mut Creases) {
-        let (reach, center) = (self.reach(), self.center);
-        if reach.is_finite() && self.from != self.to {
-            out.push(Crease::edge(Level::Circle { center, radius: -reach }));
+        let (max_radius, center) = (self.max_radius(), self.center);
+        if max_radius.is_finite() && self.from != self.to {
+            // The domain is inside the circle, which the negative radius says.
+            out.push(Crease::edge(Level::Circle { center, radius: -max_radius }));
         }
     }
 
     /// A quarter of the focal length or of the distance to the rim, within which angles are analytic functions of the distance.
     fn detail(&self, area: Rect) -> Option<f64> {
-        let corners = [(area.x0, area.y0), (area.x1, area.y0), (area.x0, area.y1), (area.x1, area.y1)];
-        let far = corners.into_iter().map(|p| self.center.distance(p.into())).fold(0.0, f64::max);
-        Some(0.25 * self.f.min(self.reach() - far).max(0.0))
+        let farthest = Frame::new(area).corners().map(|p| self.center.distance(p)).into_iter().fold(0.0, f64::max);
+        Some(0.25 * self.f.min(self.max_radius() - farthest).max(0.0))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -284,12 +275,12 @@ mod tests {
     #[test]
     fn stereographic_from_equisolid_and_the_rest_agree_with_the_definitions() {
         // 100 degrees off the axis, by hand.
-        let th = 100f64.to_radians();
+        let theta = 100f64.to_radians();
         let m =
             build(&[("from", "equisolid"), ("to", "stereographic"), ("field", "240"), ("keep", "middle")]).unwrap().map;
         let f = 50.0 * 2f64.sqrt() / (2.0 * 60f64.to_radians().sin());
-        let p = m.point(Point::new(50.0 + f * 2.0 * (th / 2.0).sin(), 50.0));
-        assert!((p.x - 50.0 - f * 2.0 * (th / 2.0).tan()).abs() < 1e-10);
+        let p = m.point(Point::new(50.0 + f * 2.0 * (theta / 2.0).sin(), 50.0));
+        assert!((p.x - 50.0 - f * 2.0 * (theta / 2.0).tan()).abs() < 1e-10);
     }
 
     #[test]

@@ -65,8 +65,7 @@ impl Mls {
     /// equal first points, and [`GeometryError::Collinear`] when they lie on one line with [`Stiffness::Affine`].
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
-        let Self { handles, stiffness, alpha, .. } = self;
-        let (stiffness, alpha) = (*stiffness, *alpha);
+        let Self { ref handles, stiffness, alpha, .. } = *self;
         let from: Vec<Point> = handles.iter().map(|h| h.0).collect();
         if handles.len() > MAX_HANDLES {
             let problem = format!("pairs are too many: at most {MAX_HANDLES}");
@@ -235,9 +234,10 @@ fn crosses(points: impl Iterator<Item = Point>, size: f64) -> BezPath {
 /// The map of two or more handles.
 #[derive(Debug, Clone)]
 struct MlsMap {
+    /// The points pᵢ and their images qᵢ.
     handles: Vec<(Point, Point)>,
     /// For every handle, the squared distance to its nearest neighbour.
-    apart: Vec<f64>,
+    gaps: Vec<f64>,
     stiffness: Stiffness,
     alpha: f64,
 }
@@ -245,7 +245,7 @@ struct MlsMap {
 /// A 2×2 matrix, row by row.
 type Matrix<S> = [[S; 2]; 2];
 
-/// Weighted sums over the handles, with p and q relative to those of the nearest handle.
+/// Weighted sums over the handles (p, q), relative to the nearest handle.
 struct Moments<S> {
     /// Σw.
     w: S,
@@ -288,24 +288,18 @@ impl<S: Real> Moments<S> {
 
 impl MlsMap {
     fn new(handles: &[(Point, Point)], stiffness: Stiffness, alpha: f64) -> Self {
-        let apart = |p: Point| {
+        let gap = |p: Point| {
             let others = handles.iter().map(|(o, _)| (*o - p).hypot2()).filter(|d| *d > 0.0);
             others.fold(f64::INFINITY, f64::min)
         };
-        let apart = handles.iter().map(|(p, _)| apart(*p)).collect();
-        Self { handles: handles.to_vec(), apart, stiffness, alpha }
+        let gaps = handles.iter().map(|(p, _)| gap(*p)).collect();
+        Self { handles: handles.to_vec(), gaps, stiffness, alpha }
     }
 
     /// Returns the nearest handle and its squared distance.
     fn nearest(&self, v: Point) -> (usize, f64) {
-        let mut best = (0, f64::INFINITY);
-        for (i, (p, _)) in self.handles.iter().enumerate() {
-            let d = (*p - v).hypot2();
-            if d < best.1 {
-                best = (i, d);
-            }
-        }
-        best
+        let distances = self.handles.iter().map(|(p, _)| (*p - v).hypot2()).enumerate();
+        distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
     }
 
     /// Returns M from the weighted sums of p̂p̂ᵀ and q̂p̂ᵀ.
@@ -337,21 +331,21 @@ impl Formula for MlsMap {
 
     /// The weights vary on the scale of the distance between handles, or, far away, of the distance from them.
     fn detail(&self, area: Rect) -> Option<f64> {
-        let from = |p: Point| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)).distance(p);
-        let sizes = self.handles.iter().zip(&self.apart).map(|((p, _), apart)| apart.sqrt().max(from(*p)));
+        let distance = |p: Point| Point::new(p.x.clamp(area.x0, area.x1), p.y.clamp(area.y0, area.y1)).distance(p);
+        let sizes = self.handles.iter().zip(&self.gaps).map(|((p, _), gap)| gap.sqrt().max(distance(*p)));
         Some(0.5 * sizes.fold(f64::INFINITY, f64::min))
     }
 
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         /// Squared distance below which a point lies on the handle, relative to the squared distance between the handle and its neighbour.
-        const ON: f64 = 1e-28;
+        const ON_HANDLE: f64 = 1e-28;
         let (k, d2) = self.nearest(Point::new(x.value(), y.value()));
-        let (nearest, scale) = (self.handles[k], self.apart[k]);
+        let (nearest, gap) = (self.handles[k], self.gaps[k]);
         let (pk, qk) = nearest;
         let (vx, vy) = (x - pk.x, y - pk.y);
-        if d2 <= ON * scale {
+        if d2 <= ON_HANDLE * gap {
             let others = self.handles.iter().enumerate().filter(|(i, _)| *i != k);
-            let weighted = others.map(|(_, h)| (*h, S::from(((h.0 - pk).hypot2() / scale).powf(-self.alpha))));
+            let weighted = others.map(|(_, h)| (*h, S::from(((h.0 - pk).hypot2() / gap).powf(-self.alpha))));
             let Moments { pp, qp, .. } = Moments::new(weighted, nearest);
             let m = self.matrix(pp, qp);
             return (m[0][0] * vx + m[0][1] * vy + qk.x, m[1][0] * vx + m[1][1] * vy + qk.y);

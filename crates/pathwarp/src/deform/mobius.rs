@@ -45,30 +45,27 @@ pub struct Mobius {
 impl Mobius {
     /// Creates the map that takes `pole` to infinity and keeps the middle of the artwork's box, with the derivative 1 there.
     pub fn by_pole(frame: Rect, pole: impl Into<Point>) -> Self {
-        let (z0, pole): (Point, Point) = (frame.center(), pole.into());
-        Self { frame, m: by_pole(pole - z0), from: z0, to: z0, param: "pole", overlays: Vec::new() }
+        let z0 = frame.center();
+        let p = pole.into() - z0;
+        // z/(1 − z/p) = p·z/(p − z).
+        let m = [p, Vec2::ZERO, -Vec2::new(1.0, 0.0), p];
+        Self { frame, m, from: z0, to: z0, param: "pole", overlays: Vec::new() }
     }
 
     /// Creates the map that takes three distinct points to three distinct points.
     pub fn by_points(frame: Rect, from: [impl Into<Point>; 3], to: [impl Into<Point>; 3]) -> Self {
         let (p, q) = (from.map(Into::into), to.map(Into::into));
-        let shown = |role, p: &[Point]| Overlay { role, path: Outline::from_points(p, false).to_bez_path(0.0) };
-        let overlays = vec![shown(Role::Base, &p), shown(Role::Target, &q)];
-        Self {
-            frame,
-            m: by_points(p.map(|z| z - p[0]), q.map(|w| w - q[0])),
-            from: p[0],
-            to: q[0],
-            param: "to",
-            overlays,
-        }
+        let overlay = |role, p: &[Point]| Overlay { role, path: Outline::from_points(p, false).to_bez_path(0.0) };
+        let overlays = vec![overlay(Role::Base, &p), overlay(Role::Target, &q)];
+        let m = by_points(p.map(|z| z - p[0]), q.map(|w| w - q[0]));
+        Self { frame, m, from: p[0], to: q[0], param: "to", overlays }
     }
 
     /// Creates the map with the coefficients a, b, c, d; x is the real part, y the imaginary one.
     #[must_use]
     pub fn by_coefficients(frame: Rect, coefficients: [Vec2; 4]) -> Self {
-        let zero = Point::ORIGIN;
-        Self { frame, m: coefficients, from: zero, to: zero, param: "coefficients", overlays: Vec::new() }
+        let (from, to) = (Point::ORIGIN, Point::ORIGIN);
+        Self { frame, m: coefficients, from, to, param: "coefficients", overlays: Vec::new() }
     }
 
     /// Builds the map. It is undefined within 2 % of the box's diagonal from the pole.
@@ -87,8 +84,8 @@ impl Mobius {
         let diagonal = frame.width().hypot(frame.height()).max(1e-9);
         let explanation = Explanation { overlays: self.overlays.clone(), ..Explanation::default() };
         let pole = (c != Vec2::ZERO).then(|| from + div(-d, c));
-        let near = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal);
-        let Some(pole) = near else {
+        let Some(pole) = pole.filter(|p| p.distance(frame.center()) < FAR * diagonal) else {
+            // (a·z + b)/d.
             let a = div(a, d);
             let b = to.to_vec2() + div(b, d) - mul(a, from.to_vec2());
             let m = Affine::new([a.x, a.y, -a.y, a.x, b.x, b.y]);
@@ -162,7 +159,7 @@ points and their images (--from, --to), or give the coefficients of w = (a·z + 
         },
     ]);
 
-/// Distance from the pole within which the map is undefined, as a share of the frame's diagonal.
+/// Distance from the pole within which the map is undefined, as a fraction of the frame's diagonal.
 const CLEAR: f64 = 0.02;
 /// Default distance of the pole, in diagonals of the frame.
 const DEFAULT_DISTANCE: f64 = 1.6;
@@ -177,9 +174,9 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
             Mobius::by_coefficients(frame, std::array::from_fn(|i| Vec2::new(v[2 * i], v[2 * i + 1])))
         }
         (None, Some(from), Some(to)) if !s.given("pole") => {
-            let shown = |role, path: &NamedPath| Overlay { role, path: path.outline.to_bez_path(0.0) };
-            let overlays = vec![shown(Role::Base, &from), shown(Role::Target, &to)];
-            Mobius { overlays, ..Mobius::by_points(frame, three(&from)?, three(&to)?) }
+            let overlay = |role, path: &NamedPath| Overlay { role, path: path.outline.to_bez_path(0.0) };
+            let overlays = vec![overlay(Role::Base, &from), overlay(Role::Target, &to)];
+            Mobius { overlays, ..Mobius::by_points(frame, three_anchors(&from)?, three_anchors(&to)?) }
         }
         (None, None, None) => {
             let below = Vec2::new(0.0, DEFAULT_DISTANCE * frame.width().hypot(frame.height()));
@@ -201,7 +198,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
 });
 
 /// Returns the three distinct anchors of a path.
-fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
+fn three_anchors(path: &NamedPath) -> Result<[Point; 3], Error> {
     let a = anchors::only_subpath(path, "three")?.anchors();
     let [p, q, r] = a[..] else {
         return Err(GeometryError::anchor_count(&path.name, &a, "three").into());
@@ -210,19 +207,14 @@ fn three(path: &NamedPath) -> Result<[Point; 3], Error> {
     Ok([p, q, r])
 }
 
+/// The product of two complex numbers.
 fn mul(a: Vec2, b: Vec2) -> Vec2 {
     Vec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
 
+/// The quotient of two complex numbers.
 fn div(a: Vec2, b: Vec2) -> Vec2 {
     mul(a, Vec2::new(b.x, -b.y)) / b.hypot2()
-}
-
-const ONE: Vec2 = Vec2::new(1.0, 0.0);
-
-/// Returns the coefficients of z/(1 − z/P), for points relative to the middle.
-fn by_pole(pole: Vec2) -> [Vec2; 4] {
-    [pole, Vec2::ZERO, -ONE, pole]
 }
 
 /// Returns the coefficients of K⁻¹ ∘ H.
@@ -261,8 +253,8 @@ impl Formula for MobiusMap {
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let [a, b, c, d] = self.m;
-        let near = |[x, y, w]: [f64; 3]| [x - self.from.x * w, y - self.from.y * w, w];
-        let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(near(*p))));
+        let relative = |[x, y, w]: [f64; 3]| [x - self.from.x * w, y - self.from.y * w, w];
+        let part = |f: &dyn Fn([f64; 3]) -> f64| Scaled::new(curve.points.iter().map(|p| f(relative(*p))));
         let (nx, ny) = (part(&|[x, y, w]| x * a.x - y * a.y + w * b.x), part(&|[x, y, w]| x * a.y + y * a.x + w * b.y));
         let (dx, dy) = (part(&|[x, y, w]| x * c.x - y * c.y + w * d.x), part(&|[x, y, w]| x * c.y + y * c.x + w * d.y));
         let sum = |p: &Scaled, q: &Scaled, k: f64, r: &Scaled, s: &Scaled| {
@@ -301,9 +293,9 @@ mod tests {
         let three = [(0.0, 50.0), (50.0, 40.0), (100.0, 50.0)].map(Point::from);
         let moved = [(5.0, 10.0), (50.0, 40.0), (95.0, 10.0)].map(Point::from);
         let pair = |by: Vec2| {
-            let there = |p: [Point; 3]| p.map(|p| p + by);
+            let shifted = |p: [Point; 3]| p.map(|p| p + by);
             let pole = Mobius::by_pole(frame + by, Point::new(60.0, 250.0) + by).build().unwrap().map;
-            [pole, Mobius::by_points(frame + by, there(three), there(moved)).build().unwrap().map]
+            [pole, Mobius::by_points(frame + by, shifted(three), shifted(moved)).build().unwrap().map]
         };
         for (near, away) in pair(Vec2::ZERO).iter().zip(pair(far)) {
             for (near, away) in [(near.clone(), away.clone()), (near.inverse().unwrap(), away.inverse().unwrap())] {

@@ -1,16 +1,11 @@
 //! Polar coordinates: a rectangle is bent into a sector of a ring, or into the whole ring.
 //!
-//! Verticals become rays and horizontals become circles. With κ = sweep / width and x measured from the artwork's middle, the angle
-//! from the vertical is φ = κ·x. With y measured upwards from the inner edge, the radius is
-//!
-//! - even: r = ρ + g·y, which divides verticals evenly; g = 1 unless both radii are given,
-//! - conformal: r = ρ·exp(κ·y), the complex exponential, which keeps angles; heights grow with the radius.
-//!
-//! With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r and κ negative; the top edge is then the
-//! inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the artwork's middle, at height yₘ, as
-//! F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the centre C far away. The inverse
-//! takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn meets itself: artwork that
-//! crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
+//! In the formulas of [`Polar`], x is measured from the artwork's middle, and g = 1 unless both radii are given. The conformal radius is
+//! that of the complex exponential: heights grow with it. With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r
+//! and κ negative; the top edge is then the inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the
+//! artwork's middle, at height yₘ, as F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the
+//! centre C far away. The inverse takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn
+//! meets itself: artwork that crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
 use crate::error::{Error, show};
@@ -24,7 +19,8 @@ parameters! {
     /// Polar coordinates: a box bent into a sector of a ring, or into the whole ring.
     ///
     /// Verticals become rays and horizontals become arcs about one centre: the angle from the vertical is φ = κ·x with κ =
-    /// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge.
+    /// sweep/width, and the radius r = ρ + g·y, or ρ·exp(κ·y) if conformal, with y counted upwards from the inner edge and g the gain of
+    /// radius per height.
     ///
     /// ```
     /// use pathwarp::{deform::Polar, kurbo::{Point, Rect}, map::Map};
@@ -68,10 +64,11 @@ impl Polar {
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let Self { frame: rect, inner, outer, conformal, .. } = *self;
-        let whole = self.sweep.abs() > 360.0 * (1.0 - WHOLE);
+        let is_whole = self.sweep.abs() > 360.0 * (1.0 - WHOLE);
         let gap = self.gap.or(self.word_space).unwrap_or(0.0);
-        let left = if whole && gap > 0.0 { rect.width() / (rect.width() + gap) } else { 1.0 };
-        let sweep = self.sweep.to_radians() * left;
+        // The part of the sweep that the gap leaves to the artwork.
+        let used = if is_whole && gap > 0.0 { rect.width() / (rect.width() + gap) } else { 1.0 };
+        let sweep = self.sweep.to_radians() * used;
         let degrees = sweep.to_degrees().to_string();
         if sweep == 0.0 {
             if inner.or(outer).is_some() || self.center.is_some() {
@@ -106,7 +103,7 @@ impl Polar {
             let c = map.centre();
             built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
         }
-        if left < 1.0 {
+        if used < 1.0 {
             built.note(format!("a gap of {gap:.6} between the ends leaves a sweep of {:.6}°", sweep.to_degrees()));
         }
         built.note(format!("centre {}, radii {near:.6} and {far:.6}", show(map.centre())));
@@ -126,7 +123,7 @@ impl Polar {
             (None, Some(o)) => (o - height, o),
             (Some(i), Some(o)) => (i, o),
         };
-        if near < 0.0 || far <= near && height > 0.0 || conformal && near == 0.0 {
+        if near < 0.0 || (far <= near && height > 0.0) || (conformal && near == 0.0) {
             let name = if outer.is_some() { "outer" } else { "inner" };
             let problem = format!("leaves no ring: the inner radius would be {near:.6}, the outer one {far:.6}");
             return Err(Error::usage(name, "", problem));
@@ -188,7 +185,7 @@ const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"),
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Polar::read(s)?.build());
 
-/// A sweep that falls short of a whole turn by less than this share counts as one.
+/// A sweep that falls short of a whole turn by less than this fraction counts as one.
 const WHOLE: f64 = 1e-9;
 
 /// The ring as a map.
@@ -215,6 +212,7 @@ struct PolarMap {
 }
 
 impl PolarMap {
+    /// Applies the additional turn to a vector.
     fn turned(&self, v: Vec2) -> Vec2 {
         Vec2::new(v.x * self.turn.x - v.y * self.turn.y, v.x * self.turn.y + v.y * self.turn.x)
     }
@@ -240,8 +238,8 @@ impl Formula for PolarMap {
         let r = self.radius_at(y);
         let angle = (x - self.middle.x) * self.k;
         let down = if self.conformal { -r + self.radius_at(self.middle.y) } else { (y - self.middle.y) * self.gain };
-        let (a, half) = (r * angle.sin(), (angle * 0.5).sin());
-        let b = down + r * half * half * 2.0;
+        let (a, sin_half) = (r * angle.sin(), (angle * 0.5).sin());
+        let b = down + r * sin_half * sin_half * 2.0;
         let t = self.turn;
         (a * t.x - b * t.y + self.to.x, a * t.y + b * t.x + self.to.y)
     }
@@ -296,14 +294,14 @@ impl Formula for PolarInverse {
     /// The inverse ends at the ray opposite the middle: each end of the ring extends over half of the angle that the sweep leaves
     /// free. A whole turn leaves none, so that the value jumps there; a line through the centre divides it into halves with definite ends.
     fn creases(&self, out: &mut Creases) {
-        let own = *self;
-        if own.ring.is_whole() {
-            let (c, t) = (own.ring.centre().to_vec2(), own.ring.turn);
+        let inverse = *self;
+        if self.ring.is_whole() {
+            let (c, t) = (self.ring.centre().to_vec2(), self.ring.turn);
             out.push(Crease::kink(Level::Line { a: t.x, b: t.y, c: -c.dot(t) }));
             return;
         }
-        let limit = 0.5 * (0.5 * own.ring.sweep + PI) * (1.0 - 1e-9);
-        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| limit - own.polar(p.x, p.y).1.abs()))));
+        let limit = 0.5 * (0.5 * self.ring.sweep + PI) * (1.0 - 1e-9);
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| limit - inverse.polar(p.x, p.y).1.abs()))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
@@ -378,15 +376,15 @@ mod tests {
             let warped = refit::warp_path(&art, &built.map, &refit::Options::new(0.01)).unwrap();
             assert!(warped.report.unresolved.is_empty() && warped.report.max_error <= 0.01, "{:?}", warped.report);
             // The distance from 0,0 is the height, the angle from the vertical, turned back, the width.
-            let mut apart: f64 = 0.0;
+            let mut largest: f64 = 0.0;
             for p in art.segs().flat_map(|s| (1..200).map(move |i| s.eval(f64::from(i) / 200.0))) {
                 let angle = (p.x.atan2(-p.y) + 10_f64.to_radians() + 3.0 * PI).rem_euclid(TAU) - PI;
                 let to = Point::new(150.0 + 300.0 * angle / TAU, 70.0 - (p.to_vec2().hypot() - 20.0));
                 let near =
                     warped.path.segments().map(|s| s.nearest(to, 1e-6).distance_sq.sqrt()).fold(f64::MAX, f64::min);
-                apart = apart.max(near);
+                largest = largest.max(near);
             }
-            assert!(apart < 0.0101, "{apart}");
+            assert!(largest < 0.0101, "{largest}");
             (built.steps[0].explanation.warnings.clone(), warped.report.segments_out)
         };
         let (warnings, segments) = unroll("M-31.37,40 H8.63 V80 H-31.37 Z");

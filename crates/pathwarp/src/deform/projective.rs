@@ -1,7 +1,4 @@
-//! The projective map from four points to four points: artwork seen in perspective.
-//!
-//! (x, y) ↦ (X/W, Y/W), (X, Y, W) = M·(x, y, 1), with M from the four pairs (Heckbert, *Fundamentals of Texture Mapping and
-//! Image Warping*, 1989, §2.2). Straight lines stay straight.
+//! The projective map from four points to four points (P. Heckbert, *Fundamentals of Texture Mapping and Image Warping*, 1989, §2.2).
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law};
 use crate::anchors::{self, FourToFour};

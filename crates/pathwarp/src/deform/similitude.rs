@@ -1,6 +1,4 @@
-//! The direct similitude that takes two points to two points: turn, scale and shift, no mirroring.
-//!
-//! In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
+//! The direct similitude that takes two points to two points.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Role};
 use crate::anchors::{self, Anchors};
@@ -10,7 +8,7 @@ use crate::param::Param;
 use kurbo::Point;
 use std::sync::Arc;
 
-/// The direct similitude that takes two points to two points: turn, uniform scale and shift.
+/// The direct similitude that takes two points A, B to two points P, Q: turn, uniform scale and shift, no mirroring.
 ///
 /// In complex numbers z ↦ P + (z − A)·(Q − P)/(B − A).
 ///
@@ -95,7 +93,7 @@ turned, scaled evenly and shifted; nothing is bent, and no node is added.")
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let two = |name: &str| -> Result<[Point; 2], Error> {
+    let two_anchors = |name: &str| -> Result<[Point; 2], Error> {
         let path = s.path_if(name)?.ok_or_else(|| Error::missing(name, "a path with two anchors"))?;
         match anchors::two_or_four(&path)? {
             Anchors::Two(p) => Ok(p),
@@ -104,5 +102,5 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
             }
         }
     };
-    Similitude { from: two("base")?, to: two("target")? }.build()
+    Similitude { from: two_anchors("base")?, to: two_anchors("target")? }.build()
 });

@@ -1,13 +1,8 @@
 //! A swirl: artwork is turned about a centre, by an angle that decreases with the distance.
 //!
-//! In polar coordinates about the centre (r, θ) ↦ (r, θ + α·f(r/R)), with one of
-//!
-//! - soft: f(ρ) = (1 − ρ²)² inside the disc ρ < 1, 0 outside; value and slope vanish at the rim, the curvature jumps,
-//! - sharp: f(ρ) = 1 − ρ inside, 0 outside; the slope jumps at the rim,
-//! - endless: f(ρ) = exp(−2ρ²), smooth everywhere.
-//!
-//! The map keeps r and areas, being a shear in r²/2 and θ; the inverse is the swirl by −α. It is the twist of A. Barr, *Global and
-//! local deformations of solid primitives*, SIGGRAPH 1984, with the radius in the role of the axis.
+//! The map keeps the distance r from the centre, and areas, being a shear in r²/2 and the polar angle; its inverse is the swirl by the
+//! opposite angle. It is the twist of A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, with the radius in the
+//! role of the axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -153,14 +148,15 @@ impl Formula for Inner {
 struct SwirlMap(Inner);
 
 impl SwirlMap {
-    fn within(&self, p: Point) -> bool {
+    /// Returns `true` inside the disc.
+    fn contains(&self, p: Point) -> bool {
         (p - self.0.center).hypot() < self.0.radius
     }
 }
 
 impl Formula for SwirlMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        if self.within(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
+        if self.contains(Point::new(x.value(), y.value())) { self.0.f(x, y) } else { (x, y) }
     }
 
     fn class(&self) -> Class {
@@ -173,7 +169,7 @@ impl Formula for SwirlMap {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        Some(if self.within(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
+        Some(if self.contains(inside) { Arc::new(self.0) } else { Arc::new(AffineMap::IDENTITY) })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -1,13 +1,9 @@
 //! A sine wave: artwork is pushed to and fro across the direction in which the wave runs, or along it.
 //!
-//! With the unit vector d along the wave, n a quarter turn to its left on the screen, and s = (p − o)·d counted from the start of
-//! the artwork,
-//!
-//! shear: F(p) = p + a(s)·sin(2π·s/λ + φ)·n,  push: F(p) = p + a(s)·sin(2π·s/λ + φ)·d,
-//!
-//! with a(s) = h·(1 − g + g·s/S), where S is the artwork's extent along d. With g = 1 the wave grows from nothing, like a flag at its
-//! pole. The shear keeps s: its determinant is 1, and its inverse is the wave with −h. A. Barr, *Global and local deformations of
-//! solid primitives*, SIGGRAPH 1984, has such waves as profiles of offsets along an axis.
+//! In the formula of [`Wave`], s = (p − o)·d with the unit vector d along the wave, and n is a quarter turn to its left on the screen for a
+//! shear, or d for a push. With g = 1 the wave grows from nothing, like a flag at its pole. The shear keeps s: its determinant is 1, and
+//! its inverse is the wave with −h. A. Barr, *Global and local deformations of solid primitives*, SIGGRAPH 1984, has such waves as profiles
+//! of offsets along an axis.
 
 use super::entry::{Built, Case, Entry, Example, Info, Law};
 use crate::error::Error;
@@ -21,7 +17,7 @@ parameters! {
     /// A sine wave: artwork pushed to and fro across the direction of the wave, or along it.
     ///
     /// F(p) = p + a(s)·sin(2π·s/λ + φ)·n with s counted along the wave from where the artwork begins, n the unit vector across
-    /// it, λ its length, φ its phase, and a(s) = h·(1 − g + g·s/S), h being its height, g its growth and S the artwork's extent along it.
+    /// (or along) it, λ its length, φ its phase, and a(s) = h·(1 − g + g·s/S), with its height h, its growth g and the artwork's extent S.
     ///
     /// ```
     /// use pathwarp::{deform::Wave, kurbo::{Point, Rect}, map::Map};
@@ -63,9 +59,9 @@ impl Wave {
         self.check()?;
         let Self { height, length, grow, push, .. } = *self;
         let d = Vec2::from_angle(self.angle.to_radians());
-        let along: Vec<f64> = Frame::new(self.frame).corners().iter().map(|c| c.to_vec2().dot(d)).collect();
-        let start = along.iter().copied().fold(f64::INFINITY, f64::min);
-        let extent = along.iter().copied().fold(f64::NEG_INFINITY, f64::max) - start;
+        let along = Frame::new(self.frame).corners().map(|c| c.to_vec2().dot(d));
+        let start = along.into_iter().fold(f64::INFINITY, f64::min);
+        let extent = along.into_iter().fold(f64::NEG_INFINITY, f64::max) - start;
         let map = WaveMap {
             d,
             to: if push { d } else { Vec2::new(d.y, -d.x) },
@@ -143,9 +139,11 @@ struct WaveMap {
     origin: f64,
     /// 2π/λ.
     wave: f64,
+    /// φ, in radians.
     phase: f64,
+    /// h, the full height.
     height: f64,
-    /// The height at the start, and its growth per unit of s, as shares of `height`.
+    /// The height at the start, and its growth per unit of s, as fractions of `height`.
     initial: f64,
     grow: f64,
 }
@@ -154,8 +152,8 @@ impl Formula for WaveMap {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let s = x * self.d.x + y * self.d.y - self.origin;
         let a = (s * self.grow + self.initial) * self.height;
-        let off = a * (s * self.wave + self.phase).sin();
-        (x + off * self.to.x, y + off * self.to.y)
+        let distance = a * (s * self.wave + self.phase).sin();
+        (x + distance * self.to.x, y + distance * self.to.y)
     }
 
     fn class(&self) -> Class {
@@ -164,8 +162,8 @@ impl Formula for WaveMap {
 
     /// A shear keeps s, so its offset can be subtracted again.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let across = self.d.dot(self.to) == 0.0;
-        across.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)
+        let is_shear = self.d.dot(self.to) == 0.0;
+        is_shear.then(|| Arc::new(Self { height: -self.height, ..self.clone() }) as Arc<dyn Map>)
     }
 }
 

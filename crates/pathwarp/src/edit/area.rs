@@ -1,19 +1,19 @@
 //! Areas enclosed by outlines, with their union, intersection and difference.
 
-use super::known;
+use super::exact_edges;
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use crate::refit::ARCS;
 use bezierfit::union_even_odd;
 use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Point, Rect, Shape as _, Vec2};
 
-/// Tolerance of outlines that close a gap, as a share of its width.
-const FITTED: f64 = 0.1;
-/// Distance within which outlines that close a gap follow lines and arcs of the sources, as a share of its width.
-const SNAPPED: f64 = 0.8;
+/// Tolerance of outlines that close a gap, as a fraction of its width.
+const FIT_TOLERANCE: f64 = 0.1;
+/// Distance within which outlines that close a gap follow lines and arcs of the sources, as a fraction of its width.
+const SNAP_DISTANCE: f64 = 0.8;
 
 /// Parameters at which segments of outlines that close gaps are compared with the original outlines.
-const PLACES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+const SAMPLES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 
 /// An area of the plane, with outlines that meet neither themselves nor each other.
 ///
@@ -36,9 +36,9 @@ impl Area {
     /// # Errors
     /// [`GeometryError::NotFinite`] for a coordinate that is not finite, [`GeometryError::Crossings`] when edges' crossings are not found.
     pub fn of(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Self, GeometryError> {
-        let fine = ARCS * tolerance;
+        let arc_tolerance = ARCS * tolerance;
         let unite = if even_odd { union_even_odd } else { bezierfit::union };
-        Ok(Self(Outline::from(&unite(&outline.to_bez_path(fine), tolerance - fine)?)))
+        Ok(Self(Outline::from(&unite(&outline.to_bez_path(arc_tolerance), tolerance - arc_tolerance)?)))
     }
 
     /// Returns the union of the areas.
@@ -46,13 +46,10 @@ impl Area {
     /// # Errors
     /// [`GeometryError::Crossings`] when crossings of edges are not found.
     pub fn union<'a>(all: impl IntoIterator<Item = &'a Self>, tolerance: f64) -> Result<Self, GeometryError> {
-        // All outlines turn around their area in the same direction, so their union is that of one path.
-        let mut areas = all.into_iter().filter(|a| !a.is_empty()).map(Self::path);
-        let Some(mut path) = areas.next() else { return Ok(Self::default()) };
-        let alone = path.elements().len();
-        areas.for_each(|other| path.extend(other));
-        let is_alone = path.elements().len() == alone;
-        Ok(Self(Outline::from(&if is_alone { path } else { bezierfit::union(&path, tolerance)? })))
+        // All outlines turn around their area in the same direction, so one path can hold them all.
+        let paths: Vec<BezPath> = all.into_iter().filter(|a| !a.is_empty()).map(Self::path).collect();
+        let path: BezPath = paths.iter().flatten().collect();
+        Ok(Self(Outline::from(&if paths.len() < 2 { path } else { bezierfit::union(&path, tolerance)? })))
     }
 
     /// Returns the intersection of both areas.
@@ -130,7 +127,7 @@ impl Area {
     /// Returns the outlines, with circular arcs of the sources where the outlines follow them within `tolerance`.
     #[must_use]
     pub fn with_arcs_of(&self, sources: &Outline, tolerance: f64) -> Outline {
-        known::with_edges(self.0.clone(), sources, (0.0, false, 0.0), tolerance)
+        exact_edges::insert(self.0.clone(), sources, 0.0, Some(0.0), tolerance)
     }
 
     /// Returns the numbers of islands and of holes.
@@ -151,34 +148,36 @@ impl Area {
     pub fn with_gaps_closed(&self, width: f64, sources: &Outline) -> Self {
         let boxes: Vec<Rect> = self.0.subpaths.iter().map(|s| s.bounding_box().inflate(width, width)).collect();
         let mut out = Outline::default();
-        for group in apart(&boxes) {
-            let own = Self(Outline { subpaths: group.iter().map(|i| self.0.subpaths[*i].clone()).collect() });
-            out.subpaths.extend(own.closed(width, sources).unwrap_or(own.0).subpaths);
+        for group in separate(&boxes) {
+            let area = Self(Outline { subpaths: group.iter().map(|i| self.0.subpaths[*i].clone()).collect() });
+            out.subpaths.extend(area.close_gaps(width, sources).unwrap_or(area.0).subpaths);
         }
         Self(out)
     }
 
-    fn closed(&self, width: f64, sources: &Outline) -> Option<Outline> {
+    /// Closes the gaps of outlines near each other by growing and shrinking the area; `None` if none is closed.
+    fn close_gaps(&self, width: f64, sources: &Outline) -> Option<Outline> {
         if !self.has_gap(width) {
             return None;
         }
-        let options = bezierfit::Options::new(FITTED * width);
-        let moved = |path: &BezPath, by: f64| Some(bezierfit::offset(path, by, Join::Round, &options).ok()?.path);
-        let grown = moved(&self.path(), 0.5 * width)?;
+        let options = bezierfit::Options::new(FIT_TOLERANCE * width);
+        let offset = |path: &BezPath, by: f64| Some(bezierfit::offset(path, by, Join::Round, &options).ok()?.path);
+        let grown = offset(&self.path(), 0.5 * width)?;
         if Self(Outline::from(&grown)).counts() == self.counts() {
             return None;
         }
-        let closed = Outline::from(&moved(&grown, -0.5 * width)?);
+        let closed = Outline::from(&offset(&grown, -0.5 * width)?);
         // Lines may continue across gaps.
-        let exact =
-            known::with_edges(closed, sources, (0.0, false, f64::INFINITY), SNAPPED * width).to_bez_path(ARCS * width);
+        let exact = exact_edges::insert(closed, sources, 0.0, Some(f64::INFINITY), SNAP_DISTANCE * width);
+        let exact = exact.to_bez_path(ARCS * width);
         // The result must run along the original outlines.
-        let own: Vec<(Rect, PathSeg)> =
+        let original: Vec<(Rect, PathSeg)> =
             self.path().segments().map(|s| (s.bounding_box().inflate(width, width), s)).collect();
         let is_near = |p: Point| {
-            own.iter().any(|(b, s)| b.contains(p) && s.nearest(p, FITTED * width).distance_sq <= width * width)
+            let near = |s: &PathSeg| s.nearest(p, FIT_TOLERANCE * width).distance_sq <= width * width;
+            original.iter().any(|(b, s)| b.contains(p) && near(s))
         };
-        let follows = exact.segments().all(|s| PLACES.iter().all(|t| is_near(s.eval(*t))));
+        let follows = exact.segments().all(|s| SAMPLES.iter().all(|t| is_near(s.eval(*t))));
         (follows && exact.area().abs() >= self.path().area().abs()).then(|| Outline::from(&exact))
     }
 
@@ -187,63 +186,64 @@ impl Area {
         let mut segs: Vec<(Rect, PathSeg)> = self.path().segments().map(|s| (s.bounding_box(), s)).collect();
         segs.sort_by(|a, b| a.0.x0.total_cmp(&b.0.x0));
         let meet = |a: &PathSeg, b: &PathSeg| a.end() == b.start() || b.end() == a.start();
-        segs.iter().enumerate().any(|(i, (box_of, a))| {
-            let near = segs[i + 1..].iter().take_while(|(b, _)| b.x0 <= box_of.x1 + width);
+        segs.iter().enumerate().any(|(i, (bounds, a))| {
+            let near = segs[i + 1..].iter().take_while(|(b, _)| b.x0 <= bounds.x1 + width);
             near.filter(|(_, b)| !meet(a, b)).any(|(_, b)| are_near(a, b, width))
         })
     }
 
     fn path(&self) -> BezPath {
-        // It has no arcs.
+        // There are no arcs, so the tolerance does not matter.
         self.0.to_bez_path(1.0)
     }
 }
 
-/// Returns `true` if two segments are nearer than `width`, or slightly more.
+/// Returns `true` if two segments are nearer than `width`, or slightly farther apart: their boxes are compared, and the longer one is
+/// halved until both are small.
 fn are_near(a: &PathSeg, b: &PathSeg, width: f64) -> bool {
-    let [around, other] = [a, b].map(kurbo::Shape::bounding_box);
-    let [m, n] = [around, other].map(|b| b.size().max_side());
-    let room = around.inflate(width, width);
-    if room.x0 > other.x1 || other.x0 > room.x1 || room.y0 > other.y1 || other.y0 > room.y1 {
+    let [a_box, b_box] = [a, b].map(PathSeg::bounding_box);
+    let [a_side, b_side] = [a_box, b_box].map(|b| b.size().max_side());
+    if !a_box.inflate(width, width).overlaps(b_box) {
         return false;
     }
-    if m.max(n) <= width {
+    if a_side.max(b_side) <= width {
         return true;
     }
-    let (long, short) = if m >= n { (a, b) } else { (b, a) };
+    let (long, short) = if a_side >= b_side { (a, b) } else { (b, a) };
     [0.0..0.5, 0.5..1.0].into_iter().any(|half| are_near(&long.subsegment(half), short, width))
 }
 
-/// Returns the subpaths around islands, not those around holes.
-fn outer(outline: &Outline, fine: f64) -> impl Iterator<Item = &Subpath> {
-    let areas: Vec<f64> = outline.subpaths.iter().map(|s| path(s, fine).area()).collect();
-    let all: f64 = areas.iter().sum();
-    outline.subpaths.iter().zip(areas).filter_map(move |(s, area)| (area * all > 0.0).then_some(s))
+/// Returns the subpaths around islands, not those around holes: they turn in the direction of the whole area. Arcs become cubics within a
+/// tolerance.
+fn outer(outline: &Outline, arc_tolerance: f64) -> impl Iterator<Item = &Subpath> {
+    let areas: Vec<f64> = outline.subpaths.iter().map(|s| path(s, arc_tolerance).area()).collect();
+    let total: f64 = areas.iter().sum();
+    outline.subpaths.iter().zip(areas).filter_map(move |(s, area)| (area * total > 0.0).then_some(s))
 }
 
-/// Returns the outlines of an area that lie in no other. Arcs become cubics within `fine`.
-pub(super) fn outermost(outline: &Outline, fine: f64) -> Outline {
+/// Returns the outlines of an area that lie in no other.
+pub(super) fn outermost(outline: &Outline, arc_tolerance: f64) -> Outline {
     let islands: Vec<(&Subpath, Rect, BezPath)> =
-        outer(outline, fine).map(|s| (s, s.bounding_box(), path(s, fine))).collect();
+        outer(outline, arc_tolerance).map(|s| (s, s.bounding_box(), path(s, arc_tolerance))).collect();
     let is_inside = |(s, b, _): &(&Subpath, Rect, BezPath)| {
         islands.iter().any(|(_, around, path)| around != b && around.union(*b) == *around && path.contains(s.start))
     };
     Outline { subpaths: islands.iter().filter(|i| !is_inside(i)).map(|i| i.0.clone()).collect() }
 }
 
-fn path(subpath: &Subpath, fine: f64) -> BezPath {
-    Outline { subpaths: vec![subpath.clone()] }.to_bez_path(fine)
+fn path(subpath: &Subpath, arc_tolerance: f64) -> BezPath {
+    Outline { subpaths: vec![subpath.clone()] }.to_bez_path(arc_tolerance)
 }
 
 /// Divides boxes into groups, separated by lines along the axes. Returns the indices of each group, in the order of their first boxes.
-pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
+pub(super) fn separate(boxes: &[Rect]) -> Vec<Vec<usize>> {
     /// Limit on the depth of alternate cuts along x and y. Only staircases need as many.
     const MAX_CUTS: usize = 64;
     let spans: [fn(&Rect) -> [f64; 2]; 2] = [|b| [b.x0, b.x1], |b| [b.y0, b.y1]];
-    // Groups, with the number of cuts so far and the number of the last ones that had no effect.
+    // Groups, with the number of cuts so far and the number of cuts without effect at the end.
     let (mut open, mut done) = (vec![((0..boxes.len()).collect::<Vec<usize>>(), 0, 0)], Vec::new());
-    while let Some((mut group, cuts, vain)) = open.pop() {
-        if vain == spans.len() || cuts == MAX_CUTS || group.len() < 2 {
+    while let Some((mut group, cuts, without_effect)) = open.pop() {
+        if without_effect == spans.len() || cuts == MAX_CUTS || group.len() < 2 {
             group.sort_unstable();
             done.push(group);
             continue;
@@ -259,8 +259,8 @@ pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
             }
             end = end.max(span(i)[1]);
         }
-        let vain = if parts.len() == 1 { vain + 1 } else { 0 };
-        open.extend(parts.into_iter().map(|part| (part, cuts + 1, vain)));
+        let without_effect = if parts.len() == 1 { without_effect + 1 } else { 0 };
+        open.extend(parts.into_iter().map(|part| (part, cuts + 1, without_effect)));
     }
     done.retain(|group| !group.is_empty());
     done.sort_unstable();
@@ -282,16 +282,16 @@ pub(super) fn apart(boxes: &[Rect]) -> Vec<Vec<usize>> {
 /// # Ok::<(), pathwarp::Error>(())
 /// ```
 pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Option<Outline>, GeometryError> {
-    let fine = ARCS * tolerance;
-    let path = outline.to_bez_path(fine);
+    let arc_tolerance = ARCS * tolerance;
+    let path = outline.to_bez_path(arc_tolerance);
     let unite = if even_odd { union_even_odd } else { bezierfit::union };
-    let area = unite(&path, tolerance - fine)?;
+    let area = unite(&path, tolerance - arc_tolerance)?;
     let united = Outline::from(&area);
     // Overlaps change the area or the number of outlines. An open outline has no area.
-    let room = tolerance * path.perimeter(tolerance);
-    let closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
-    let simple = closed && united.subpaths.len() == outline.subpaths.len();
-    Ok((!simple || (area.area().abs() - path.area().abs()).abs() > room).then_some(united))
+    let max_change = tolerance * path.perimeter(tolerance);
+    let is_closed = outline.subpaths.iter().all(|s| s.closed || s.start == s.end());
+    let is_simple = is_closed && united.subpaths.len() == outline.subpaths.len();
+    Ok((!is_simple || (area.area().abs() - path.area().abs()).abs() > max_change).then_some(united))
 }
 /// Returns the part of a segment between two parameters.
 fn subsegment(seg: &Seg, from: f64, to: f64) -> Seg {

@@ -1,4 +1,4 @@
-//! The line around an area at a distance, and necks that join islands along the shortest ways (Prim's algorithm).
+//! The line around an area at a distance, and necks that join islands: the edges of a minimum spanning tree, by Prim's algorithm.
 
 use super::area::{Area, outermost};
 use super::offset::{Moved, Offset, OpenPaths, Side, moved};
@@ -49,62 +49,63 @@ pub struct Around {
 pub fn around(area: &Area, contour: &Contour, options: &Options) -> Result<Around, GeometryError> {
     let side = if contour.by < 0.0 { Side::Inside } else { Side::Outside };
     let offset = Offset { by: contour.by.abs(), join: Join::Round, side, even_odd: false, open: OpenPaths::Close };
-    let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?; // All tolerances are the options'.
-    let (mut report, fine) = (path.report, ARCS * options.tolerance); // `fine` is for arcs that become cubics.
-    if !contour.holes {
-        outline = outermost(&outline, fine);
-    }
+    let Moved { mut outline, path } = moved(area.outline(), &offset, options, &[])?;
+    let (mut report, arc_tolerance) = (path.report, ARCS * options.tolerance);
+    let without_holes = |o: Outline| if contour.holes { o } else { outermost(&o, arc_tolerance) };
+    outline = without_holes(outline);
     let mut area = Area::of(&outline, false, options.tolerance)?;
     if contour.join && area.counts()[0] > 1 {
         let necks = necks(&area, contour.by.abs(), options)?;
         let necks = Area::union(&necks, options.tolerance)?;
         area = Area::union([&area, &necks], options.tolerance)?;
-        outline = area.with_arcs_of(&outline, options.tolerance);
-        if !contour.holes {
-            outline = outermost(&outline, fine);
-        }
+        outline = without_holes(area.with_arcs_of(&outline, options.tolerance));
     }
     let islands = area.counts()[0];
     report.segments_out = outline.segs().count();
     Ok(Around { outline, islands, report })
 }
 
-/// Points on the outline of an island, and its box.
-struct Island(Vec<Point>, Rect);
+/// An island of an area.
+struct Island {
+    /// Points on its outline.
+    points: Vec<Point>,
+    bounds: Rect,
+}
 
 impl Island {
-    fn of(subpath: &Subpath) -> Self {
+    fn new(subpath: &Subpath) -> Self {
         /// Number of points on each segment.
-        const EACH: u32 = 16;
-        let on = |s: &Seg| (0..EACH).map(|i| s.eval(f64::from(i) / f64::from(EACH))).collect::<Vec<_>>();
-        Self(subpath.segs.iter().flat_map(on).collect(), subpath.bounding_box())
+        const PER_SEGMENT: u32 = 16;
+        let samples =
+            |s: &Seg| (0..PER_SEGMENT).map(|i| s.eval(f64::from(i) / f64::from(PER_SEGMENT))).collect::<Vec<_>>();
+        Self { points: subpath.segs.iter().flat_map(samples).collect(), bounds: subpath.bounding_box() }
     }
 
     /// Returns the ends of the shortest way to another island, between points of both.
-    fn way(&self, other: &Self) -> Option<[Point; 2]> {
-        let pairs = self.0.iter().flat_map(|p| other.0.iter().map(move |q| [*p, *q]));
+    fn shortest_way(&self, other: &Self) -> Option<[Point; 2]> {
+        let pairs = self.points.iter().flat_map(|p| other.points.iter().map(move |q| [*p, *q]));
         pairs.min_by(|a, b| a[0].distance_squared(a[1]).total_cmp(&b[0].distance_squared(b[1])))
     }
 }
 
 /// Returns necks of a width that join all islands of an area along the shortest ways.
 fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, GeometryError> {
-    let islands: Vec<Island> = area.islands().iter().map(Island::of).collect();
-    let places: usize = islands.iter().map(|i| i.0.len()).sum();
-    options.budget.spend(cost::COMPARISON * (places as f64).powi(2)).map_err(GeometryError::Limit)?;
-    let apart = |a: &Rect, b: &Rect| {
+    let islands: Vec<Island> = area.islands().iter().map(Island::new).collect();
+    let points: usize = islands.iter().map(|i| i.points.len()).sum();
+    options.budget.spend(cost::COMPARISON * (points as f64).powi(2)).map_err(GeometryError::Limit)?;
+    let distance = |a: &Rect, b: &Rect| {
         let gap = |p: f64, q: f64| p.max(q).max(0.0);
         gap(a.x0 - b.x1, b.x0 - a.x1).hypot(gap(a.y0 - b.y1, b.y0 - a.y1))
     };
-    // The shortest way to each island from those already joined, at first only island 0. `last` is the one joined last.
+    // The shortest way to each island from those already joined, at first only island 0. `last` is the island joined last.
     let mut ways: Vec<Option<[Point; 2]>> = vec![None; islands.len()];
     let mut left: Vec<usize> = (1..islands.len()).collect();
     let (mut last, mut out) = (0, Vec::new());
     let length = |way: &Option<[Point; 2]>| way.map_or(f64::INFINITY, |[p, q]| p.distance(q));
     while !left.is_empty() {
         for &i in &left {
-            if apart(&islands[last].1, &islands[i].1) < length(&ways[i]) {
-                let way = islands[last].way(&islands[i]);
+            if distance(&islands[last].bounds, &islands[i].bounds) < length(&ways[i]) {
+                let way = islands[last].shortest_way(&islands[i]);
                 if length(&way) < length(&ways[i]) {
                     ways[i] = way;
                 }
@@ -118,7 +119,7 @@ fn necks(area: &Area, width: f64, options: &Options) -> Result<Vec<Area>, Geomet
         if let Some([p, q]) = ways[last].filter(|[p, q]| p.distance(*q) > 0.0) {
             // The ends reach into the islands, whose outlines may curve away beside the neck.
             let along = (q - p).normalize() * (0.5 * width);
-            let across = kurbo::Vec2::new(-along.y, along.x);
+            let across = along.turn_90();
             let corners = [p - along + across, q + along + across, q + along - across, p - along - across];
             out.push(Area::of(&Outline::from_points(&corners, true), false, options.tolerance)?);
         }

@@ -2,7 +2,7 @@
 
 mod area;
 mod contour;
-mod known;
+mod exact_edges;
 mod offset;
 
 pub use area::{Area, united};

@@ -1,7 +1,7 @@
 //! Offsets: outlines at a distance.
 
-use super::area::apart;
-use super::known;
+use super::area::separate;
+use super::exact_edges;
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg};
 use crate::refit::{ARCS, Options, PathReport, RefittedPath};
@@ -11,8 +11,8 @@ use kurbo::{BezPath, Join, Line, Rect};
 /// Largest reach of an offset's miters, in multiples of its distance.
 const MITERS: f64 = 4.0;
 
-/// Share of the tolerance within which cubics replace the arcs of a finished result; [`ARCS`] is that for arcs of the source.
-const ACCEPTED: f64 = 0.99;
+/// Fraction of the tolerance within which cubics replace the arcs of a finished result; [`ARCS`] is the fraction for arcs of the source.
+const RESULT_ARCS: f64 = 0.99;
 
 /// The side to which [`moved`] moves outlines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,27 +82,28 @@ pub struct Moved {
 pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[f64]) -> Result<Moved, GeometryError> {
     let reach = if offset.join == Join::Miter { MITERS } else { 1.0 } * offset.by;
     let segments_in = outline.segs().count();
-    let (outline, staying) = &prepared(outline, offset.open);
+    let (outline, staying) = &moving_and_staying(outline, offset.open);
     let boxes: Vec<Rect> = outline.subpaths.iter().map(|s| s.bounding_box().inflate(reach, reach)).collect();
     let (mut out, mut path, mut report) = (Outline::default(), BezPath::new(), PathReport::default());
     // Groups that lines along the axes separate cannot meet.
-    for group in apart(&boxes) {
-        let own = |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
-        let tolerance = group.iter().map(own).fold(f64::INFINITY, f64::min);
+    for group in separate(&boxes) {
+        let tolerance_of =
+            |i: &usize| contours.get(*i).copied().unwrap_or_else(|| options.of_contour(&outline.subpaths[*i]));
+        let tolerance = group.iter().map(tolerance_of).fold(f64::INFINITY, f64::min);
         let group = Outline { subpaths: group.iter().map(|i| outline.subpaths[*i].clone()).collect() };
         for fitted in moved_group(&group, offset, tolerance)? {
-            // Beside known edges: the distance, `true` for round joins, and the reach of miters.
-            let beside = (offset.by, offset.join == Join::Round, reach);
-            let moved = known::with_edges(Outline::from(&fitted.path), &group, beside, tolerance);
-            let fine = ACCEPTED * tolerance;
-            let mut own = PathReport::fitted(&fitted.report, tolerance);
+            let miters = (offset.join != Join::Round).then_some(reach);
+            let moved = exact_edges::insert(Outline::from(&fitted.path), &group, offset.by, miters, tolerance);
+            let arc_tolerance = RESULT_ARCS * tolerance;
+            let mut group_report = PathReport::fitted(&fitted.report, tolerance);
             for seg in moved.segs() {
                 if let Seg::Arc(a) = seg {
-                    own.max_error = own.max_error.max(a.cubics_error(a.cubics_needed(fine)));
+                    let error = a.cubics_error(a.cubics_needed(arc_tolerance));
+                    group_report.max_error = group_report.max_error.max(error);
                 }
             }
-            report.add(own);
-            path.extend(moved.to_bez_path(fine));
+            report.add(group_report);
+            path.extend(moved.to_bez_path(arc_tolerance));
             out.subpaths.extend(moved.subpaths);
         }
     }
@@ -113,7 +114,7 @@ pub fn moved(outline: &Outline, offset: &Offset, options: &Options, contours: &[
 }
 
 /// Returns the subpaths that move, and those that stay.
-fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
+fn moving_and_staying(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
     let (mut moving, mut staying) = (outline.clone(), Outline::default());
     match open {
         OpenPaths::Move => {}
@@ -134,14 +135,14 @@ fn prepared(outline: &Outline, open: OpenPaths) -> (Outline, Outline) {
 
 /// Offsets subpaths together, to each of the wanted sides.
 fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec<Fitted>, GeometryError> {
-    let fine = ARCS * tolerance;
-    let fitter = bezierfit::Options::new(tolerance - fine);
-    let mut source = outline.to_bez_path(fine);
+    let arc_tolerance = ARCS * tolerance;
+    let fitter = bezierfit::Options::new(tolerance - arc_tolerance);
+    let mut source = outline.to_bez_path(arc_tolerance);
     if offset.even_odd {
         let open = outline.subpaths.iter().filter(|s| !s.closed).cloned().collect();
-        // This moves edges by a few hundredths of `fine`.
-        let mut area = union_even_odd(&source, fine)?;
-        area.extend(Outline { subpaths: open }.to_bez_path(fine));
+        // This moves edges by a few hundredths of `arc_tolerance`.
+        let mut area = union_even_odd(&source, arc_tolerance)?;
+        area.extend(Outline { subpaths: open }.to_bez_path(arc_tolerance));
         source = area;
     }
     let signs: &[f64] = match offset.side {
@@ -149,8 +150,8 @@ fn moved_group(outline: &Outline, offset: &Offset, tolerance: f64) -> Result<Vec
         Side::Inside => &[-1.0],
         Side::Both => &[1.0, -1.0],
     };
-    let one = |sign: &f64| bezierfit::offset(&source, sign * offset.by, offset.join, &fitter);
-    Ok(signs.iter().map(one).collect::<Result<_, _>>()?)
+    let moved = |sign: &f64| bezierfit::offset(&source, sign * offset.by, offset.join, &fitter);
+    Ok(signs.iter().map(moved).collect::<Result<_, _>>()?)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use crate::budget::Budget;
 use crate::error::GeometryError;
 use crate::map::{Class, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, boundary};
+use crate::param::Frame;
 use kurbo::{Affine, Point, Rect};
 
 /// Returns the orientation of one shape, by a [`Survey`] of this shape alone.
@@ -74,9 +75,9 @@ impl<'a> Survey<'a> {
     /// # Errors
     /// [`GeometryError::Limit`] when the work exceeds the limit.
     pub fn spend(&self, shapes: usize, segments: usize, copies: usize, budget: &Budget) -> Result<(), GeometryError> {
-        /// Work of a sample taken in a batch, as a share of a single one.
+        /// Work of a sample taken in a batch, as a fraction of a single one.
         const SAMPLE: f64 = 0.25;
-        /// Share of the grid over a shape's box that lies inside the shape, with the work of finding these points.
+        /// Fraction of the grid over a shape's box that lies inside the shape, with the work of finding these points.
         const FILLED: f64 = 0.5;
         let samples = segments as f64 * (PER_SEGMENT + 1) as f64 + shapes as f64 * FILLED * (GRID * GRID) as f64;
         let work = if self.samples() { SAMPLE * self.map.work() * samples * copies.max(1) as f64 } else { 0.0 };
@@ -94,9 +95,14 @@ impl<'a> Survey<'a> {
             Knowledge::Affine => Orientation::default(),
             Knowledge::Sign(sign) => {
                 let samples = outline.segs().count() * (PER_SEGMENT + 1);
-                Orientation::uniform(sign, samples, outline.segs().next().map(Seg::start))
+                let first = outline.segs().next().map(Seg::start);
+                if sign > 0.0 {
+                    Orientation { positive: samples, first_positive: first, ..Orientation::default() }
+                } else {
+                    Orientation { negative: samples, first_negative: first, ..Orientation::default() }
+                }
             }
-            Knowledge::Nothing => self.sampled(outline, filled),
+            Knowledge::Nothing => self.sample(outline, filled),
         }
     }
 
@@ -105,7 +111,7 @@ impl<'a> Survey<'a> {
     pub fn orientation_of_copies(&self, outline: &Outline, places: &[Affine], filled: bool) -> Orientation {
         match (places, &self.knowledge) {
             ([], _) => self.orientation(outline, filled),
-            (_, Knowledge::Nothing) => self.sampled(&outline.repeated(places), filled),
+            (_, Knowledge::Nothing) => self.sample(&outline.repeated(places), filled),
             ([first, ..], _) => {
                 let one = self.orientation(outline, filled);
                 Orientation {
@@ -119,15 +125,16 @@ impl<'a> Survey<'a> {
         }
     }
 
-    fn sampled(&self, outline: &Outline, filled: bool) -> Orientation {
+    /// Samples a shape along its outline and, if it is filled, inside.
+    fn sample(&self, outline: &Outline, filled: bool) -> Orientation {
         if self.map.prefers_batches() {
-            return self.sampled_at_once(outline, filled);
+            return self.sample_at_once(outline, filled);
         }
         let map = self.map;
         let mut out = Orientation::default();
         let mut jets = [Jet::default(); PER_SEGMENT + 1];
         for seg in outline.segs() {
-            let points = along(seg);
+            let points = samples_of(seg);
             map.jets(&points, &mut jets);
             out.add(&points, &jets);
         }
@@ -144,8 +151,8 @@ impl<'a> Survey<'a> {
     }
 
     /// Samples a shape with one call of the map.
-    fn sampled_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
-        let mut points: Vec<Point> = outline.segs().flat_map(along).collect();
+    fn sample_at_once(&self, outline: &Outline, filled: bool) -> Orientation {
+        let mut points: Vec<Point> = outline.segs().flat_map(samples_of).collect();
         let mut rows = vec![PER_SEGMENT + 1; points.len() / (PER_SEGMENT + 1)];
         if let (true, Some(bounds)) = (filled, outline.bounding_box()) {
             for row in interior(outline, bounds, GRID) {
@@ -166,8 +173,7 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// Returns the samples of a segment.
-fn along(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
+fn samples_of(seg: &Seg) -> [Point; PER_SEGMENT + 1] {
     std::array::from_fn(|i| seg.eval(i as f64 / PER_SEGMENT as f64))
 }
 
@@ -190,16 +196,6 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// Returns the orientation of `count` samples with the same sign, the first of them at `first`.
-    fn uniform(sign: f64, count: usize, first: Option<Point>) -> Self {
-        let first = first.filter(|_| count > 0);
-        if sign > 0.0 {
-            Self { positive: count, first_positive: first, ..Self::default() }
-        } else {
-            Self { negative: count, first_negative: first, ..Self::default() }
-        }
-    }
-
     /// Adds a row of neighbouring samples.
     fn add(&mut self, points: &[Point], jets: &[Jet]) {
         let mut last = 0.0;
@@ -238,12 +234,10 @@ impl Orientation {
     /// the map turns over most of the artwork but not the corners of the artwork's box, `bounds`.
     #[must_use]
     pub fn usual(&self, map: &dyn Map, bounds: Rect) -> Self {
-        let corners = [(bounds.x0, bounds.y0), (bounds.x1, bounds.y0), (bounds.x1, bounds.y1), (bounds.x0, bounds.y1)];
-        let turned = self.positive > 0 && self.negative > self.positive;
-        if turned && corners.into_iter().all(|c| map.jet(c.into()).det() > 0.0) {
-            return Self { positive: self.negative, ..*self };
-        }
-        *self
+        let is_mostly_negative = self.positive > 0 && self.negative > self.positive;
+        let are_corners_positive = || Frame::new(bounds).corners().into_iter().all(|c| map.jet(c).det() > 0.0);
+        let positive = if is_mostly_negative && are_corners_positive() { self.negative } else { self.positive };
+        Self { positive, ..*self }
     }
 
     /// Returns a point of this shape that is turned over relative to most samples of the artwork, `all`.
@@ -262,67 +256,37 @@ const FLATNESS: f64 = 1e-3;
 /// Every line of the flattened outline is visited once and recorded in the rows that it crosses. The cost is the number of lines and
 /// crossings, whereas a winding number for each point would cost segments times points.
 fn interior(outline: &Outline, bounds: Rect, n: usize) -> Vec<Vec<Point>> {
-    let mut rows = Rows { bounds, n, crossings: vec![Vec::new(); n] };
+    let x = |i: usize| bounds.x0 + bounds.width() * (i as f64 + 0.5) / n as f64;
+    let y = |k: usize| bounds.y0 + bounds.height() * (k as f64 + 0.5) / n as f64;
+    let first_row_below = |y: f64| {
+        let k = ((y - bounds.y0) / bounds.height() * n as f64 - 0.5).ceil();
+        k.clamp(0.0, n as f64) as usize
+    };
+    // Where lines cross each row: the abscissa, and 1 for downwards or −1 for upwards.
+    let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); n];
     let tolerance = FLATNESS * bounds.width().hypot(bounds.height());
-    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| rows.add(a, b));
-    rows.points()
-}
-
-/// The crossings of each row: the abscissa, and 1 for downwards or −1 for upwards.
-struct Rows {
-    bounds: Rect,
-    n: usize,
-    crossings: Vec<Vec<(f64, i32)>>,
-}
-
-impl Rows {
-    fn x(&self, i: usize) -> f64 {
-        self.bounds.x0 + self.bounds.width() * (i as f64 + 0.5) / self.n as f64
-    }
-
-    fn y(&self, k: usize) -> f64 {
-        self.bounds.y0 + self.bounds.height() * (k as f64 + 0.5) / self.n as f64
-    }
-
-    /// Returns the first row at or below `y`.
-    fn first_from(&self, y: f64) -> usize {
-        let k = ((y - self.bounds.y0) / self.bounds.height() * self.n as f64 - 0.5).ceil();
-        k.clamp(0.0, self.n as f64) as usize
-    }
-
-    /// Records the crossings of a line with rows.
-    fn add(&mut self, a: Point, b: Point) {
+    boundary(outline.to_bez_path(tolerance), tolerance, |a, b| {
         let (top, bottom, direction) = if a.y < b.y { (a, b, 1) } else { (b, a, -1) };
         if top.y < bottom.y {
-            for k in self.first_from(top.y)..self.first_from(bottom.y) {
-                let t = (self.y(k) - top.y) / (bottom.y - top.y);
-                self.crossings[k].push((top.x + (bottom.x - top.x) * t, direction));
+            let rows = first_row_below(top.y)..first_row_below(bottom.y);
+            for (k, row) in rows.clone().zip(&mut crossings[rows]) {
+                let t = (y(k) - top.y) / (bottom.y - top.y);
+                row.push((top.x + (bottom.x - top.x) * t, direction));
             }
         }
-    }
-
-    /// Returns the points of every row at which the winding number is not 0.
-    fn points(mut self) -> Vec<Vec<Point>> {
-        let mut out = Vec::with_capacity(self.n);
-        for k in 0..self.n {
-            let mut crossings = std::mem::take(&mut self.crossings[k]);
-            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let (mut winding, mut next) = (0, 0);
-            let mut row = Vec::new();
-            for i in 0..self.n {
-                let p = Point::new(self.x(i), self.y(k));
-                while next < crossings.len() && crossings[next].0 <= p.x {
-                    winding += crossings[next].1;
-                    next += 1;
-                }
-                if winding != 0 {
-                    row.push(p);
-                }
+    });
+    let row = |(k, mut crossings): (usize, Vec<(f64, i32)>)| {
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut crossings, mut winding) = (crossings.into_iter().peekable(), 0);
+        let is_inside = |p: &Point| {
+            while let Some((_, direction)) = crossings.next_if(|(x, _)| *x <= p.x) {
+                winding += direction;
             }
-            out.push(row);
-        }
-        out
-    }
+            winding != 0
+        };
+        (0..n).map(|i| Point::new(x(i), y(k))).filter(is_inside).collect()
+    };
+    crossings.into_iter().enumerate().map(row).collect()
 }
 
 #[cfg(test)]

@@ -16,46 +16,32 @@ use std::sync::Arc;
 /// Highest degree of the determinant. Above it, one box would take more samples than most drawings.
 const MAX_DEGREE: usize = 24;
 /// Limit on successive divisions of a box into four. Near a zero of det J every division fails.
-const DEPTH: usize = 6;
-/// Bound for rounding errors of the values and their sums, relative to the largest product in det J. They are some hundred times 2⁻⁵².
+const MAX_DEPTH: usize = 6;
+/// Generous bound for rounding errors of the values and their sums, some hundred times 2⁻⁵², relative to the largest product in det J.
 const ROUNDING: f64 = 1e-10;
 
 /// Returns the sign that det J has in all of `bounds`, as 1 or −1, if it can be proven with at most `samples` jets.
 ///
 /// The map may have creases parallel to the axes. With other creases, or where a denominator vanishes, nothing is proven.
 pub(super) fn proven(map: &dyn Map, bounds: Rect, samples: usize) -> Option<f64> {
-    let mut left = samples;
-    let mut all = None;
-    for (cell, piece) in pieces(map, bounds, samples)? {
-        let sign = Proof::new(&*piece, cell, &mut left)?.sign(cell, DEPTH)?;
-        if *all.get_or_insert(sign) != sign {
+    let mut jets_left = samples;
+    let mut common = None;
+    for (cell, branch) in pieces(map, bounds, samples)? {
+        let sign = Proof::new(branch.as_deref().unwrap_or(map), cell, &mut jets_left)?.sign(cell, MAX_DEPTH)?;
+        if *common.get_or_insert(sign) != sign {
             return None;
         }
     }
-    all
+    common
 }
 
-/// A smooth piece of a map, borrowed if it is the map itself.
-enum Piece<'a> {
-    Whole(&'a dyn Map),
-    Branch(Arc<dyn Map>),
-}
-
-impl<'a> std::ops::Deref for Piece<'a> {
-    type Target = dyn Map + 'a;
-
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Whole(m) => *m,
-            Self::Branch(m) => &**m,
-        }
-    }
-}
+/// A cell, and the branch of the map that is smooth on it; `None` if the map itself is.
+type Piece = (Rect, Option<Arc<dyn Map>>);
 
 /// Divides `bounds` along the creases. `None` if a crease is not parallel to an axis, or if there would be more than `max` pieces.
-fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_>)>> {
+fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<Piece>> {
     if map.branch(bounds.center()).is_none() {
-        return Some(vec![(bounds, Piece::Whole(map))]);
+        return Some(vec![(bounds, None)]);
     }
     let mut creases = Creases::default();
     map.creases(&mut creases);
@@ -70,13 +56,13 @@ fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_
             Level::Circle { .. } | Level::Field(_) => return None,
         }
     }
-    let cut = |mut at: Vec<f64>, from: f64, to: f64| {
-        at.retain(|v| (from..=to).contains(v));
-        at.sort_by(f64::total_cmp);
-        at.dedup();
-        at
+    let sorted_within = |mut cuts: Vec<f64>, from: f64, to: f64| {
+        cuts.retain(|v| (from..=to).contains(v));
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        cuts
     };
-    let (xs, ys) = (cut(xs, bounds.x0, bounds.x1), cut(ys, bounds.y0, bounds.y1));
+    let (xs, ys) = (sorted_within(xs, bounds.x0, bounds.x1), sorted_within(ys, bounds.y0, bounds.y1));
     if xs.len() * ys.len() > max {
         return None;
     }
@@ -84,14 +70,14 @@ fn pieces(map: &dyn Map, bounds: Rect, max: usize) -> Option<Vec<(Rect, Piece<'_
     for y in ys.windows(2) {
         for x in xs.windows(2) {
             let cell = Rect::new(x[0], y[0], x[1], y[1]);
-            out.push((cell, Piece::Branch(map.branch(cell.center())?)));
+            out.push((cell, Some(map.branch(cell.center())?)));
         }
     }
     Some(out)
 }
 
 /// Returns the degree of a smooth map as a quotient of polynomials, which the map declares or the exact image of a line shows.
-fn algebra(map: &dyn Map, bounds: Rect) -> Option<RationalDegree> {
+fn rational_degree(map: &dyn Map, bounds: Rect) -> Option<RationalDegree> {
     map.rational_degree().or_else(|| {
         let diagonal = [bounds.origin(), Point::new(bounds.x1, bounds.y1)];
         let image = map.image(&RationalBezier::polynomial(&diagonal))?;
@@ -103,46 +89,49 @@ fn algebra(map: &dyn Map, bounds: Rect) -> Option<RationalDegree> {
 struct Proof<'a> {
     map: &'a dyn Map,
     rational: bool,
+    /// Interpolates det J, or W³·det J.
     basis: Chebyshev,
     /// Jets that may still be taken.
-    left: &'a mut usize,
+    jets_left: &'a mut usize,
 }
 
 impl<'a> Proof<'a> {
-    fn new(map: &'a dyn Map, bounds: Rect, left: &'a mut usize) -> Option<Self> {
-        let RationalDegree { degree, rational } = algebra(map, bounds)?;
+    fn new(map: &'a dyn Map, bounds: Rect, jets_left: &'a mut usize) -> Option<Self> {
+        let RationalDegree { degree: d, rational } = rational_degree(map, bounds)?;
         // The nodes are also used for W, whose degree is d.
-        let below = degree.saturating_sub(1);
-        let degree = if rational { below.checked_mul(3)?.max(degree) } else { below.checked_mul(2)? };
-        (degree <= MAX_DEGREE).then(|| Self { map, rational, basis: Chebyshev::new(degree), left })
+        let of_derivative = d.saturating_sub(1);
+        let degree = if rational { of_derivative.checked_mul(3)?.max(d) } else { of_derivative.checked_mul(2)? };
+        (degree <= MAX_DEGREE).then(|| Self { map, rational, basis: Chebyshev::new(degree), jets_left })
     }
 
+    /// Returns the sign of det J in a cell, which may be divided `depth` times.
     fn sign(&mut self, cell: Rect, depth: usize) -> Option<f64> {
         let n = self.basis.nodes.len();
-        *self.left = self.left.checked_sub(n * n)?;
-        let at = |from: f64, to: f64, s: f64| 0.5 * ((to + from) + (to - from) * s);
+        *self.jets_left = self.jets_left.checked_sub(n * n)?;
+        // Maps s from −1 to 1 onto an interval.
+        let scale = |from: f64, to: f64, s: f64| 0.5 * ((to + from) + (to - from) * s);
         let (mut points, mut jets) = (Vec::with_capacity(n * n), vec![Jet::default(); n * n]);
         for t in &self.basis.nodes {
-            let y = at(cell.y0, cell.y1, *t);
-            points.extend(self.basis.nodes.iter().map(|s| Point::new(at(cell.x0, cell.x1, *s), y)));
+            let y = scale(cell.y0, cell.y1, *t);
+            points.extend(self.basis.nodes.iter().map(|s| Point::new(scale(cell.x0, cell.x1, *s), y)));
         }
         self.map.jets(&points, &mut jets);
         let mut values: Vec<f64> = jets.iter().map(Jet::det).collect();
         let mut sizes: Vec<f64> = jets.iter().map(|j| j.dx.hypot() * j.dy.hypot()).collect();
-        let mut positive = true;
+        let mut is_w_positive = true;
         if self.rational {
-            let below: Vec<f64> = points.iter().map(|p| self.map.denominator(*p)).collect();
-            for ((v, size), w) in values.iter_mut().zip(&mut sizes).zip(&below) {
+            let denominators: Vec<f64> = points.iter().map(|p| self.map.denominator(*p)).collect();
+            for ((v, size), w) in values.iter_mut().zip(&mut sizes).zip(&denominators) {
                 let cube = w * w * w;
                 (*v, *size) = (*v * cube, *size * cube.abs());
             }
-            positive = self.basis.sign(&below, largest(&below)) == Some(1.0);
+            is_w_positive = self.basis.sign(&denominators, largest(&denominators)) == Some(1.0);
         }
         if values.iter().any(|v| *v < 0.0) && values.iter().any(|v| *v > 0.0) {
             return None;
         }
         match self.basis.sign(&values, largest(&sizes)) {
-            Some(sign) if positive => Some(sign),
+            Some(sign) if is_w_positive => Some(sign),
             _ if depth == 0 => None,
             _ => {
                 let c = cell.center();
@@ -179,11 +168,11 @@ impl Chebyshev {
     }
 
     /// Returns the sign of the polynomial with these `values`, row by row, if the inequality shows that it has no zero in the square.
-    /// Rounding errors are a small share of `size`.
+    /// Rounding errors are at most [`ROUNDING`] times `size`.
     fn sign(&self, values: &[f64], size: f64) -> Option<f64> {
         let n = self.nodes.len();
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let (mut first, mut others) = (0.0, ROUNDING * size);
+        let (mut constant, mut others) = (0.0, ROUNDING * size);
         // Transform the rows, then the columns.
         let across: Vec<f64> = values.chunks(n).flat_map(|v| self.rows.chunks(n).map(move |r| dot(r, v))).collect();
         let mut column = vec![0.0; n];
@@ -194,13 +183,13 @@ impl Chebyshev {
             for (j, r) in self.rows.chunks(n).enumerate() {
                 let c = dot(r, &column);
                 if (i, j) == (0, 0) {
-                    first = c;
+                    constant = c;
                 } else {
                     others += c.abs();
                 }
             }
         }
-        (first.abs() > others).then(|| first.signum())
+        (constant.abs() > others).then(|| constant.signum())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Parameters as fields: one declaration gives the type of a deformation, its setters, defaults, ranges and table, and reads it from text.
 
 use super::{Kind, NamedPath, Param, Settings};
-use crate::error::{Error, within};
+use crate::error::{Error, check_range};
 use kurbo::Point;
 
 /// A value that a field of a deformation can hold.
@@ -18,7 +18,7 @@ pub(crate) trait Value: Sized {
     fn check(&self, params: &[Param], name: &str) -> Result<(), Error> {
         let range = params.iter().find(|p| p.name == name).map(|p| p.range);
         match (self.number(), range) {
-            (Some(number), Some((min, max))) => within(name, number, min, max).map(|_| ()),
+            (Some(number), Some((min, max))) => check_range(name, number, min, max).map(|_| ()),
             _ => Ok(()),
         }
     }

@@ -3,10 +3,10 @@
 use pathwarp_raster::Pixmap;
 use std::f64::consts::TAU;
 
-/// A pixel differs if a channel is outside its range within [`REACH`] pixels in the other picture by more than this. Edges may move, and
-/// letters are drawn at fractions of pixels.
+/// A pixel differs if one of its channels lies more than this outside the channel's range within [`NEIGHBOURHOOD`] pixels in the other
+/// picture. Edges may move, and letters are drawn at fractions of pixels.
 const VISIBLE: u8 = 40;
-const REACH: usize = 3;
+const NEIGHBOURHOOD: usize = 3;
 /// Pixels this close to the edge of the page are not compared: they depend on content off the page, and on antialiasing.
 const EDGE: usize = 8;
 /// The largest fraction of the painted pixels that may differ, however small the drawing is on its page.
@@ -40,7 +40,7 @@ impl Gap {
     }
 }
 
-/// The map from user units to pixels: scales and offsets.
+/// The map from user units to pixels: scales and offsets along x and y.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ToPixels {
     pub(super) scale: [f64; 2],
@@ -70,8 +70,7 @@ impl Bend {
     /// The formulas for `pathwarp expr`, in user units.
     pub(super) fn formulas(self, ToPixels { scale: [a, d], offset: [e, f] }: ToPixels) -> [String; 2] {
         match self {
-            Self::Shift(by) => [format!("x + {:e} + 1e-9*sin(x)", by as f64 / a), "y + 1e-9*sin(y)".into()]
-                .map(|f| f.replace("+ -", "- ")),
+            Self::Shift(by) => [format!("x + {:e} + 1e-9*sin(x)", by as f64 / a), "y + 1e-9*sin(y)".into()],
             Self::Curve { amplitude, wave } => {
                 let x = format!("(x + {:e}*sin({:e}*y + {:e}))", amplitude / a, wave * d, wave * f);
                 let y = format!("y + {:e}*sin({:e}*{x} + {:e})", amplitude / d, wave * a, wave * e);
@@ -128,19 +127,18 @@ impl Picture {
     fn warped(&self, bend: Bend, page: [usize; 2], found: &Self) -> (Self, Vec<bool>) {
         let mut data = found.data.clone();
         let mut known = vec![false; self.width * self.height];
-        let inside = |x: usize, y: usize, edge: usize| {
-            let is_inside = |c: usize, side: usize| c >= edge && c + edge < side;
-            is_inside(x, page[0]) && is_inside(y, page[1])
+        let is_on_page = |x: usize, y: usize, edge: usize| {
+            [x, y].into_iter().zip(page).all(|(c, side)| c >= edge && c + edge < side)
         };
         for (i, is_known) in known.iter_mut().enumerate() {
             let (x, y) = (i % self.width, i / self.width);
-            if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| inside(*x, *y, 0)) {
+            if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| is_on_page(*x, *y, 0)) {
                 let from = 4 * (from_y * self.width + from_x);
                 data[4 * i..4 * i + 4].copy_from_slice(&self.data[from..from + 4]);
                 // A shift moves nothing across the upper and lower edges, but may bring in hidden content from beyond the left edge.
                 *is_known = match bend {
                     Bend::Shift(by) => x >= 2 * by + EDGE && x + EDGE < page[0],
-                    Bend::Curve { .. } => inside(x, y, EDGE) && inside(from_x, from_y, EDGE),
+                    Bend::Curve { .. } => is_on_page(x, y, EDGE) && is_on_page(from_x, from_y, EDGE),
                 };
             }
         }
@@ -150,8 +148,8 @@ impl Picture {
     /// Returns `true` if a pixel is outside the range of colours that `other` has near it.
     fn stands_out(&self, other: &Self, at: usize) -> bool {
         let (x, y) = (at % self.width, at / self.width);
-        let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(self.height);
-        let columns = x.saturating_sub(REACH)..(x + REACH + 1).min(self.width);
+        let rows = y.saturating_sub(NEIGHBOURHOOD)..(y + NEIGHBOURHOOD + 1).min(self.height);
+        let columns = x.saturating_sub(NEIGHBOURHOOD)..(x + NEIGHBOURHOOD + 1).min(self.width);
         let (mut min, mut max) = ([255; 4], [0; 4]);
         for near in rows.flat_map(|y| columns.clone().map(move |x| 4 * (y * self.width + x))) {
             for k in 0..4 {

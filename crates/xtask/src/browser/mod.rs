@@ -43,14 +43,14 @@ const MAX_PAGE: f64 = 8000.0;
 /// Length of the shift, as a fraction of the page's width.
 const SHIFT: f64 = 0.04;
 
-/// A way to try a drawing: a name, and the value of `--strokes` if it is warped. Otherwise the name is a format.
+/// A way to try a drawing: its name, and the value of `--strokes` if the drawing is warped. Otherwise the name is the format drawn.
 type Way = (&'static str, Option<&'static str>);
 
 const WAYS: [Way; 5] =
     [("shift", Some("auto")), ("outline", Some("outline")), ("curve", Some("auto")), ("png", None), ("pdf", None)];
 
 fn command() -> Command {
-    let names = |bends: bool| WAYS.into_iter().filter(move |w| w.1.is_some() == bends).map(|w| w.0).collect::<Vec<_>>();
+    let names = |warps: bool| WAYS.into_iter().filter(move |w| w.1.is_some() == warps).map(|w| w.0).collect::<Vec<_>>();
     Command::new("browser")
         .about("Compare drawings with their results as Chromium shows both")
         .arg(Arg::new("inputs").required(true).num_args(1..).value_name("FOLDER").value_parser(value_parser!(PathBuf)))
@@ -176,11 +176,8 @@ impl Judge {
     fn try_all(&self, inputs: &[PathBuf]) -> Result<Vec<Finding>, ChoreError> {
         let mut drawings = Vec::new();
         for input in inputs {
-            if input.is_dir() {
-                drawings.extend(shell::files_below(input, |f| shell::ends_in(f, &["svg"]))?);
-            } else {
-                drawings.push(input.clone());
-            }
+            let is_svg = |f: &Path| shell::ends_in(f, &["svg"]);
+            drawings.extend(if input.is_dir() { shell::files_below(input, is_svg)? } else { vec![input.clone()] });
         }
         if drawings.is_empty() {
             return Err("there is no drawing".into());
@@ -190,7 +187,7 @@ impl Judge {
     }
 
     /// Returns the drawing in a copy of its folder. Folders `images` and `resources` beside that folder are copied too.
-    fn copied(&self, file: &Path) -> Result<PathBuf, ChoreError> {
+    fn copy_of(&self, file: &Path) -> Result<PathBuf, ChoreError> {
         let file = file.canonicalize().map_err(at(file))?;
         let (folder, name) = file.parent().zip(file.file_name()).ok_or("a drawing has a name and a folder")?;
         let mut copies = self.copies.lock().unwrap_or_else(PoisonError::into_inner);
@@ -211,12 +208,12 @@ impl Judge {
 
     /// Tries a drawing in all ways.
     fn try_drawing(&self, original: &Path) -> Result<Vec<Finding>, ChoreError> {
-        let file = self.copied(original)?;
+        let file = self.copy_of(original)?;
         let finding =
             |way, gap| Finding { file: original.to_owned(), way, code: None, note: String::new(), gap, picture: None };
         let shown = self.browsers.show(&file, None).and_then(|size| {
-            let pages = |length: f64| if length > 0.0 { length.ceil().min(MAX_PAGE) } else { 600.0 };
-            let size_px = [pages(size.right), pages(size.bottom)];
+            // A drawing without an extent gets a window in which Chromium may show something.
+            let size_px = [size.right, size.bottom].map(|c| if c > 0.0 { c.ceil().min(MAX_PAGE) } else { 600.0 });
             let scale = (SIDE / size_px[0].max(size_px[1])).min(MAX_SCALE);
             Ok((size.broken, size_px, scale, self.browsers.show(&file, Some((size_px, scale)))?))
         });
@@ -227,21 +224,18 @@ impl Judge {
         if broken {
             return Ok(self.ways.iter().map(|way| finding(*way, None)).collect());
         }
-        let mut found = Vec::new();
-        for way in &self.ways {
+        let compared = |way: &Way| {
             let mut finding = finding(*way, None);
-            let gap = if way.1.is_some() {
-                self.compare_warped(&file, (size, scale), &before, &mut finding)
-            } else {
-                self.compare_drawn(&file, scale, &mut finding)
-            };
-            finding.gap = Some(gap);
-            found.push(finding);
-        }
-        Ok(found)
+            finding.gap = Some(match way.1 {
+                Some(_) => self.compare_warped(&file, (size, scale), &before, &mut finding),
+                None => self.compare_drawn(&file, scale, &mut finding),
+            });
+            finding
+        };
+        Ok(self.ways.iter().map(compared).collect())
     }
 
-    /// Warps a drawing and compares the pictures.
+    /// Warps a drawing and compares the pictures. The page has this size in px, and `scale` pixels per px.
     fn compare_warped(
         &self,
         file: &Path,
@@ -254,15 +248,15 @@ impl Judge {
         let upright = before.matrix.filter(|[a, b, c, d, ..]| *a > 0.0 && *d > 0.0 && *b == 0.0 && *c == 0.0);
         let [a, _, _, d, e, f] = upright.unwrap_or([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
         let to_pixels = ToPixels { scale: [a * scale, d * scale], offset: [e * scale, f * scale] };
-        let by = if upright.is_some() { (SHIFT * size[0] * scale).round() as usize } else { 0 };
+        let shift = if upright.is_some() { (SHIFT * size[0] * scale).round() as usize } else { 0 };
         let bend = match finding.way {
             ("curve", _) if upright.is_some() => Bend::curve(original.width, original.height),
-            _ => Bend::Shift(by),
+            _ => Bend::Shift(shift),
         };
-        let result = self.beside(file, "svg");
+        let result = self.new_file_beside(file, "svg");
         let [x, y] = bend.formulas(to_pixels);
         let strokes = finding.way.1.unwrap_or("auto");
-        self.result(&["expr", "--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none"], file, &result, finding)?;
+        self.run(&["expr", "--x", &x, "--y", &y, "--strokes", strokes, "--fit", "none"], file, &result, finding)?;
         let after = self.browsers.show(&result, Some((size, scale)));
         let _ = fs::remove_file(&result);
         let after = after?;
@@ -274,17 +268,17 @@ impl Judge {
             return Err("its page has another size".into());
         }
         let page = [before.right, before.bottom].map(|c| if c > 0.0 { (c * scale) as usize } else { usize::MAX });
-        self.compared([original, &picture], bend, page, finding)
+        self.compare_pictures([original, &picture], bend, page, finding)
     }
 
     /// Draws a drawing as it is, with `scale` pixels per px, and compares the picture with Chromium's in a window of its size.
     fn compare_drawn(&self, file: &Path, scale: f64, finding: &mut Finding) -> Result<Gap, String> {
-        let png = self.beside(file, "png");
+        let png = self.new_file_beside(file, "png");
         if finding.way.0 == "png" {
-            self.result(&["render", "--scale", &scale.to_string()], file, &png, finding)?;
+            self.run(&["render", "--scale", &scale.to_string()], file, &png, finding)?;
         } else {
-            let pdf = self.beside(file, "pdf");
-            self.result(&["convert"], file, &pdf, finding)?;
+            let pdf = self.new_file_beside(file, "pdf");
+            self.run(&["convert"], file, &pdf, finding)?;
             let dpi = (96.0 * scale).to_string();
             let mut poppler = process::Command::new("pdftocairo");
             poppler.args(["-png", "-transp", "-singlefile", "-r", &dpi]).arg(&pdf).arg(png.with_extension(""));
@@ -299,16 +293,16 @@ impl Judge {
         let original = self.browsers.show(file, Some((window, scale)))?.picture.ok_or("there is no picture")?;
         let page = [picture.width.min(original.width), picture.height.min(original.height)];
         let picture = picture.on_page([original.width, original.height]);
-        self.compared([&original, &picture], Bend::Shift(0), page, finding)
+        self.compare_pictures([&original, &picture], Bend::Shift(0), page, finding)
     }
 
-    /// A new file beside the drawing.
-    fn beside(&self, file: &Path, extension: &str) -> PathBuf {
+    /// The path of a new file beside the drawing.
+    fn new_file_beside(&self, file: &Path, extension: &str) -> PathBuf {
         file.with_file_name(format!(".result-{}.{extension}", self.count.fetch_add(1, Ordering::Relaxed)))
     }
 
-    /// Runs the program: a command with arguments that makes a result of a drawing.
-    fn result(&self, words: &[&str], file: &Path, result: &Path, finding: &mut Finding) -> Result<(), String> {
+    /// Runs the program on a drawing, and notes exit code and message in `finding`. `words` are the subcommand and its options.
+    fn run(&self, words: &[&str], file: &Path, result: &Path, finding: &mut Finding) -> Result<(), String> {
         let mut command = process::Command::new(&self.program);
         command.arg(words[0]).arg(file).args(&words[1..]).arg("-o").arg(result);
         let out = command.output().map_err(at(&self.program))?;
@@ -318,8 +312,8 @@ impl Judge {
         if result.exists() { Ok(()) } else { Err("no result".into()) }
     }
 
-    /// Compares the pictures of a result and of the original, and writes a picture of the difference.
-    fn compared(
+    /// Compares the pictures of a result and of the original, and draws the difference for the contact sheet.
+    fn compare_pictures(
         &self,
         [original, found]: [&Picture; 2],
         bend: Bend,
@@ -359,20 +353,20 @@ impl Judge {
     }
 }
 
-/// Before and after on grey, and the difference, side by side at half their size, as PNG.
+/// A PNG of both pictures on grey and of the pixels that differ, side by side at half their size.
 fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec<u8>, ChoreError> {
     let (w, h) = (before.width.div_ceil(2), before.height.div_ceil(2));
     let mut out = Pixmap::new(3 * w as u32, h as u32).ok_or("there is no picture")?;
     for (i, pixel) in out.pixels_mut().iter_mut().enumerate() {
         let (column, x, y) = ((i / w) % 3, (i % w) * 2, (i / (3 * w)) * 2);
         let at = y * before.width + x;
-        let ground = |data: &[u8]| {
+        let on_grey = |data: &[u8]| {
             [0, 1, 2].map(|k| data[4 * at + k].saturating_add((3 * u16::from(255 - data[4 * at + 3]) / 4) as u8))
         };
         let near = [at, (at + 1).min(marks.len() - 1), (at + before.width).min(marks.len() - 1)];
         let [r, g, b] = match column {
-            0 => ground(&before.data),
-            1 => ground(&after.data),
+            0 => on_grey(&before.data),
+            1 => on_grey(&after.data),
             _ if near.iter().any(|i| marks[*i]) => [200, 0, 0],
             _ => [255; 3],
         };
@@ -386,7 +380,7 @@ fn side_by_side(before: &Picture, after: &Picture, marks: &[bool]) -> Result<Vec
 struct Shown {
     /// `true` if the drawing is not well-formed XML.
     broken: bool,
-    /// The page's extent in px.
+    /// The page's right and lower edges in px.
     right: f64,
     bottom: f64,
     /// Maps user units to px.
@@ -396,9 +390,8 @@ struct Shown {
 }
 
 fn decoded<'a, D: serde::Deserializer<'a>>(d: D) -> Result<Option<Picture>, D::Error> {
-    let wrong = |e: String| serde::de::Error::custom(e);
-    let bytes = STANDARD.decode(String::deserialize(d)?).map_err(|e| wrong(e.to_string()))?;
-    Ok(Some(Picture::new(&decode_png(&bytes).map_err(|e| wrong(e.to_string()))?)))
+    let bytes = STANDARD.decode(String::deserialize(d)?).map_err(serde::de::Error::custom)?;
+    Ok(Some(Picture::new(&decode_png(&bytes).map_err(serde::de::Error::custom)?)))
 }
 
 impl Picture {

@@ -44,15 +44,9 @@ fn pages() -> Vec<(String, String)> {
 
 fn index(infos: &[&Info]) -> String {
     let mut out = String::from("# Deformations\n\nMade by `cargo xtask docs` from the deformations' own tables.\n");
-    let mut groups: Vec<&str> = Vec::new();
-    for info in infos {
-        if !groups.contains(&info.group) {
-            groups.push(info.group);
-        }
-    }
-    for group in groups {
-        let _ = write!(out, "\n## {group}\n\n| | |\n|---|---|\n");
-        for info in infos.iter().filter(|info| info.group == group) {
+    for group in infos.chunk_by(|a, b| a.group == b.group) {
+        let _ = write!(out, "\n## {}\n\n| | |\n|---|---|\n", group[0].group);
+        for info in group {
             let _ = writeln!(out, "| [{0}]({0}.md) | {1} |", info.name, info.title);
         }
     }

@@ -5,7 +5,7 @@ use crate::shell::{self, pipe, stages, words};
 use pathwarp::{Outline, Seg};
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The guides. They name their pictures by relative paths.
 const GUIDES: [&str; 9] = [
@@ -37,7 +37,7 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
         let page = root.join(guide);
         let page = fs::read_to_string(&page).map_err(at(&page))?;
         for (png, command) in pictures(&page) {
-            let png = folder_of(root, guide).join(png);
+            let png = root.join(guide).with_file_name(png);
             if let Some(folder) = png.parent() {
                 fs::create_dir_all(folder).map_err(at(folder))?;
             }
@@ -45,28 +45,18 @@ pub(super) fn draw(root: &Path, program: &Path) -> Result<(), ChoreError> {
             let photograph = words.iter().find(|w| w.ends_with(".jpg"));
             if COOKBOOKS.contains(&guide) && photograph.is_none() {
                 shell::preview(root, program, command.trim_start_matches("pathwarp "), &png)?;
-                continue;
-            }
-            if MANY.iter().any(|option| command.contains(option)) {
+            } else if MANY.iter().any(|option| command.contains(option)) {
                 sheet(root, program, &png, command)?;
-                continue;
-            }
-            if command.contains(PREVIEW) {
+            } else if command.contains(PREVIEW) {
                 preview(root, program, &png, command)?;
-                continue;
+            } else if words.get(1).is_some_and(|subcommand| subcommand == "simplify") && words.len() > 2 {
+                nodes(root, program, &png, (&words[2], command))?;
+            } else if let Some(photograph) = photograph {
+                beside(root, program, &png, (photograph, &written(root, program, command)?))?;
+            } else {
+                let width = if guide == COMPARISON { SMALL } else { WIDTH };
+                shell::render(root, program, &written(root, program, command)?, width, &png)?;
             }
-            if let [_, simplify, source, ..] = &words[..]
-                && simplify == "simplify"
-            {
-                nodes(root, program, &png, (source, command))?;
-                continue;
-            }
-            let drawing = written(root, program, command)?;
-            if let Some(photograph) = photograph {
-                beside(root, program, &png, (photograph, &drawing))?;
-                continue;
-            }
-            shell::render(root, program, &drawing, if guide == COMPARISON { SMALL } else { WIDTH }, &png)?;
         }
     }
     Ok(())
@@ -82,11 +72,6 @@ fn written(root: &Path, program: &Path, command: &str) -> Result<Vec<u8>, ChoreE
     }
     all.iter().try_fold(Vec::new(), |drawing, stage| pipe(root, program, stage, &drawing))?;
     fs::read(&file).map_err(at(&file))
-}
-
-/// The folder of a guide.
-fn folder_of(root: &Path, guide: &str) -> PathBuf {
-    root.join(guide).parent().map_or_else(|| root.to_owned(), Path::to_owned)
 }
 
 /// Draws the picture for a command that makes many drawings: the drawings of a folder in a row above their results, or the results of a
@@ -124,7 +109,7 @@ fn sheet(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), C
     shell::render(root, program, format!("{open}{sheet}</svg>").as_bytes(), WIDTH, png)
 }
 
-/// Draws a photograph, and beside it at the same height the result of a command.
+/// Draws a photograph and, beside it at the same height, the result of a command on it.
 fn beside(root: &Path, program: &Path, png: &Path, (photograph, made): (&str, &[u8])) -> Result<(), ChoreError> {
     /// The height of both, and the space between them.
     const HEIGHT: f64 = 300.0;
@@ -175,15 +160,12 @@ fn nodes(root: &Path, program: &Path, png: &Path, (source, command): (&str, &str
 
 /// Draws the picture for a command on a model, by its option for previews.
 fn preview(root: &Path, program: &Path, png: &Path, command: &str) -> Result<(), ChoreError> {
-    let folder = std::env::temp_dir().join(format!("pathwarp-docs-{}", std::process::id()));
-    fs::create_dir_all(&folder).map_err(at(&folder))?;
-    let drawn = format!("--preview {}", png.display());
-    let command = command.replace(PREVIEW, &drawn).replace(" -o out.", &format!(" -o {}/out.", folder.display()));
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
     // The output needs a real name: its extension gives the format.
-    let words = words(&command);
-    let done = pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop);
-    let _ = fs::remove_dir_all(&folder);
-    done
+    let output = format!(" -o {}/out.", folder.path().display());
+    let drawn = format!("--preview {}", png.display());
+    let words = words(&command.replace(PREVIEW, &drawn).replace(" -o out.", &output));
+    pipe(root, program, words.get(1..).unwrap_or_default(), &[]).map(drop)
 }
 
 /// Every picture of a page, with the command that draws it: the one in its table row, else the next line that starts with `pathwarp`.
@@ -221,7 +203,7 @@ mod tests {
             let mut expected: Vec<String> = all.iter().map(|(png, _)| (*png).to_owned()).collect();
             expected.sort();
             let folder = Path::new(&expected[0]).parent().unwrap();
-            let files = fs::read_dir(folder_of(&root, guide).join(folder)).unwrap();
+            let files = fs::read_dir(root.join(guide).with_file_name(folder)).unwrap();
             let name = |f: fs::DirEntry| format!("{}/{}", folder.display(), f.file_name().into_string().unwrap());
             let mut found: Vec<String> = files.map(|f| name(f.unwrap())).collect();
             found.sort();

@@ -3,8 +3,8 @@
 //!
 //! `cargo xtask reproducible` builds and packs two copies of the sources, in different folders, and compares the bytes.
 
-use crate::chore::{Chore, ChoreError, at, hex, path_option, workspace};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use crate::chore::{Chore, ChoreError, at, flag_option, hex, path_option, workspace};
+use clap::{ArgMatches, Command};
 use contents::{Tree, host, licences_text};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ fn command() -> Command {
         .about("Build the program and pack it for Debian with manual pages, completions, icon and plug-ins")
         .arg(path_option("program", "FILE").help("The pathwarp to pack [default: build one]"))
         .arg(
-            Arg::new("static").long("static").action(ArgAction::SetTrue).help(
+            flag_option("static").help(
                 "Link the program statically and pack an archive (.tar.gz) that runs on any Linux of this processor",
             ),
         )
@@ -152,21 +152,13 @@ fn reproducible_command() -> Command {
     Command::new("reproducible")
         .about("Build and pack the last commit in two folders and compare the bytes")
         .arg(path_option("in", "DIR").help("The folder for the copies [default: a temporary one]"))
-        .arg(
-            Arg::new("static")
-                .long("static")
-                .action(ArgAction::SetTrue)
-                .help("Link statically, as package --static does"),
-        )
+        .arg(flag_option("static").help("Link statically, as package --static does"))
 }
 
 fn reproducible(arguments: &ArgMatches) -> Result<String, ChoreError> {
     let root = workspace().canonicalize().map_err(|e| e.to_string())?;
     let temporary = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let folder = match arguments.get_one::<PathBuf>("in") {
-        Some(folder) => folder.clone(),
-        None => temporary.path().to_owned(),
-    };
+    let folder = arguments.get_one::<PathBuf>("in").map_or(temporary.path(), PathBuf::as_path);
     let time = &time(&root)?;
     let mut sums = Vec::new();
     for name in COPIES {

@@ -164,9 +164,10 @@ impl Bench {
         Ok(file)
     }
 
-    /// The pair of runs with the median ratio of two jobs that must both succeed.
-    fn pair(&self, a: &Job, b: &Job) -> Result<(Usage, Usage), ChoreError> {
-        paired(a, b, self.rounds)?.ok_or_else(|| "a generated drawing was refused".into())
+    /// The median ratio of the CPU times of two jobs, which must both succeed.
+    fn cpu_ratio(&self, a: &Job, b: &Job) -> Result<String, ChoreError> {
+        let (a, b) = paired(a, b, self.rounds)?.ok_or("a generated drawing was refused")?;
+        Ok(ratio(a.cpu, b.cpu))
     }
 
     /// Compares two jobs on all drawings: the ratio of the sums of CPU times, and the median and the largest ratio.
@@ -197,9 +198,9 @@ fn row(out: &mut String, what: &str, measured: &str) {
     let _ = writeln!(out, "| {what} | {measured} |");
 }
 
-/// The ratio of two CPU times, and both of them.
-fn ratio((a, b): (Usage, Usage)) -> String {
-    format!("{:.2} ({:.0} and {:.0} ms)", a.cpu / b.cpu, a.cpu * 1e3, b.cpu * 1e3)
+/// The ratio of two times in seconds, and both of them in milliseconds.
+fn ratio(a: f64, b: f64) -> String {
+    format!("{:.2} ({:.0} and {:.0} ms)", a / b, a * 1e3, b * 1e3)
 }
 
 /// Peak memory beyond [`FIXED`], in multiples of the size of the input.
@@ -238,11 +239,11 @@ fn segments(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
         let file = b.generate("segments.svg", &generated::flowers(n, each))?;
         let (default, usvg) = (b.warp(&file), b.resolve(&file));
         let what = format!("{n} smooth segments {kind}");
-        row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
+        row(out, &format!("{what}, default ÷ usvg"), &b.cpu_ratio(&default, &usvg)?);
         let unmerged = default.with(&["--nodes", "source"]);
-        row(out, &format!("{what}, `--nodes source` ÷ usvg"), &ratio(b.pair(&unmerged, &usvg)?));
-        row(out, &format!("{what}, default ÷ `--nodes source`"), &ratio(b.pair(&default, &unmerged)?));
-        row(out, &format!("{what}, `--certify` ÷ default"), &ratio(b.pair(&default.with(&["--certify"]), &default)?));
+        row(out, &format!("{what}, `--nodes source` ÷ usvg"), &b.cpu_ratio(&unmerged, &usvg)?);
+        row(out, &format!("{what}, default ÷ `--nodes source`"), &b.cpu_ratio(&default, &unmerged)?);
+        row(out, &format!("{what}, `--certify` ÷ default"), &b.cpu_ratio(&default.with(&["--certify"]), &default)?);
     }
     Ok(())
 }
@@ -251,13 +252,9 @@ fn text(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     let file = b.generate("text.svg", &generated::page(PARAGRAPHS, &b.font))?;
     let (default, usvg) = (b.warp(&file), b.resolve(&file));
     let what = format!("{PARAGRAPHS} paragraphs of {} letters", generated::LETTERS);
-    row(out, &format!("{what}, default ÷ usvg"), &ratio(b.pair(&default, &usvg)?));
-    row(
-        out,
-        &format!("{what}, `--nodes source` ÷ usvg"),
-        &ratio(b.pair(&default.with(&["--nodes", "source"]), &usvg)?),
-    );
-    row(out, &format!("{what}, `--text skip` ÷ usvg"), &ratio(b.pair(&default.with(&["--text", "skip"]), &usvg)?));
+    row(out, &format!("{what}, default ÷ usvg"), &b.cpu_ratio(&default, &usvg)?);
+    row(out, &format!("{what}, `--nodes source` ÷ usvg"), &b.cpu_ratio(&default.with(&["--nodes", "source"]), &usvg)?);
+    row(out, &format!("{what}, `--text skip` ÷ usvg"), &b.cpu_ratio(&default.with(&["--text", "skip"]), &usvg)?);
     Ok(())
 }
 
@@ -297,7 +294,7 @@ fn threads(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
 fn speedup(b: &Bench, job: &Job) -> Result<String, ChoreError> {
     let with = |jobs: &str| job.with(&["--jobs", jobs]).median(b.rounds, |u| u.wall);
     let (one, two) = (with("1")?, with("2")?);
-    Ok(format!("{:.2} ({:.0} and {:.0} ms)", one.wall / two.wall, one.wall * 1e3, two.wall * 1e3))
+    Ok(ratio(one.wall, two.wall))
 }
 
 /// A batch of files in one process, compared with the usvg crate. Both read every file and write another; pathwarp writes it under a temporary
@@ -330,8 +327,8 @@ fn files(b: &Bench, out: &mut String) -> Result<(), ChoreError> {
     }
     pairs.sort_by(|x, y| (x.0 / x.1).total_cmp(&(y.0 / y.1)));
     let (ours, theirs) = pairs[pairs.len() / 2];
-    let measured = format!("{:.2} ({:.0} and {:.0} ms)", ours / theirs, ours * 1e3, theirs * 1e3);
-    row(out, &format!("{BATCH} files in one process ÷ usvg's crate, which reads, resolves and writes each"), &measured);
+    let what = format!("{BATCH} files in one process ÷ usvg's crate, which reads, resolves and writes each");
+    row(out, &what, &ratio(ours, theirs));
     Ok(())
 }
 

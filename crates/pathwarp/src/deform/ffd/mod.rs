@@ -14,7 +14,7 @@ mod file;
 mod save;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Instead, Law, Role, SavedFile};
-use crate::error::{Error, show, within};
+use crate::error::{Error, check_range, show};
 use crate::map::{AffineMap, Class, Lattice, LatticeMap, Map};
 use crate::param::{Axis, Kind, NamedText, Param, Settings};
 use crate::solve::{misses, smallest_change};
@@ -193,7 +193,7 @@ impl Ffd {
             Grid::Regular { region, degree, cells } => {
                 for (name, pair, max) in [("degree", degree, MAX_DEGREE), ("cells", cells, MAX_CELLS)] {
                     for n in pair {
-                        within(name, *n as f64, 1.0, max as f64)?;
+                        check_range(name, *n as f64, 1.0, max as f64)?;
                     }
                 }
                 Lattice::regular(*region, *degree, *cells)

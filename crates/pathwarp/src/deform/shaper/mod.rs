@@ -10,7 +10,7 @@ mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, Pairs, Role, Variant};
 use crate::anchors::{self, Anchors, Arrangement};
-use crate::error::{Error, GeometryError, show, within};
+use crate::error::{Error, GeometryError, check_range, show};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
 use crate::outline::{Outline, Seg};
 use crate::param::{Frame, Kind, NamedPath, Settings, parameters};
@@ -100,7 +100,7 @@ impl Shaper {
         self.check()?;
         let mut explanation = Explanation::default();
         if let Bottom::Side(n) = self.bottom {
-            within("bottom", n as f64, 1.0, 4.0)?;
+            check_range("bottom", n as f64, 1.0, 4.0)?;
         }
         let base = self.base_anchors();
         let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
@@ -504,7 +504,9 @@ fn bottom(s: &Settings<'_>) -> Result<Bottom, Error> {
         None => Ok(Bottom::LeastDistorting),
         Some(&"lowest") => Ok(Bottom::Lowest),
         Some(text) => match text.trim().parse::<i32>() {
-            Ok(side) => within("bottom", f64::from(side), 1.0, 4.0).map(|_| Bottom::Side(side.unsigned_abs() as usize)),
+            Ok(side) => {
+                check_range("bottom", f64::from(side), 1.0, 4.0).map(|_| Bottom::Side(side.unsigned_abs() as usize))
+            }
             Err(_) => Err(Error::usage("bottom", *text, "is neither a side, 1 to 4, nor the word lowest")),
         },
     }

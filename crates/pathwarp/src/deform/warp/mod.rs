@@ -76,7 +76,7 @@ impl Warp {
         let params = StyleParams { bend: *bend, distortion: [self.horizontal, self.vertical], vertical: self.sideways };
         let net = style.net(frame.width(), frame.height(), &params);
         let net = net.map_err(|e| Error::usage("style", style.name.clone(), e.to_string()))?;
-        let mut built = if self.keep == Keep::Nothing { over(*frame, &net)? } else { self.kept(&net, &params)? };
+        let mut built = if self.keep == Keep::Nothing { over(*frame, &net)? } else { self.keeping(&net, &params)? };
         built.note(format!(
             "style {}: bend {}%, {}{}",
             style.name,
@@ -88,9 +88,9 @@ impl Warp {
     }
 
     /// Fits the box between the sides of the style's net and keeps lines. If that fails, the error lists the styles that can keep them.
-    fn kept(&self, net: &Net, params: &StyleParams) -> Result<Built, Error> {
+    fn keeping(&self, net: &Net, params: &StyleParams) -> Result<Built, Error> {
         let frame = self.frame;
-        let put = |style: &Style, net: &Net| -> Result<Built, Error> {
+        let fit = |style: &Style, net: &Net| -> Result<Built, Error> {
             // A style that moves only the inside has no effect between its sides.
             let flat = style.net(frame.width(), frame.height(), &StyleParams { bend: 0.0, ..*params });
             if params.bend != 0.0 && flat.is_ok_and(|flat| same_sides(&flat, net)) {
@@ -99,18 +99,17 @@ impl Warp {
             let ring = sides(&net.map(|row| row.map(|p| p + frame.origin().to_vec2())));
             envelope::fit(frame, &ring, self.keep, None)
         };
-        put(&self.style, net).map_err(|e| {
-            let possible = |style: &Style| {
-                let net = style.net(frame.width(), frame.height(), params).ok();
-                net.is_some_and(|n| put(style, &n).is_ok())
-            };
-            let names: Vec<String> = Style::builtin().into_iter().filter(possible).map(|style| style.name).collect();
-            let others = if names.is_empty() {
-                "no style can at this bend".into()
-            } else {
-                format!("it can with {}", names.join(", "))
-            };
+        fit(&self.style, net).map_err(|e| {
             let Error::Usage { problem, .. } = e else { return e };
+            let is_possible = |style: &&Style| {
+                let net = style.net(frame.width(), frame.height(), params).ok();
+                net.is_some_and(|n| fit(style, &n).is_ok())
+            };
+            let names: Vec<&str> = presets().iter().filter(is_possible).map(Style::name).collect();
+            let others = match names[..] {
+                [] => "no style can at this bend".into(),
+                _ => format!("it can with {}", names.join(", ")),
+            };
             // The envelope's advice is for drawn curves only.
             Error::usage("keep", self.keep.name(), format!("is impossible with this style ({problem}); {others}"))
         })
@@ -119,8 +118,8 @@ impl Warp {
 
 /// Returns `true` if two nets have the same outermost rows and columns.
 fn same_sides(a: &Net, b: &Net) -> bool {
-    let outer = |j: usize, c: usize| j == 0 || j == 3 || c == 0 || c == 3;
-    (0..16).all(|k| !outer(k / 4, k % 4) || a[k / 4][k % 4] == b[k / 4][k % 4])
+    let is_inner = |j: usize, c: usize| (1..3).contains(&j) && (1..3).contains(&c);
+    (0..16).map(|k| (k / 4, k % 4)).all(|(j, c)| is_inner(j, c) || a[j][c] == b[j][c])
 }
 
 /// Returns a net's four sides: bottom to the right, right side upwards, top to the left, left side downwards.
@@ -128,9 +127,9 @@ fn sides(net: &Net) -> Ring {
     let row = |r: usize| net[r];
     let column = |c: usize| [net[0][c], net[1][c], net[2][c], net[3][c]];
     let seg = |[a, b, c, d]: [Point; 4]| vec![Seg::Cubic(CubicBez::new(a, b, c, d))];
-    let back = |[a, b, c, d]: [Point; 4]| [d, c, b, a];
+    let reversed = |[a, b, c, d]: [Point; 4]| [d, c, b, a];
     Ring {
-        sides: [seg(row(3)), seg(back(column(3))), seg(back(row(0))), seg(column(0))],
+        sides: [seg(row(3)), seg(reversed(column(3))), seg(reversed(row(0))), seg(column(0))],
         notes: Vec::new(),
         warnings: Vec::new(),
     }
@@ -224,13 +223,6 @@ struct Rule {
     y: Option<String>,
 }
 
-impl Rule {
-    /// Returns `false` if the formulas do not use the point's position.
-    fn depends_on_place(&self) -> bool {
-        self.x.iter().chain(&self.y).any(|f| f.contains(['u', 'v']))
-    }
-}
-
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Shift {
@@ -264,6 +256,11 @@ fn third(i: usize) -> f64 {
     i as f64 / 3.0
 }
 
+/// Returns the factor by which a distortion scales column (or row) `i`.
+fn factor(amount: f64, i: usize) -> f64 {
+    1.0 + amount * (2.0 * third(i) - 1.0)
+}
+
 fn mapped(net: &Net, mut f: impl FnMut(usize, usize, Point) -> Point) -> Net {
     std::array::from_fn(|j| std::array::from_fn(|c| f(j, c, net[j][c])))
 }
@@ -273,20 +270,17 @@ fn transposed(net: &Net) -> Net {
     std::array::from_fn(|j| std::array::from_fn(|c| Point::new(net[c][j].y, net[c][j].x)))
 }
 
-/// Scales every column about the middle of its ends by 1 + amount·(2u − 1).
-fn widened(net: &Net, amount: f64) -> Net {
+/// Scales every column about the middle of its ends.
+fn with_scaled_columns(net: &Net, amount: f64) -> Net {
     mapped(net, |_, c, p| {
         let middle = net[0][c].midpoint(net[3][c]);
-        middle + (p - middle) * (1.0 + amount * (2.0 * third(c) - 1.0))
+        middle + (p - middle) * factor(amount, c)
     })
 }
 
-/// Scales every row about the middle of its ends by 1 + amount·(2v − 1).
-fn heightened(net: &Net, amount: f64) -> Net {
-    mapped(net, |j, _, p| {
-        let middle = net[j][0].midpoint(net[j][3]);
-        middle + (p - middle) * (1.0 + amount * (2.0 * third(j) - 1.0))
-    })
+/// Scales every row about the middle of its ends.
+fn with_scaled_rows(net: &Net, amount: f64) -> Net {
+    transposed(&with_scaled_columns(&transposed(net), amount))
 }
 
 impl Style {
@@ -337,39 +331,40 @@ impl Style {
     pub(in crate::deform) fn net(&self, w: f64, h: f64, with: &StyleParams) -> Result<Net, StyleError> {
         let [horizontal, vertical] = with.distortion;
         if !with.vertical {
-            return self
-                .distorted(w, h, with.bend, [horizontal, vertical], |n| heightened(&widened(n, horizontal), vertical));
+            return self.distorted(w, h, with.bend, [horizontal, vertical], true);
         }
         // The horizontal distortion always comes first; here it scales rows of the transposed net.
-        let net =
-            self.distorted(h, w, with.bend, [vertical, horizontal], |n| widened(&heightened(n, horizontal), vertical))?;
+        let net = self.distorted(h, w, with.bend, [vertical, horizontal], false)?;
         let shift = self.shift(h, w, with.bend)?;
         Ok(transposed(&mapped(&net, |_, _, p| p + shift)))
     }
 
-    /// Returns the net under `distortion`, which scales columns and rows by these amounts.
+    /// Returns the net under a distortion that scales columns and rows by these amounts, columns or rows first.
     fn distorted(
         &self,
         w: f64,
         h: f64,
         b: f64,
         [columns, rows]: [f64; 2],
-        distortion: impl Fn(&Net) -> Net,
+        columns_first: bool,
     ) -> Result<Net, StyleError> {
+        let scaled = |net: &Net| match columns_first {
+            true => with_scaled_rows(&with_scaled_columns(net, columns), rows),
+            false => with_scaled_columns(&with_scaled_rows(net, rows), columns),
+        };
         let rest: Net = std::array::from_fn(|j| std::array::from_fn(|c| Point::new(w * third(c), h * third(j))));
-        let net = self.plain(&rest, w, h, b)?;
-        let factor = |amount: f64, i: usize| 1.0 + amount * (2.0 * third(i) - 1.0);
+        let net = self.undistorted(&rest, w, h, b)?;
         Ok(match self.family {
-            Family::Boundary => complete_net(distortion(&net)),
-            Family::Points => distortion(&net),
-            Family::Frame => mapped(&distortion(&rest), |j, c, p| {
-                p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j))
-            }),
+            Family::Boundary => complete_net(scaled(&net)),
+            Family::Points => scaled(&net),
+            Family::Frame => {
+                mapped(&scaled(&rest), |j, c, p| p + (net[j][c] - rest[j][c]) * (factor(columns, c) * factor(rows, j)))
+            }
         })
     }
 
-    /// Returns the net after the rules, without distortion.
-    fn plain(&self, rest: &Net, w: f64, h: f64, b: f64) -> Result<Net, StyleError> {
+    /// Returns the net that the rules make of the net at rest, without distortion.
+    fn undistorted(&self, rest: &Net, w: f64, h: f64, b: f64) -> Result<Net, StyleError> {
         let mut names = self.names(w, h, b)?;
         let mut net = *rest;
         for arc in &self.arcs {
@@ -394,14 +389,16 @@ impl Style {
         }
         for (rules, absolute) in [(&self.points, true), (&self.moves, false)] {
             for rule in rules {
+                // Formulas that do not use the point's position are evaluated once.
+                let is_constant = !rule.x.iter().chain(&rule.y).any(|f| f.contains(['u', 'v']));
                 let mut known = None;
                 for (j, c) in selected(&rule.at)? {
                     names.set("u", third(c));
                     names.set("v", third(j));
-                    let of = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
-                    let value = || Ok::<_, FormulaError>((of(&rule.x)?, of(&rule.y)?));
-                    let (x, y) = known.map_or_else(value, Ok)?;
-                    known = (!rule.depends_on_place()).then_some((x, y));
+                    let value = |f: &Option<String>| f.as_ref().map(|f| names.value(f)).transpose();
+                    let both = || Ok::<_, FormulaError>((value(&rule.x)?, value(&rule.y)?));
+                    let (x, y) = known.map_or_else(both, Ok)?;
+                    known = is_constant.then_some((x, y));
                     let p = &mut net[j][c];
                     *p = if absolute {
                         Point::new(x.unwrap_or(p.x), y.unwrap_or(p.y))
@@ -414,6 +411,7 @@ impl Style {
         Ok(net)
     }
 
+    /// Returns the names that formulas may use, with their values.
     fn names(&self, w: f64, h: f64, b: f64) -> Result<Calculator, FormulaError> {
         let half = b * std::f64::consts::FRAC_PI_2;
         let k = 4.0 / 3.0 * (0.5 * half).tan();
@@ -432,11 +430,12 @@ impl Style {
         Ok(names)
     }
 
+    /// Returns the shift of a style with a vertical axis, before x and y are swapped.
     fn shift(&self, w: f64, h: f64, b: f64) -> Result<Vec2, FormulaError> {
         let Some(shift) = &self.upright else { return Ok(Vec2::ZERO) };
         let names = self.names(w, h, b)?;
-        let of = |f: &Option<String>| f.as_ref().map_or(Ok(0.0), |f| names.value(f));
-        Ok(Vec2::new(of(&shift.x)?, of(&shift.y)?))
+        let value = |f: &Option<String>| f.as_ref().map_or(Ok(0.0), |f| names.value(f));
+        Ok(Vec2::new(value(&shift.x)?, value(&shift.y)?))
     }
 }
 
@@ -450,12 +449,12 @@ fn presets() -> &'static [Style] {
 /// Returns the points (j, c) that `at` selects.
 fn selected(at: &str) -> Result<Vec<(usize, usize)>, StyleError> {
     let wrong = || StyleError::BadPoint(at.to_owned());
-    let one = |t: &str| match t.trim() {
+    let range = |t: &str| match t.trim() {
         "*" => Ok(0..4),
         n => n.parse::<usize>().ok().filter(|n| *n < 4).map(|n| n..n + 1).ok_or_else(wrong),
     };
     let (j, c) = at.split_once(',').ok_or_else(wrong)?;
-    let (rows, columns) = (one(j)?, one(c)?);
+    let (rows, columns) = (range(j)?, range(c)?);
     Ok(rows.flat_map(|j| columns.clone().map(move |c| (j, c))).collect())
 }
 
@@ -557,11 +556,7 @@ fn style(s: &Settings<'_>) -> Result<Style, Error> {
     }
     let name = s.texts("style").last().copied().unwrap_or_default();
     Style::named(name).ok_or_else(|| {
-        Error::advised(
-            "style",
-            name,
-            "is not a style",
-            format!("; there are {}, and files (TOML or JSON)", NAMES.join(", ")),
-        )
+        let known = format!("; there are {}, and files (TOML or JSON)", NAMES.join(", "));
+        Error::advised("style", name, "is not a style", known)
     })
 }

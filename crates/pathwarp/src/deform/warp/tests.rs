@@ -5,7 +5,7 @@ use crate::deform::Deformation as _;
 use crate::outline::Outline;
 use crate::param::{Args, Frame};
 use crate::{check, refit};
-use kurbo::ParamCurve;
+use kurbo::{ParamCurve, ParamCurveNearest as _};
 use std::f64::consts::PI;
 
 #[test]
@@ -17,9 +17,10 @@ fn is_sound() {
 const W: f64 = 240.0;
 const H: f64 = 90.0;
 
-type N = [[(f64, f64); 4]; 4];
+/// The points of a net, in rows.
+type Points = [[(f64, f64); 4]; 4];
 
-fn rest(w: f64, h: f64) -> N {
+fn rest(w: f64, h: f64) -> Points {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
     t.map(|v| t.map(|u| (u * w, v * h)))
 }
@@ -34,12 +35,12 @@ fn arc(w: f64, b: f64, yc: f64, r: f64, up: bool) -> [(f64, f64); 4] {
     [(x0, y), (x0 + dx, y + dy), (x1 - dx, y + dy), (x1, y)]
 }
 
-fn mirrored(n: N, h: f64) -> N {
+fn mirrored(n: Points, h: f64) -> Points {
     [3, 2, 1, 0].map(|j: usize| n[j].map(|(x, y)| (x, h - y)))
 }
 
-/// Adds straight sides with handles at thirds, and the inner points of the bilinear Coons patch.
-fn completed(mut n: N) -> N {
+/// Adds straight left and right sides with handles at thirds, and the inner points.
+fn completed(mut n: Points) -> Points {
     let mix = |p: (f64, f64), q: (f64, f64), t: f64| (p.0 + (q.0 - p.0) * t, p.1 + (q.1 - p.1) * t);
     for c in [0, 3] {
         (n[1][c], n[2][c]) = (mix(n[0][c], n[3][c], 1.0 / 3.0), mix(n[0][c], n[3][c], 2.0 / 3.0));
@@ -47,12 +48,14 @@ fn completed(mut n: N) -> N {
     inner(n)
 }
 
-fn inner(mut n: N) -> N {
+/// Adds the inner points of the bilinear Coons patch.
+fn inner(mut n: Points) -> Points {
     let sum = |terms: &[(f64, (f64, f64))]| {
         terms.iter().fold((0.0, 0.0), |a, (k, p)| (a.0 + k * p.0 / 9.0, a.1 + k * p.1 / 9.0))
     };
     let p = n;
-    let one = |j: usize, c: usize, cj: usize, cc: usize| {
+    // The point (j, c) beside the corner (cj, cc); (fj, fc) is the corner opposite.
+    let point = |j: usize, c: usize, cj: usize, cc: usize| {
         let (fj, fc) = (3 - cj, 3 - cc);
         sum(&[
             (6.0, p[cj][c]),
@@ -65,12 +68,12 @@ fn inner(mut n: N) -> N {
             (-1.0, p[fj][fc]),
         ])
     };
-    (n[1][1], n[1][2], n[2][1], n[2][2]) = (one(1, 1, 0, 0), one(1, 2, 0, 3), one(2, 1, 3, 0), one(2, 2, 3, 3));
+    (n[1][1], n[1][2], n[2][1], n[2][2]) = (point(1, 1, 0, 0), point(1, 2, 0, 3), point(2, 1, 3, 0), point(2, 2, 3, 3));
     n
 }
 
 /// Returns the net of a style from the measured table.
-fn table(style: &str, b: f64, w: f64, h: f64) -> N {
+fn table(style: &str, b: f64, w: f64, h: f64) -> Points {
     let theta = b.abs() * PI;
     let (s, c) = ((theta / 2.0).sin(), (theta / 2.0).cos());
     let r = w / (2.0 * s);
@@ -96,9 +99,8 @@ fn table(style: &str, b: f64, w: f64, h: f64) -> N {
             completed(n)
         }
         "bulge" => {
-            let up = b > 0.0;
-            n[0] = if up { arc(w, b, r * c, r, true) } else { arc(w, b, -r * c, r, false) };
-            n[3] = if up { arc(w, b, h - r * c, r, false) } else { arc(w, b, h + r * c, r, true) };
+            n[0] = if b > 0.0 { arc(w, b, r * c, r, true) } else { arc(w, b, -r * c, r, false) };
+            n[3] = if b > 0.0 { arc(w, b, h - r * c, r, false) } else { arc(w, b, h + r * c, r, true) };
             completed(n)
         }
         "shell-upper" | "shell-lower" => {
@@ -168,12 +170,13 @@ fn table(style: &str, b: f64, w: f64, h: f64) -> N {
 
 const BENDS: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 
-fn plain(bend: f64) -> StyleParams {
+fn undistorted(bend: f64) -> StyleParams {
     StyleParams { bend, distortion: [0.0, 0.0], vertical: false }
 }
 
-fn off(net: &Net, n: &N) -> f64 {
-    let pairs = net.iter().flatten().zip(n.iter().flatten());
+/// Returns the largest distance between points of the nets.
+fn distance(net: &Net, points: &Points) -> f64 {
+    let pairs = net.iter().flatten().zip(points.iter().flatten());
     pairs.map(|(p, q)| p.distance((*q).into())).fold(0.0, f64::max)
 }
 
@@ -195,12 +198,12 @@ fn every_style_is_there_under_every_spelling() {
 fn nets_are_the_tables() {
     for style in Style::builtin() {
         for b in BENDS {
-            let net = style.net(W, H, &plain(b)).unwrap();
-            let d = off(&net, &table(&style.name, b, W, H));
+            let net = style.net(W, H, &undistorted(b)).unwrap();
+            let d = distance(&net, &table(&style.name, b, W, H));
             assert!(d < 1e-9, "{} {b}: {d:e}\n{net:?}", style.name);
         }
-        let zero = style.net(W, H, &plain(0.0)).unwrap();
-        assert!(off(&zero, &rest(W, H)) < 1e-12, "{}", style.name);
+        let zero = style.net(W, H, &undistorted(0.0)).unwrap();
+        assert!(distance(&zero, &rest(W, H)) < 1e-12, "{}", style.name);
     }
 }
 
@@ -209,24 +212,24 @@ fn nets_are_the_tables() {
 fn the_vertical_axis_is_transposition() {
     for style in Style::builtin() {
         for b in BENDS {
-            let net = style.net(W, H, &StyleParams { vertical: true, ..plain(b) }).unwrap();
+            let net = style.net(W, H, &StyleParams { vertical: true, ..undistorted(b) }).unwrap();
             let across = table(&style.name, b, H, W);
             let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
-            let expected: N = std::array::from_fn(|j| {
+            let expected: Points = std::array::from_fn(|j| {
                 std::array::from_fn(|c| {
                     let (x, y) = across[c][j];
                     (y + shift, x)
                 })
             });
-            assert!(off(&net, &expected) < 1e-9, "{} {b}", style.name);
+            assert!(distance(&net, &expected) < 1e-9, "{} {b}", style.name);
         }
     }
 }
 
 /// Scales columns, then rows (or the reverse), about the middles of their ends. The family decides which points are scaled.
-fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> N {
+fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], columns_first: bool) -> Points {
     let t = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
-    let columns = |n: &N| {
+    let columns = |n: &Points| {
         let mut out = *n;
         for c in 0..4 {
             let m = ((n[0][c].0 + n[3][c].0) / 2.0, (n[0][c].1 + n[3][c].1) / 2.0);
@@ -237,7 +240,7 @@ fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], colu
         }
         out
     };
-    let rows = |n: &N| {
+    let rows = |n: &Points| {
         let mut out = *n;
         for j in 0..4 {
             let m = ((n[j][0].0 + n[j][3].0) / 2.0, (n[j][0].1 + n[j][3].1) / 2.0);
@@ -248,7 +251,7 @@ fn distorted(style: &str, b: f64, [wide, high]: [f64; 2], [h, v]: [f64; 2], colu
         }
         out
     };
-    let scale = |n: &N| if columns_first { rows(&columns(n)) } else { columns(&rows(n)) };
+    let scale = |n: &Points| if columns_first { rows(&columns(n)) } else { columns(&rows(n)) };
     let n = table(style, b, wide, high);
     match style {
         "twist" | "fisheye" | "shell-upper" | "shell-lower" => scale(&n),
@@ -272,26 +275,27 @@ fn distortions_come_in_order() {
     for style in Style::builtin() {
         for b in BENDS {
             for (h, v) in [(0.3, 0.0), (0.0, -0.4), (0.25, -0.6), (-1.0, 0.5)] {
-                let net = style.net(W, H, &StyleParams { distortion: [h, v], ..plain(b) }).unwrap();
-                let d = off(&net, &distorted(&style.name, b, [W, H], [h, v], true));
+                let net = style.net(W, H, &StyleParams { distortion: [h, v], ..undistorted(b) }).unwrap();
+                let d = distance(&net, &distorted(&style.name, b, [W, H], [h, v], true));
                 assert!(d < 1e-9, "{} {b} {h} {v}: {d:e}", style.name);
                 // With the vertical axis, the two distortions change roles; horizontal still comes first.
                 let net = style.net(W, H, &StyleParams { bend: b, distortion: [h, v], vertical: true }).unwrap();
                 let across = distorted(&style.name, b, [H, W], [v, h], false);
                 let shift = if style.name == "rise" { -2.0 * b * W } else { 0.0 };
-                let expected: N =
+                let expected: Points =
                     std::array::from_fn(|j| std::array::from_fn(|c| (across[c][j].1 + shift, across[c][j].0)));
-                let d = off(&net, &expected);
+                let d = distance(&net, &expected);
                 assert!(d < 1e-9, "{} {b} {h} {v} sideways: {d:e}", style.name);
             }
         }
     }
     // The order matters where both act on bent sides, so that the test detects it.
     let arch = Style::builtin().into_iter().find(|s| s.name == "arch").unwrap();
-    let one = arch.net(W, H, &StyleParams { distortion: [0.25, -0.6], ..plain(0.5) }).unwrap();
-    let upright = arch.net(H, W, &StyleParams { distortion: [-0.6, 0.25], vertical: true, ..plain(0.5) }).unwrap();
-    let swapped: N = std::array::from_fn(|j| std::array::from_fn(|c| (upright[c][j].y, upright[c][j].x)));
-    assert!(off(&one, &swapped) > 0.1);
+    let level = arch.net(W, H, &StyleParams { distortion: [0.25, -0.6], ..undistorted(0.5) }).unwrap();
+    let upright =
+        arch.net(H, W, &StyleParams { distortion: [-0.6, 0.25], vertical: true, ..undistorted(0.5) }).unwrap();
+    let swapped: Points = std::array::from_fn(|j| std::array::from_fn(|c| (upright[c][j].y, upright[c][j].x)));
+    assert!(distance(&level, &swapped) > 0.1);
 }
 
 fn build(pairs: &[(&str, &str)]) -> Built {
@@ -331,19 +335,9 @@ fn a_drawings_nodes_lie_where_the_table_says() {
             for i in 0..=10 {
                 let t = f64::from(i) / 10.0;
                 let p = Point::new(5.0 + t * W, 7.0);
-                assert!(top.nearest_to(at(p)) < 2e-6, "{name} {b} {t}");
+                assert!(top.nearest(at(p), 1e-9).distance_sq.sqrt() < 2e-6, "{name} {b} {t}");
             }
         }
-    }
-}
-
-trait NearestTo {
-    fn nearest_to(&self, p: Point) -> f64;
-}
-
-impl NearestTo for CubicBez {
-    fn nearest_to(&self, p: Point) -> f64 {
-        kurbo::ParamCurveNearest::nearest(self, p, 1e-9).distance_sq.sqrt()
     }
 }
 
@@ -365,12 +359,12 @@ fn files_of_ones_own_and_their_faults() {
         ENTRY.build_from(&args, &check::frame())
     };
     let flag = r#"{ "name": "f", "family": "points", "moves": [{ "at": "*,1", "y": "2*b*h" }, { "at": "*,2", "y": "-2*b*h" }] }"#;
-    let (own, ours) = (
+    let (from_file, builtin) = (
         with(flag).unwrap().map,
         ENTRY.build_from(&Args::from_pairs(&[("style", "flag")]), &check::frame()).unwrap().map,
     );
     for p in [(10.0, 10.0), (60.0, 30.0), (95.0, 99.0)] {
-        assert!(own.point(p.into()).distance(ours.point(p.into())) < 1e-12);
+        assert!(from_file.point(p.into()).distance(builtin.point(p.into())) < 1e-12);
     }
     let head = r#"{ "name": "f", "family": "points", "#;
     for (rest, part) in [

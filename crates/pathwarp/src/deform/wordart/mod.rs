@@ -61,7 +61,7 @@ parameters! {
     }
 }
 
-/// Tolerance of drawn guides, as a share of the box's width and height.
+/// Tolerance of drawn guides, as a fraction of the sum of the box's width and height.
 const GUIDE_TOLERANCE: f64 = 1e-4;
 
 impl WordArt {
@@ -116,7 +116,7 @@ impl WordArt {
             Guides::Along(p) => p.len(),
         };
         let cuts = self.cuts(bands, &lines)?;
-        let shape_box = self.placed(&cuts, &guides)?;
+        let shape_box = self.placed_box(&cuts, &guides)?;
         let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
         let values = shape.adj.iter().zip(adjusted).map(|(a, v)| format!("{} {v}", a.name)).collect::<Vec<_>>();
         built.note(format!("text shape {}: {}, {bands} band(s)", shape.name, values.join(", ")));
@@ -124,17 +124,17 @@ impl WordArt {
             let Rect { x0, y0, .. } = shape_box;
             built.note(format!("box of the shape: {x0:.6},{y0:.6},{:.6},{:.6}", shape_box.width(), shape_box.height()));
         }
-        let there = || guides(shape_box.width(), shape_box.height());
-        let wide = self.padded(there()?, &cuts, shape_box)?;
-        let rows = wide.rows(there()?, &cuts, shape_box, &mut built)?;
-        let map = rows.and_then(|rows| Tiled::over(wide.frame, cuts, rows));
+        let placed_guides = || guides(shape_box.width(), shape_box.height());
+        let padded = self.padded(placed_guides()?, &cuts, shape_box)?;
+        let rows = padded.rows(placed_guides()?, &cuts, shape_box, &mut built)?;
+        let map = rows.and_then(|rows| Tiled::over(padded.frame, cuts, rows));
         let map = map.ok_or_else(|| wrong("has a guide without length in this box: adjust it less far".into()))?;
         built.map = anchors::settled(map, *rect);
         Ok(built)
     }
 
-    /// Returns the box in which the shape is drawn, for artwork divided at `cuts`.
-    fn placed(&self, cuts: &[f64], guides: &dyn Fn(f64, f64) -> Result<Guides, Error>) -> Result<Rect, Error> {
+    /// Returns the box in which the shape is drawn, for artwork divided into bands at the heights `cuts`.
+    fn placed_box(&self, cuts: &[f64], guides: &dyn Fn(f64, f64) -> Result<Guides, Error>) -> Result<Rect, Error> {
         let rect = self.frame;
         match self.shape_box {
             ShapeBox::Given(given) => return Ok(given.abs()),
@@ -154,12 +154,12 @@ impl WordArt {
             Guides::Between(_) if !self.shape.round => Ok(rect),
             Guides::Between(_) => {
                 // The search runs near the origin, where rounding does not hide a flat minimum.
-                let near = Self { frame: rect - rect.origin().to_vec2(), ..self.clone() };
+                let at_origin = Self { frame: rect - rect.origin().to_vec2(), ..self.clone() };
                 let cuts: Vec<f64> = cuts.iter().map(|y| y - rect.y0).collect();
-                let found = shape::least_distorting(near.frame, |b| {
+                let found = shape::least_distorting(at_origin.frame, |b| {
                     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
-                    let rows = near.rows(guides(b.width(), b.height())?, &cuts, b, &mut built)?;
-                    Ok::<_, Error>(rows.and_then(|rows| Tiled::over(near.frame, cuts.clone(), rows)))
+                    let rows = at_origin.rows(guides(b.width(), b.height())?, &cuts, b, &mut built)?;
+                    Ok::<_, Error>(rows.and_then(|rows| Tiled::over(at_origin.frame, cuts.clone(), rows)))
                 })?;
                 Ok(found + rect.origin().to_vec2())
             }
@@ -176,28 +176,28 @@ impl WordArt {
         }
         let rows = self.rows(guides, cuts, shape_box, &mut Built::new(Arc::new(AffineMap::IDENTITY)))?;
         let Some(map) = rows.and_then(|rows| Tiled::over(rect, cuts.to_vec(), rows)) else { return Ok(self.clone()) };
-        let along = |y: f64| -> Vec<Point> {
-            let at = |i: usize| rect.x0 + rect.width() * i as f64 / SAMPLES as f64;
-            (0..=SAMPLES).map(|i| map.point(Point::new(at(i), y))).collect()
+        let image_of_row = |y: f64| -> Vec<Point> {
+            let x = |i: usize| rect.x0 + rect.width() * i as f64 / SAMPLES as f64;
+            (0..=SAMPLES).map(|i| map.point(Point::new(x(i), y))).collect()
         };
         let length = |ps: &[Point]| ps.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
-        // The padding as shares of the length and of the heights of the outer bands. Lines between bands are guides, too.
-        let (mut ends, mut shares) = (0f64, [0.0; 2]);
-        for (k, share) in [0, last].into_iter().zip(&mut shares) {
+        // The padding as fractions of the length and of the heights of the outer bands. Lines between bands are guides, too.
+        let (mut of_length, mut of_heights) = (0f64, [0.0; 2]);
+        for (k, of_height) in [0, last].into_iter().zip(&mut of_heights) {
             let band = self.band(cuts, k);
-            let [top, bottom] = [1e-12, 1.0 - 1e-12].map(|v| along(band.y0 + v * band.height()));
+            let [top, bottom] = [1e-12, 1.0 - 1e-12].map(|v| image_of_row(band.y0 + v * band.height()));
             let least = top.iter().zip(&bottom).map(|(p, q)| p.distance(*q)).fold(f64::INFINITY, f64::min);
-            ends = ends.max(self.padding / length(&top).min(length(&bottom)));
-            *share = self.padding / least;
+            of_length = of_length.max(self.padding / length(&top).min(length(&bottom)));
+            *of_height = self.padding / least;
         }
         // A single band is padded on both sides.
         let sides = if last == 0 { 2.0 } else { 1.0 };
-        if !(ends < 0.5 && shares.iter().all(|share| sides * share < 1.0)) {
+        if !(of_length < 0.5 && of_heights.iter().all(|of_height| sides * of_height < 1.0)) {
             return Err(Error::usage("padding", self.padding.to_string(), "leaves nothing of the shape"));
         }
-        let grown = |k: usize, share: f64| self.band(cuts, k).height() * share / (1.0 - sides * share);
-        let wide = rect.inflate(rect.width() * ends / (1.0 - 2.0 * ends), 0.0);
-        let frame = Rect { y0: rect.y0 - grown(0, shares[0]), y1: rect.y1 + grown(last, shares[1]), ..wide };
+        let growth = |k: usize, of_height: f64| self.band(cuts, k).height() * of_height / (1.0 - sides * of_height);
+        let wide = rect.inflate(rect.width() * of_length / (1.0 - 2.0 * of_length), 0.0);
+        let frame = Rect { y0: rect.y0 - growth(0, of_heights[0]), y1: rect.y1 + growth(last, of_heights[1]), ..wide };
         Ok(Self { frame, ..self.clone() })
     }
 
@@ -216,20 +216,20 @@ impl WordArt {
         shape_box: Rect,
         built: &mut Built,
     ) -> Result<Option<Vec<TileRow>>, Error> {
-        let place = Affine::translate(shape_box.origin().to_vec2());
-        let moved = |segs: &[Seg]| -> Vec<Seg> { segs.iter().map(|g| g.transformed(place)).collect() };
+        let shift = Affine::translate(shape_box.origin().to_vec2());
+        let moved = |segs: &[Seg]| -> Vec<Seg> { segs.iter().map(|g| g.transformed(shift)).collect() };
         let tolerance = GUIDE_TOLERANCE * (shape_box.width() + shape_box.height());
         let drawn = |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(tolerance) };
         match guides {
             Guides::Between(pairs) => {
                 let along = if self.by_parameter { Along::Parameter } else { Along::ArcLength };
-                let one = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
+                let row = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
                     tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
                 };
-                Ok(pairs.iter().enumerate().map(one).collect())
+                Ok(pairs.iter().enumerate().map(row).collect())
             }
             Guides::Along(paths) => {
                 let mut rows = Vec::with_capacity(cuts.len() + 1);
@@ -272,8 +272,8 @@ impl WordArt {
             }
             return Ok((1..bands).map(|k| rect.y0 + rect.height() * (k as f64 / bands as f64)).collect());
         };
-        let inside = split.iter().all(|y| *y > rect.y0 && *y < rect.y1) && split.windows(2).all(|w| w[0] < w[1]);
-        if split.len() + 1 == bands && inside {
+        let is_inside = split.iter().all(|y| *y > rect.y0 && *y < rect.y1);
+        if split.len() + 1 == bands && is_inside && split.windows(2).all(|w| w[0] < w[1]) {
             return Ok(split.clone());
         }
         let count = bands - 1;
@@ -431,13 +431,13 @@ fn adjusted(s: &Settings<'_>, shape: &TextShape) -> Result<Vec<f64>, Error> {
     let mut values: Vec<f64> = shape.adj.iter().map(|a| a.default).collect();
     let texts = if s.given("adj") { s.texts("adj") } else { Vec::new() };
     for (n, text) in texts.into_iter().enumerate() {
-        let (at, value) = match text.split_once('=') {
+        let (index, value) = match text.split_once('=') {
             None => (n, text),
             Some((name, value)) => {
                 (shape.adj.iter().position(|a| a.name == name.trim()).unwrap_or(usize::MAX), value.trim())
             }
         };
-        let a = shape.adj.get(at).ok_or_else(|| no_adjust_value(shape, text))?;
+        let a = shape.adj.get(index).ok_or_else(|| no_adjust_value(shape, text))?;
         let v = if value.ends_with('%') {
             s.number_in("adj", value)? * 1e5
         } else if value.ends_with(|c: char| c.is_alphabetic() || c == '°') {
@@ -446,7 +446,7 @@ fn adjusted(s: &Settings<'_>, shape: &TextShape) -> Result<Vec<f64>, Error> {
             s.number_in("adj", value)?
         };
         a.check(v, &shape.name)?;
-        values[at] = v;
+        values[index] = v;
     }
     Ok(values)
 }

@@ -161,7 +161,8 @@ impl TextShape {
 fn guide(text: &str, names: &Calculator) -> Result<Vec<Seg>, GuideError> {
     let mut out: Vec<Seg> = Vec::new();
     let mut command = ' ';
-    let mut at = Point::ORIGIN;
+    let mut current = Point::ORIGIN;
+    // The points of a segment that is not complete yet.
     let mut pending: Vec<Point> = Vec::new();
     for word in text.split_whitespace() {
         if let ("M" | "L" | "Q" | "C" | "A", Some(c)) = (word, word.chars().next()) {
@@ -170,21 +171,17 @@ fn guide(text: &str, names: &Calculator) -> Result<Vec<Seg>, GuideError> {
         }
         let (x, y) = word.split_once(',').ok_or_else(|| GuideError::BadPoint(word.to_owned()))?;
         pending.push(Point::new(names.value(x)?, names.value(y)?));
-        let seg = match (command, &pending[..]) {
-            ('M', [p]) => {
-                at = *p;
-                None
-            }
-            ('L', [p]) => Some(Seg::Line(Line::new(at, *p))),
-            ('Q', [p, q]) => Some(Seg::Quad(QuadBez::new(at, *p, *q))),
-            ('C', [p, q, r]) => Some(Seg::Cubic(CubicBez::new(at, *p, *q, *r))),
-            ('A', [c, radii, angles]) => Some(Seg::Arc(arc(*c, *radii, angles.x, angles.y))),
+        match (command, &pending[..]) {
+            ('M', [p]) => current = *p,
+            ('L', [p]) => out.push(Seg::Line(Line::new(current, *p))),
+            ('Q', [p, q]) => out.push(Seg::Quad(QuadBez::new(current, *p, *q))),
+            ('C', [p, q, r]) => out.push(Seg::Cubic(CubicBez::new(current, *p, *q, *r))),
+            ('A', [c, radii, angles]) => out.push(Seg::Arc(arc(*c, *radii, angles.x, angles.y))),
             _ => continue,
-        };
+        }
         pending.clear();
-        if let Some(seg) = seg {
-            at = seg.end();
-            out.push(seg);
+        if command != 'M' {
+            current = out.last().map_or(current, Seg::end);
         }
     }
     Ok(out)
@@ -195,11 +192,12 @@ fn guide(text: &str, names: &Calculator) -> Result<Vec<Seg>, GuideError> {
 /// The point of an ellipse in the direction α from its centre has the parameter atan2(rx·sin α, ry·cos α), where rx and ry are its radii.
 fn arc(center: Point, radii: Point, from: f64, sweep: f64) -> EllipticArc {
     use std::f64::consts::{PI, TAU};
+    /// 1/60000 of a degree.
     const UNIT: f64 = PI / 10_800_000.0;
     let parameter = |direction: f64| {
-        let off = (radii.x * direction.sin()).atan2(radii.y * direction.cos()) - direction;
+        let difference = (radii.x * direction.sin()).atan2(radii.y * direction.cos()) - direction;
         // The parameter and the direction differ by less than a quarter turn.
-        direction + off - TAU * (off / TAU).round()
+        direction + difference - TAU * (difference / TAU).round()
     };
     let (first, last) = (parameter(from * UNIT), parameter((from + sweep) * UNIT));
     EllipticArc::new(center, Vec2::new(radii.x, 0.0), Vec2::new(0.0, radii.y), first, last - first)
@@ -225,7 +223,7 @@ pub enum ShapeBox {
     Given(Rect),
 }
 
-/// A guide that returns to its start within this share of its length is closed.
+/// A guide that returns to its start within this fraction of its length is closed.
 const CLOSED: f64 = 1e-3;
 /// Limit on the widening of letters that stand outside a guide: their tops are at most 1 + this times as wide as their feet.
 const WIDEST: f64 = 1.0;
@@ -249,21 +247,21 @@ pub(super) fn side(guide: &[Seg], width: f64, height: f64) -> f64 {
     (width - 0.5 * turn * height).max(min) * SLACK / length(guide)
 }
 
-/// Returns the distance along a guide of its highest point on the screen, as a share of its length.
+/// Returns the distance along a guide of its highest point on the screen, as a fraction of its length.
 pub(super) fn top(guide: &[Seg]) -> f64 {
-    let (mut best, mut before) = ((f64::INFINITY, 0.0), 0.0);
+    let (mut top_y, mut distance, mut before) = (f64::INFINITY, 0.0, 0.0);
     for s in guide {
         if let Some((u, y)) = samples().map(|(u, _)| (u, s.eval(u).y)).min_by(|a, b| a.1.total_cmp(&b.1))
-            && y < best.0
+            && y < top_y
         {
-            best = (y, before + ArcLength::new(&|t| s.deriv(t * u).hypot() * u).length());
+            (top_y, distance) = (y, before + ArcLength::new(&|t| s.deriv(t * u).hypot() * u).length());
         }
         before += length(std::slice::from_ref(s));
     }
-    best.1 / before
+    distance / before
 }
 
-/// Returns `true` if artwork leaves more than `space` of a guide free.
+/// Returns `true` if artwork of a width and height leaves more than `space` of a guide free.
 pub(super) fn is_loose(guide: &[Seg], width: f64, height: f64, space: f64) -> bool {
     mid_length(guide, height) > (width + space) * (1.0 + CLOSED)
 }
@@ -273,9 +271,10 @@ pub(super) fn mid_length(guide: &[Seg], height: f64) -> f64 {
     length(guide) + 0.5 * turn(guide) * height
 }
 
-/// Number of samples of a guide's piece, between which its tangent turns by less than half a circle.
+/// Number of intervals of a guide's piece, in each of which its tangent turns by less than half a circle.
 const SAMPLES: u32 = 256;
 
+/// The ends of these intervals.
 fn samples() -> impl Iterator<Item = (f64, f64)> {
     (0..SAMPLES).map(|i| (f64::from(i) / f64::from(SAMPLES), f64::from(i + 1) / f64::from(SAMPLES)))
 }
@@ -286,11 +285,8 @@ pub(super) fn length(guide: &[Seg]) -> f64 {
 
 /// Returns the total turn of the tangent, radians, clockwise on the screen.
 fn turn(guide: &[Seg]) -> f64 {
-    let between = |s: &Seg, (a, b): (f64, f64)| {
-        let (a, b) = (s.deriv(a), s.deriv(b));
-        a.cross(b).atan2(a.dot(b))
-    };
-    guide.iter().flat_map(|s| samples().map(move |ends| between(s, ends))).sum()
+    let angle = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b));
+    guide.iter().flat_map(|s| samples().map(move |(a, b)| angle(s.deriv(a), s.deriv(b)))).sum()
 }
 
 /// Returns the box about the middle of `rect` whose map distorts the artwork least and keeps its area. `map` builds the map for a box;
@@ -303,27 +299,29 @@ pub(super) fn least_distorting<E>(
     const RANGE: f64 = 3.0;
     /// Number of steps of golden section, which find the proportions to a millionth, so that differences in rounding do not show.
     const STEPS: usize = 32;
-    let of = |log: f64| {
-        let area = (rect.width() * rect.height()).sqrt();
-        Rect::from_center_size(rect.center(), Size::new(area * (0.5 * log).exp(), area * (-0.5 * log).exp()))
+    // The box of the artwork's area whose proportion has the logarithm `log`.
+    let proportioned = |log: f64| {
+        let side = (rect.width() * rect.height()).sqrt();
+        Rect::from_center_size(rect.center(), Size::new(side * (0.5 * log).exp(), side * (-0.5 * log).exp()))
     };
-    let cost = |log: f64| Ok(map(of(log))?.map_or((f64::INFINITY, 1.0), |m| distortion(rect, &*m)));
+    let measured = |log: f64| Ok(map(proportioned(log))?.map_or((f64::INFINITY, 1.0), |m| distortion(rect, &*m)));
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (-RANGE, RANGE);
-    let tried = |log: f64| Ok((log, cost(log)?.0));
-    let (mut x, mut y) = (tried(b - golden * (b - a))?, tried(a + golden * (b - a))?);
+    // Two logarithms between a and b, each with its cost.
+    let with_cost = |log: f64| Ok((log, measured(log)?.0));
+    let (mut x, mut y) = (with_cost(b - golden * (b - a))?, with_cost(a + golden * (b - a))?);
     for _ in 0..STEPS {
         if x.1 <= y.1 {
             (b, y) = (y.0, x);
-            x = tried(b - golden * (b - a))?;
+            x = with_cost(b - golden * (b - a))?;
         } else {
             (a, x) = (x.0, y);
-            y = tried(a + golden * (b - a))?;
+            y = with_cost(a + golden * (b - a))?;
         }
     }
     let best = 0.5 * (a + b);
-    let scale = cost(best)?.1.sqrt().recip();
-    let found = of(best);
+    let scale = measured(best)?.1.sqrt().recip();
+    let found = proportioned(best);
     Ok(Rect::from_center_size(found.center(), found.size() * scale))
 }
 
@@ -333,10 +331,11 @@ fn distortion(rect: Rect, map: &dyn Map) -> (f64, f64) {
     const GRID: [u32; 2] = [24, 3];
     /// The squared logarithm that counts for a collapsed or mirrored point, and its upper limit.
     const WORST: f64 = 50.0;
-    let share = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
+    let fraction = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
     let (mut cost, mut area) = (0.0, 0.0);
     for (i, j) in (0..GRID[0]).flat_map(|i| (0..GRID[1]).map(move |j| (i, j))) {
-        let p = Point::new(rect.x0 + rect.width() * share(i, GRID[0]), rect.y0 + rect.height() * share(j, GRID[1]));
+        let (u, v) = (fraction(i, GRID[0]), fraction(j, GRID[1]));
+        let p = Point::new(rect.x0 + rect.width() * u, rect.y0 + rect.height() * v);
         let jet = map.jet(p);
         // σ₁/σ₂ + σ₂/σ₁ = (|Fx|² + |Fy|²)/det = 2 cosh ln(σ₁/σ₂).
         let cosh = 0.5 * (jet.dx.hypot2() + jet.dy.hypot2()) / jet.det();
@@ -347,27 +346,31 @@ fn distortion(rect: Rect, map: &dyn Map) -> (f64, f64) {
     (cost / count, area / count)
 }
 
-/// A line of lettering: the top and the bottom of its letters.
-pub(super) type TextLine = (f64, f64);
+/// A line of lettering: its baseline, and the y of the highest and the lowest point of its letters.
+pub(super) struct TextLine {
+    baseline: f64,
+    top: f64,
+    bottom: f64,
+}
 
 /// Returns the lines of the letters within `rect`, from top to bottom.
 pub(super) fn lines(letters: &[Letter], rect: Rect) -> Vec<TextLine> {
-    let mut rows: Vec<(f64, TextLine)> = Vec::new();
-    for l in letters.iter().filter(|l| rect.contains(l.middle()) || rect.y0 < l.origin.y && l.origin.y <= rect.y1) {
-        let Some(b) = l.outline.bounding_box() else { continue };
-        let same = |y: f64| (y - l.origin.y).abs() < 0.5 * b.height().max(l.advance);
-        match rows.iter_mut().find(|(y, _)| same(*y)) {
-            Some((_, (top, bottom))) => (*top, *bottom) = (top.min(b.y0), bottom.max(b.y1)),
-            None => rows.push((l.origin.y, (b.y0, b.y1))),
+    let mut lines: Vec<TextLine> = Vec::new();
+    let is_within = |l: &&Letter| rect.contains(l.middle()) || (rect.y0 < l.origin.y && l.origin.y <= rect.y1);
+    for l in letters.iter().filter(is_within) {
+        let (Some(b), baseline) = (l.outline.bounding_box(), l.origin.y) else { continue };
+        match lines.iter_mut().find(|line| (line.baseline - baseline).abs() < 0.5 * b.height().max(l.advance)) {
+            Some(line) => (line.top, line.bottom) = (line.top.min(b.y0), line.bottom.max(b.y1)),
+            None => lines.push(TextLine { baseline, top: b.y0, bottom: b.y1 }),
         }
     }
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    rows.into_iter().map(|(_, line)| line).collect()
+    lines.sort_by(|a, b| a.baseline.total_cmp(&b.baseline));
+    lines
 }
 
-/// Returns the heights in the middle of the gaps between lines; `None` unless they rise and lie inside `rect`.
+/// Returns the heights in the middle of the gaps between lines; `None` unless they increase downwards and lie inside `rect`.
 pub(super) fn gaps(lines: &[TextLine], rect: Rect) -> Option<Vec<f64>> {
-    let cuts: Vec<f64> = lines.windows(2).map(|w| 0.5 * (w[0].1 + w[1].0)).collect();
-    let rising = cuts.windows(2).all(|w| w[0] < w[1]);
-    (rising && cuts.iter().all(|y| *y > rect.y0 && *y < rect.y1)).then_some(cuts)
+    let cuts: Vec<f64> = lines.windows(2).map(|w| 0.5 * (w[0].bottom + w[1].top)).collect();
+    let is_sorted = cuts.windows(2).all(|w| w[0] < w[1]);
+    (is_sorted && cuts.iter().all(|y| *y > rect.y0 && *y < rect.y1)).then_some(cuts)
 }

@@ -37,7 +37,7 @@ fn ends(segs: &[Seg]) -> Ends {
 /// Compares the ends of every guide with the formulas of presetTextWarpDefinitions, for the default adjust values.
 #[test]
 fn the_guides_ends_are_the_formulas() {
-    // A circle lacks 1/60000 of a degree, in the standard's parametrisation; shapes are given as shares of w and h.
+    // A circle lacks 1/60000 of a degree, in the standard's parametrisation; ends are given as fractions of w and h.
     let pairs: &[(&str, &[Ends])] = &[
         ("plain", &[[(0.0, 0.0), (1.0, 0.0)], [(0.0, 1.0), (1.0, 1.0)]]),
         ("stop", &[[(0.0, 0.25), (1.0, 0.25)], [(0.0, 0.75), (1.0, 0.75)]]),
@@ -230,7 +230,7 @@ fn the_two_curve_family_reproduces_its_guides() {
 /// The guides of cans and rings are halves and wholes of ellipses, in either direction, run evenly.
 #[test]
 fn cans_and_rings_are_ellipses() {
-    let on = |p: Point, cy: f64, ry: f64| (((p.x - 0.5 * W) / (0.5 * W)).hypot((p.y - cy) / ry) - 1.0).abs() < 1e-9;
+    let is_on = |p: Point, cy: f64, ry: f64| (((p.x - 0.5 * W) / (0.5 * W)).hypot((p.y - cy) / ry) - 1.0).abs() < 1e-9;
     for i in 0..=24 {
         let x = f64::from(i) / 24.0 * W;
         for (name, top, bottom, ry, up) in
@@ -239,7 +239,10 @@ fn cans_and_rings_are_ellipses() {
             let m = build(&[("preset", name)]).unwrap().map;
             for (y, cy) in [(0.0, top), (H, bottom)] {
                 let p = m.point((x, y).into());
-                assert!(on(p, cy, ry) && (if up { p.y <= cy + 1e-9 } else { p.y >= cy - 1e-9 }), "{name} {x}: {p:?}");
+                assert!(
+                    is_on(p, cy, ry) && (if up { p.y <= cy + 1e-9 } else { p.y >= cy - 1e-9 }),
+                    "{name} {x}: {p:?}"
+                );
             }
         }
         for (name, sign) in [("ring-inside", 1.0), ("ring-outside", -1.0)] {
@@ -247,7 +250,7 @@ fn cans_and_rings_are_ellipses() {
                 let m = build(&[("preset", name), ("by", by), ("box", "artwork")]).unwrap().map;
                 for (y, cy) in [(0.0, 0.3 * H), (H, 0.7 * H)] {
                     let p = m.point((x, y).into());
-                    assert!(on(p, cy, 0.3 * H), "{name} {x}: {p:?}");
+                    assert!(is_on(p, cy, 0.3 * H), "{name} {x}: {p:?}");
                     if i == 6 {
                         // A quarter of the way is a quarter turn from the left: the top, or the bottom.
                         assert!(p.distance((0.5 * W, cy - sign * 0.3 * H).into()) < 1e-3, "{name} {by}: {p:?}");
@@ -266,8 +269,8 @@ fn arches_begin_where_their_angle_points() {
         let up = build(&[("preset", "arch-up"), ("adj", &text), ("box", "artwork")]).unwrap().map;
         let (a, b) = (up.point((0.0, H).into()), up.point((W, H).into()));
         let d = a - Point::new(0.5 * W, 0.5 * H);
-        let off = (d.y.atan2(d.x).to_degrees() - degrees).rem_euclid(360.0);
-        assert!(off.min(360.0 - off) < 1e-6, "{degrees}: {d:?}");
+        let turn = (d.y.atan2(d.x).to_degrees() - degrees).rem_euclid(360.0);
+        assert!(turn.min(360.0 - turn) < 1e-6, "{degrees}: {d:?}");
         assert!((a.x + b.x - W).abs() < 1e-6 && (a.y - b.y).abs() < 1e-6, "{degrees}: {a:?} {b:?}");
     }
 }
@@ -313,10 +316,10 @@ fn files_of_ones_own() {
         ENTRY.build_from(&args, &Frame::new(Rect::new(0.0, 0.0, W, H)))
     };
     let head = r#"{ "name": "roof", "adj": [{ "name": "a", "default": 0, "least": 0, "most": 50000 }], "#;
-    let own =
+    let from_file =
         with(&format!(r#"{head} "bands": [["M 0,a*h/100000 L w/2,0 w,a*h/100000", "M 0,h L w,h"]] }}"#)).unwrap().map;
-    let ours = build(&[("preset", "triangle"), ("adj", "30%")]).unwrap().map;
-    assert!(own.point((80.0, 70.0).into()).distance(ours.point((80.0, 70.0).into())) < 1e-12);
+    let builtin = build(&[("preset", "triangle"), ("adj", "30%")]).unwrap().map;
+    assert!(from_file.point((80.0, 70.0).into()).distance(builtin.point((80.0, 70.0).into())) < 1e-12);
     for rest in [
         r#""bands": [] }"#,
         r#""bands": [["", "M 0,h L w,h"]] }"#,
@@ -341,19 +344,20 @@ fn padding_is_kept_from_the_guides() {
         let (whole, padded) = (map(&[]), map(&[("padding", "4")]));
         for (y, inwards) in [(1e-9, 0.01), (H - 1e-9, -0.01)] {
             let guide: Vec<Point> = (0..=3000).map(|i| whole.point(Point::new(W * f64::from(i) / 3000.0, y))).collect();
-            let off = |x: f64| {
+            // The distance to the guide along the vertical, and from the vertical to the sample taken for it.
+            let to_guide = |x: f64| {
                 let [from, behind] = [0.0, inwards].map(|d| padded.point(Point::new(x, y + d)));
                 let out = (from - behind).normalize();
                 let ahead = guide.iter().map(|g| *g - from).filter(|g| g.dot(out) > 0.0);
                 let met = ahead.min_by(|a, b| a.cross(out).abs().total_cmp(&b.cross(out).abs())).unwrap();
                 (met.dot(out), met.cross(out).abs())
             };
-            let all: Vec<(f64, f64)> = (0..=40).map(|i| off(W * f64::from(i) / 40.0)).collect();
+            let all: Vec<(f64, f64)> = (0..=40).map(|i| to_guide(W * f64::from(i) / 40.0)).collect();
             // If a vertical runs nearly along a guide, its samples do not show where they meet.
-            let sure = || all.iter().filter(|(_, missed)| *missed < 0.15).map(|(off, _)| *off);
-            let least = sure().fold(f64::INFINITY, f64::min);
+            let certain = || all.iter().filter(|(_, missed)| *missed < 0.15).map(|(distance, _)| *distance);
+            let least = certain().fold(f64::INFINITY, f64::min);
             assert!((0.98 * PADDING..1.1 * PADDING).contains(&least), "{name}: {least}");
-            assert!(sure().count() > 30, "{name}");
+            assert!(certain().count() > 30, "{name}");
         }
     }
     let plain = build(&[("preset", "plain"), ("padding", "10%")]).unwrap().map;
@@ -371,7 +375,7 @@ fn padding_lifts_off_a_guide() {
     let center = kurbo::Shape::bounding_box(guide);
     let (center, radius) = (Point::new(center.center().x, center.y1), 0.5 * center.width());
     for x in [0.0, 80.0, 150.0, W] {
-        let off = built.map.point(Point::new(x, H)).distance(center) - radius;
-        assert!((off - 7.0).abs() < 1e-2, "{off}");
+        let gap = built.map.point(Point::new(x, H)).distance(center) - radius;
+        assert!((gap - 7.0).abs() < 1e-2, "{gap}");
     }
 }

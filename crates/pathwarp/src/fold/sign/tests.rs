@@ -44,7 +44,7 @@ fn dense(map: &dyn Map) -> (f64, f64) {
 /// Checks a family of maps, from gentle to wild: proven signs are right, gentle maps are proven, and no fold is missed.
 fn check(family: &str, make: impl Fn(&mut Random, f64) -> Arc<dyn Map>) {
     let mut random = Random(7);
-    let (mut proven_of, mut folded) = ([0, 0], 0);
+    let (mut proven_count, mut unfolded, mut folded) = (0, 0, 0);
     for k in 0..200 {
         let strength = 0.02 + 0.6 * f64::from(k) / 200.0;
         let mirrored = k % 3 == 0;
@@ -67,12 +67,12 @@ fn check(family: &str, make: impl Fn(&mut Random, f64) -> Arc<dyn Map>) {
         }
         // If the determinant varies less than eightfold, the map is clearly unfolded.
         if (positive && least > most / 8.0) || (negative && most < least / 8.0) {
-            proven_of[1] += 1;
-            proven_of[0] += usize::from(proven(&*map, BOX, ENOUGH) == Some(if negative { -1.0 } else { 1.0 }));
+            unfolded += 1;
+            proven_count += usize::from(proven(&*map, BOX, ENOUGH) == Some(if negative { -1.0 } else { 1.0 }));
         }
     }
-    assert!(folded > 10 && proven_of[1] > 10, "{family}: {folded} folded, {proven_of:?} unfolded");
-    assert_eq!(proven_of[0], proven_of[1], "{family}");
+    assert!(folded > 10 && unfolded > 10, "{family}: {folded} folded, {unfolded} unfolded");
+    assert_eq!(proven_count, unfolded, "{family}");
 }
 
 fn net(random: &mut Random, strength: f64) -> Net {
@@ -85,8 +85,7 @@ fn to_unit() -> Affine {
 }
 
 fn tilt(random: &mut Random, strength: f64) -> Homography {
-    let corner = |x, y| Point::new(x, y);
-    let from = [corner(BOX.x0, BOX.y0), corner(BOX.x1, BOX.y0), corner(BOX.x1, BOX.y1), corner(BOX.x0, BOX.y1)];
+    let from = [(BOX.x0, BOX.y0), (BOX.x1, BOX.y0), (BOX.x1, BOX.y1), (BOX.x0, BOX.y1)].map(Point::from);
     let moved = from.map(|p| p + random.shift(strength * 40.0));
     Homography::from_points(from, moved).unwrap_or(Homography::from(Affine::IDENTITY))
 }
@@ -108,9 +107,11 @@ fn chains_with_denominators() {
 #[test]
 fn quotients() {
     check("quotient", |r, s| {
-        let mut plane = |of: [f64; 3]| {
-            let mut own = |k: f64| s * k * r.next();
-            Plane::new(vec![vec![of[0], of[1], own(60.0)], vec![of[2], own(60.0)], vec![own(60.0)]])
+        // The first three coefficients are given, those of second degree are random.
+        let mut plane = |linear: [f64; 3]| {
+            let mut random = |size: f64| s * size * r.next();
+            let [c, x, y] = linear;
+            Plane::new(vec![vec![c, x, random(60.0)], vec![y, random(60.0)], vec![random(60.0)]])
         };
         let (x, y) = (plane([0.0, 120.0, 0.0]), plane([0.0, 0.0, 60.0]));
         let w = plane([1.0, 0.0, 0.0]).scaled(0.02).plus(0.98, &Plane::linear([1.0, 0.0, 0.0]));

@@ -7,10 +7,10 @@ use kurbo::{Line, ParamCurve as _, ParamCurveArclen as _, PathSeg, Point, Vec2};
 use std::f64::consts::TAU;
 
 /// Limit on comparisons of pieces with edges.
-const MOST: usize = 2_000_000;
+const MAX_COMPARISONS: usize = 2_000_000;
 /// Parameters at which a piece is compared with an edge.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// Distance at which edges touch, as a share of a radius.
+/// Distance at which edges touch, as a fraction of a radius or length, and the sine of an angle at which directions agree.
 const TOUCH: f64 = 1e-6;
 
 /// An exact edge at a distance from the source.
@@ -23,27 +23,28 @@ enum Edge {
 }
 
 impl Edge {
-    /// Returns the largest distance of a piece from the edge; `None` if it does not run along it. Lines extend by `reach` at both ends.
-    fn distance(&self, piece: &PathSeg, within: f64, reach: f64) -> Option<f64> {
-        let each = SAMPLES.map(|t| {
+    /// Returns the largest distance of a piece from the edge; `None` if it exceeds the tolerance or the piece does not run along the edge.
+    /// Lines extend by `reach` at both ends.
+    fn distance(&self, piece: &PathSeg, tolerance: f64, reach: f64) -> Option<f64> {
+        let distances = SAMPLES.map(|t| {
             let p = piece.eval(t);
             match *self {
                 Self::Line(l) => {
                     let along = (l.p1 - l.p0).normalize();
-                    let place = (p - l.p0).dot(along);
-                    let is_beside = place >= -reach && place <= l.p0.distance(l.p1) + reach;
+                    let position = (p - l.p0).dot(along);
+                    let is_beside = position >= -reach && position <= l.p0.distance(l.p1) + reach;
                     is_beside.then(|| along.cross(p - l.p0).abs())
                 }
                 Self::Arc { center, radius, start, sweep } => {
                     // A curve tangent to an arc leaves it slowly.
-                    let slack = (2.0 * within / radius).sqrt();
+                    let slack = (2.0 * tolerance / radius).sqrt();
                     let turn = ((p - center).angle() - start + slack).rem_euclid(TAU);
                     (turn <= sweep + 2.0 * slack).then(|| (p.distance(center) - radius).abs())
                 }
             }
         });
-        let most = each.into_iter().try_fold(0.0, |most: f64, d| Some(most.max(d?)))?;
-        (most <= within).then_some(most)
+        let largest = distances.into_iter().try_fold(0.0, |largest: f64, d| Some(largest.max(d?)))?;
+        (largest <= tolerance).then_some(largest)
     }
 
     /// Returns the nearest point of the line or circle.
@@ -70,15 +71,15 @@ impl Edge {
             }
             (Self::Arc { center: c, radius: r, .. }, Self::Arc { center: d, radius: s, .. }) => {
                 let between = d - c;
-                let apart = between.hypot();
-                if apart <= TOUCH * r {
+                let distance = between.hypot();
+                if distance <= TOUCH * r {
                     return None;
                 }
                 // The distance from the first center to the line through both intersections.
-                let to = (apart * apart + r * r - s * s) / (2.0 * apart);
-                let (foot, across) = (c + between * (to / apart), Vec2::new(-between.y, between.x) / apart);
+                let to_chord = (distance * distance + r * r - s * s) / (2.0 * distance);
+                let (foot, across) = (c + between * (to_chord / distance), between.turn_90() / distance);
                 let side = if across.dot(p - foot) < 0.0 { -1.0 } else { 1.0 };
-                half_chord(to.abs(), r).map(|h| foot + across * (side * h))
+                half_chord(to_chord.abs(), r).map(|h| foot + across * (side * h))
             }
         }
     }
@@ -86,26 +87,26 @@ impl Edge {
 
 /// Returns half the chord of a circle at a distance from its center: 0 for a tangent, `None` outside the circle.
 fn half_chord(distance: f64, radius: f64) -> Option<f64> {
-    let rest = radius - distance;
-    if rest.abs() <= TOUCH * radius {
+    let height = radius - distance;
+    if height.abs() <= TOUCH * radius {
         return Some(0.0);
     }
-    (rest > 0.0).then(|| (rest * (radius + distance)).sqrt())
+    (height > 0.0).then(|| (height * (radius + distance)).sqrt())
 }
 
-/// Returns the edges at a distance from the closed subpaths of a source, on both sides.
-fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
+/// Returns the edges at a distance from the closed subpaths of a source, on both sides, and around its corners if these are round.
+fn edges(source: &Outline, by: f64, has_round_corners: bool) -> Vec<Edge> {
     let mut out = Vec::new();
     for subpath in source.subpaths.iter().filter(|s| s.closed) {
         let mut segs: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
         for seg in &subpath.segs {
-            match segs.last_mut().and_then(|last| Some((continued(last, seg)?, last))) {
+            match segs.last_mut().and_then(|last| Some((joined(last, seg)?, last))) {
                 Some((longer, last)) => *last = longer,
                 None => segs.push(*seg),
             }
         }
         if let [first, .., last] = segs.as_slice()
-            && let Some(longer) = continued(last, first)
+            && let Some(longer) = joined(last, first)
         {
             segs[0] = longer;
             segs.pop();
@@ -113,9 +114,9 @@ fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
         for seg in &segs {
             match *seg {
                 Seg::Line(l) => {
-                    let across = (l.p1 - l.p0).normalize();
-                    let beside = |side: f64| Vec2::new(-across.y, across.x) * (side * by);
-                    out.extend([1.0, -1.0].map(|side| Edge::Line(Line::new(l.p0 + beside(side), l.p1 + beside(side)))));
+                    let across = (l.p1 - l.p0).normalize().turn_90();
+                    let shifts = [1.0, -1.0].map(|side| across * (side * by));
+                    out.extend(shifts.map(|shift| Edge::Line(Line::new(l.p0 + shift, l.p1 + shift))));
                 }
                 Seg::Arc(a) if a.is_circular() => {
                     let turn = a.sweep * a.a.cross(a.b);
@@ -126,7 +127,7 @@ fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
                 }
                 _ => {}
             }
-            if round {
+            if has_round_corners {
                 out.push(Edge::Arc { center: seg.start(), radius: by, start: 0.0, sweep: TAU });
             }
         }
@@ -134,21 +135,19 @@ fn edges(source: &Outline, by: f64, round: bool) -> Vec<Edge> {
     out
 }
 
-/// Joins two segments into one line or circular arc, if they are one.
-fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
+/// Joins two successive segments that lie on one line or circle.
+fn joined(a: &Seg, b: &Seg) -> Option<Seg> {
     match (a, b) {
         (Seg::Line(k), Seg::Line(l)) => {
             let (u, v) = (k.p1 - k.p0, l.p1 - l.p0);
-            let goes_on = u.cross(v).abs() <= TOUCH * u.hypot() * v.hypot() && u.dot(v) > 0.0;
-            goes_on.then(|| Seg::Line(Line::new(k.p0, l.p1)))
+            let continues = u.cross(v).abs() <= TOUCH * u.hypot() * v.hypot() && u.dot(v) > 0.0;
+            continues.then(|| Seg::Line(Line::new(k.p0, l.p1)))
         }
         (Seg::Arc(k), Seg::Arc(l)) => {
-            let slack = TOUCH * k.a.hypot();
-            let same = k.center.distance(l.center) <= slack && (k.a.hypot() - l.a.hypot()).abs() <= slack;
-            let goes_on =
-                same && k.is_circular() && l.is_circular() && (k.a, k.b) == (l.a, l.b) && k.sweep * l.sweep > 0.0;
+            let is_same_circle = (k.a, k.b) == (l.a, l.b) && k.center.distance(l.center) <= TOUCH * k.a.hypot();
+            let continues = is_same_circle && k.is_circular() && l.is_circular() && k.sweep * l.sweep > 0.0;
             let sweep = (k.sweep + l.sweep).clamp(-TAU, TAU);
-            goes_on.then_some(Seg::Arc(EllipticArc { p1: l.p1, sweep, ..*k }))
+            continues.then_some(Seg::Arc(EllipticArc { p1: l.p1, sweep, ..*k }))
         }
         _ => None,
     }
@@ -159,28 +158,26 @@ fn continued(a: &Seg, b: &Seg) -> Option<Seg> {
 struct Run {
     /// The fitted piece; for several, a line from their first to their last point.
     piece: PathSeg,
+    /// The edge that replaces the pieces, if any does.
     edge: Option<Edge>,
-    /// The middle of the first piece, and the angle that all replaced pieces sweep around the edge's center.
+    /// The middle of the first piece.
     middle: Point,
+    /// The angle that all replaced pieces sweep around the edge's center.
     sweep: f64,
 }
 
 /// Returns the outline with exact edges instead of fitted pieces within `tolerance` of them. Edges lie at the distance `by` beside lines
-/// and circular arcs of the source, and around its corners if joins are `round`; otherwise lines extend by `reach` to their miters.
-pub(super) fn with_edges(
-    outline: Outline,
-    source: &Outline,
-    (by, round, reach): (f64, bool, f64),
-    tolerance: f64,
-) -> Outline {
-    let edges = edges(source, by, round);
-    if edges.len().saturating_mul(outline.segs().count()) > MOST {
+/// and circular arcs of the source. Lines extend by `miters` at both ends; without miters, corners are round and have edges around them.
+pub(super) fn insert(outline: Outline, source: &Outline, by: f64, miters: Option<f64>, tolerance: f64) -> Outline {
+    let edges = edges(source, by, miters.is_none());
+    if edges.len().saturating_mul(outline.segs().count()) > MAX_COMPARISONS {
         return outline;
     }
-    let reach = if round { (2.0 * by * tolerance).sqrt() } else { reach };
+    // An arc around a corner leaves its tangent slowly: this far along a line, it is still within the tolerance.
+    let reach = miters.unwrap_or_else(|| (2.0 * by * tolerance).sqrt());
     let starts: Vec<Point> = source.subpaths.iter().map(|s| s.start).collect();
     let subpaths = outline.subpaths.into_iter().map(|s| {
-        let exact = s.closed.then(|| contour(&s, (&edges, &starts), reach, tolerance)).flatten();
+        let exact = s.closed.then(|| exact_contour(&s, (&edges, &starts), reach, tolerance)).flatten();
         exact.unwrap_or(s)
     });
     Outline { subpaths: subpaths.collect() }
@@ -188,8 +185,13 @@ pub(super) fn with_edges(
 
 /// Returns a closed contour with edges instead of the pieces that follow them. `None` if edges do not meet near the contour's nodes.
 /// `starts` are the first points of the source's subpaths.
-fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, tolerance: f64) -> Option<Subpath> {
-    let mut runs: Vec<Run> = subpath.segs.iter().map(|s| run(s, edges, reach, tolerance)).collect();
+fn exact_contour(
+    subpath: &Subpath,
+    (edges, starts): (&[Edge], &[Point]),
+    reach: f64,
+    tolerance: f64,
+) -> Option<Subpath> {
+    let mut runs: Vec<Run> = subpath.segs.iter().map(|s| Run::new(s, edges, reach, tolerance)).collect();
     // Fitting leaves short bits between two edges.
     let is_bit = |i: usize| {
         let [before, after] = [i + runs.len() - 1, i + 1].map(|k| &runs[k % runs.len()]);
@@ -203,7 +205,7 @@ fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, 
     runs.retain(|_| kept.next() == Some(true));
     let mut joined: Vec<Run> = Vec::with_capacity(runs.len());
     for run in runs {
-        match joined.last_mut().filter(|last| goes_on(last, &run)) {
+        match joined.last_mut().filter(|last| last.continues_in(&run)) {
             Some(last) => {
                 last.sweep += run.sweep;
                 last.piece = PathSeg::Line(Line::new(last.piece.start(), run.piece.end()));
@@ -215,7 +217,7 @@ fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, 
         return whole_circle(only, starts);
     }
     if let [first, .., last] = joined.as_slice()
-        && goes_on(last, first)
+        && last.continues_in(first)
     {
         // The contour begins inside an edge.
         let last = joined.pop()?;
@@ -228,49 +230,16 @@ fn contour(subpath: &Subpath, (edges, starts): (&[Edge], &[Point]), reach: f64, 
     let count = joined.len();
     let node = |i: usize| {
         let (before, after) = (&joined[(i + count - 1) % count], &joined[i]);
-        let at = before.piece.end().midpoint(after.piece.start());
+        let p = before.piece.end().midpoint(after.piece.start());
         match (before.edge, after.edge) {
-            (Some(a), Some(b)) => a.meeting(&b, at),
-            (Some(a), None) | (None, Some(a)) => Some(a.foot(at)),
-            (None, None) => Some(at),
+            (Some(a), Some(b)) => a.meeting(&b, p),
+            (Some(a), None) | (None, Some(a)) => Some(a.foot(p)),
+            (None, None) => Some(p),
         }
     };
     let nodes = (0..count).map(node).collect::<Option<Vec<Point>>>()?;
     let segs = joined.iter().enumerate().map(|(i, r)| r.between(nodes[i], nodes[(i + 1) % count], tolerance));
     Some(Subpath { start: nodes[0], segs: segs.collect::<Option<_>>()?, closed: true })
-}
-
-/// Returns a piece with the edge that it follows most closely, if any.
-fn run(seg: &Seg, edges: &[Edge], reach: f64, tolerance: f64) -> Run {
-    let piece = match *seg {
-        Seg::Line(l) => PathSeg::Line(l),
-        ref other => PathSeg::Cubic(other.to_cubic()),
-    };
-    let near = edges.iter().filter_map(|e| Some((e.distance(&piece, tolerance, reach)?, *e)));
-    let edge = near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge);
-    let turn = |c: Point, a: Point, b: Point| (a - c).cross(b - c).atan2((a - c).dot(b - c));
-    let sweep = match edge {
-        Some(Edge::Arc { center, .. }) => {
-            SAMPLES.windows(2).map(|w| turn(center, piece.eval(w[0]), piece.eval(w[1]))).sum()
-        }
-        _ => 0.0,
-    };
-    Run { piece, edge, middle: piece.eval(0.5), sweep }
-}
-
-/// Returns `true` if two runs follow the same line or circle in the same direction.
-fn goes_on(a: &Run, b: &Run) -> bool {
-    match (a.edge, b.edge) {
-        (Some(Edge::Line(k)), Some(Edge::Line(l))) => {
-            let (u, v) = (k.p1 - k.p0, l.p1 - l.p0);
-            let slack = TOUCH * u.hypot();
-            u.cross(v).abs() <= slack * v.hypot() && u.cross(l.p0 - k.p0).abs() <= slack * u.hypot()
-        }
-        (Some(Edge::Arc { center: c, radius: r, .. }), Some(Edge::Arc { center: d, radius: s, .. })) => {
-            c.distance(d) + (r - s).abs() <= TOUCH * r && a.sweep * b.sweep > 0.0
-        }
-        _ => false,
-    }
 }
 
 /// Returns a contour that is a whole circle. It begins in the direction of the point of `starts` nearest to its first point, if near.
@@ -279,16 +248,53 @@ fn whole_circle(run: &Run, starts: &[Point]) -> Option<Subpath> {
     const NEAR: f64 = 0.1;
     let Some(Edge::Arc { center, radius, .. }) = run.edge else { return None };
     let is_whole = (run.sweep.abs() - TAU).abs() < 1.0;
-    let begun = run.piece.start() - center;
-    let off = |v: Vec2| begun.cross(v).atan2(begun.dot(v)).abs();
-    let wanted = starts.iter().map(|p| *p - center).filter(|v| off(*v) < NEAR);
-    let start = wanted.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(begun).angle();
+    let first = run.piece.start() - center;
+    let turn = |v: Vec2| turn(first, v).abs();
+    let near = starts.iter().map(|p| *p - center).filter(|v| turn(*v) < NEAR);
+    let start = near.min_by(|a, b| turn(*a).total_cmp(&turn(*b))).unwrap_or(first).angle();
     let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
     let arc = EllipticArc::new(center, a, b, start, TAU.copysign(run.sweep));
     is_whole.then(|| Subpath { start: arc.p0, segs: vec![Seg::Arc(arc)], closed: true })
 }
 
+/// The signed angle from one vector to another.
+fn turn(from: Vec2, to: Vec2) -> f64 {
+    from.cross(to).atan2(from.dot(to))
+}
+
 impl Run {
+    /// Returns a piece with the edge that it follows most closely, if any.
+    fn new(seg: &Seg, edges: &[Edge], reach: f64, tolerance: f64) -> Self {
+        let piece = match *seg {
+            Seg::Line(l) => PathSeg::Line(l),
+            ref other => PathSeg::Cubic(other.to_cubic()),
+        };
+        let near = edges.iter().filter_map(|e| Some((e.distance(&piece, tolerance, reach)?, *e)));
+        let edge = near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge);
+        let sweep = match edge {
+            Some(Edge::Arc { center, .. }) => {
+                SAMPLES.windows(2).map(|t| turn(piece.eval(t[0]) - center, piece.eval(t[1]) - center)).sum()
+            }
+            _ => 0.0,
+        };
+        Self { piece, edge, middle: piece.eval(0.5), sweep }
+    }
+
+    /// Returns `true` if both runs follow the same line or circle in the same direction.
+    fn continues_in(&self, next: &Self) -> bool {
+        match (self.edge, next.edge) {
+            (Some(Edge::Line(k)), Some(Edge::Line(l))) => {
+                let (u, v) = (k.p1 - k.p0, l.p1 - l.p0);
+                let slack = TOUCH * u.hypot();
+                u.cross(v).abs() <= slack * v.hypot() && u.cross(l.p0 - k.p0).abs() <= slack * u.hypot()
+            }
+            (Some(Edge::Arc { center: c, radius: r, .. }), Some(Edge::Arc { center: d, radius: s, .. })) => {
+                c.distance(d) + (r - s).abs() <= TOUCH * r && self.sweep * next.sweep > 0.0
+            }
+            _ => false,
+        }
+    }
+
     /// Returns the segment of the run between two nodes. `None` if it runs backwards, or strays from the pieces that it replaces.
     fn between(&self, p0: Point, p1: Point, tolerance: f64) -> Option<Seg> {
         let chord = self.piece.end() - self.piece.start();
@@ -301,18 +307,18 @@ impl Run {
                 let (a, b) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
                 let arc = EllipticArc::new(center, a, b, from, sweep);
                 // The middle must lie on the arc, not opposite.
-                let place = ((self.middle - center).angle() - from) * sweep.signum();
-                let is_on = place.rem_euclid(TAU) <= sweep.abs();
-                (is_on && (sweep - self.sweep).abs() < 1.0).then_some(Seg::Arc(EllipticArc { p0, p1, ..arc }))
+                let position = ((self.middle - center).angle() - from) * sweep.signum();
+                let is_on_arc = position.rem_euclid(TAU) <= sweep.abs();
+                (is_on_arc && (sweep - self.sweep).abs() < 1.0).then_some(Seg::Arc(EllipticArc { p0, p1, ..arc }))
             }
             None => {
-                let [by0, by1] = [p0 - self.piece.start(), p1 - self.piece.end()];
-                let is_near = by0.hypot() <= tolerance && by1.hypot() <= tolerance;
+                let [shift0, shift1] = [p0 - self.piece.start(), p1 - self.piece.end()];
+                let is_near = shift0.hypot() <= tolerance && shift1.hypot() <= tolerance;
                 is_near.then(|| match self.piece {
                     PathSeg::Line(_) => Seg::Line(Line::new(p0, p1)),
                     other => {
                         let mut c = other.to_cubic();
-                        (c.p0, c.p1, c.p2, c.p3) = (p0, c.p1 + by0, c.p2 + by1, p1);
+                        (c.p0, c.p1, c.p2, c.p3) = (p0, c.p1 + shift0, c.p2 + shift1, p1);
                         Seg::Cubic(c)
                     }
                 })
