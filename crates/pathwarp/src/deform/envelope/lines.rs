@@ -25,7 +25,7 @@ pub(super) struct Line {
 }
 
 /// Divides letters into lines by their baselines, from top to bottom.
-pub(super) fn lines(letters: &[Letter], ink: &[Point]) -> Vec<Line> {
+pub(super) fn divide(letters: &[Letter], ink: &[Point]) -> Vec<Line> {
     /// Baselines that differ by less than this share of the letters' height are the same.
     const SAME: f64 = 0.3;
     /// A line lower than this share of the highest, such as one of dashes, keeps room above and below.
@@ -94,7 +94,7 @@ impl Band {
 }
 
 /// The columns of a band, and the runs of columns, single or in pairs beside a notch, in which letters may stand.
-type Places<'a> = (&'a Cuts, (Vec<Range<usize>>, Vec<[Range<usize>; 2]>));
+type Candidates<'a> = (&'a Cuts, (Vec<Range<usize>>, Vec<[Range<usize>; 2]>));
 
 /// The worth of bands, and the bands.
 type Plan = (f64, Vec<Band>);
@@ -108,7 +108,7 @@ struct Trend {
 }
 
 /// A shape in columns of equal width.
-struct Room<'a> {
+struct ColumnedShape<'a> {
     region: &'a Region,
     bounds: Rect,
     columns: Vec<Column>,
@@ -154,7 +154,7 @@ impl Cuts {
             let rise = all[a].zip(all[b]).map_or(0.0, |(p, q)| (q[0] - p[0]).abs().max((q[1] - p[1]).abs()));
             let (h, slope) = (height(c), rise / (step * (b - a).max(1) as f64));
             let log = if h > 0.0 { h.ln() } else { 0.0 };
-            let more = [h, log, (slope / STEEPEST).powi(4)];
+            let more = [h, log, (slope / STEEP_SLOPE).powi(4)];
             sums.push([0, 1, 2].map(|k| sums[i][k] + more[k]));
         }
         Self { all, sums, jump: JUMP * step }
@@ -179,8 +179,8 @@ impl Cuts {
     }
 
     /// Returns runs of columns in which letters of about `height` may stand, and pairs of runs, which may be lower at a notch between them.
-    fn places(&self, height: f64) -> (Vec<Range<usize>>, Vec<[Range<usize>; 2]>) {
-        let [low, rest @ ..] = ENDS.map(|e| self.runs(e * height, HIGHEST * height));
+    fn candidates(&self, height: f64) -> (Vec<Range<usize>>, Vec<[Range<usize>; 2]>) {
+        let [low, rest @ ..] = MIN_HEIGHTS.map(|e| self.runs(e * height, MAX_HEIGHT * height));
         let outer = |x: usize| low.iter().find(|r| r.contains(&x)).cloned().unwrap_or(x..x + 1);
         let inner = rest.iter().flat_map(|runs| runs.windows(2));
         let inner = inner.map(|w| [outer(w[0].start).start..w[0].end, w[1].start..outer(w[1].end - 1).end]);
@@ -209,32 +209,32 @@ const JUMP: f64 = 3.0;
 const PLACES: usize = 16;
 /// The space between lines, as a share of their mean height.
 const GAP: f64 = 0.12;
-/// Limits on the height of a band, as shares of the height aimed at: a line ends where it is lower than one of `ENDS`.
-const ENDS: [f64; 3] = [0.59, 0.75, 0.9];
-const HIGHEST: f64 = 1.65;
+/// Limits on the height of a band, as shares of the height aimed at: a line ends where it is lower than one of `MIN_HEIGHTS`.
+const MIN_HEIGHTS: [f64; 3] = [0.59, 0.75, 0.9];
+const MAX_HEIGHT: f64 = 1.65;
 /// Share of an outline's bend that boundaries follow.
-const BEND: f64 = 0.5;
+const BEND_SHARE: f64 = 0.5;
 /// Limits on widening: of the letters, and further by spaces between them.
-const WIDEST: f64 = 2.0;
-const SPACED: f64 = 1.45;
+const MAX_WIDENING: f64 = 2.0;
+const MAX_SPACING: f64 = 1.45;
 /// The least widening, which narrows letters.
-const NARROWEST: f64 = 0.3;
+const MIN_WIDENING: f64 = 0.3;
 /// Costs, as shares of the shape's area: letters of different heights and widths, slopes, and lines beside the middle. The cost of a
-/// slope grows steeply above `STEEPEST`.
-const UNLIKE: f64 = 0.3;
-const STEEP: f64 = 0.3;
-const STEEPEST: f64 = 1.5;
-const BESIDE: f64 = 10.0;
+/// slope grows steeply above `STEEP_SLOPE`.
+const UNEVENNESS_COST: f64 = 0.3;
+const SLOPE_COST: f64 = 0.3;
+const STEEP_SLOPE: f64 = 1.5;
+const OFF_CENTRE_COST: f64 = 10.0;
 /// Widest gaps at which a line may be divided, as shares of its width: within a word, and between words.
 const APART: [f64; 2] = [0.15, 0.4];
 /// Cost of dividing a word, as a share of the shape's area.
-const DIVIDED: f64 = 0.15;
+const DIVISION_COST: f64 = 0.15;
 /// Gaps of more than this share of the height are word spaces.
-const WORD: f64 = 0.2;
+const WORD_SPACE: f64 = 0.2;
 /// Least share of a shape that letters must fill.
-const LEAST: f64 = 0.48;
+const MIN_FILL: f64 = 0.48;
 
-impl<'a> Room<'a> {
+impl<'a> ColumnedShape<'a> {
     fn new(region: &'a Region, lines: usize) -> Option<Self> {
         let bounds = region.bounds;
         let step = bounds.width() / f64::from(COLUMNS);
@@ -265,7 +265,7 @@ impl<'a> Room<'a> {
         // The bend that both sides share is followed in full.
         let [a, b] = trends.map(|t| t.bend);
         let common = if a * b > 0.0 { a.abs().min(b.abs()) * a.signum() } else { 0.0 };
-        trends.iter_mut().for_each(|t| t.bend = common + BEND * (t.bend - common));
+        trends.iter_mut().for_each(|t| t.bend = common + BEND_SHARE * (t.bend - common));
         let area = total * step;
         let mean = area / bounds.width() / lines as f64;
         Some(Self { region, bounds, columns, step, area, mean, gap: GAP * mean, middle, spread, trends })
@@ -304,17 +304,17 @@ impl<'a> Room<'a> {
     ) -> Option<(f64, Part)> {
         let natural = line.part(&letters).width() / line.rect.height();
         let width = |ratio: f64| (ratio * natural * cuts.means(run)[0] / self.step).round().max(1.0) as usize;
-        let most = run.len().min(width(widest(letters.len())));
+        let most = run.len().min(width(max_widening(letters.len())));
         let worth = |r: Range<usize>| {
             let [h, log, steep] = cuts.means(&r);
             let width = r.len() as f64 * self.step;
             let ratio = width / h / natural;
             let unlike = (log - aim.height).powi(2) + (ratio.ln() - aim.ratio).powi(2);
             let beside = (r.start as f64 + anchor[0] * r.len() as f64 - anchor[1]) / f64::from(COLUMNS);
-            let cost = UNLIKE * unlike + STEEP * steep + BESIDE * beside.powi(2);
+            let cost = UNEVENNESS_COST * unlike + SLOPE_COST * steep + OFF_CENTRE_COST * beside.powi(2);
             let xs = [r.start, r.end - 1].map(|i| self.columns[i].0);
             let part = Part { letters: letters.clone(), xs, ratio, area: width * h };
-            (ratio >= NARROWEST).then_some((part.area / self.area - share * cost, part))
+            (ratio >= MIN_WIDENING).then_some((part.area / self.area - share * cost, part))
         };
         let widths = [1.0, 1.5].map(|k| width(k * aim.ratio.exp())).into_iter().filter(|n| *n < most).chain([most]);
         let places = widths.flat_map(|n| {
@@ -325,7 +325,13 @@ impl<'a> Room<'a> {
     }
 
     /// Returns the best way to put a line into a band, as a whole or divided at a notch. `share` is the line's share of all lines.
-    fn band(&self, line: &Line, share: f64, (cuts, (runs, pairs)): &Places<'_>, aim: &Aim) -> Option<(f64, Vec<Part>)> {
+    fn band(
+        &self,
+        line: &Line,
+        share: f64,
+        (cuts, (runs, pairs)): &Candidates<'_>,
+        aim: &Aim,
+    ) -> Option<(f64, Vec<Part>)> {
         let n = line.letters.len();
         let middle = (self.middle - self.bounds.x0) / self.step;
         let whole = runs.iter().filter_map(|run| {
@@ -339,7 +345,7 @@ impl<'a> Room<'a> {
             let (worth, a) = self.put(cuts, (left, [1.0, notch]), (line, 0..k, share(k)), aim)?;
             let (more, b) = self.put(cuts, (right, [0.0, notch]), (line, k..n, share(n - k)), aim)?;
             let apart = (b.xs[0] - a.xs[1]) / (b.xs[1] - a.xs[0]);
-            let cost = if line.is_space(k) { 0.0 } else { DIVIDED * share(n) };
+            let cost = if line.is_space(k) { 0.0 } else { DIVISION_COST * share(n) };
             (apart <= APART[usize::from(line.is_space(k))]).then(|| (worth + more - cost, vec![a, b]))
         });
         whole.chain(parted).max_by(|a, b| a.0.total_cmp(&b.0))
@@ -355,7 +361,7 @@ impl<'a> Room<'a> {
         let mut best: Option<Plan> = None;
         let mut reached = 0;
         for height in HEIGHTS.map(|k| k * self.mean) {
-            let places: Vec<_> = all.iter().map(|(p, cuts)| (*p, (cuts, cuts.places(height)))).collect();
+            let places: Vec<_> = all.iter().map(|(p, cuts)| (*p, (cuts, cuts.candidates(height)))).collect();
             for ratio in RATIOS {
                 let aim = Aim { height: height.ln(), ratio: ratio.ln() };
                 // For every level, the best bands above it of the lines so far.
@@ -380,7 +386,7 @@ impl<'a> Room<'a> {
         }
         let bands = best.ok_or_else(|| lines[reached].refused(reached + 1))?.1;
         let filled: f64 = bands.iter().flat_map(|b| &b.parts).map(|p| p.area).sum();
-        if filled < LEAST * self.area {
+        if filled < MIN_FILL * self.area {
             let height = |b: &Band| b.parts.iter().map(|p| p.area).sum::<f64>() / b.width();
             let lowest = (0..bands.len()).min_by(|a, b| height(&bands[*a]).total_cmp(&height(&bands[*b]))).unwrap_or(0);
             return Err(lines[lowest].refused(lowest + 1));
@@ -428,8 +434,8 @@ impl<'a> Room<'a> {
 }
 
 /// Returns the largest widening of this many letters, spaces included.
-fn widest(letters: usize) -> f64 {
-    if letters > 1 { WIDEST * SPACED } else { WIDEST }
+fn max_widening(letters: usize) -> f64 {
+    if letters > 1 { MAX_WIDENING * MAX_SPACING } else { MAX_WIDENING }
 }
 
 /// Returns the control points of a smooth spline closely above equidistant samples, and its values at them.
@@ -477,7 +483,7 @@ impl Line {
 
     /// Returns `true` if a word begins with letter `k`.
     fn is_space(&self, k: usize) -> bool {
-        self.letters[k].1.x0 - self.letters[k - 1].1.x1 > WORD * self.rect.height()
+        self.letters[k].1.x0 - self.letters[k - 1].1.x1 > WORD_SPACE * self.rect.height()
     }
 
     /// Returns letters before which the line may be divided, so that both runs are filled equally.
@@ -533,7 +539,7 @@ impl Strips {
         /// Distance from `end` of letters that are moved, as a share of the line's width.
         const APART: f64 = 1e-3;
         let r = if letters.len() == line.letters.len() { line.rect } else { line.part(letters) };
-        let space = r.width() * ((ratio / WIDEST).max(1.0) - 1.0);
+        let space = r.width() * ((ratio / MAX_WIDENING).max(1.0) - 1.0);
         let each = space / (letters.len().max(2) - 1) as f64;
         let shift = (end + APART * line.rect.width() - r.x0).max(0.0);
         for (k, (letter, _)) in line.letters[letters.clone()].iter().enumerate() {
@@ -544,7 +550,7 @@ impl Strips {
     }
 
     /// Returns the maps of all letters before the deformation; empty if none of them moves.
-    pub(super) fn places(&self) -> Vec<Vec<Affine>> {
+    pub(super) fn letter_maps(&self) -> Vec<Vec<Affine>> {
         if self.places.iter().all(|p| *p == Affine::IDENTITY) {
             return Vec::new();
         }
@@ -570,7 +576,7 @@ impl Strips {
             let [from, to] = self.ys[i];
             let scale = (to - from) / row;
             let n = line.letters.len();
-            let ratio = (width / row * natural[i]).min(widest(n));
+            let ratio = (width / row * natural[i]).min(max_widening(n));
             let r = self.spaced(line, &(0..n), ratio, f64::NEG_INFINITY);
             let wide = ratio * row / natural[i];
             let r = r.inflate(0.5 * (width / wide - 1.0) * r.width(), 0.0);
@@ -579,18 +585,18 @@ impl Strips {
             top += row + gap;
             filled += wide * row;
         }
-        (filled >= LEAST * width * height).then_some(frames)
+        (filled >= MIN_FILL * width * height).then_some(frames)
     }
 }
 
 /// Fits lines into a region. Returns the map and notes.
-pub(super) fn fitted(
+pub(super) fn fit_lines(
     lines: &[Line],
     region: &Region,
     strips: &mut Strips,
 ) -> Result<(Arc<dyn Map>, Vec<String>), Error> {
     let refused = |k: usize| lines[k].refused(k + 1);
-    let room = Room::new(region, lines.len()).ok_or_else(|| refused(0))?;
+    let room = ColumnedShape::new(region, lines.len()).ok_or_else(|| refused(0))?;
     let bands = room.plan(lines)?;
     let (mut rows, mut notes) = (Vec::new(), Vec::new());
     for (i, (line, band)) in lines.iter().zip(&bands).enumerate() {
