@@ -125,7 +125,7 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
                 ));
             }
         }
-        built.overlay(Role::Base, outline(corners));
+        built.overlay(Role::Base, polygon(&corners));
         built.overlay(Role::Cage, cage(&net));
         Ok(built)
     }
@@ -170,12 +170,12 @@ move it nearer to the side between them",
     }
 }
 
-/// Draws a triangle.
-pub(super) fn outline(corners: [Point; 3]) -> BezPath {
+/// Draws a closed polygon.
+pub(super) fn polygon(corners: &[Point]) -> BezPath {
     let mut path = BezPath::new();
-    path.move_to(corners[0]);
-    path.line_to(corners[1]);
-    path.line_to(corners[2]);
+    for (i, p) in corners.iter().enumerate() {
+        if i == 0 { path.move_to(*p) } else { path.line_to(*p) }
+    }
     path.close_path();
     path
 }
@@ -204,7 +204,7 @@ fn meets(r: Rect, a: Point, b: Point) -> bool {
 fn cage(net: &TriangleNet) -> BezPath {
     let mut path = BezPath::new();
     for [i, j, k] in indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0) {
-        path.extend(outline([[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(|ijk| net.point(ijk))));
+        path.extend(polygon(&[[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(|ijk| net.point(ijk))));
     }
     path
 }
