@@ -1,6 +1,7 @@
-//! The functions of `pathwarp.h`.
+//! The functions of `pathwarp.h`. Each is safe if every pointer is null or as the header says.
 
 #![expect(unsafe_code, reason = "C calls these functions, and they take its pointers")]
+#![expect(clippy::missing_safety_doc, reason = "the module's text says it for all functions")]
 
 use crate::function::{Function, PathwarpFunction, on_all_threads, on_calling_thread};
 use crate::raw::{
@@ -45,9 +46,6 @@ pub extern "C" fn pathwarp_version() -> *const c_char {
 }
 
 /// Makes a deformation.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new(
     name: *const c_char,
@@ -70,9 +68,6 @@ pub unsafe extern "C" fn pathwarp_new(
 }
 
 /// Makes the deformation of a plug-in.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new_plugin(
     file: *const c_char,
@@ -99,9 +94,6 @@ pub unsafe extern "C" fn pathwarp_new_plugin(
 }
 
 /// Makes a deformation of a function.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new_function(
     function: *const PathwarpFunction,
@@ -137,9 +129,6 @@ unsafe fn pairs<'a>(
 }
 
 /// Makes the steps of a recipe. `folder` is where its relative paths begin.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_from_recipe(
     text: *const c_char,
@@ -158,9 +147,6 @@ pub unsafe extern "C" fn pathwarp_from_recipe(
 }
 
 /// Makes one warper followed by another.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_then(
     first: *const PathwarpWarper,
@@ -179,9 +165,6 @@ pub unsafe extern "C" fn pathwarp_then(
 }
 
 /// Makes the inverse of a warper.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_inverse(
     of: *const PathwarpWarper,
@@ -213,9 +196,6 @@ unsafe fn new_warper(
 }
 
 /// Sets an option.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_set_option(
     warper: *mut PathwarpWarper,
@@ -234,9 +214,6 @@ pub unsafe extern "C" fn pathwarp_set_option(
 }
 
 /// Maps points.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_map_points(
     warper: *const PathwarpWarper,
@@ -273,9 +250,6 @@ pub unsafe extern "C" fn pathwarp_map_points(
 }
 
 /// Bends path data.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_warp_path(
     warper: *const PathwarpWarper,
@@ -301,9 +275,6 @@ pub unsafe extern "C" fn pathwarp_warp_path(
 }
 
 /// Warps a drawing.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_warp_drawing(
     warper: *const PathwarpWarper,
@@ -349,9 +320,6 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
 }
 
 /// Sets words as a drawing.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_text(
     words: *const c_char,

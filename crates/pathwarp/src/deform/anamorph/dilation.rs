@@ -14,7 +14,7 @@ use super::scene::Eye;
 use crate::deform::triangle::{self, polygon};
 use crate::map::bspline::bernstein;
 use crate::map::{Plane, Quotient, powers, source_coordinates};
-use kurbo::{Affine, BezPath, Point, Rect, Shape};
+use kurbo::{Affine, BezPath, Point, Rect};
 
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,7 +124,8 @@ impl Reference {
 /// δ over a reference, given at the control points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dilation {
-    reference: Reference,
+    /// The net.
+    pub(super) reference: Reference,
     values: Vec<f64>,
 }
 
@@ -132,11 +133,6 @@ impl Dilation {
     /// Creates δ = 1, with which nothing moves.
     pub(super) fn none(reference: Reference) -> Self {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
-    }
-
-    /// Returns the net.
-    pub(super) fn reference(&self) -> &Reference {
-        &self.reference
     }
 
     /// Returns δ of a control point.
@@ -173,11 +169,6 @@ impl Dilation {
         nodes.all(|node| (self.delta_of(node) - 1.0).abs() <= 1e-12)
     }
 
-    /// Returns `true` if all δ are positive, so that there is no pole inside the reference.
-    pub(super) fn is_positive(&self) -> bool {
-        self.values.iter().all(|d| *d > 0.0)
-    }
-
     /// Returns the polynomial δ, with the map from a point to its coordinates.
     pub(super) fn plane(&self) -> (Affine, Plane) {
         (self.reference.coordinates(), self.reference.expanded(&self.values))
@@ -192,18 +183,19 @@ impl Dilation {
     /// Returns the map of the plane for an eye in that plane. If `bounded`, it is used only inside the reference.
     pub(super) fn about(&self, eye: Eye, bounded: bool) -> Quotient {
         let (to_coordinates, delta) = self.plane();
-        let minus = |p: &Plane, constant: f64| p.plus(-constant, &Plane::linear([1.0, 0.0, 0.0]));
+        let minus = |p: Plane, constant: f64| p.plus(-constant, &Plane::linear([1.0, 0.0, 0.0]));
         let eye = match eye {
             Eye::At(eye, _) => eye,
             Eye::Infinite([x, y, _]) => {
-                let shift = minus(&delta, 1.0);
+                let shift = minus(delta, 1.0);
                 return Quotient::polynomial(to_coordinates, shift.scaled(x), shift.scaled(y), self.domain());
             }
         };
         let [x, y] = source_coordinates(to_coordinates).map(Plane::linear);
         let domain = if bounded { self.reference.bounds() } else { self.domain() };
-        let q = Quotient::rational(to_coordinates, eye, minus(&x, eye.x), minus(&y, eye.y), delta, domain);
-        if bounded && self.is_positive() { q.without_poles() } else { q }
+        let q = Quotient::rational(to_coordinates, eye, minus(x, eye.x), minus(y, eye.y), delta, domain);
+        // If all δ are positive, there is no pole inside the reference.
+        if bounded && self.values.iter().all(|d| *d > 0.0) { q.without_poles() } else { q }
     }
 
     /// Draws the net's lines. `image` takes every control point and its δ to a point.
@@ -222,13 +214,5 @@ impl Dilation {
             }
         }
         path
-    }
-
-    /// Draws the reference.
-    pub(super) fn outline(&self) -> BezPath {
-        match self.reference {
-            Reference::Rectangle(r, _) => r.to_path(0.1),
-            Reference::Triangle(corners, _) => polygon(&corners),
-        }
     }
 }

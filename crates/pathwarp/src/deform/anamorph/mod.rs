@@ -28,6 +28,7 @@ mod surface;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SightMark, SpaceFile};
+use super::triangle::polygon;
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Settings, parameters};
@@ -292,7 +293,7 @@ impl Anamorph {
             Eye::Infinite([x, y, _]) => p + Vec2::new(x, y) * (delta - 1.0),
         });
         let map: Arc<dyn Map> = if self.local {
-            Arc::new(Local::new(&dilation.reference().corners(), Arc::new(map)))
+            Arc::new(Local::new(&dilation.reference.corners(), Arc::new(map)))
         } else {
             map.simplest()
         };
@@ -310,7 +311,7 @@ impl Anamorph {
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
         }
-        built.overlay(Role::Base, dilation.outline());
+        built.overlay(Role::Base, polygon(&dilation.reference.corners()));
         built.overlay(Role::Cage, pushed_net);
         Ok(built)
     }

@@ -169,7 +169,7 @@ fn describe_numbers(reference: &Reference) -> String {
 
 /// Returns the plane of a triangle's three corners after their pushes, if the net has degree 1.
 pub(super) fn plane_of_corners(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
-    let Reference::Triangle([a, b, c], 1) = *d.reference() else { return None };
+    let Reference::Triangle([a, b, c], 1) = d.reference else { return None };
     let middle = a + ((b - a) + (c - a)) / 3.0;
     // The orientation of the corners in the drawing, as seen from the eye.
     let orientation = (b - a).cross(c - a).signum();
@@ -181,7 +181,7 @@ pub(super) fn plane_of_corners(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
 
 /// Warns of sides at which artwork is torn.
 pub(super) fn warn_of_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
-    let corners = d.reference().corners();
+    let corners = d.reference.corners();
     // Artwork along the edge of the box counts, as strokes reach past it.
     let rounding = 1e-9 * (frame.width() + frame.height());
     let frame = frame.inflate(rounding, rounding);

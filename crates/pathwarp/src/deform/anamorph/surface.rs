@@ -127,7 +127,7 @@ impl Onto {
         match self {
             Self::Cylinder { radius, level, inside } => {
                 let radius = positive("radius", radius)?;
-                Ok(Surface::Cone(Cone { middle, radius, slope: 0.0, horizontal, inside }))
+                Ok(Surface::Cone(Cone { middle, radius, slope: 0.0, horizontal: level, inside }))
             }
             Self::Cone { top, bottom, height, inside } => {
                 let (top, bottom) = (positive("top", top)?, positive("bottom", bottom)?);
@@ -312,7 +312,7 @@ impl SpacePlane {
     }
 }
 
-/// A cone, or a cylinder as one of slope 0, with a vertical or horizontal axis, which touches the drawing's plane along a line or at a point.
+/// A cone, or a cylinder as one of slope 0, with a vertical or horizontal axis, which touches the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cone {
     /// A point of contact, `radius` away from the axis.
@@ -436,11 +436,6 @@ impl Cone {
         }
     }
 
-    /// Returns a distance in front of the drawing at which rays may start, outside the surface.
-    fn ray_start(&self) -> f64 {
-        4.0 * self.radius
-    }
-
     /// Returns the depth z of the axis.
     pub(super) fn axis(&self) -> f64 {
         if self.inside { -self.radius } else { self.radius }
@@ -492,6 +487,9 @@ impl Radial {
     }
 }
 
+/// Distance in front of the drawing at which rays start outside a surface, in units of its radius.
+const RAY_START: f64 = 4.0;
+
 impl Anamorphosis {
     /// Returns the start and the direction of the ray through (x, y). It starts at the eye, but at most `most` in front of the drawing.
     fn ray<S: Real>(&self, x: S, y: S, most: f64) -> [[S; 3]; 2] {
@@ -523,11 +521,11 @@ impl Anamorphosis {
             }
             Surface::Radial(r) => r.delta_at(x, y),
             Surface::Cone(r) => {
-                let ray = self.ray(x, y, r.ray_start());
+                let ray = self.ray(x, y, RAY_START * r.radius);
                 return on_ray(ray, r.intersections(ray).root());
             }
             Surface::Sphere(s) => {
-                let ray = self.ray(x, y, 4.0 * s.radius);
+                let ray = self.ray(x, y, RAY_START * s.radius);
                 return on_ray(ray, s.intersections(ray).root());
             }
         };
@@ -552,10 +550,10 @@ impl Anamorphosis {
     pub(super) fn defined(&self, p: Point) -> f64 {
         match (&self.surface, self.eye) {
             (Surface::Cone(r), _) => {
-                let d = r.intersections(self.ray(p.x, p.y, r.ray_start())).defined();
+                let d = r.intersections(self.ray(p.x, p.y, RAY_START * r.radius)).defined();
                 if d > 0.0 { d.min(r.radius_at(self.point(p))) } else { d }
             }
-            (Surface::Sphere(s), _) => s.intersections(self.ray(p.x, p.y, 4.0 * s.radius)).defined(),
+            (Surface::Sphere(s), _) => s.intersections(self.ray(p.x, p.y, RAY_START * s.radius)).defined(),
             (_, Eye::Infinite(_)) => 1.0,
             (Surface::Plane(s), _) => {
                 let (at, [d, dx, dy]) = plane_form(self.eye, s);
@@ -602,18 +600,6 @@ fn component<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
 }
 
 impl Anamorphosis {
-    /// Returns δ, if it is a polynomial, with the map to its coordinates and its domain.
-    fn polynomial(&self) -> Option<(Affine, Plane, Rect)> {
-        match &self.surface {
-            Surface::Radial(r) => Some((r.to_coordinates, r.delta.clone(), r.domain)),
-            Surface::Plane(p) => {
-                let (at, form) = plane_form(self.eye, p);
-                Some((Affine::translate(-at.to_vec2()), Plane::linear(form), Rect::ZERO))
-            }
-            _ => None,
-        }
-    }
-
     /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / (depth·(q − from)) + origin of the image q, if δ is a polynomial.
     /// Without a `depth` direction there is no division.
     fn flattened(
@@ -624,7 +610,14 @@ impl Anamorphosis {
         depth: Option<Space>,
         origin: Point,
     ) -> Option<Quotient> {
-        let (to_coordinates, delta, domain) = self.polynomial()?;
+        let (to_coordinates, delta, domain) = match &self.surface {
+            Surface::Radial(r) => (r.to_coordinates, r.delta.clone(), r.domain),
+            Surface::Plane(p) => {
+                let (at, form) = plane_form(self.eye, p);
+                (Affine::translate(-at.to_vec2()), Plane::linear(form), Rect::ZERO)
+            }
+            _ => return None,
+        };
         let one = Plane::linear([1.0, 0.0, 0.0]);
         // The paper's point (p, 1) + (δ − 1)·(O, w) of a ray, whose weight is δ, or 1 for an eye at infinity with w = 0.
         let (eye, weight) = match self.eye {
@@ -652,7 +645,7 @@ impl Anamorphosis {
     pub(super) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
             Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
-            Surface::Cone(r) => Some(Arc::new(Unrolled { projection: self.clone(), round: *r })),
+            Surface::Cone(r) => Some(Arc::new(Unrolled { projection: self.clone(), cone: *r })),
             _ => None,
         }
     }

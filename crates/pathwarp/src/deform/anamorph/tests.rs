@@ -112,7 +112,7 @@ const CORNERS: [Point; 3] = [Point::new(-20.0, 0.0), Point::new(130.0, 10.0), Po
 
 fn surfaces() -> Vec<Surface> {
     let middle = Point::new(50.0, 60.0);
-    let round = |radius, slope, level, inside| Surface::Cone(Cone { middle, radius, slope, level, inside });
+    let round = |radius, slope, horizontal, inside| Surface::Cone(Cone { middle, radius, slope, horizontal, inside });
     vec![
         Surface::Plane(SpacePlane::new([0.0, 400.0, 0.0], [0.05, 1.0, 0.3], Point::ORIGIN)),
         Surface::Plane(SpacePlane::new([0.0, 0.0, 90.0], [0.5, 0.2, 1.0], Point::ORIGIN)),
@@ -138,7 +138,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
     for surface in surfaces() {
         let cast = cast(surface);
-        let seen = cast.seen();
+        let seen = cast.eye_view();
         for p in grid() {
             assert!(cast.defined(p) > 0.0, "{cast:?} {p:?}");
             let q = cast.point(p);
@@ -148,8 +148,8 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
             let off = match &cast.surface {
                 Surface::Plane(s) => (0..3).map(|i| s.normal[i] * (q[i] - s.through[i])).sum::<f64>(),
                 Surface::Cone(r) => {
-                    let across = if r.level { q[1] - r.middle.y } else { q[0] - r.middle.x };
-                    let along = if r.level { q[0] - r.middle.x } else { q[1] - r.middle.y };
+                    let across = if r.horizontal { q[1] - r.middle.y } else { q[0] - r.middle.x };
+                    let along = if r.horizontal { q[0] - r.middle.x } else { q[1] - r.middle.y };
                     let axis = if r.inside { -r.radius } else { r.radius };
                     across.hypot(q[2] - axis) - (r.radius + r.slope * along)
                 }
@@ -344,7 +344,7 @@ fn labels_are_as_long_as_their_arcs() {
         middle: Point::ORIGIN,
         radius: 100.0,
         slope: -(1.0 / 3.0f64.sqrt()),
-        level: false,
+        horizontal: false,
         inside: true,
     });
     let cast = Anamorphosis { eye: Eye::At(Point::ORIGIN, 100.0), surface: cone };
@@ -364,7 +364,7 @@ fn views_are_central_projections_and_exact_where_they_can_be() {
         let middle = Point::new(50.0, 50.0);
         let target = cast.point(middle);
         let camera = Camera::new(at, target, middle).unwrap();
-        let view = cast.viewed(&camera, Rect::new(0.0, 0.0, 100.0, 100.0));
+        let view = cast.camera_view(&camera, Rect::new(0.0, 0.0, 100.0, 100.0));
         assert!(view.point(middle).distance(middle) < 1e-10);
         let minus = |a: Space, b: Space| -> Space { std::array::from_fn(|i| a[i] - b[i]) };
         let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();

@@ -80,13 +80,11 @@ impl BendMap {
 
     /// Returns the map, as an affine one if the skeleton is one straight line.
     pub(super) fn simplest(&self) -> Arc<dyn Map> {
-        match &self.pieces[..] {
-            [only] if !self.closed => match OnPiece::new(only, only.start, self.to_strip).affine() {
-                Some(m) => Arc::new(AffineMap(m)),
-                None => Arc::new(self.clone()),
-            },
-            _ => Arc::new(self.clone()),
-        }
+        let affine = match &self.pieces[..] {
+            [only] if !self.closed => OnPiece::new(only, only.start, self.to_strip).affine(),
+            _ => None,
+        };
+        affine.map_or_else(|| Arc::new(self.clone()) as Arc<dyn Map>, |m| Arc::new(AffineMap(m)))
     }
 
     /// Returns a warning if the artwork folds over itself. `points` are samples of the outlines of letters, each with its letter, or of the

@@ -314,12 +314,7 @@ impl Bend {
             return Err(Error::usage("copies", "N", "are spread evenly, and cannot be stretched as well"));
         }
         if self.stretch != Stretch::Keep && self.frame.width() <= 0.0 {
-            let name = match self.stretch {
-                Stretch::Scale => "scale",
-                Stretch::Fit => "fit",
-                _ => "repeat",
-            };
-            return Err(Error::usage("stretch", name, "cannot stretch artwork that has no width"));
+            return Err(Error::usage("stretch", self.stretch.name(), "cannot stretch artwork that has no width"));
         }
         if self.even && (self.handles.is_some() || self.by_parameter) {
             return Err(Error::usage("spacing", "even", "goes with lengths (`by arclength`) and without `handles`"));

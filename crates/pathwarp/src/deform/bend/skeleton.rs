@@ -1,5 +1,5 @@
-//! The skeleton: the pieces of a path, measured, oriented and joined in a row. At corners the sides of both pieces meet in the mitre. `super`
-//! names the paper whose handles are an alternative to normals.
+//! The skeleton: the pieces of a path, measured, oriented and joined in a row. At corners the sides of both pieces meet in the mitre. The
+//! parent module names the paper whose handles are an alternative to normals.
 
 use super::map::{Curve, MovingFrame, Ribbon, SkeletonPiece, Spine, StripMap, normal};
 use super::spline::{Part, directions, mitre};

@@ -44,8 +44,8 @@ impl Part {
 }
 
 impl Spline {
-    /// Returns the pieces of the spline of a subpath's anchors. `given` has a handle for every anchor, or `None` for the default one, `unit`
-    /// long; if empty, all are defaults.
+    /// Returns the pieces of the spline of a subpath's anchors. `given` has a handle for every anchor, or `None` for the default one,
+    /// `unit` long; if empty, all are defaults.
     pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
         let (points, closed) = (sub.anchors(), sub.closed);
         let n = points.len();

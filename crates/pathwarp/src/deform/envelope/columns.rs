@@ -316,7 +316,9 @@ impl Region {
         }
         let [low, high] = &curves;
         let (from, to) = (low.first()?.from, low.last()?.to);
-        let heights = self.heights(low, high, from, to);
+        // In the middles of equal parts of the range.
+        let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
+        let heights: Vec<(f64, f64)> = xs.map(|x| (x, self.y_at(high, x) - self.y_at(low, x))).collect();
         let area = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
         heights.iter().all(|h| h.1 > 0.0).then_some(SmoothCurves { curves, jumps, heights, area })
     }
@@ -366,12 +368,6 @@ impl Region {
                 curve.splice(0..0, kept.into_iter().rev().chain([ramp]));
             }
         }
-    }
-
-    /// Returns x and the height between two curves, in the middles of equal parts of their range.
-    fn heights(&self, low: &[Span], high: &[Span], from: f64, to: f64) -> Vec<(f64, f64)> {
-        let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
-        xs.map(|x| (x, self.y_at(high, x) - self.y_at(low, x))).collect()
     }
 
     /// Returns the y of a curve at `x`.
@@ -515,7 +511,8 @@ pub(super) fn fill(frame: Rect, shape: &Subpath, upright: bool, margins: &Margin
     let [first, last] = c.range.map(|s| coordinate(a0) + s * (coordinate(a1) - coordinate(a0)));
     let ends = 100.0 * margins.ends;
     built.note(format!(
-        "filled in {what}, {lines} kept: from {axis} = {first:.6} to {last:.6}, where the shape is still {ends:.0} % of its greatest {length}"
+        "filled in {what}, {lines} kept: from {axis} = {first:.6} to {last:.6}, where the shape is still {ends:.0} % of its greatest \
+{length}"
     ));
     if margins.padding == 0.0 && c.coverage < 1.0 - 1e-3 {
         let held = 100.0 * c.coverage;

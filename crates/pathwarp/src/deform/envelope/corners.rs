@@ -298,7 +298,7 @@ impl FlatPath {
         self.points[k - 1].lerp(self.points[k], if b > a { (length - a) / (b - a) } else { 0.0 })
     }
 
-    /// Returns the distortion of the patch between corners at these lengths, at `samples` of the unit square; `None` if a side is too short.
+    /// Returns the distortion of the patch between corners at these lengths, at `samples` of the unit square; `None` if a side is short.
     fn distortion(&self, corners: [f64; 4], samples: &[Point]) -> Option<f64> {
         /// The least length of a side, as a share of the path's.
         const SHORTEST: f64 = 0.01;
@@ -465,10 +465,13 @@ impl Curves<'_> {
         let [a, b, c, d] = [start(&first), end(&first), start(&second), end(&second)];
         let size = [b, c, d].iter().map(|p| p.distance(a)).fold(0.0, f64::max);
         let names = if horizontal { ["left", "right"] } else { ["bottom", "top"] };
-        let direction: [fn(&[Seg]) -> Vec2; 2] = [start_direction, end_direction];
+        let direction = |c: &[Seg], k: usize| {
+            let seg = if k == 0 { c.first() } else { c.last() };
+            seg.map_or(Vec2::ZERO, |s| s.deriv(k as f64))
+        };
         let join = |k: usize, from: Point, to: Point| match &between[k] {
             Some(curve) => join_ends(names[k], curve.clone(), from, to, size),
-            None if self.square => Ok(vec![at_right_angles(from, to, [&first, &second].map(|c| direction[k](c)))]),
+            None if self.square => Ok(vec![at_right_angles(from, to, [&first, &second].map(|c| direction(c, k)))]),
             None => Ok(vec![Seg::Line(Line::new(from, to))]),
         };
         let (at_start, at_end) = (join(0, a, c)?, join(1, b, d)?);
@@ -565,14 +568,6 @@ fn start(c: &[Seg]) -> Point {
 
 fn end(c: &[Seg]) -> Point {
     c.last().map_or(Point::ORIGIN, Seg::end)
-}
-
-fn start_direction(c: &[Seg]) -> Vec2 {
-    c.first().map_or(Vec2::ZERO, |s| s.deriv(0.0))
-}
-
-fn end_direction(c: &[Seg]) -> Vec2 {
-    c.last().map_or(Vec2::ZERO, |s| s.deriv(1.0))
 }
 
 /// Orients both curves so that the vector from start to end has a positive `component`.

@@ -361,11 +361,8 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Envelope::read(s)?.build()
 
 /// Reads the curves of the sides.
 fn curves(s: &Settings<'_>) -> Result<[Option<NamedPath>; 4], Error> {
-    let mut curves: [Option<NamedPath>; 4] = Default::default();
-    for (curve, name) in curves.iter_mut().zip(SIDES) {
-        *curve = s.path_if(name)?;
-    }
-    Ok(curves)
+    let [bottom, right, top, left] = SIDES.map(|name| s.path_if(name));
+    Ok([bottom?, right?, top?, left?])
 }
 
 /// Reads the corners: four numbers of nodes, or points.

@@ -100,7 +100,7 @@ impl Shaper {
     ///
     /// # Errors
     /// [`Error::Geometry`] when the path is not closed or has other than four sides, when anchors coincide, or when three of the four
-    /// anchors of a projective map lie on a line (also the shaper's, for four targets); [`Error::Usage`] when the bottom side is out of range.
+    /// anchors of a projective map lie on a line (also the shaper's, for four targets); [`Error::Usage`] when there is no such bottom side.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let mut explanation = Explanation::default();

@@ -95,8 +95,8 @@ impl Triangle {
     /// Builds the map. A side that tears the artwork gives a warning.
     ///
     /// # Errors
-    /// [`GeometryError::Collinear`] when the triangle is flat, [`Error::Usage`] when a degree, control point or weight is out of range, or no
-    /// weights make the map birational.
+    /// [`GeometryError::Collinear`] when the triangle is flat, [`Error::Usage`] when a degree, control point or weight is out of range, or
+    /// no weights make the map birational.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let Self { corners, extend, .. } = *self;
@@ -161,7 +161,7 @@ move it nearer to the side between them",
             return Err(wrong(format!("is not a control point: I, J and K must add up to {degree}, the degree")));
         }
         match change {
-            Change::Place(p) => net.place(node, p),
+            Change::Place(p) => net.moves[index(node)] = p - regular_point(net.corners, node),
             Change::Shift(v) => net.shift(node, v),
             Change::Weight(w) if w > 0.0 && w <= 1e6 => net.set_weight(node, w),
             Change::Weight(_) => return Err(wrong("has a weight out of range: above 0, up to a million".into())),
@@ -202,11 +202,8 @@ fn meets(r: Rect, a: Point, b: Point) -> bool {
 
 /// Draws the net's lines in three directions.
 fn cage(net: &TriangleNet) -> BezPath {
-    let mut path = BezPath::new();
-    for [i, j, k] in indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0) {
-        path.extend(polygon(&[[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(|ijk| net.point(ijk))));
-    }
-    path
+    let cell = |[i, j, k]: [usize; 3]| [[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(|ijk| net.point(ijk));
+    indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0).flat_map(|ijk| polygon(&cell(ijk))).collect()
 }
 
 // A straight line becomes a curve of degree n whatever its direction: a triangle of degree n has total degree n, a rectangle of
@@ -299,11 +296,6 @@ impl TriangleNet {
     /// Returns control point (i, j, k).
     fn point(&self, ijk: [usize; 3]) -> Point {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
-    }
-
-    /// Moves control point (i, j, k) to `p`.
-    fn place(&mut self, ijk: [usize; 3], p: Point) {
-        self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
     }
 
     /// Moves control point (i, j, k) by `v`.
