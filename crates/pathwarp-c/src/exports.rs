@@ -5,8 +5,8 @@
 
 use crate::function::{Function, PathwarpFunction, on_all_threads, on_calling_thread};
 use crate::raw::{
-    Failed, array, array_mut, check_not_null, drop_text, hand_over, owned_array, owned_text, put, status, take_back,
-    take_back_array, text, value, value_mut,
+    Failed, array, array_mut, check_not_null, drop_text, owned_array, owned_text, put, status, take_back_array, text,
+    value, value_mut,
 };
 use pathwarp::deform::{Deformation as _, Registry};
 use pathwarp::kurbo::{Point, Rect};
@@ -191,7 +191,7 @@ unsafe fn new_warper(
     check_not_null(warper, "warper")?;
     let made = made()?;
     // SAFETY: the caller guarantees it.
-    unsafe { put(warper, hand_over(made)) };
+    unsafe { put(warper, Box::into_raw(Box::new(made))) };
     Ok(())
 }
 
@@ -354,8 +354,10 @@ pub unsafe extern "C" fn pathwarp_text(
 /// It is null, or a warper that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_free(warper: *mut PathwarpWarper) {
-    // SAFETY: the caller guarantees it.
-    unsafe { take_back(warper) };
+    if !warper.is_null() {
+        // SAFETY: it came from `Box::into_raw`, and the caller gives it up.
+        drop(unsafe { Box::from_raw(warper) });
+    }
 }
 
 /// Releases a text.

@@ -115,22 +115,22 @@ pub(crate) fn check_not_null<T>(pointer: *const T, name: &str) -> Result<(), Fai
     if pointer.is_null() { Err(Failed::usage(format!("{name} is NULL"))) } else { Ok(()) }
 }
 
-/// Returns the value behind a handle.
+/// Returns the value behind a pointer.
 ///
 /// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released.
-pub(crate) unsafe fn value<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failed> {
+/// `pointer` is null, or points to a value that stays as it is while the result is used.
+pub(crate) unsafe fn value<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Failed> {
     // SAFETY: the caller guarantees it.
-    unsafe { handle.as_ref() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
+    unsafe { pointer.as_ref() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
 }
 
-/// Returns the value behind a handle, to be changed.
+/// Returns the value behind a pointer, to be changed.
 ///
 /// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released, and nobody else uses it.
-pub(crate) unsafe fn value_mut<'a, T>(handle: *mut T, name: &str) -> Result<&'a mut T, Failed> {
+/// `pointer` is null, or points to a value that nobody else uses while the result is used.
+pub(crate) unsafe fn value_mut<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut T, Failed> {
     // SAFETY: the caller guarantees it.
-    unsafe { handle.as_mut() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
+    unsafe { pointer.as_mut() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
 }
 
 /// Writes a result, if its pointer is not null.
@@ -141,22 +141,6 @@ pub(crate) unsafe fn put<T>(result: *mut T, value: T) {
     if !result.is_null() {
         // SAFETY: not null, and the caller guarantees that it may be written to.
         unsafe { result.write(value) };
-    }
-}
-
-/// Hands a value over to C.
-pub(crate) fn hand_over<T>(value: T) -> *mut T {
-    Box::into_raw(Box::new(value))
-}
-
-/// Takes a value back and drops it.
-///
-/// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released.
-pub(crate) unsafe fn take_back<T>(handle: *mut T) {
-    if !handle.is_null() {
-        // SAFETY: it came from `Box::into_raw`, and the caller gives it up.
-        drop(unsafe { Box::from_raw(handle) });
     }
 }
 

@@ -344,7 +344,7 @@ impl Anamorph {
         // Files in space need no view; the drawing then shows one that is chosen.
         let chosen = match self.look {
             Look::Unrolled if !self.files.is_empty() && projection.unrolled().is_none() => {
-                self.from_the_side(&projection, &scene)
+                self.side_view(&projection, &scene)
             }
             _ => None,
         };
@@ -373,7 +373,7 @@ impl Anamorph {
 
     /// Returns this anamorphosis with a view from the side, for a sheet that cannot be laid flat. Of some cameras, the first is taken for
     /// which no part of the sheet hides another.
-    fn from_the_side(&self, projection: &Anamorphosis, scene: &Scene) -> Option<Self> {
+    fn side_view(&self, projection: &Anamorphosis, scene: &Scene) -> Option<Self> {
         /// Positions to the right and down from the sheet's middle, in units of the eye's distance from it.
         const POSITIONS: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
         let middle = projection.point(scene.frame.center());

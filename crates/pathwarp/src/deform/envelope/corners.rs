@@ -11,6 +11,7 @@ use crate::map::Jet;
 use crate::outline::{Seg, Subpath};
 use crate::param::NamedPath;
 use kurbo::{Affine, CubicBez, Line, Point, Rect, Vec2};
+use std::collections::BTreeSet;
 
 /// Least angle, in degrees, at which a node is sharp.
 const MIN_TURN: f64 = 20.0;
@@ -172,9 +173,7 @@ fn given_corners(sub: &Subpath, corners: &Corners, bounds: Rect) -> Result<[Loca
 fn find_corners(name: &str, sub: &Subpath, bounds: Rect, samples: &[Point]) -> Result<FoundCorners, Error> {
     let n = sub.segs.len();
     let node = |i: usize| sub.segs[i].start();
-    let mut quarters: Vec<_> = (0..n).filter_map(|i| quarter(node(i), bounds)).collect();
-    quarters.sort_unstable();
-    quarters.dedup();
+    let quarters: BTreeSet<_> = (0..n).filter_map(|i| quarter(node(i), bounds)).collect();
     // Four nodes are meant as corners, unless they are the extremes of a circle.
     if n == 4 && quarters.len() == 4 {
         return Ok(FoundCorners { corners: [0, 1, 2, 3].map(|i| (i, 0.0)), how: "its four nodes", rival: None });
@@ -203,8 +202,8 @@ fn find_corners(name: &str, sub: &Subpath, bounds: Rect, samples: &[Point]) -> R
     // Locations and their costs.
     let mut candidates: Vec<(Location, f64)> = sharp.iter().map(|i| ((*i, 0.0), 0.0)).collect();
     let nodes: Vec<Point> = sharp.iter().map(|i| node(*i)).collect();
-    for c in [(bounds.x0, bounds.y1), (bounds.x1, bounds.y1), (bounds.x1, bounds.y0), (bounds.x0, bounds.y0)] {
-        let c = Point::from(c);
+    let corners = [(bounds.x0, bounds.y1), (bounds.x1, bounds.y1), (bounds.x1, bounds.y0), (bounds.x0, bounds.y0)];
+    for c in corners.map(Point::from) {
         if nodes.iter().any(|p| quarter(*p, bounds) == quarter(c, bounds)) {
             continue;
         }
@@ -227,13 +226,13 @@ fn find_corners(name: &str, sub: &Subpath, bounds: Rect, samples: &[Point]) -> R
         }
     }
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((score, best)) = scored.first() else {
-        let count = sharp.len();
-        let problem = format!(
+    let count = sharp.len();
+    let undetermined = || {
+        format!(
             "has {count} corners by angle, and its box does not determine them: give `corners` (four node numbers, or four points)"
-        );
-        return Err(Error::usage("envelope", name, problem));
+        )
     };
+    let (score, best) = scored.first().ok_or_else(|| Error::usage("envelope", name, undetermined()))?;
     let smooth = best.iter().filter(|i| candidates[**i].1 > 0.0).count();
     let point = |i: usize| sub.segs[candidates[i].0.0].eval(candidates[i].0.1);
     let differs =
