@@ -54,8 +54,8 @@ impl Reference {
         match *self {
             Self::Triangle(corners, _) => triangle::regular_point(corners, node),
             Self::Rectangle(r, [m, n]) => {
-                let at = |k: usize, n: usize| k as f64 / n.max(1) as f64;
-                Point::new(r.x0 + r.width() * at(node[0], m), r.y0 + r.height() * at(node[1], n))
+                let share = |k: usize, n: usize| k as f64 / n.max(1) as f64;
+                Point::new(r.x0 + r.width() * share(node[0], m), r.y0 + r.height() * share(node[1], n))
             }
         }
     }

@@ -196,10 +196,10 @@ pub(super) fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
 
 /// Reads the mirror.
 pub(super) fn mirror(s: &Settings<'_>) -> Result<Option<Mirror>, Error> {
-    let at = if s.given("foot") { Some(s.point("foot")?) } else { None };
+    let foot = if s.given("foot") { Some(s.point("foot")?) } else { None };
     let Some(text) = s.texts("mirror").pop() else {
         let missing = || Error::missing("mirror", "the mirror whose foot this is");
-        return if at.is_some() { Err(missing()) } else { Ok(None) };
+        return if foot.is_some() { Err(missing()) } else { Ok(None) };
     };
     let w = Words::new("mirror", text);
     let known = ["radius", "diameter", "height", "lift", "tilt"];
@@ -221,7 +221,7 @@ pub(super) fn mirror(s: &Settings<'_>) -> Result<Option<Mirror>, Error> {
     };
     let tilt = w.value("tilt").map_or(Ok(0.0), |text| s.angle_in("mirror", text))?;
     let lift = w.value("lift").map_or(Ok(0.0), |text| s.length_in("mirror", text, Axis::Y))?;
-    Ok(Some(Mirror { shape, tilt, lift, at }))
+    Ok(Some(Mirror { shape, tilt, lift, at: foot }))
 }
 
 /// Reads a plane.

@@ -673,8 +673,8 @@ impl Anamorphosis {
     fn seen_at<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
         match self.eye {
             Eye::At(foot, distance) => {
-                let k = S::from(distance) / (z + distance);
-                ((x - foot.x) * k + foot.x, (y - foot.y) * k + foot.y)
+                let scale = S::from(distance) / (z + distance);
+                ((x - foot.x) * scale + foot.x, (y - foot.y) * scale + foot.y)
             }
             Eye::Infinite(_) => {
                 let v = self.eye.line_of_sight();

@@ -50,8 +50,8 @@ impl LetterSetting {
         let (c, t) = map.frame_at(s);
         let (x, y) = self.axes(t);
         let (x, y) = (x * map.to_strip.y_scale, y * map.to_strip.y_scale);
-        let at = c.to_vec2() - x * x0 - y * map.to_strip.baseline;
-        Affine::new([x.x, x.y, y.x, y.y, at.x, at.y])
+        let shift = c.to_vec2() - x * x0 - y * map.to_strip.baseline;
+        Affine::new([x.x, x.y, y.x, y.y, shift.x, shift.y])
     }
 
     /// Returns the x of the point of a letter that comes to the skeleton.

@@ -37,8 +37,8 @@ impl ToStrip {
 
     /// Returns the jet on `piece`, which begins at distance `start`.
     fn jet(&self, piece: &SkeletonPiece, start: f64, p: Point) -> Jet {
-        let (at, ds, dd) = piece.jet(self.s(p.x) - start, self.d(p.y));
-        Jet { p: at, dx: ds * self.x_scale, dy: dd * -self.y_scale }
+        let (image, ds, dd) = piece.jet(self.s(p.x) - start, self.d(p.y));
+        Jet { p: image, dx: ds * self.x_scale, dy: dd * -self.y_scale }
     }
 }
 
@@ -64,8 +64,8 @@ impl BendMap {
     /// Returns the point at distance `s` on the skeleton, and the unit tangent there.
     pub(super) fn frame_at(&self, s: f64) -> (Point, Vec2) {
         let (piece, start) = self.piece(s);
-        let (at, along, _) = piece.jet(s - start, 0.0);
-        (at, along / along.hypot())
+        let (point, along, _) = piece.jet(s - start, 0.0);
+        (point, along / along.hypot())
     }
 
     /// Draws the first level of de Casteljau's generalised algorithm on every piece with handles, if there are any.
@@ -209,8 +209,8 @@ impl OnPiece {
     fn affine(&self) -> Option<Affine> {
         let StripMap::Straight { p, t, n } = &self.piece.strip else { return None };
         let ToStrip { x_scale, y_scale, .. } = self.to_strip;
-        let at = *p + *t * (self.to_strip.s(0.0) - self.start) + *n * self.to_strip.d(0.0);
-        Some(Affine::new([t.x * x_scale, t.y * x_scale, -n.x * y_scale, -n.y * y_scale, at.x, at.y]))
+        let origin = *p + *t * (self.to_strip.s(0.0) - self.start) + *n * self.to_strip.d(0.0);
+        Some(Affine::new([t.x * x_scale, t.y * x_scale, -n.x * y_scale, -n.y * y_scale, origin.x, origin.y]))
     }
 }
 
@@ -467,8 +467,9 @@ impl Spine {
 
     /// Returns the moving frame at a parameter.
     pub(super) fn moving_frame(&self, u: f64) -> MovingFrame {
-        let (at, v, speed) = self.velocity(u);
-        MovingFrame { p: self.curve.eval(u), t: v / speed, curvature: v.cross(self.curve.second(at)) / speed.powi(3) }
+        let (inside, v, speed) = self.velocity(u);
+        let curvature = v.cross(self.curve.second(inside)) / speed.powi(3);
+        MovingFrame { p: self.curve.eval(u), t: v / speed, curvature }
     }
 
     /// Returns a parameter, and the derivative there with its length. It is `u`, or a little further inside if the speed vanishes.

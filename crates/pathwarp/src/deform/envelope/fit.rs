@@ -333,9 +333,9 @@ impl Ring {
 
 /// Draws a closed path.
 pub(super) fn preview(path: &Subpath) -> BezPath {
-    let all = Outline { subpaths: vec![path.clone()] };
-    let size = all.bounding_box().map_or(1.0, |b| b.width() + b.height());
-    all.to_bez_path(1e-4 * size)
+    let outline = Outline { subpaths: vec![path.clone()] };
+    let size = outline.bounding_box().map_or(1.0, |b| b.width() + b.height());
+    outline.to_bez_path(1e-4 * size)
 }
 
 /// Reverses a side.
