@@ -131,6 +131,10 @@ impl<F: Formula> Map for F {
         self.enclosed(along)
     }
 
+    fn cost(&self) -> Cost<'_> {
+        Formula::cost(self)
+    }
+
     forward_common!(self => Formula, self);
 }
 

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::Outline;
     use crate::deform::Registry;
-    use crate::map::along;
+    use crate::map::enclose_segment;
     use crate::param::{Args, Frame};
 
     /// Pieces that an overview resolves are resolved by their enclosures too; and nearly all short pieces under gentle maps are.
@@ -108,7 +108,7 @@ mod tests {
                     let (d0, d1, d2) = (part.p1 - part.p0, part.p2 - part.p1, part.p3 - part.p2);
                     let way = [d0 * 3.0, (d1 - d0) * 3.0, d2 - d1 * 2.0 + d0];
                     for intervals in [9, 17] {
-                        let own = map.enclose(along(seg, [0.01 * i as f64, 0.01 * i as f64 + 0.15])).unwrap();
+                        let own = map.enclose(enclose_segment(seg, [0.01 * i as f64, 0.01 * i as f64 + 0.15])).unwrap();
                         let known = overview.resolves(part.p0, way, intervals, TOLERANCE);
                         assert!(!known || Enclosure::resolved(&own, intervals, 1.01 * TOLERANCE), "{name} {seg:?}");
                         (told, count) = (told + usize::from(known), count + 1);

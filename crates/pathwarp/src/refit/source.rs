@@ -3,7 +3,7 @@
 
 use super::limits::HIDDEN;
 use super::overview::Overview;
-use crate::map::{Enclosure, Jet, Map, RationalBezier, RationalDegree, along};
+use crate::map::{Enclosure, Jet, Map, RationalBezier, RationalDegree, enclose_segment};
 use crate::outline::Seg;
 use bezierfit::parts::{VANISHING_DERIVATIVE, fma, tangent_beside};
 use bezierfit::{BreakPoint, Lane, Lanes, NotFinite, Quotient, SlowSpots, Source};
@@ -311,7 +311,7 @@ impl Source for SourceCurve<'_> {
                 return Some(true);
             }
         }
-        let along = along(self.seg, between.map(|t| self.segment_param(t)));
+        let along = enclose_segment(self.seg, between.map(|t| self.segment_param(t)));
         if let Some(detail) = self.map.detail(Enclosure::area(&along)) {
             return Some(along[0].d[0].hypot(along[1].d[0]) <= 0.5 * intervals as f64 * detail);
         }

@@ -349,7 +349,13 @@ fn on_a_line(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(Strip, f64)> {
         let strip = if mitres == [Vec2::ZERO; 2] {
             Strip::Straight { p: part.p0, t, n: normal(t) }
         } else {
-            Strip::Normals { spine: Spine::new(Curve::Seg(seg)), table: ArcLength::of(&seg), mitres, even: 0.0, smooth }
+            Strip::Normals {
+                spine: Spine::new(Curve::Seg(seg)),
+                table: ArcLength::of_segment(&seg),
+                mitres,
+                even: 0.0,
+                smooth,
+            }
         };
         (strip, to - from)
     };
