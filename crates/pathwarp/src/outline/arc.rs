@@ -170,7 +170,7 @@ impl EllipticArc {
     }
 
     /// Returns half the width and height of the whole ellipse.
-    pub(super) fn reach(&self) -> Vec2 {
+    pub(super) fn half_size(&self) -> Vec2 {
         Vec2::new(self.a.x.hypot(self.b.x), self.a.y.hypot(self.b.y))
     }
 
@@ -225,7 +225,7 @@ impl EllipticArc {
     #[must_use]
     pub(crate) fn cubics_error(&self, n: usize) -> f64 {
         let (s, c) = (self.sweep / n as f64 / 4.0).sin_cos();
-        2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
+        ((2.0 / 27.0 * s.powi(6)) / (c * c)) * self.major()
     }
 
     /// Returns the number of cubics that stay within `tolerance` of the arc, at least one per quarter turn.
@@ -246,21 +246,10 @@ impl EllipticArc {
         (0..n).map(move |i| self.subsegment(i as f64 / n as f64, (i + 1) as f64 / n as f64).to_cubic())
     }
 
+    /// Returns `true` if every coordinate is below `limit` in magnitude.
     pub(super) fn is_finite(&self, limit: f64) -> bool {
-        [
-            self.p0.x,
-            self.p0.y,
-            self.p1.x,
-            self.p1.y,
-            self.center.x,
-            self.center.y,
-            self.a.x,
-            self.a.y,
-            self.b.x,
-            self.b.y,
-        ]
-        .iter()
-        .all(|v| v.abs() < limit)
+        let points = [self.p0, self.p1, self.center, self.a.to_point(), self.b.to_point()];
+        points.iter().all(|p| p.x.abs() < limit && p.y.abs() < limit)
     }
 }
 

@@ -50,6 +50,8 @@ impl Frame {
         with_units_per_px(units_per_px: [f64; 2]) => units_per_px: units_per_px;
         /// Sets the page.
         with_page(page: Rect) => page: Some(page);
+        /// Sets the baseline of the lettering to `y`.
+        on_baseline(y: f64) => baseline: Some(y);
     }
 
     /// Returns the length of a px along `axis`, in user units; along the diagonal, the root mean square, as in SVG.
@@ -61,12 +63,6 @@ impl Frame {
             Axis::Y => y,
             Axis::Diagonal => x.hypot(y) / std::f64::consts::SQRT_2,
         }
-    }
-
-    /// Sets the baseline of the lettering to `y`.
-    #[must_use]
-    pub fn on_baseline(self, y: f64) -> Self {
-        Self { baseline: Some(y), ..self }
     }
 
     /// Returns the length of 100 % along `axis`, in user units.

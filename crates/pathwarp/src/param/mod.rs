@@ -94,11 +94,9 @@ impl Args {
     /// Creates values from pairs of name and value.
     #[must_use]
     pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {
-        let mut a = Self::new();
-        for (n, v) in pairs {
-            a.push(n, *v);
-        }
-        a
+        let mut args = Self::new();
+        pairs.iter().for_each(|(name, value)| args.push(name, *value));
+        args
     }
 
     /// Returns the values given for `name`.
@@ -154,8 +152,8 @@ impl Args {
         mut read: impl FnMut(&str) -> Result<String, Error>,
     ) -> Result<(), Error> {
         for p in params {
-            let typed = self.typed.get(p.name).into_iter().flatten();
-            for name in typed.filter(|v| p.reads_file(v)) {
+            let named = self.typed.get(p.name).into_iter().flatten().filter(|v| p.reads_file(v));
+            for name in named {
                 if !self.files.contains_key(name) {
                     let text = read(name)?;
                     self.files.insert(name.clone(), NamedText { name: name.clone(), text });
@@ -163,14 +161,6 @@ impl Args {
             }
         }
         Ok(())
-    }
-
-    fn file(&self, name: &str) -> Option<&NamedText> {
-        self.files.get(name)
-    }
-
-    fn looked_up(&self, reference: &str) -> Option<&NamedPath> {
-        self.paths.get(reference)
     }
 }
 

@@ -39,33 +39,35 @@ impl Overview {
         let [columns, rows] = [width, height].map(|length| ((length / side).ceil() as usize).clamp(1, count));
         let mut out = Self { origin: area.origin(), side, columns, rows, cells: Vec::with_capacity(columns * rows) };
         for cell in 0..columns * rows {
-            let place = |origin: f64, i: usize| Enclosure::slope(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
-            let [x, y] = map.enclose([place(area.x0, cell % columns), place(area.y0, cell / columns)])?;
+            // The cell and one side around it, as the range of v in v + hτ and v − hτ.
+            let range = |origin: f64, i: usize| Enclosure::slope(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
+            let [x, y] = map.enclose([range(area.x0, cell % columns), range(area.y0, cell / columns)])?;
             out.cells.push(std::array::from_fn(|k| x.d[k] + y.d[k]));
         }
         Some(out)
     }
 
-    /// Returns `true` if samples at `intervals` equal steps are known to determine the image of a cubic p + aτ + bτ² + cτ³ to `by`.
-    pub(super) fn resolves(&self, p: Point, way: [Vec2; 3], intervals: usize, by: f64) -> bool {
+    /// Returns `true` if samples at `intervals` equal steps are known to determine the image of a cubic p + aτ + bτ² + cτ³, with these
+    /// coefficients a, b and c, within the tolerance.
+    pub(super) fn resolves(&self, p: Point, coefficients: [Vec2; 3], intervals: usize, tolerance: f64) -> bool {
         /// The binomials 5 over m − 1.
-        const WAYS: [f64; Enclosure::ORDER] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+        const BINOMIALS: [f64; Enclosure::ORDER] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
         let scale = 1.0 / self.side;
-        let [a, b, c] = way.map(|v| v.x.abs().max(v.y.abs()) * scale);
-        let place = (p - self.origin) * scale;
-        let inside = place.x >= 0.0 && place.y >= 0.0 && a + b + c <= 1.0;
-        let (column, row) = (place.x as usize, place.y as usize);
-        if !inside || column >= self.columns || row >= self.rows {
+        let [a, b, c] = coefficients.map(|v| v.x.abs().max(v.y.abs()) * scale);
+        let v = (p - self.origin) * scale;
+        let stays_near = v.x >= 0.0 && v.y >= 0.0 && a + b + c <= 1.0;
+        let (column, row) = (v.x as usize, v.y as usize);
+        if !stays_near || column >= self.columns || row >= self.rows {
             return false;
         }
-        let bend = (b / a).max((c / a).sqrt());
-        let (mut sum, mut bends) = (0.0, 1.0);
-        for (bound, ways) in self.cells[row * self.columns + column].iter().zip(WAYS).rev() {
+        let theta = (b / a).max((c / a).sqrt());
+        let (mut sum, mut power) = (0.0, 1.0);
+        for (bound, binomial) in self.cells[row * self.columns + column].iter().zip(BINOMIALS).rev() {
             // The sum of the terms from this one on, without the powers of `a` that all of them have.
-            sum = sum * a + bound * ways * bends;
-            bends *= bend;
+            sum = sum * a + bound * binomial * power;
+            power *= theta;
         }
-        Enclosure::LAST_SPREAD * sum * a <= by * (intervals as f64).powi(Enclosure::ORDER as i32)
+        Enclosure::LAST_SPREAD * sum * a <= tolerance * (intervals as f64).powi(Enclosure::ORDER as i32)
     }
 }
 

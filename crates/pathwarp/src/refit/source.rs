@@ -25,7 +25,7 @@ pub(super) struct SourceCurve<'a> {
     /// The derivative at the end: exact, whereas the power basis rounds it.
     last: Vec2,
     /// The length of the control polygon: the scale against which derivatives are judged.
-    size: f64,
+    pub(super) size: f64,
     /// The denominator of an arc in rational form, in the power basis. If set, `c` holds the numerators relative to the centre.
     w: Option<[f64; 3]>,
     /// Bounds for the map around the segment.
@@ -58,7 +58,7 @@ impl<'a> SourceCurve<'a> {
     }
 
     /// Returns this curve with an overview of its map.
-    pub(super) fn known_by(self, overview: Option<&'a Overview>) -> Self {
+    pub(super) fn with_overview(self, overview: Option<&'a Overview>) -> Self {
         Self { overview, ..self }
     }
 
@@ -74,7 +74,7 @@ impl<'a> SourceCurve<'a> {
     }
 
     /// Turns an arc of less than half a turn into a rational quadratic.
-    pub(super) fn make_rational(&mut self) {
+    fn make_rational(&mut self) {
         let Seg::Arc(a) = self.seg else { return };
         // At half a turn the weight of the middle control point is zero.
         if a.sweep.abs() > 3.0 {
@@ -82,9 +82,9 @@ impl<'a> SourceCurve<'a> {
         }
         // With h half the sweep and s = sin h, c = cos h, the control points in the axes of the middle angle are (c, −s),
         // (1, 0), (c, s), with weights 1, c, 1. Numerators and denominator are converted to the power basis.
-        let (h, mid) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
+        let (h, middle) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
         let (s, c) = h.sin_cos();
-        let (sm, cm) = mid.sin_cos();
+        let (sm, cm) = middle.sin_cos();
         let (u, v) = (a.a * cm + a.b * sm, a.b * cm - a.a * sm);
         self.c = [u * c - v * s, u * (2.0 * (1.0 - c)) + v * (2.0 * s), u * (2.0 * (c - 1.0)), Vec2::ZERO];
         self.w = Some([1.0, 2.0 * (c - 1.0), 2.0 * (1.0 - c)]);
@@ -152,14 +152,9 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// The length of the control polygon.
-    pub(super) fn size(&self) -> f64 {
-        self.size
-    }
-
     /// The source points at eight parameters.
     #[inline(always)]
-    pub(super) fn seg_points(&self, t: &Lane) -> Lanes {
+    fn seg_points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
         if let Seg::Arc(a) = self.seg {
             if let Some([w0, w1, w2]) = self.w {
@@ -229,15 +224,14 @@ impl<'a> SourceCurve<'a> {
     #[cold]
     fn one_sided_tangent(&self, t: f64, side: f64, jet: &Jet) -> Vec2 {
         if !matches!(self.seg, Seg::Arc(_)) {
-            let v = self.deriv(t);
-            let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
-            let b = self.c[3] * 6.0;
-            let small = (VANISHING_DERIVATIVE * self.size) * 10.0;
-            if v.hypot() <= small {
-                let w = if a.hypot() > small { a * side } else { b };
-                let d = jet.push(w);
-                let whole = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * w.hypot();
-                if d.hypot() > 1e-6 * whole {
+            let first = self.deriv(t);
+            let (second, third) = (self.c[2] * 2.0 + self.c[3] * (6.0 * t), self.c[3] * 6.0);
+            let negligible = (VANISHING_DERIVATIVE * self.size) * 10.0;
+            if first.hypot() <= negligible {
+                let v = if second.hypot() > negligible { second * side } else { third };
+                let d = jet.push(v);
+                let largest = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * v.hypot();
+                if d.hypot() > 1e-6 * largest {
                     return d / d.hypot();
                 }
             }
@@ -306,8 +300,9 @@ impl Source for SourceCurve<'_> {
         }
         if let (Some(overview), Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) = (self.overview, self.seg) {
             let ([_, c1, c2, c3], [t, h]) = (self.c, [between[0], between[1] - between[0]]);
-            let way = [(c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t) * h, (c2 + c3 * (3.0 * t)) * (h * h), c3 * (h * h * h)];
-            if overview.resolves(self.at(t), way, intervals, HIDDEN * tolerance) {
+            let coefficients =
+                [(c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t) * h, (c2 + c3 * (3.0 * t)) * (h * h), c3 * (h * h * h)];
+            if overview.resolves(self.at(t), coefficients, intervals, HIDDEN * tolerance) {
                 return Some(true);
             }
         }
