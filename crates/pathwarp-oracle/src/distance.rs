@@ -110,7 +110,7 @@ fn steps(positions: &[Position], points: &[Point]) -> Vec<Vec2> {
     (0..points.len().saturating_sub(1)).map(step).collect()
 }
 
-/// Estimates the distance of an arc from its chord: its height is an eighth of the chord times the turn to the next chord. The first and the
+/// Estimates the distance of an arc from its chord: an eighth of the chord times the turn to the next chord. The first and the
 /// last chord of a piece may hide a turn back, after which they are short.
 fn bulge(steps: &[Vec2], k: usize) -> f64 {
     let chord = steps[k];

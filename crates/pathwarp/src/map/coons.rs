@@ -152,14 +152,13 @@ impl Coons {
     /// even steps along an axis between the same ends. The inverse then has a closed form.
     fn kept_lines(&self) -> Option<bool> {
         let s = self.sides();
-        [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)].into_iter().find_map(
-            |(upright, pace, a, b)| {
-                let along = |p: Point| if upright { p.x } else { p.y };
-                let ([a0, a1], [b0, b1]) = (a.ends().map(along), b.ends().map(along));
-                let same = (a0 - b0).abs().max((a1 - b1).abs()) <= SAME * (a1 - a0).abs();
-                (same && a.pace() == pace && b.pace() == pace).then_some(upright)
-            },
-        )
+        let pairs = [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)];
+        pairs.into_iter().find_map(|(upright, pace, a, b)| {
+            let along = |p: Point| if upright { p.x } else { p.y };
+            let ([a0, a1], [b0, b1]) = (a.ends().map(along), b.ends().map(along));
+            let same_ends = (a0 - b0).abs().max((a1 - b1).abs()) <= SAME * (a1 - a0).abs();
+            (same_ends && a.pace() == pace && b.pace() == pace).then_some(upright)
+        })
     }
 
     /// The parameters of the creases: of u for `upright` lines, of v for level ones.

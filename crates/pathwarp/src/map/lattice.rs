@@ -27,8 +27,7 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice that is the identity: `degree` along x and y (at least 1), `cells` Bézier pieces along x and y (1 for a Bézier
-    /// lattice).
+    /// The lattice that is the identity: `degree` along x and y (at least 1), `cells` Bézier pieces along x and y (1 for a Bézier lattice).
     #[must_use]
     pub fn regular(region: Rect, degree: [usize; 2], cells: [usize; 2]) -> Self {
         let (degree, cells) = (degree.map(|d| d.max(1)), cells.map(|c| c.max(1)));

@@ -86,8 +86,7 @@ impl NewtonInverse {
     /// `area` count up to `margin` times its diagonal away.
     #[must_use]
     pub fn over(map: Arc<dyn Map>, area: Rect, margin: f64) -> Self {
-        const PIECES: [usize; 2] = [6, 6];
-        Self::new(map, area, margin * area.width().hypot(area.height()), PIECES)
+        Self::new(map, area, margin * area.width().hypot(area.height()), [6, 6])
     }
 
     /// The inverse of `map` over `domain`. Answers up to `margin` user units outside it count. `pieces` is the number of smooth
@@ -129,14 +128,13 @@ impl NewtonInverse {
         let mut starts = Vec::with_capacity(centers.len());
         let mut boxes = Vec::with_capacity(centers.len());
         for (point, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
-            let half = Vec2::new(
-                0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
-                0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
-            );
+            let [x, y] = [(j.dx.x, j.dy.x), (j.dx.y, j.dy.y)].map(|(a, b)| a.abs() * cell.x + b.abs() * cell.y);
+            let half = Vec2::new(0.75 * x, 0.75 * y);
             starts.push(StartingPoint { point: *point, jet: *j, in_core: core.contains(*point) });
             boxes.push(Rect::from_points(j.p - half, j.p + half));
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
+        let largest = [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(f64::abs).into_iter().fold(1e-300, f64::max);
         let buckets_per_side = nx.max(ny);
         let orientation = map.jet(core.center()).det().signum();
         let Cost { work, jet: jet_work, .. } = map.cost();
@@ -153,9 +151,7 @@ impl NewtonInverse {
             bounds,
             buckets_per_side,
             lipschitz: 2.0 * lipschitz,
-            rounding: 64.0
-                * f64::EPSILON
-                * [bounds.x0, bounds.y0, bounds.x1, bounds.y1].iter().fold(1e-300, |a: f64, v| a.max(v.abs())),
+            rounding: 64.0 * f64::EPSILON * largest,
             starts: starts.into(),
             cell,
         };

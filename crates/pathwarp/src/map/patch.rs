@@ -119,8 +119,7 @@ impl Patch {
         self.w.is_empty()
     }
 
-    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the
-    /// box.
+    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the box.
     pub(crate) fn has_edge(&self) -> bool {
         !self.is_polynomial() && (self.may_vanish || !self.bounded)
     }

@@ -86,7 +86,7 @@ macro_rules! operators {
 pub(super) use operators;
 
 /// Implements [`Real`] for `f64` by the functions that `f64` has by the same names.
-macro_rules! own_functions {
+macro_rules! std_functions {
     ($($name:ident($($argument:ident: $type:ty)?);)*) => {
         impl Real for f64 {
             #[inline]
@@ -100,7 +100,7 @@ macro_rules! own_functions {
         }
     };
 }
-own_functions! { sqrt(); sin(); cos(); exp(); ln(); atan2(x: f64); powi(n: i32); powf(n: f64); hypot(y: f64); }
+std_functions! { sqrt(); sin(); cos(); exp(); ln(); atan2(x: f64); powi(n: i32); powf(n: f64); hypot(y: f64); }
 
 /// A number with its derivatives with respect to x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,8 +119,8 @@ impl Dual {
     fn chain(self, value: f64, slope: f64) -> Self {
         if slope.is_infinite() {
             // Where both derivatives vanish, so does the result, even if the slope is infinite, as at the tip of √(x² + y²).
-            let by = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
-            return Self { v: value, x: by(self.x), y: by(self.y) };
+            let product = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
+            return Self { v: value, x: product(self.x), y: product(self.y) };
         }
         Self { v: value, x: self.x * slope, y: self.y * slope }
     }
@@ -204,10 +204,10 @@ impl Real for Dual {
         self.chain(self.v.powf(n), if n == 0.0 { 0.0 } else { n * self.v.powf(n - 1.0) })
     }
     #[inline]
-    fn hypot(self, o: Self) -> Self {
-        let r = self.v.hypot(o.v);
+    fn hypot(self, y: Self) -> Self {
+        let r = self.v.hypot(y.v);
         // The tip of the cone has no derivative. 0 is the mean over all directions and keeps the result finite.
-        let (a, b) = if r > 0.0 { (self.v / r, o.v / r) } else { (0.0, 0.0) };
-        Self { v: r, x: a * self.x + b * o.x, y: a * self.y + b * o.y }
+        let (a, b) = if r > 0.0 { (self.v / r, y.v / r) } else { (0.0, 0.0) };
+        Self { v: r, x: a * self.x + b * y.x, y: a * self.y + b * y.y }
     }
 }

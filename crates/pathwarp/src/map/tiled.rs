@@ -51,13 +51,13 @@ impl Tiled {
         if !fits(&cuts, rows.len()) || !rows.iter().all(|r| fits(&r.cuts, r.maps.len())) {
             return None;
         }
-        match &rows[..] {
-            [TileRow { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
-            _ => {
-                let work = rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max);
-                Some(Arc::new(Self { region, cuts, rows, work }))
-            }
+        if let [TileRow { maps, .. }] = &rows[..]
+            && let [only] = &maps[..]
+        {
+            return Some(Arc::clone(only));
         }
+        let work = rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max);
+        Some(Arc::new(Self { region, cuts, rows, work }))
     }
 
     /// The row and column of the tile at `p`.
@@ -117,16 +117,12 @@ impl Map for Tiled {
             out.push(Crease::kink(Level::Line { a: 0.0, b: 1.0, c: -y }));
         }
         for (j, row) in self.rows.iter().enumerate() {
-            let last = row.maps.len() - 1;
-            let within = Rect {
-                x0: self.extended_rect(j, 0).x0,
-                x1: self.extended_rect(j, last).x1,
-                ..self.extended_rect(j, 0)
-            };
-            // A single row has no lower or upper end: a whole line is its crease.
+            let within = Rect { x1: self.extended_rect(j, row.maps.len() - 1).x1, ..self.extended_rect(j, 0) };
             for x in &row.cuts {
                 let (a, b, c) = (1.0, 0.0, -x);
-                out.push(Crease::kink(if self.cuts.is_empty() {
+                // A single row has no lower or upper end: a whole line is its crease.
+                let is_line = self.cuts.is_empty();
+                out.push(Crease::kink(if is_line {
                     Level::Line { a, b, c }
                 } else {
                     Level::Stretch { a, b, c, within }

@@ -5,8 +5,7 @@
 //! [`Builder`].
 //!
 //! [`BezPath`] has no arcs. Converting a circle to cubics before it is warped would take part of the tolerance, or many nodes.
-//! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was
-//! drawn.
+//! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was drawn.
 
 mod arc;
 mod stroke;

@@ -1,5 +1,4 @@
-//! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`,
-//! `spiral:turns=3,inner=20mm,outer=80mm`.
+//! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`, `spiral:turns=3,inner=20mm,outer=80mm`.
 //!
 //! The lengths `cx` and `cy` give the centre, which is the frame's by default. Their percentages count from the left and top of the
 //! frame; percentages of radii refer to its width; `%page` refers to the page instead. Angles are clockwise on the screen from the

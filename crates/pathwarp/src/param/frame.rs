@@ -10,8 +10,7 @@ use std::sync::Arc;
 pub struct Frame {
     /// The box.
     pub rect: Rect,
-    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve put it on the curve by
-    /// default.
+    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve put it on the curve by default.
     pub baseline: Option<f64>,
     /// User units per px along x and y: 1 unless the drawing's `viewBox` scales it. Lengths with units refer to px.
     pub units_per_px: [f64; 2],

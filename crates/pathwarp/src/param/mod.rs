@@ -135,9 +135,9 @@ impl Args {
 
     /// Returns the number of segments of all paths, looked up or typed.
     pub(crate) fn path_segments(&self) -> usize {
-        /// Length of texts that are counted; shorter ones have few segments.
-        const LONG: usize = 2000;
-        let typed = self.typed.values().flatten().filter(|text| text.len() > LONG && is_inline(text));
+        /// The length of texts, in bytes, up to which their few segments are not counted.
+        const SHORT: usize = 2000;
+        let typed = self.typed.values().flatten().filter(|text| text.len() > SHORT && is_inline(text));
         let typed: usize = typed.map(|text| Outline::from_svg_lossy(text).segs().count()).sum();
         self.paths.values().map(|p| p.outline.segs().count()).sum::<usize>() + typed
     }

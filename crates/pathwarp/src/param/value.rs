@@ -118,21 +118,25 @@ pub enum LengthUnit {
 
 const PX_PER_INCH: f64 = 96.0;
 
+/// The suffixes of the units, and the lengths of absolute ones in px.
+const UNITS: [(&str, LengthUnit, Option<f64>); 10] = [
+    ("", LengthUnit::User, None),
+    ("%", LengthUnit::Percent, None),
+    ("px", LengthUnit::Px, Some(1.0)),
+    ("mm", LengthUnit::Mm, Some(PX_PER_INCH / 25.4)),
+    ("cm", LengthUnit::Cm, Some(PX_PER_INCH / 2.54)),
+    ("m", LengthUnit::M, Some(PX_PER_INCH / 0.0254)),
+    ("in", LengthUnit::In, Some(PX_PER_INCH)),
+    ("pt", LengthUnit::Pt, Some(PX_PER_INCH / 72.0)),
+    ("pc", LengthUnit::Pc, Some(PX_PER_INCH / 6.0)),
+    ("q", LengthUnit::Q, Some(PX_PER_INCH / 101.6)),
+];
+
 impl LengthUnit {
     /// Returns the length of an absolute unit in px; `None` for user units and percentages.
     #[must_use]
     pub fn px(self) -> Option<f64> {
-        Some(match self {
-            Self::User | Self::Percent => return None,
-            Self::Px => 1.0,
-            Self::In => PX_PER_INCH,
-            Self::Mm => PX_PER_INCH / 25.4,
-            Self::Cm => PX_PER_INCH / 2.54,
-            Self::M => PX_PER_INCH / 0.0254,
-            Self::Q => PX_PER_INCH / 101.6,
-            Self::Pt => PX_PER_INCH / 72.0,
-            Self::Pc => PX_PER_INCH / 6.0,
-        })
+        UNITS.iter().find(|(_, unit, _)| *unit == self)?.2
     }
 }
 
@@ -164,20 +168,10 @@ impl FromStr for Length {
 /// Reads a length as typed.
 fn parse(text: &str) -> Result<Length, ValueError> {
     let (value, unit) = split(text).ok_or(ValueError::NotALength)?;
-    let unit = match unit {
-        "" => LengthUnit::User,
-        "%" => LengthUnit::Percent,
-        "px" => LengthUnit::Px,
-        "mm" => LengthUnit::Mm,
-        "cm" => LengthUnit::Cm,
-        "m" => LengthUnit::M,
-        "in" => LengthUnit::In,
-        "pt" => LengthUnit::Pt,
-        "pc" => LengthUnit::Pc,
-        "q" | "Q" => LengthUnit::Q,
-        _ => return Err(ValueError::UnknownLengthUnit(unit.to_owned())),
-    };
-    Ok(Length { value, unit })
+    let is_unit = |suffix: &str| suffix == unit || (suffix, unit) == ("q", "Q");
+    let known = UNITS.iter().find(|(suffix, ..)| is_unit(suffix));
+    let (_, unit, _) = known.ok_or_else(|| ValueError::UnknownLengthUnit(unit.to_owned()))?;
+    Ok(Length { value, unit: *unit })
 }
 
 /// Text that is not a value of the expected kind. Messages continue a sentence that begins with the text.

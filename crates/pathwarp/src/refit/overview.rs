@@ -27,10 +27,8 @@ impl Overview {
     /// The overview for some segments. `None` if they are few, or if the map does not enclose curves.
     pub(super) fn new(map: &dyn Map, segs: &[Seg]) -> Option<Self> {
         let count = segs.len() / SEGMENTS;
-        let area = segs
-            .iter()
-            .skip(1)
-            .fold(Rect::from_points(segs.first()?.start(), segs.first()?.end()), |area, seg| area.union_pt(seg.end()));
+        let ends = segs.iter().map(|seg| Rect::from_points(seg.start(), seg.end()));
+        let area = ends.reduce(|a, b| a.union(b))?;
         let (width, height) = (area.width(), area.height());
         if count == 0 || map.detail(area).is_some() {
             return None;

@@ -16,8 +16,7 @@ pub struct SharedEdges {
     shared: Vec<(u64, f64)>,
     /// Sorted hashes of the nodes at which contours of different tolerances meet, each with the smallest tolerance.
     nodes: Vec<(u64, f64)>,
-    /// Sorted hashes of the nodes on shared segments at which other than two segments meet, counting a segment of several contours
-    /// once.
+    /// Sorted hashes of the nodes on shared segments at which other than two segments meet, counting a segment of several contours once.
     junctions: Vec<u64>,
     /// Sorted hashes of the nodes on shared segments at which closed contours begin.
     starts: Vec<u64>,

@@ -336,8 +336,7 @@ impl Source for SourceCurve<'_> {
     }
 }
 
-/// Returns the segment in the direction in which every copy of it is fitted, and `true` if that is the reverse of the given
-/// one.
+/// Returns the segment in the direction in which every copy of it is fitted, and `true` if that is the reverse of the given one.
 ///
 /// Two shapes that share an edge run along it in opposite directions. Fitting one of them and mirroring the result gives
 /// both the same curves to the last bit.

@@ -1,18 +1,16 @@
 //! Free-form deformation of degree 1×n with a closed-form inverse, by the formula at [`Birational`].
 //!
-//! The control points of the rows are free. The weights make both rows monoids that are followed by the same line L(t), which turns
-//! about the point A in which the lines through the first and through the last pair of control points meet (T. W. Sederberg,
-//! R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*, CAGD 44, 2016). Then t and s of a point X have closed
-//! forms:
+//! The control points of the rows are free. The weights make both rows monoids that are followed by the same line L(t), which turns about
+//! the point A in which the lines through the first and through the last pair of control points meet (T. W. Sederberg, R. N. Goldman, X.
+//! Wang, *Birational 2D free-form deformation of degree 1×n*, CAGD 44, 2016). Then t and s of a point X have closed forms:
 //!
 //! > t = ℓ₀·X / (ℓ₀·X − ℓ₁·X),  s = f₀(X) / (f₀(X) − f₁(X))
 //!
 //! with f₀, f₁ the implicit equations of the rows (`Monoid::implicit`). The code computes s from the rows at t: the same number
 //! with less rounding. Lines of constant t stay straight lines.
 //!
-//! **Normalisation of the weights.** Scaling ℓ₁ multiplies wᵢ by gⁱ in both rows, which changes only the speed of t; a common
-//! factor of a row changes nothing. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a
-//! rectangle gives the identity.
+//! **Normalisation of the weights.** Scaling ℓ₁ multiplies wᵢ by gⁱ in both rows, which changes only the speed of t; a common factor of a
+//! row changes nothing. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a rectangle gives the identity.
 //!
 //! **B-spline rows** are cut into Bézier pieces by knot insertion, each with a point A of its own. Adjacent pieces share the line between
 //! them and its points: the rows of a piece start with the weights with which the rows of the previous piece end. Speeds are chosen so
@@ -44,10 +42,9 @@ pub enum Rows {
 ///
 /// > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
 ///
-/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points,
-/// such that s and t of a point have closed forms (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of
-/// degree 1×n*, CAGD 44, 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases
-/// between them.
+/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points, such that s
+/// and t of a point have closed forms (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*, CAGD
+/// 44, 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases between them.
 ///
 /// ```
 /// use pathwarp::kurbo::{Point, Rect};
@@ -123,18 +120,19 @@ impl Birational {
                 [p.x * w, p.y * w, w]
             };
             let (n, r) = (pair[0].points.len() - 1, region);
-            let (rect, degree, net): (_, _, Vec<[f64; 3]>) = match rows {
-                Rows::LeftRight => (
-                    Rect::new(r.x0, joint(r.y0, r.height(), k), r.x1, joint(r.y0, r.height(), k + 1)),
-                    [1, n],
-                    (0..=n).flat_map(|j| [homogeneous(0, j), homogeneous(1, j)]).collect(),
-                ),
-                Rows::TopBottom => (
-                    Rect::new(joint(r.x0, r.width(), k), r.y0, joint(r.x0, r.width(), k + 1), r.y1),
-                    [n, 1],
-                    [0, 1].iter().flat_map(|&s| (0..=n).map(move |j| (s, j))).map(|(s, j)| homogeneous(s, j)).collect(),
-                ),
+            let (rect, degree) = match rows {
+                Rows::LeftRight => {
+                    (Rect::new(r.x0, joint(r.y0, r.height(), k), r.x1, joint(r.y0, r.height(), k + 1)), [1, n])
+                }
+                Rows::TopBottom => {
+                    (Rect::new(joint(r.x0, r.width(), k), r.y0, joint(r.x0, r.width(), k + 1), r.y1), [n, 1])
+                }
             };
+            let point = |i: usize| match rows {
+                Rows::LeftRight => homogeneous(i % 2, i / 2),
+                Rows::TopBottom => homogeneous(i / (n + 1), i % (n + 1)),
+            };
+            let net: Vec<[f64; 3]> = (0..2 * (n + 1)).map(point).collect();
             BirationalPiece { patch: Arc::new(Patch::rational(rect, degree, &net)), rows: pair }
         };
         Self { region, rows, pieces: monoids.into_iter().enumerate().map(piece).collect() }
@@ -313,8 +311,7 @@ impl BirationalInverse {
     /// The parameters (s, t) of a point by the rows of one piece.
     fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
         let (alpha, beta) = (-rows[0].last.value_at(x, y), rows[0].first.value_at(x, y));
-        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
-        // through (x, y).
+        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line through (x, y).
         let relative = |m: &Monoid| {
             // Relative to a control point, so that the sums are not differences of large numbers.
             let o = m.points[0];
@@ -491,15 +488,9 @@ fn general_rows(
             let distances = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
             for (is_off_end, d, end) in distances {
                 if is_off_end && ((d <= ON_LINE && !allow_poles) || d.abs() <= ON_LINE) {
-                    let j = if end == "first" { 0 } else { n };
-                    return Err(GeometryError::WrongSide {
-                        path: name.clone(),
-                        which: i + 1,
-                        at: *p,
-                        end,
-                        line: [points[0][j], points[1][j]],
-                        on: d.abs() <= ON_LINE,
-                    });
+                    let (path, which, at, on) = (name.clone(), i + 1, *p, d.abs() <= ON_LINE);
+                    let line = points.each_ref().map(|row| row[if end == "first" { 0 } else { n }]);
+                    return Err(GeometryError::WrongSide { path, which, at, end, line, on });
                 }
             }
         }
