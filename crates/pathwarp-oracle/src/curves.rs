@@ -1,6 +1,6 @@
 //! Path data as curves: svgtypes parses commands; arcs follow the formulas of SVG's appendix. No code is shared with the program's reader.
 
-use kurbo::{BezPath, CubicBez, PathSeg, Point, Vec2};
+use kurbo::{BezPath, PathSeg, Point, Vec2};
 use std::f64::consts::TAU;
 use svgtypes::{PathParser, PathSegment};
 
@@ -88,14 +88,8 @@ impl From<PathSeg> for Curve {
         match seg {
             PathSeg::Line(l) => Self::Line([l.p0, l.p1]),
             PathSeg::Quad(q) => Self::Quad([q.p0, q.p1, q.p2]),
-            PathSeg::Cubic(c) => Self::from(c),
+            PathSeg::Cubic(c) => Self::Cubic([c.p0, c.p1, c.p2, c.p3]),
         }
-    }
-}
-
-impl From<CubicBez> for Curve {
-    fn from(c: CubicBez) -> Self {
-        Self::Cubic([c.p0, c.p1, c.p2, c.p3])
     }
 }
 
@@ -122,7 +116,7 @@ mod outlines {
             vec![match *self {
                 Seg::Line(l) => PathSeg::Line(l).into(),
                 Seg::Quad(q) => PathSeg::Quad(q).into(),
-                Seg::Cubic(c) => c.into(),
+                Seg::Cubic(c) => PathSeg::Cubic(c).into(),
                 Seg::Arc(a) => {
                     let at = |angle: f64| a.center + a.a * angle.cos() + a.b * angle.sin();
                     let ends = [at(a.start), at(a.start + a.sweep)];

@@ -101,12 +101,11 @@ impl fmt::Debug for Gathered<'_> {
 /// Results by the bits of their points.
 type Cache<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
 
-/// The key of a point: the bits of its coordinates.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Key(u64, u64);
+/// The bits of a point's coordinates.
+type Key = (u64, u64);
 
 fn key(p: Point) -> Key {
-    Key(p.x.to_bits(), p.y.to_bits())
+    (p.x.to_bits(), p.y.to_bits())
 }
 
 /// A hash of coordinates. The points are computed, so they cannot be chosen to collide.
@@ -186,28 +185,8 @@ fn recall<T: Copy + Default>(
     }
 }
 
-/// The jet at a point, by a batch of one.
-pub(super) fn single_jet(map: &impl Map, p: Point) -> Jet {
-    let mut out = [Jet::UNDEFINED];
-    map.jets(&[p], &mut out);
-    out[0]
-}
-
-/// The image of a point, by a batch of one.
-pub(super) fn single_point(map: &impl Map, p: Point) -> Point {
-    let mut out = [p];
-    map.points(&[p], &mut out);
-    out[0]
-}
-
 impl Map for Gathered<'_> {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        single_point(self, p)
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         recall(&self.jets, ps, out, |ps, out| self.map.jets(ps, out));

@@ -1,6 +1,5 @@
 //! Maps whose values come from another program or from a function of another language, many points at a time.
 
-use super::batches::{single_jet, single_point};
 use super::{Batches, Cost, Creases, Images, Jet, Map};
 use crate::Error;
 use kurbo::{Point, Rect, Vec2};
@@ -167,13 +166,7 @@ fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
 }
 
 impl Map for Called {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        single_point(self, p)
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         if self.abilities.jacobian {
@@ -289,13 +282,7 @@ impl OneSided {
 }
 
 impl Map for OneSided {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        self.map.point(self.off_creases(p))
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         let ps: Vec<Point> = ps.iter().map(|p| self.off_creases(*p)).collect();
@@ -329,13 +316,7 @@ impl Batches for OneSided {}
 struct Inverse(Called);
 
 impl Map for Inverse {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        single_point(self, p)
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         let mut sources = vec![Point::ORIGIN; ps.len()];

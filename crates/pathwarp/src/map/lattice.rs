@@ -394,7 +394,7 @@ impl Map for LatticeMap {
         let mut all: Vec<Point> = self.cell(q).is_none().then_some(q).into_iter().collect();
         for (c, patch) in self.patches.iter().enumerate() {
             // Points on a border count on both its sides.
-            let ([nx, ny], b) = (self.cells, patch.rect().inflate(self.margin(), self.margin()));
+            let ([nx, ny], b) = (self.cells, patch.rect.inflate(self.margin(), self.margin()));
             let (i, j) = (c % nx, c / nx);
             let in_range = |v: f64, lo: f64, hi: f64, index: usize, n: usize| {
                 (v >= lo || (self.extended && index == 0)) && (v <= hi || (self.extended && index + 1 == n))
@@ -471,7 +471,7 @@ impl Map for LatticeInverse {
         let cell = self.map.cell(found.p)?;
         let patch = self.map.patches[cell].clone();
         // A margin for parts that end on the border of the cell.
-        let (domain, margin) = (patch.rect(), 1e-3 * (patch.rect().width() + patch.rect().height()));
+        let (domain, margin) = (patch.rect, 1e-3 * (patch.rect.width() + patch.rect.height()));
         Some(Arc::new(NewtonInverse::new(patch, domain, margin, [1, 1])))
     }
 

@@ -89,6 +89,22 @@ macro_rules! forward {
     };
 }
 
+/// Implements [`Map::jet`] and [`Map::point`] by batches of one point.
+macro_rules! single_by_batch {
+    () => {
+        fn jet(&self, p: Point) -> Jet {
+            let mut out = [Jet::UNDEFINED];
+            self.jets(&[p], &mut out);
+            out[0]
+        }
+        fn point(&self, p: Point) -> Point {
+            let mut out = [p];
+            self.points(&[p], &mut out);
+            out[0]
+        }
+    };
+}
+
 pub(crate) mod batches;
 mod bicubic;
 mod birational;

@@ -23,7 +23,8 @@ const NOISE: f64 = 1e-15;
 /// A rational tensor-product map of the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Patch {
-    rect: Rect,
+    /// The box over which s and t run from 0 to 1.
+    pub(crate) rect: Rect,
     /// u = (x − center.x)·scale.x, v = (y − center.y)·scale.y.
     center: Point,
     scale: Vec2,
@@ -105,12 +106,6 @@ impl Patch {
     #[must_use]
     pub(crate) fn bounded(self) -> Self {
         Self { bounded: true, ..self }
-    }
-
-    /// The box over which s and t run from 0 to 1.
-    #[must_use]
-    pub(crate) fn rect(&self) -> Rect {
-        self.rect
     }
 
     /// Returns `true` if the denominator is constant.

@@ -155,6 +155,18 @@ impl Neg for Dual {
     }
 }
 
+/// Implements functions of a dual number by their values and slopes at its value.
+macro_rules! chained {
+    ($($name:ident($v:ident $(, $n:ident: $type:ty)?) => $value_and_slope:expr;)*) => {$(
+        #[inline]
+        fn $name(self $(, $n: $type)?) -> Self {
+            let $v = self.v;
+            let (value, slope) = $value_and_slope;
+            self.chain(value, slope)
+        }
+    )*};
+}
+
 impl Real for Dual {
     #[inline]
     fn value(self) -> f64 {
@@ -165,43 +177,20 @@ impl Real for Dual {
         let (dx, dy) = (jet.push((x.x, y.x).into()), jet.push((x.y, y.y).into()));
         (Self { v: jet.p.x, x: dx.x, y: dy.x }, Self { v: jet.p.y, x: dx.y, y: dy.y })
     }
-    #[inline]
-    fn sqrt(self) -> Self {
-        let r = self.v.sqrt();
-        self.chain(r, 0.5 / r)
-    }
-    #[inline]
-    fn sin(self) -> Self {
-        let (s, c) = self.v.sin_cos();
-        self.chain(s, c)
-    }
-    #[inline]
-    fn cos(self) -> Self {
-        let (s, c) = self.v.sin_cos();
-        self.chain(c, -s)
-    }
-    #[inline]
-    fn exp(self) -> Self {
-        let e = self.v.exp();
-        self.chain(e, e)
-    }
-    #[inline]
-    fn ln(self) -> Self {
-        self.chain(self.v.ln(), 1.0 / self.v)
+    chained! {
+        sqrt(v) => { let r = v.sqrt(); (r, 0.5 / r) };
+        sin(v) => (v.sin(), v.cos());
+        cos(v) => (v.cos(), -v.sin());
+        exp(v) => { let e = v.exp(); (e, e) };
+        ln(v) => (v.ln(), 1.0 / v);
+        powi(v, n: i32) => (v.powi(n), if n == 0 { 0.0 } else { f64::from(n) * v.powi(n - 1) });
+        powf(v, n: f64) => (v.powf(n), if n == 0.0 { 0.0 } else { n * v.powf(n - 1.0) });
     }
     #[inline]
     fn atan2(self, x: Self) -> Self {
         let r2 = self.v * self.v + x.v * x.v;
         let (a, b) = (x.v / r2, -self.v / r2);
         Self { v: self.v.atan2(x.v), x: a * self.x + b * x.x, y: a * self.y + b * x.y }
-    }
-    #[inline]
-    fn powi(self, n: i32) -> Self {
-        self.chain(self.v.powi(n), if n == 0 { 0.0 } else { f64::from(n) * self.v.powi(n - 1) })
-    }
-    #[inline]
-    fn powf(self, n: f64) -> Self {
-        self.chain(self.v.powf(n), if n == 0.0 { 0.0 } else { n * self.v.powf(n - 1.0) })
     }
     #[inline]
     fn hypot(self, y: Self) -> Self {

@@ -7,7 +7,7 @@ use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
 use super::options::Options;
 use super::repeats::{Carried, CarriedWay, Repeats, Shapes, Site, Way};
 use super::segment::{Part, SegmentFitter};
-use super::source::{self, SourceCurve};
+use super::source::SourceCurve;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
 use bezierfit::parts::{
@@ -259,12 +259,9 @@ impl<'a> Merger<'a> {
         let options = self.fitter.options;
         let source = part.source(self.fitter, &part.seg);
         let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
-        let mut slow = source::slow_spots(&part.seg);
+        let slow = source.slow_spots();
         if source.size == 0.0 || !(alone || slow.all().is_empty()) {
             return None;
-        }
-        if source.is_rational() {
-            slow = slow.map(|t| source.param(t));
         }
         let samples = per_segment(self.fitter.degree.is_some());
         let may_hide_features = |range: [f64; 2], samples: usize| {

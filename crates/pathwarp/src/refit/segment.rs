@@ -83,10 +83,7 @@ impl SegmentFitter<'_> {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
             return Ok(());
         }
-        let mut slow = source::slow_spots(seg);
-        if source.is_rational() {
-            slow = slow.map(|t| source.param(t));
-        }
+        let slow = source.slow_spots();
         let from = source.end_with(0.0, first.p, first);
         let to = source.end_with(1.0, last.p, last);
         let left = self.options.budget.left() / self.work;

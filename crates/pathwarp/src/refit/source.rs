@@ -102,11 +102,6 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// Returns `true` if the source has a denominator.
-    pub(super) fn is_rational(&self) -> bool {
-        self.w.is_some()
-    }
-
     fn deriv_rational(&self, t: f64) -> Vec2 {
         let [c0, c1, c2, _] = self.c;
         let Some([w0, w1, w2]) = self.w else { return Vec2::ZERO };
@@ -115,8 +110,19 @@ impl<'a> SourceCurve<'a> {
         (dn * w - n * dw) / (w * w)
     }
 
+    /// The slow spots, as parameters of this curve.
+    pub(super) fn slow_spots(&self) -> SlowSpots {
+        let spots = match self.seg {
+            Seg::Line(_) => return SlowSpots::default(),
+            Seg::Quad(s) => SlowSpots::of_quad(s),
+            Seg::Cubic(s) => SlowSpots::of_cubic(s),
+            Seg::Arc(s) => SlowSpots::of_arc([s.a, s.b], s.start, s.sweep),
+        };
+        if self.w.is_some() { spots.map(|t| self.param(t)) } else { spots }
+    }
+
     /// Converts a parameter of the segment to one of this curve.
-    pub(super) fn param(&self, t: f64) -> f64 {
+    fn param(&self, t: f64) -> f64 {
         match (self.seg, self.w) {
             (Seg::Arc(a), Some(_)) => {
                 // The tangent of half the angle from the middle is linear in the rational parameter.
@@ -124,17 +130,6 @@ impl<'a> SourceCurve<'a> {
                 0.5 + 0.5 * (h * (2.0 * t - 1.0)).tan() / h.tan()
             }
             _ => t,
-        }
-    }
-
-    /// The degree of the source as a quotient of polynomials, and `true` if it has a denominator. `None` for an arc that is
-    /// not in rational form.
-    fn seg_degree(&self) -> Option<(usize, bool)> {
-        match self.seg {
-            Seg::Line(_) => Some((1, false)),
-            Seg::Quad(_) => Some((2, false)),
-            Seg::Cubic(_) => Some((3, false)),
-            Seg::Arc(_) => self.w.map(|_| (2, true)),
         }
     }
 
@@ -265,7 +260,13 @@ impl Source for SourceCurve<'_> {
     }
 
     fn quotient(&self) -> Option<Quotient> {
-        let (degree, rational) = self.seg_degree()?;
+        let (degree, rational) = match self.seg {
+            Seg::Line(_) => (1, false),
+            Seg::Quad(_) => (2, false),
+            Seg::Cubic(_) => (3, false),
+            // Only in rational form is an arc a quotient of polynomials.
+            Seg::Arc(_) => self.w.map(|_| (2, true))?,
+        };
         if let Some(map) = self.degree {
             let degree = map.degree * degree;
             return Some(Quotient {
@@ -360,17 +361,6 @@ pub(super) fn is_backwards(seg: &Seg) -> bool {
 #[inline]
 fn compare(a: Point, b: Point) -> Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-}
-
-/// The slow spots of `seg`.
-#[inline]
-pub(super) fn slow_spots(seg: &Seg) -> SlowSpots {
-    match seg {
-        Seg::Line(_) => SlowSpots::default(),
-        Seg::Quad(s) => SlowSpots::of_quad(s),
-        Seg::Cubic(s) => SlowSpots::of_cubic(s),
-        Seg::Arc(s) => SlowSpots::of_arc([s.a, s.b], s.start, s.sweep),
-    }
 }
 
 #[cfg(test)]

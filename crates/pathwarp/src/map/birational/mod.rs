@@ -187,7 +187,7 @@ impl Birational {
     pub fn kink(&self) -> Option<(f64, Point)> {
         const SAMPLES: usize = 16;
         let turn = |w: &[BirationalPiece], n: usize| {
-            let (r, share) = (w[1].patch.rect(), n as f64 / SAMPLES as f64);
+            let (r, share) = (w[1].patch.rect, n as f64 / SAMPLES as f64);
             let (p, along): (Point, fn(&Jet) -> Vec2) = match self.rows {
                 Rows::LeftRight => (Point::new(r.x0 + r.width() * share, r.y0), |j| j.dy),
                 Rows::TopBottom => (Point::new(r.x0, r.y0 + r.height() * share), |j| j.dx),
@@ -443,7 +443,7 @@ impl Formula for BirationalInverse {
         }
         let k = self.piece(inside);
         let one = Birational {
-            region: self.forward.pieces[k].patch.rect(),
+            region: self.forward.pieces[k].patch.rect,
             rows: self.forward.rows,
             pieces: vec![self.forward.pieces[k].clone()],
         };
