@@ -249,14 +249,8 @@ impl LatticeMap {
             Arc::new(if extended { p } else { p.bounded() })
         };
         let affine = lattice.as_affine().filter(|m| extended || *m == Affine::IDENTITY);
-        Self {
-            region: r,
-            inside: r.inflate(rounding, rounding),
-            cells: lattice.cells(),
-            patches: cells.map(patch).collect(),
-            extended,
-            affine,
-        }
+        let (inside, patches) = (r.inflate(rounding, rounding), cells.map(patch).collect());
+        Self { region: r, inside, cells: lattice.cells(), patches, extended, affine }
     }
 
     /// A margin for the rounding of preimages, which is larger than that of points.

@@ -147,11 +147,9 @@ impl LocalInverse {
     }
 
     fn spending(&self, budget: &Arc<Budget>) -> Self {
-        let inner = match &self.inner {
-            InnerInverse::Closed(m) => InnerInverse::Closed(m.within(budget).unwrap_or_else(|| Arc::clone(m))),
-            InnerInverse::Newton(m) => InnerInverse::Newton(Arc::new(m.spending(budget))),
-        };
-        Self { map: self.map.clone(), inner }
+        // A closed form does not search.
+        let InnerInverse::Newton(m) = &self.inner else { return self.clone() };
+        Self { map: self.map.clone(), inner: InnerInverse::Newton(Arc::new(m.spending(budget))) }
     }
 }
 

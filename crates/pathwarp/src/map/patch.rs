@@ -88,18 +88,9 @@ impl Patch {
         let height = (1..n).rev().find(|&j| (0..m).any(|i| used(i, j))).unwrap_or(0) + 1;
         let cut =
             |p: &[f64]| -> Vec<f64> { p.chunks(m).take(height).flat_map(|row| row[..width].iter().copied()).collect() };
-        Self {
-            rect,
-            center: rect.center(),
-            scale: Vec2::new(2.0 / rect.width(), 2.0 / rect.height()),
-            width,
-            height,
-            x: cut(&x),
-            y: cut(&y),
-            w: cut(&w),
-            may_vanish: false,
-            bounded: false,
-        }
+        let (center, scale) = (rect.center(), Vec2::new(2.0 / rect.width(), 2.0 / rect.height()));
+        let [x, y, w] = [&x, &y, &w].map(|p| cut(p));
+        Self { rect, center, scale, width, height, x, y, w, may_vanish: false, bounded: false }
     }
 
     /// Marks the patch as used only inside its box.

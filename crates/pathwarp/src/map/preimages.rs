@@ -60,10 +60,8 @@ impl Polynomials {
                 g.reverse();
             }
             let rows = g.iter().map(|row| bernstein(row)).collect::<Vec<_>>();
-            let mut squares = vec![Square {
-                ranges: [[-1.0, 1.0]; 2],
-                g: transposed(&transposed(&rows).iter().map(|c| bernstein(c)).collect::<Vec<_>>()),
-            }];
+            let columns = transposed(&rows).iter().map(|column| bernstein(column)).collect::<Vec<_>>();
+            let mut squares = vec![Square { ranges: [[-1.0, 1.0]; 2], g: transposed(&columns) }];
             while let Some(square) = squares.pop() {
                 count += 1;
                 if count > MAX_SQUARES {

@@ -86,15 +86,8 @@ impl EllipticArc {
         if delta.abs() < 1e-12 || (delta.abs() - TAU).abs() < 1e-12 {
             delta = if lambda >= 1.0 { PI.copysign(delta) } else { return None };
         }
-        Some(Self {
-            p0,
-            p1,
-            center,
-            a: Vec2::new(cos * rx, sin * rx),
-            b: Vec2::new(-sin * ry, cos * ry),
-            start: on_grid(th0),
-            sweep: on_grid(delta),
-        })
+        let (a, b) = (Vec2::new(cos * rx, sin * rx), Vec2::new(-sin * ry, cos * ry));
+        Some(Self { p0, p1, center, a, b, start: on_grid(th0), sweep: on_grid(delta) })
     }
 
     /// Returns the circular arc that a cubic approximates, if its handles are within `near` of the usual approximation's. `None` for other
@@ -128,11 +121,8 @@ impl EllipticArc {
     #[inline]
     #[must_use]
     pub fn eval(&self, t: f64) -> Point {
-        if t == 0.0 {
-            return self.p0;
-        }
-        if t == 1.0 {
-            return self.p1;
+        if t == 0.0 || t == 1.0 {
+            return if t == 0.0 { self.p0 } else { self.p1 };
         }
         let (s, c) = (self.start + t * self.sweep).sin_cos();
         self.center + self.a * c + self.b * s
@@ -155,18 +145,10 @@ impl EllipticArc {
     /// Returns the exact image under an affine map.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
-        let linear = |v: Vec2| {
-            let [a, b, c, d, ..] = m.as_coeffs();
-            Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
-        };
-        Self {
-            p0: m * self.p0,
-            p1: m * self.p1,
-            center: m * self.center,
-            a: linear(self.a),
-            b: linear(self.b),
-            ..*self
-        }
+        let [k0, k1, k2, k3, ..] = m.as_coeffs();
+        let [a, b] = [self.a, self.b].map(|v| Vec2::new(k0 * v.x + k2 * v.y, k1 * v.x + k3 * v.y));
+        let [p0, p1, center] = [self.p0, self.p1, self.center].map(|p| m * p);
+        Self { p0, p1, center, a, b, ..*self }
     }
 
     /// Returns half the width and height of the whole ellipse.
@@ -193,13 +175,8 @@ impl EllipticArc {
     /// Returns the part between `t0` and `t1`.
     #[must_use]
     pub fn subsegment(&self, t0: f64, t1: f64) -> Self {
-        Self {
-            p0: self.eval(t0),
-            p1: self.eval(t1),
-            start: self.start + t0 * self.sweep,
-            sweep: (t1 - t0) * self.sweep,
-            ..*self
-        }
+        let (start, sweep) = (self.start + t0 * self.sweep, (t1 - t0) * self.sweep);
+        Self { p0: self.eval(t0), p1: self.eval(t1), start, sweep, ..*self }
     }
 
     /// Returns the cubic with the end points and end tangents of the arc, and handles of (4/3)·tan(Δ/4) for the sweep Δ. It is close

@@ -29,15 +29,8 @@ impl Frame {
     /// Creates a frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self {
-            rect: rect.abs(),
-            baseline: None,
-            units_per_px: [1.0; 2],
-            letters: Arc::new([]),
-            objects: Arc::new([]),
-            ink: Arc::new([]),
-            page: None,
-        }
+        let (letters, objects, ink) = Default::default();
+        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters, objects, ink, page: None }
     }
 
     setters! {

@@ -41,16 +41,8 @@ impl Options {
     /// Options with this tolerance, checked by dense sampling, and the fewest nodes, which are also the fitter's defaults.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self {
-            tolerance,
-            certify: false,
-            nodes: Nodes::default(),
-            shared: Arc::default(),
-            borders: Arc::default(),
-            suited: false,
-            spans: Arc::default(),
-            budget: Arc::default(),
-        }
+        let (nodes, shared, borders, spans, budget) = Default::default();
+        Self { tolerance, certify: false, nodes, shared, borders, suited: false, spans, budget }
     }
 
     /// Checks the tolerances.

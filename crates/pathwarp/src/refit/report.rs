@@ -35,15 +35,9 @@ pub struct PathReport {
 
 impl Default for PathReport {
     fn default() -> Self {
-        Self {
-            segments_in: 0,
-            segments_out: 0,
-            max_error: 0.0,
-            share: 0.0,
-            assurance: Assurance::Exact,
-            unresolved: Vec::new(),
-            resolution: None,
-        }
+        let (segments_in, segments_out, assurance) = (0, 0, Assurance::Exact);
+        let (max_error, share, unresolved, resolution) = Default::default();
+        Self { segments_in, segments_out, max_error, share, assurance, unresolved, resolution }
     }
 }
 

@@ -269,10 +269,8 @@ impl Source for SourceCurve<'_> {
         };
         if let Some(map) = self.degree {
             let degree = map.degree * degree;
-            return Some(Quotient {
-                below: if map.rational || rational { degree } else { 0 },
-                ..Quotient::polynomial(degree)
-            });
+            let below = if map.rational || rational { degree } else { 0 };
+            return Some(Quotient { below, ..Quotient::polynomial(degree) });
         }
         if rational {
             return None;

@@ -441,12 +441,8 @@ impl Formula for BirationalInverse {
         if self.forward.pieces.len() == 1 {
             return None;
         }
-        let k = self.piece(inside);
-        let one = Birational {
-            region: self.forward.pieces[k].patch.rect,
-            rows: self.forward.rows,
-            pieces: vec![self.forward.pieces[k].clone()],
-        };
+        let piece = self.forward.pieces[self.piece(inside)].clone();
+        let one = Birational { region: piece.patch.rect, rows: self.forward.rows, pieces: vec![piece] };
         Some(Arc::new(one.inverted()))
     }
 
