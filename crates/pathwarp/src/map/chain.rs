@@ -198,7 +198,8 @@ impl Map for Chain {
         first.points(ps, out);
         for m in rest {
             if m.prefers_batches() {
-                m.points(&out.to_vec(), out);
+                let points = out.to_vec();
+                m.points(&points, out);
                 continue;
             }
             for chunk in out.chunks_mut(BATCH) {

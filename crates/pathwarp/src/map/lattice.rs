@@ -1,5 +1,5 @@
-//! Lattices of control points: free-form deformation of the plane, by the formula at [`LatticeMap`] (T. W. Sederberg, *Computer Aided
-//! Geometric Design*, chapter 14, derives it). i counts from the left, j from the top.
+//! Lattices of control points: free-form deformation of the plane, by the formula at [`LatticeMap`] (T. W. Sederberg, S. R. Parry,
+//! SIGGRAPH 1986; T. W. Sederberg, *Computer Aided Geometric Design*, chapter 14). i counts from the left, j from the top.
 //!
 //! Nothing moves outside the region, so its border is a crease. If the k + 1 outermost rows or columns along a side are in their
 //! regular positions (with weights 1), the map is Cᵏ across that side. The Bézier pieces of a B-spline lattice of degree d agree

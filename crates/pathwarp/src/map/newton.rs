@@ -228,17 +228,12 @@ impl NewtonInverse {
     /// Runs [`NewtonInverse::search`] with the jets of `map`: this inverse's map, or a cache of it.
     fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         let mut search = Search::default();
-        let found = self.first_preimage(map, q, accept, &mut search);
+        let found = self.preimage(map, q, accept, &mut search);
         (found, search)
     }
 
-    fn first_preimage(
-        &self,
-        map: &dyn Map,
-        q: Point,
-        accept: impl Fn(Point) -> bool,
-        search: &mut Search,
-    ) -> Option<Jet> {
+    /// The first preimage of `q` that `accept` accepts. Adds the work to `search`.
+    fn preimage(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, search: &mut Search) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() || is_over(self.budget.as_ref()) {
             return None;
         }

@@ -262,12 +262,8 @@ fn refit_merged(
             found.pieces.reverse();
         }
         report.add(&found);
-        if pieces.is_empty() {
-            pieces = more
-        } else {
-            pieces.extend(more)
-        }
         from = to;
+        if pieces.is_empty() { pieces = more } else { pieces.extend(more) }
     }
     Ok((pieces, report))
 }
