@@ -315,7 +315,7 @@ pub struct Creases {
 
 /// The work of finding the crossings of a segment with a straight crease, in evaluations of a bicubic net.
 const STRAIGHT_WORK: f64 = 1.0;
-/// The work of one sample of an arc, or of a circle on a line or curve, where the map is not evaluated.
+/// The work of one sample of an arc beside a straight crease, where no map is evaluated.
 const SAMPLE_WORK: f64 = 0.1;
 
 impl Creases {

@@ -60,7 +60,7 @@ pub(super) struct Merger<'a> {
 /// they meet.
 #[inline]
 fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
-    /// For rounding, as the decision is made from tangents that are computed differently.
+    /// Only joints that certainly turn are excluded here; the run decides about the others.
     const MARGIN: f64 = 1.03;
     let (into, away) = (jets[0].push(before.deriv(1.0)), jets[1].push(after.deriv(0.0)));
     // One-sided tangents decide where a derivative vanishes or nearly does.
