@@ -58,6 +58,7 @@ pub(crate) struct ArcLength {
     spans: Vec<Span>,
 }
 
+/// A part of the parameter range on which both series converge.
 #[derive(Debug, Clone)]
 struct Span {
     /// The distances along the curve at the ends of the span.
@@ -261,6 +262,7 @@ pub struct Side {
     length: f64,
 }
 
+/// One segment of a side, with its parameter at a pace.
 #[derive(Debug, Clone)]
 struct SidePiece {
     seg: Seg,

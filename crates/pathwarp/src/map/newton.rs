@@ -74,6 +74,7 @@ impl fmt::Debug for NewtonInverse {
     }
 }
 
+/// The center of a cell, with the map's jet there.
 #[derive(Debug, Clone, Copy)]
 struct StartingPoint {
     point: Point,

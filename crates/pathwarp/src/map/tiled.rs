@@ -168,6 +168,7 @@ impl Map for Tiled {
     }
 }
 
+/// The inverse of a [`Tiled`] map, by Newton's method in every tile.
 #[derive(Clone)]
 struct TiledInverse {
     map: Tiled,

@@ -202,6 +202,7 @@ impl<'a> Merger<'a> {
         Ok(count)
     }
 
+    /// The segments from `start` up to `end`, under the map.
     fn site(&self, start: usize, end: usize) -> Site<'a> {
         Site { fitter: self.fitter, parts: &self.parts[start..end] }
     }
