@@ -331,7 +331,7 @@ fn polygon_side(line: Line, mitres: [Vec2; 2], height: f64) -> Vec<(StripMap, f6
         } else {
             StripMap::Normals {
                 spine: Spine::new(Curve::Seg(seg)),
-                table: ArcLength::of(&seg),
+                table: ArcLength::of_segment(&seg),
                 mitres,
                 even_height: 0.0,
                 smooth,

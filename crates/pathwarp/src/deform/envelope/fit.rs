@@ -166,7 +166,7 @@ pub(super) fn is_curved(ring: &Ring, k: usize) -> bool {
 /// Refuses a curved side; a side without length is accepted. `what` begins the message.
 fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
     let Some(side) = Side::new(c, Pace::Length) else { return Ok(()) };
-    let (distance, at) = side.off_straight();
+    let (distance, at) = side.farthest_from_chord();
     if distance <= STRAIGHT * side.length() {
         return Ok(());
     }
