@@ -79,7 +79,7 @@ impl<S: Source> StretchFitter<'_, S> {
                 out.push(piece);
                 continue;
             }
-            if let Some(t) = self.slow.inside(from.t, to.t).or(outcome.cusp) {
+            if let Some(t) = self.slow.middlemost(from.t, to.t).or(outcome.cusp) {
                 let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));

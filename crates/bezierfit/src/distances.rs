@@ -7,7 +7,8 @@ use crate::report::Piece;
 use crate::run::RunCubic;
 use crate::run::SegmentRun;
 use crate::sample::{
-    ALL, Evenly, Lane, Lanes, extreme, larger, largest, parabola_peak, predicted_end_peak, predicted_peak, turns_little,
+    IN_ORDER, InOrder, Lane, Lanes, larger, largest, parabola_extreme, parabola_peak, predicted_end_peak,
+    predicted_peak, turns_little,
 };
 use crate::source::{NotFinite, Source};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveDeriv, ParamCurveNearest, Point, Vec2};
@@ -200,7 +201,7 @@ impl Distances {
         let first = c.samples[0];
         parts(run.per_segment, c.samples)
             .flat_map(|(_, [from, to])| self.errors[from - first..=to - first].windows(3))
-            .map(|w| extreme([w[0], w[1], w[2]]))
+            .map(|w| parabola_extreme([w[0], w[1], w[2]]))
             .fold(0.0, larger)
     }
 
@@ -301,8 +302,8 @@ pub(crate) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Itera
 /// share before.
 #[inline(always)]
 fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
-    let (at, feet): (&Evenly, &Evenly) = (&c.shares, &c.feet);
-    while *knot + 2 < ALL && at[*knot + 1] < share {
+    let (at, feet): (&InOrder, &InOrder) = (&c.shares, &c.feet);
+    while *knot + 2 < IN_ORDER && at[*knot + 1] < share {
         *knot += 1;
     }
     let (k, step) = (*knot, at[*knot + 1] - at[*knot]);

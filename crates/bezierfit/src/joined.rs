@@ -41,7 +41,7 @@ impl<'a, S: Source> Covered<'a, S> {
         for ((piece, own), to) in pieces.into_iter().zip(&report.pieces).zip(joints) {
             let mut report = Report::default();
             report.add_error(own.error, own.assurance);
-            out.push(Self { part: part.within([from, *to]), pieces: vec![piece], report });
+            out.push(Self { part: part.sub_part([from, *to]), pieces: vec![piece], report });
             from = *to;
         }
     }

@@ -10,8 +10,8 @@ use crate::limits::{
     PEAK_NEAR, SMALL_ERROR, THOROUGH_SAMPLES, ZOOM_RISE,
 };
 use crate::sample::{
-    ALL, CHECKED, Evenly, FITTED, Lane, Lanes, MIDDLE, SIDE, UNIT, between, highest_peak, interleaved, larger, largest,
-    neighbours, parabola_peak, predicted_peak, sum, turns_little,
+    CHECKED, FITTED, IN_ORDER, InOrder, Lane, Lanes, MIDDLE, SIDE, UNIT, feet_between, highest_peak, interleaved,
+    larger, largest, neighbours, parabola_peak, predicted_peak, sum, turns_little,
 };
 use crate::source::{NotFinite, SlowSpots, Source};
 use crate::stretch::{EIGHT_GROWTH, StretchFitter, THOROUGH_WORK};
@@ -26,21 +26,21 @@ impl<S: Source> StretchFitter<'_, S> {
             return Ok(error);
         }
         let check = *self.checked(request)?;
-        let mut s = between(&fitted.s);
-        let squares = request.frame.distances(&check, fitted.z.a, fitted.z.b, &mut s, 1);
+        let mut s = feet_between(&fitted.s);
+        let squares = request.frame.distances(&check, fitted.state.a, fitted.state.b, &mut s, 1);
         let error = fitted.error.max(largest(&squares).sqrt());
         if error > self.tolerance {
             return Ok(error);
         }
         if self.form.is_some() {
-            return self.proven(request, fitted.z, [&fitted.s, &s], error);
+            return self.proven(request, fitted.state, [&fitted.s, &s], error);
         }
-        let checked = Measured { z: fitted.z, s, squares, error };
+        let checked = Measured { state: fitted.state, s, squares, error };
         let feet = interleaved(&fitted.s, &checked.s, 1.0);
         if let Some(error) = self.by_sixteen(request, &fitted, (&check, &checked), &feet)? {
             return Ok(error);
         }
-        self.by_dense_check(request, fitted.z, &feet, error)
+        self.by_dense_check(request, fitted.state, &feet, error)
     }
 
     /// Error by eight samples, which suffice if it is small and the map of low degree. `None` if they do not.
@@ -50,7 +50,7 @@ impl<S: Source> StretchFitter<'_, S> {
         if !(self.trusts_samples(request) && fitted.error <= limit && self.simple) {
             return None;
         }
-        let error = larger(request.middle_error(fitted.z, &fitted.s, &fitted.squares), fitted.error);
+        let error = larger(request.middle_error(fitted.state, &fitted.s, &fitted.squares), fitted.error);
         (error <= limit).then_some(EIGHT_GROWTH * error)
     }
 
@@ -61,19 +61,19 @@ impl<S: Source> StretchFitter<'_, S> {
         request: &FitRequest<'_>,
         fitted: &Measured<'_>,
         (check, checked): (&Lanes, &Measured<'_>),
-        feet: &Evenly,
+        feet: &InOrder,
     ) -> Result<Option<f64>, NotFinite> {
         let tol = self.tolerance;
-        let (z, error) = (fitted.z, checked.error);
-        let Resolution { resolved, even } = request.resolution(check, z, &fitted.s, &checked.s);
+        let (state, error) = (fitted.state, checked.error);
+        let Resolution { resolved, even } = request.resolution(check, state, &fitted.s, &checked.s);
         // A map of unknown degree may swing where the image slows down.
         let resolved = if self.simple { resolved } else { even };
         if !(self.trusts_samples(request) && resolved && steady(feet) && error <= ACCEPTED * tol) {
             return Ok(None);
         }
         let frame = &request.frame;
-        let e0 = frame.signed_distances(request.g, z.a, z.b, &fitted.s, &fitted.squares);
-        let e1 = frame.signed_distances(check, z.a, z.b, &checked.s, &checked.squares);
+        let e0 = frame.signed_distances(request.g, state.a, state.b, &fitted.s, &fitted.squares);
+        let e1 = frame.signed_distances(check, state.a, state.b, &checked.s, &checked.squares);
         let errors = interleaved(&e0, &e1, 0.0);
         let peak = larger(highest_peak(&errors), error);
         if peak <= if even && self.simple { ACCEPTED } else { SMALL_ERROR } * tol {
@@ -82,7 +82,7 @@ impl<S: Source> StretchFitter<'_, S> {
         if !even {
             return Ok(None);
         }
-        let closer = halfway(self.source, &request.candidate(z), feet, &errors, tol)?;
+        let closer = halfway(self.source, &request.candidate(state), feet, &errors, tol)?;
         Ok(closer.filter(|closer| *closer <= ACCEPTED * tol).map(|closer| closer.max(error)))
     }
 
@@ -91,11 +91,11 @@ impl<S: Source> StretchFitter<'_, S> {
     fn by_dense_check(
         &self,
         request: &FitRequest<'_>,
-        z: &FitState,
-        feet: &Evenly,
+        state: &FitState,
+        feet: &InOrder,
         error: f64,
     ) -> Result<f64, NotFinite> {
-        let c = request.candidate(z);
+        let c = request.candidate(state);
         let (e, thorough) = dense(self.source, &c, feet, self.slow, self.tolerance)?;
         if thorough {
             self.extra.set(self.extra.get() + THOROUGH_WORK);
@@ -122,20 +122,20 @@ pub(crate) struct Resolution {
 impl FitRequest<'_> {
     /// Tests if sixteen samples with foot points `s0`, `s1` resolve the state.
     #[inline(always)]
-    pub(crate) fn resolution(&self, check: &Lanes, z: &FitState, s0: &Lane, s1: &Lane) -> Resolution {
-        let ratio = self.pace_ratio(z, s0, (check, s1, &CHECKED));
+    pub(crate) fn resolution(&self, check: &Lanes, state: &FitState, s0: &Lane, s1: &Lane) -> Resolution {
+        let ratio = self.pace_ratio(state, s0, (check, s1, &CHECKED));
         Resolution { resolved: ratio < PACE_SIXTEEN, even: ratio < PACE_EIGHT }
     }
 
     /// Largest error in the two widest gaps between the fitted samples, extrapolated from their residuals, whose squares are `squares`.
     /// Infinite if eight samples do not resolve the state.
     #[inline(always)]
-    pub(crate) fn middle_error(&self, z: &FitState, s0: &Lane, squares: &Lane) -> f64 {
+    pub(crate) fn middle_error(&self, state: &FitState, s0: &Lane, squares: &Lane) -> f64 {
         let next = Lanes { x: neighbours(&self.g.x), y: neighbours(&self.g.y) };
-        if self.pace_ratio(z, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= PACE_EIGHT {
+        if self.pace_ratio(state, s0, (&next, &neighbours(s0), &neighbours(&FITTED))) >= PACE_EIGHT {
             return f64::INFINITY;
         }
-        let n = self.frame.signed_distances(self.g, z.a, z.b, s0, squares);
+        let n = self.frame.signed_distances(self.g, state.a, state.b, s0, squares);
         let (mut left, mut right) = ([0.0; 8], [0.0; 8]);
         for i in 0..8 {
             left[i] = n[i] * MIDDLE[i];
@@ -148,8 +148,8 @@ impl FitRequest<'_> {
     /// at every foot point is nearly that of the image. Each fitted sample is paired with its neighbour towards the middle: the
     /// neighbours' images, foot points and parameters (in units of 1/17) are the last argument.
     #[inline(always)]
-    fn pace_ratio(&self, z: &FitState, s0: &Lane, (next, s1, set): (&Lanes, &Lane, &Lane)) -> f64 {
-        let [c1, c2, c3] = self.frame.power(z.a, z.b);
+    fn pace_ratio(&self, state: &FitState, s0: &Lane, (next, s1, set): (&Lanes, &Lane, &Lane)) -> f64 {
+        let [c1, c2, c3] = self.frame.power(state.a, state.b);
         let mut margin = [0.0; 8];
         let mut pace = [0.0; 8];
         let mut slowness = [0.0; 8];
@@ -184,7 +184,7 @@ impl FitRequest<'_> {
 /// Returns `true` if the foot points step from sample to sample about as far as the samples do. A longer step means that
 /// image or cubic nearly stops in between. There the distance has a corner, which may be far above the errors beside it.
 #[inline(always)]
-pub(crate) fn steady(feet: &Evenly) -> bool {
+pub(crate) fn steady(feet: &InOrder) -> bool {
     let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
     for i in 0..8 {
         first[i] = feet[i + 1] - feet[i];
@@ -202,14 +202,14 @@ pub(crate) fn steady(feet: &Evenly) -> bool {
 pub(crate) fn halfway(
     source: &impl Source,
     c: &Candidate,
-    feet: &Evenly,
-    errors: &Evenly,
+    feet: &InOrder,
+    errors: &InOrder,
     tolerance: f64,
 ) -> Result<Option<f64>, NotFinite> {
-    let mut all = [0.0; 2 * ALL - 1];
-    let mut in_doubt = [false; ALL];
+    let mut all = [0.0; 2 * IN_ORDER - 1];
+    let mut in_doubt = [false; IN_ORDER];
     let mut highest = 0.0f64;
-    for j in 1..ALL - 1 {
+    for j in 1..IN_ORDER - 1 {
         let peak = predicted_peak([errors[j - 1], errors[j], errors[j + 1]], PEAK_FACTOR);
         in_doubt[j] = errors[j].abs() > SMALL_ERROR * tolerance || peak > ACCEPTED * tolerance;
         highest = highest.max(if in_doubt[j] { 0.0 } else { peak });
@@ -217,7 +217,7 @@ pub(crate) fn halfway(
     }
     let mut gaps = [0; MAX_HALFWAY];
     let mut n = 0;
-    for j in 0..ALL - 1 {
+    for j in 0..IN_ORDER - 1 {
         if in_doubt[j] || in_doubt[j + 1] {
             if n == MAX_HALFWAY {
                 return Ok(None);
@@ -228,7 +228,7 @@ pub(crate) fn halfway(
     }
     let gaps = &gaps[..n];
     for gaps in gaps.chunks(8) {
-        let tau = std::array::from_fn(|i| (gaps[i.min(gaps.len() - 1)] as f64 + 0.5) / (ALL - 1) as f64);
+        let tau = std::array::from_fn(|i| (gaps[i.min(gaps.len() - 1)] as f64 + 0.5) / (IN_ORDER - 1) as f64);
         let Probe { g, s, squares } = probe(source, c, feet, &tau, 2)?;
         let signed = c.frame.signed_distances(&g, c.a, c.b, &s, &squares);
         for (j, e) in gaps.iter().zip(signed) {
@@ -240,7 +240,7 @@ pub(crate) fn halfway(
     }
     // Between neighbours half as far apart, errors exceed the parabola half as much.
     let peak = |k: usize| predicted_peak([all[k - 1], all[k], all[k + 1]], 0.5 * PEAK_FACTOR);
-    let doubtful = (1..ALL - 1).filter(|j| in_doubt[*j]).map(|j| 2 * j);
+    let doubtful = (1..IN_ORDER - 1).filter(|j| in_doubt[*j]).map(|j| 2 * j);
     Ok(Some(gaps.iter().map(|j| 2 * j + 1).chain(doubtful).map(peak).fold(highest, f64::max)))
 }
 
@@ -276,7 +276,7 @@ pub(crate) fn thorough(
     Ok(from_cubic(source, c, &curve, &images, enough, worst)?.sqrt())
 }
 
-/// Evenly spaced parameters, with geometrically denser ones around slow spots, in order. Their number is a multiple of eight.
+/// InOrder spaced parameters, with geometrically denser ones around slow spots, in order. Their number is a multiple of eight.
 fn places(c: &Candidate, slow: &SlowSpots) -> Vec<f64> {
     let step = 1.0 / THOROUGH_SAMPLES as f64;
     let mut dense = Vec::new();
@@ -458,7 +458,7 @@ const STEP: f64 = 1.0 / (DENSE_BATCHES * 8) as f64;
 pub(crate) fn dense(
     source: &impl Source,
     c: &Candidate,
-    feet: &Evenly,
+    feet: &InOrder,
     slow: &SlowSpots,
     tolerance: f64,
 ) -> Result<(f64, bool), NotFinite> {
@@ -502,7 +502,7 @@ struct FootPoint {
 struct Walk<'a, S> {
     source: &'a S,
     c: &'a Candidate,
-    feet: &'a Evenly,
+    feet: &'a InOrder,
     /// Square of the largest distance so far.
     worst: f64,
     last: FootPoint,
@@ -600,7 +600,7 @@ pub(crate) struct Probe {
 pub(crate) fn probe(
     source: &impl Source,
     c: &Candidate,
-    feet: &Evenly,
+    feet: &InOrder,
     tau: &Lane,
     steps: usize,
 ) -> Result<Probe, NotFinite> {
@@ -612,9 +612,9 @@ pub(crate) fn probe(
 
 /// Piecewise linear interpolation of the known foot points.
 #[inline(always)]
-fn interpolated(feet: &Evenly, tau: f64) -> f64 {
-    let at = tau * (ALL - 1) as f64;
-    let k = (at as usize).min(ALL - 2);
+fn interpolated(feet: &InOrder, tau: f64) -> f64 {
+    let at = tau * (IN_ORDER - 1) as f64;
+    let k = (at as usize).min(IN_ORDER - 2);
     feet[k] + (feet[k + 1] - feet[k]) * (at - k as f64)
 }
 
@@ -627,16 +627,16 @@ mod tests {
 
     #[test]
     fn foot_points_that_leap_are_not_steady() {
-        let even: Evenly = std::array::from_fn(|j| j as f64 * UNIT);
+        let even: InOrder = std::array::from_fn(|j| j as f64 * UNIT);
         // Delays foot point 6 by a share of the spacing, so that the step after it is longer.
-        let late = |share: f64| -> Evenly {
+        let late = |share: f64| -> InOrder {
             let mut feet = even;
             feet[6] -= share * UNIT;
             feet
         };
         assert!(steady(&even) && steady(&late(0.55)));
         assert!(!steady(&late(0.65)));
-        assert_eq!(ALL, 18);
+        assert_eq!(IN_ORDER, 18);
     }
 
     /// Verdict on a line from 0 to 1 with images at `x(τ)`, fitted by the line itself with foot points `s(τ)`.
@@ -650,9 +650,9 @@ mod tests {
         let (g, check) = (images(&FITTED), images(&CHECKED));
         let request = FitRequest { from: &from, to: &to, frame, g: &g, check: None, careful: false };
         let s0 = FITTED.map(|j| s(j * UNIT));
-        let z = FitState { a: handles[0], b: handles[1], s: s0 };
-        let s1 = between(&s0);
-        request.resolution(&check, &z, &s0, &s1)
+        let state = FitState { a: handles[0], b: handles[1], s: s0 };
+        let s1 = feet_between(&s0);
+        request.resolution(&check, &state, &s0, &s1)
     }
 
     #[test]
@@ -687,8 +687,8 @@ mod tests {
         let c = Candidate { t0: 0.0, t1: 1.0, p0: Point::ZERO, frame, a: third[0], b: third[1] };
         let feet = std::array::from_fn(|j| j as f64 / 17.0);
         // One sample above the limit; the error halfway beside it is `beside` of the tolerance.
-        let mut errors = [0.55; ALL];
-        (errors[0], errors[8], errors[ALL - 1]) = (0.0, 0.75, 0.0);
+        let mut errors = [0.55; IN_ORDER];
+        (errors[0], errors[8], errors[IN_ORDER - 1]) = (0.0, 0.75, 0.0);
         let found = |beside: f64| halfway(&Beside(beside), &c, &feet, &errors, 1.0).unwrap();
         assert!(found(0.7).is_some_and(|e| (0.7..1.0).contains(&e)), "{:?}", found(0.7));
         assert!(found(0.4).is_some() && found(0.3).is_none());

@@ -507,7 +507,7 @@ const MISSES: i32 = 40;
 
 /// Fits with the tolerance of the options, or with a tolerance that leads to the wanted number of pieces.
 pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
-    options.checked()?;
+    options.check()?;
     let with = |tolerance: f64| fit(&Options { tolerance, pieces: Pieces::Fewest, ..*options });
     let first = with(options.tolerance)?;
     let (allowed, exactly) = match options.pieces {

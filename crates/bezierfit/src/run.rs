@@ -1,10 +1,10 @@
 //! Runs of segments in a row as one curve, known by samples at even parameters of each segment, and cubics over stretches of a run, fitted
 //! to sixteen of its samples.
 
-use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled, size};
+use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, best_fit, fit, settled, size};
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
 use crate::report::{Assurance, Piece};
-use crate::sample::{ALL, Evenly, Lane, Lanes, UNIT, extreme, interleaved, larger, largest};
+use crate::sample::{IN_ORDER, InOrder, Lane, Lanes, UNIT, interleaved, larger, largest, parabola_extreme};
 use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
 use kurbo::{CubicBez, Line, Point, Vec2};
@@ -303,7 +303,7 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Interpolates points at shares of the length between two samples, by polynomials of degree five through six samples of one segment.
-    pub(crate) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
+    pub(crate) fn between(&self, [first, last]: [usize; 2], shares: &InOrder, [x, y]: [&mut InOrder; 2]) {
         let (start, length) = (self.length[first], self.length[last] - self.length[first]);
         let n = self.per_segment;
         let mut k = first;
@@ -368,8 +368,8 @@ pub(crate) struct RunCubic {
     /// Samples of the run at the ends.
     pub(crate) samples: [usize; 2],
     /// Lengths up to the sixteen samples and the ends, as shares of the whole, and their foot points.
-    pub(crate) shares: Evenly,
-    pub(crate) feet: Evenly,
+    pub(crate) shares: InOrder,
+    pub(crate) feet: InOrder,
 }
 
 impl RunCubic {
@@ -401,7 +401,7 @@ pub(crate) struct Stretch {
     frame: ChordFrame,
     g: Lanes,
     check: Lanes,
-    shares: Evenly,
+    shares: InOrder,
 }
 
 impl Stretch {
@@ -414,13 +414,13 @@ impl Stretch {
     ) -> Self {
         let [from, to] = ends;
         let ([first, last], length) = (samples, to.t - from.t);
-        let mut shares = [0.0; ALL];
-        let (mut x, mut y) = ([0.0; ALL], [0.0; ALL]);
+        let mut shares = [0.0; IN_ORDER];
+        let (mut x, mut y) = ([0.0; IN_ORDER], [0.0; IN_ORDER]);
         let inner = first + 1..last;
         let (lengths, xs, ys) = (&run.length[inner.clone()], &run.x[inner.clone()], &run.y[inner]);
         let scale = 1.0 / length;
         let (mut i, mut furthest_off) = (0, 0.0);
-        for j in 1..ALL - 1 {
+        for j in 1..IN_ORDER - 1 {
             let share = UNIT * j as f64;
             let twice = 2.0 * (from.t + length * share);
             i = nearest(lengths, i, twice);
@@ -428,13 +428,13 @@ impl Stretch {
             (x[j], y[j]) = (xs[i] - from.p.x, ys[i] - from.p.y);
             furthest_off = larger(furthest_off, (shares[j] - share).abs());
         }
-        shares[ALL - 1] = 1.0;
+        shares[IN_ORDER - 1] = 1.0;
         if furthest_off > COARSE * UNIT {
-            for j in 1..ALL - 1 {
+            for j in 1..IN_ORDER - 1 {
                 shares[j] = UNIT * j as f64;
             }
             run.between(samples, &shares, [&mut x, &mut y]);
-            for j in 1..ALL - 1 {
+            for j in 1..IN_ORDER - 1 {
                 (x[j], y[j]) = (x[j] - from.p.x, y[j] - from.p.y);
             }
         }
@@ -458,23 +458,23 @@ impl Stretch {
         let mut start = FitState { a, b, s: picked(&self.shares, &FITTED_AT) };
         self.frame.settle(&self.g, a, b, &mut start.s);
         let tolerance = self.tolerance;
-        let best = improved(&mut self, &THOROUGH, start, tolerance)?;
+        let best = best_fit(&mut self, &THOROUGH, start, tolerance)?;
         Ok(self.trial(&best))
     }
 
     /// Fits a cubic with the least error that can be reached, starting from `from`.
     pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial, NotFinite> {
-        let (z, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) }, self.tolerance);
-        let fit = fit(&THOROUGH, &self.frame, &self.g, z, [0.0, tolerance]);
-        let mut best = BestFit::of(fit, &mut self, tolerance)?;
-        best.minimised(&mut self, [0.0, tolerance])?;
+        let (state, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) }, self.tolerance);
+        let fit = fit(&THOROUGH, &self.frame, &self.g, state, [0.0, tolerance]);
+        let mut best = BestFit::judged(fit, &mut self, tolerance)?;
+        best.minimise(&mut self, [0.0, tolerance])?;
         Ok(self.trial(&best))
     }
 
-    fn trial(&self, best: &BestFit<Evenly>) -> Trial {
+    fn trial(&self, best: &BestFit<InOrder>) -> Trial {
         let BestFit { fit, error, mark } = best;
         let fits = *error <= self.tolerance;
-        Trial { error: *error, cubic: fits.then(|| self.with([fit.z.a, fit.z.b], *mark, false)) }
+        Trial { error: *error, cubic: fits.then(|| self.with([fit.state.a, fit.state.b], *mark, false)) }
     }
 
     /// Returns `true` if a handle of a curve that turns one way extends beyond the crossing of both handles.
@@ -486,7 +486,7 @@ impl Stretch {
         most_a > 0.0 && most_b > 0.0 && (a > CROSSING * most_a || b > CROSSING * most_b)
     }
 
-    fn with(&self, [a, b]: [f64; 2], feet: Evenly, line: bool) -> RunCubic {
+    fn with(&self, [a, b]: [f64; 2], feet: InOrder, line: bool) -> RunCubic {
         let ends = [self.ends[0].p, self.ends[1].p];
         RunCubic { frame: self.frame, ends, a, b, line, samples: self.samples, shares: self.shares, feet }
     }
@@ -494,7 +494,7 @@ impl Stretch {
 
 impl Fitting for Stretch {
     /// Foot points of all samples.
-    type Mark = Evenly;
+    type Mark = InOrder;
 
     fn samples(&self) -> (&ChordFrame, &Lanes) {
         (&self.frame, &self.g)
@@ -509,7 +509,7 @@ impl Fitting for Stretch {
     }
 
     /// Foot points of the checked samples between those of the fitted ones.
-    fn between(&self, s: &Lane) -> Lane {
+    fn feet_between(&self, s: &Lane) -> Lane {
         let (at, want) = (picked(&self.shares, &FITTED_AT), picked(&self.shares, &CHECKED_AT));
         let mut out = [0.0; 8];
         for i in 0..8 {
@@ -520,17 +520,17 @@ impl Fitting for Stretch {
         out
     }
 
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, Evenly), NotFinite> {
-        let (z, fitted) = (&fit.z, settled(&self.frame, &self.g, fit, self.tolerance));
-        let mut s = self.between(&fitted.s);
-        let squares = self.frame.distances(&self.check, z.a, z.b, &mut s, 1);
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, InOrder), NotFinite> {
+        let (state, fitted) = (&fit.state, settled(&self.frame, &self.g, fit, self.tolerance));
+        let mut s = self.feet_between(&fitted.s);
+        let squares = self.frame.distances(&self.check, state.a, state.b, &mut s, 1);
         let mut error = larger(fitted.error, largest(&squares).sqrt());
         if error <= self.tolerance {
-            let e0 = self.frame.signed_distances(&self.g, z.a, z.b, &fitted.s, &fitted.squares);
-            let e1 = self.frame.signed_distances(&self.check, z.a, z.b, &s, &squares);
+            let e0 = self.frame.signed_distances(&self.g, state.a, state.b, &fitted.s, &fitted.squares);
+            let e1 = self.frame.signed_distances(&self.check, state.a, state.b, &s, &squares);
             error = highest_parabola(&interleaved(&e0, &e1, 0.0), error);
         }
-        if self.evenly && self.crosses(z.a, z.b) {
+        if self.evenly && self.crosses(state.a, state.b) {
             error = larger(error, MISSED * self.tolerance);
         }
         Ok((error, interleaved(&fitted.s, &s, 1.0)))
@@ -560,17 +560,17 @@ fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
 }
 
 /// Height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
-fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
+fn highest_parabola(errors: &InOrder, most: f64) -> f64 {
     let is_top = |w: &[f64]| {
         let side = 1.0f64.copysign(w[1]);
         w[1].abs() >= PEAK_NEAR * most && w[1] * side >= w[0] * side && w[1] * side >= w[2] * side
     };
-    errors.windows(3).filter(|w| is_top(w)).map(|w| extreme([w[0], w[1], w[2]])).fold(most, larger)
+    errors.windows(3).filter(|w| is_top(w)).map(|w| parabola_extreme([w[0], w[1], w[2]])).fold(most, larger)
 }
 
 /// Values at eight of the samples.
 #[inline(always)]
-fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
+fn picked(v: &InOrder, set: &[usize; 8]) -> Lane {
     let mut out = [0.0; 8];
     for i in 0..8 {
         out[i] = v[set[i]];

@@ -476,7 +476,7 @@ impl Spline {
         let slopes: Vec<Vec2> = u.iter().map(|u| self.at(*u).1).collect();
         let steady = u.windows(2).all(|w| w[1] >= w[0] - 1e-9 && w[1] - w[0] < 1.0)
             && slopes.windows(2).all(|w| w[0].dot(w[1]) > 0.5 * w[0].hypot() * w[1].hypot());
-        let top = errors.windows(3).map(|w| crate::sample::extreme([w[0], w[1], w[2]])).fold(0.0, f64::max);
+        let top = errors.windows(3).map(|w| crate::sample::parabola_extreme([w[0], w[1], w[2]])).fold(0.0, f64::max);
         (steady && errors.iter().all(|e| e.is_finite())).then(|| errors.iter().map(|e| e.abs()).fold(top, f64::max))
     }
 }

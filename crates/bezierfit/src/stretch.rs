@@ -1,6 +1,6 @@
 //! Fits one piece to one stretch of a curve: a line if the samples are on one, the Hermite cubic if it fits, else the best cubic found.
 
-use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, improved, size};
+use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, best_fit, size};
 use crate::limits::{
     CUSP_SPEED, EVALUATIONS_PER_PIECE, FUTILE_EVALUATIONS, MAX_PLANNED, PACE_EIGHT, PACE_SIXTEEN, SLOW_SPEED,
     SMALL_ERROR, STRAIGHT,
@@ -8,8 +8,8 @@ use crate::limits::{
 use crate::proof;
 use crate::report::Piece;
 use crate::sample::{
-    ALL, CHECKED, FITTED, Lane, Lanes, SIDE, UNEVEN, UNIT, between, clamp_unit, fma, larger, largest, neighbours,
-    norm_squared, residual_at, spaced,
+    CHECKED, FITTED, IN_ORDER, Lane, Lanes, SIDE, UNEVEN, UNIT, clamp_unit, feet_between, fma, larger, largest,
+    neighbours, norm_squared, residual_at, spaced,
 };
 use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images, images_into};
 use kurbo::{Line, Point, Vec2};
@@ -124,7 +124,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let third = h * (1.0 / 3.0);
         let home = [from.speed * third, to.speed * third];
         let frame = ChordFrame::new(q, [from.away, to.into], size, home, tol);
-        let careful = !self.slow.all().is_empty() && self.slow.inside(t0, to.t).is_some();
+        let careful = !self.slow.all().is_empty() && self.slow.middlemost(t0, to.t).is_some();
         Ok(FitRequest { from, to, frame, g, check: None, careful })
     }
 
@@ -139,7 +139,7 @@ impl<S: Source> StretchFitter<'_, S> {
             Some(form) if size > 0.0 => proof::line(self.source, form, request.from, request.to, size)?,
             _ => off,
         };
-        Ok(Some(FitOutcome { piece: Piece::Line(line), error, reach: error, cusp: None }))
+        Ok(Some(FitOutcome { piece: Piece::Line(line), error, predicted: error, cusp: None }))
     }
 
     /// The checked samples, taken on first use.
@@ -158,13 +158,13 @@ impl<S: Source> StretchFitter<'_, S> {
     pub(crate) fn proven(
         &self,
         request: &mut FitRequest<'_>,
-        z: &FitState,
+        state: &FitState,
         feet: [&Lane; 2],
         error: f64,
     ) -> Result<f64, NotFinite> {
         let Some(form) = &self.form else { return Ok(error) };
         let check = *self.checked(request)?;
-        proof::piece(self.source, form, &request.candidate(z), [request.g, &check], feet, self.tolerance)
+        proof::piece(self.source, form, &request.candidate(state), [request.g, &check], feet, self.tolerance)
     }
 
     /// Computes the images at the samples `set` of a stretch of length `h`, relative to its first point.
@@ -187,7 +187,7 @@ pub(crate) struct FitOutcome {
     /// Error of the piece, proven where a proof is wanted and possible.
     pub(crate) error: f64,
     /// Error at the fitted samples, or a prediction after more iterations, from which the number of pieces is predicted.
-    pub(crate) reach: f64,
+    pub(crate) predicted: f64,
     /// A parameter at which the image nearly stops, if the piece misses.
     pub(crate) cusp: Option<f64>,
 }
@@ -200,7 +200,7 @@ impl FitOutcome {
     /// Number of pieces that the stretch needs, as a fraction: the sixth root of error ÷ tolerance.
     pub(crate) fn difficulty(&self, tolerance: f64) -> f64 {
         // Limited to what can be planned at once, and above zero.
-        (self.reach / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
+        (self.predicted / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
     }
 }
 
@@ -222,8 +222,8 @@ impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
         self.fitter.checked(&mut self.request).copied()
     }
 
-    fn between(&self, s: &Lane) -> Lane {
-        between(s)
+    fn feet_between(&self, s: &Lane) -> Lane {
+        feet_between(s)
     }
 
     fn evenly(&self) -> bool {
@@ -244,7 +244,7 @@ impl<S: Source> StretchFitter<'_, S> {
         if self.form.is_some() || !outcome.fits(self.tolerance) {
             return Ok(outcome);
         }
-        let samples = if matches!(outcome.piece, Piece::Line(_)) { LINE_INTERVALS } else { ALL - 1 };
+        let samples = if matches!(outcome.piece, Piece::Line(_)) { LINE_INTERVALS } else { IN_ORDER - 1 };
         match self.source.resolved([from.t, to.t], samples, self.tolerance) {
             Some(true) => Ok(outcome),
             known => {
@@ -264,7 +264,7 @@ impl<S: Source> StretchFitter<'_, S> {
             let far = |i: usize| outcome.piece.distance(Point::new(g.x[i], g.y[i]));
             Ok((0..8).map(far).fold(0.0, larger))
         };
-        let missed = |error: f64| FitOutcome { error, reach: error, cusp: None, ..outcome };
+        let missed = |error: f64| FitOutcome { error, predicted: error, cusp: None, ..outcome };
         if !known {
             let error = off(&spaced(from, to - from, &UNEVEN))?;
             return Ok(if error > self.tolerance { missed(error) } else { outcome });
@@ -312,14 +312,14 @@ impl<S: Source> StretchFitter<'_, S> {
         }
         let start = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s: first.feet(&FITTED) };
         let mut attempt = Attempt { fitter: self, request };
-        let best = improved(&mut attempt, &USUAL, start, self.tolerance)?;
-        let (piece, fits) = (Piece::Cubic(attempt.request.cubic(&best.fit.z)), best.error <= self.tolerance);
+        let best = best_fit(&mut attempt, &USUAL, start, self.tolerance)?;
+        let (piece, fits) = (Piece::Cubic(attempt.request.cubic(&best.fit.state)), best.error <= self.tolerance);
         let (least, predicted) = (best.fit.error, best.error);
         Ok(if fits {
-            FitOutcome { piece, error: predicted, reach: least, cusp: None }
+            FitOutcome { piece, error: predicted, predicted: least, cusp: None }
         } else {
             let cusp = attempt.fitter.cusp(&attempt.request);
-            FitOutcome { piece, error: predicted.max(least), reach: predicted, cusp }
+            FitOutcome { piece, error: predicted.max(least), predicted: predicted, cusp }
         })
     }
 
@@ -338,7 +338,7 @@ impl<S: Source> StretchFitter<'_, S> {
         };
         let [a, b] = request.frame.home;
         let piece = Piece::Cubic(request.frame.cubic(request.from.p, request.to.p, a, b));
-        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error, cusp: None }))
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, predicted: error, cusp: None }))
     }
 
     /// Error of the Hermite cubic; infinite if sixteen samples leave it in doubt.
@@ -373,10 +373,10 @@ impl<S: Source> StretchFitter<'_, S> {
         if !(0..8).all(|i| is_near(s0[i], request.g.x[i], request.g.y[i]) && is_near(s1[i], check.x[i], check.y[i])) {
             return Ok(None);
         }
-        let z = FitState { a, b, s: s0 };
-        let error = self.proven(request, &z, [&s0, &s1], 0.0)?;
-        let piece = Piece::Cubic(request.cubic(&z));
-        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, reach: error, cusp: None }))
+        let state = FitState { a, b, s: s0 };
+        let error = self.proven(request, &state, [&s0, &s1], 0.0)?;
+        let piece = Piece::Cubic(request.cubic(&state));
+        Ok((error <= self.tolerance).then_some(FitOutcome { piece, error, predicted: error, cusp: None }))
     }
 }
 
