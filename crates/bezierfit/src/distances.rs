@@ -10,7 +10,7 @@ use crate::sample::{
     IN_ORDER, InOrder, Lane, Lanes, larger, largest, parabola_extreme, parabola_peak, predicted_end_peak,
     predicted_peak, turns_little,
 };
-use crate::source::{NotFinite, Source};
+use crate::source::{Result, Source};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveDeriv, ParamCurveNearest, Point, Vec2};
 
 /// Distances and foot points of all samples under a cubic.
@@ -49,12 +49,7 @@ impl Distances {
     /// Distance between the cubic and the run, by the run's samples, and by closer ones where it may exceed `enough` between them.
     /// `None` if samples may miss something: the foot points do not advance along the cubic, or it may turn by more than 60° from one to
     /// the next.
-    pub(crate) fn measure(
-        &mut self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        enough: f64,
-    ) -> Result<Option<f64>, NotFinite> {
+    pub(crate) fn measure(&mut self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Result<Option<f64>> {
         let mut worst = self.at_samples(run, c, enough);
         if worst > enough {
             return Ok(Some(worst));
@@ -108,13 +103,7 @@ impl Distances {
     }
 
     /// Hausdorff distance between cubic and image between two samples of segment `i`.
-    fn both_ways(
-        &self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        i: usize,
-        [a, b]: [usize; 2],
-    ) -> Result<f64, NotFinite> {
+    fn both_ways(&self, run: &SegmentRun<impl Source>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64> {
         let g = run.images(i, &places(run, i, [a, b]))?;
         let sample = |k: usize| Point::new(run.x[k], run.y[k]);
         let mut image = [sample(a); 10];
@@ -251,13 +240,7 @@ impl Distances {
     }
 
     /// Largest distance between two samples of segment `i`, by eight more and the parabolas through all ten.
-    fn closely(
-        &self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        i: usize,
-        [a, b]: [usize; 2],
-    ) -> Result<f64, NotFinite> {
+    fn closely(&self, run: &SegmentRun<impl Source>, c: &RunCubic, i: usize, [a, b]: [usize; 2]) -> Result<f64> {
         Ok(self.between(c, run.images(i, &places(run, i, [a, b]))?, [a, b]))
     }
 
@@ -326,12 +309,7 @@ fn controls([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> [Vec2; 3] {
 
 /// Proven distance of a cubic from the run; infinite if none can be proven. The cubic is divided at the foot points of the joints.
 /// `feet` are the foot points of its samples.
-pub(crate) fn proven(
-    run: &SegmentRun<impl Source>,
-    c: &RunCubic,
-    feet: &[f64],
-    tolerance: f64,
-) -> Result<f64, NotFinite> {
+pub(crate) fn proven(run: &SegmentRun<impl Source>, c: &RunCubic, feet: &[f64], tolerance: f64) -> Result<f64> {
     let cubic = c.cubic();
     let [first, last] = c.samples;
     let (mut s, mut worst) = (0.0, 0.0f64);

@@ -40,7 +40,7 @@ use crate::limits::{
     RESTART_WITHIN, RUN_EVALUATIONS, TRUST_RADIUS,
 };
 use crate::sample::{Lane, Lanes, clamp_unit, fma, larger, largest, norm_squared, residual_at};
-use crate::source::{BreakPoint, NotFinite, Source, images};
+use crate::source::{BreakPoint, Result, Source, images};
 use kurbo::{CubicBez, Point, Vec2};
 
 /// Result of a fit: the state with the smallest sum of squares.
@@ -452,7 +452,7 @@ impl Candidate {
     }
 
     /// Points of the image at `tau`, relative to the first point.
-    pub(crate) fn images(&self, source: &impl Source, tau: &Lane) -> Result<Lanes, NotFinite> {
+    pub(crate) fn images(&self, source: &impl Source, tau: &Lane) -> Result<Lanes> {
         let mut g = images(source, &tau.map(|tau| self.param(tau)))?;
         for i in 0..8 {
             g.x[i] -= self.p0.x;
@@ -667,7 +667,7 @@ pub(crate) trait Fitting {
     fn samples(&self) -> (&ChordFrame, &Lanes);
 
     /// The checked samples, which lie between the fitted ones.
-    fn checked(&mut self) -> Result<Lanes, NotFinite>;
+    fn checked(&mut self) -> Result<Lanes>;
 
     /// Foot points of the checked samples, interpolated from those of the fitted ones.
     fn feet_between(&self, s: &Lane) -> Lane;
@@ -676,7 +676,7 @@ pub(crate) trait Fitting {
     fn evenly(&self) -> bool;
 
     /// Error of a fit that promises to come within the tolerance; above the tolerance if the fit must be rejected.
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark), NotFinite>;
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark)>;
 }
 
 /// The best fit so far, with its error: the judged one if the fit came within the tolerance, else [`Fit::predicted`].
@@ -689,17 +689,13 @@ pub(crate) struct BestFit<M> {
 impl<M: Default> BestFit<M> {
     /// Judges a fit, unless it is predicted to miss the tolerance.
     #[inline(always)]
-    pub(crate) fn judged(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self, NotFinite> {
+    pub(crate) fn judged(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self> {
         let (error, mark) = if fit.predicted <= tolerance { on.judge(&fit)? } else { (fit.predicted, M::default()) };
         Ok(Self { fit, error, mark })
     }
 
     /// Improves the fit by minimax on all sixteen samples until the error is at most `wanted`.
-    pub(crate) fn minimise(
-        &mut self,
-        on: &mut impl Fitting<Mark = M>,
-        [wanted, tolerance]: [f64; 2],
-    ) -> Result<(), NotFinite> {
+    pub(crate) fn minimise(&mut self, on: &mut impl Fitting<Mark = M>, [wanted, tolerance]: [f64; 2]) -> Result<()> {
         let (state, check) = (self.fit.state, on.checked()?);
         let other = FitState { s: on.feet_between(&state.s), ..state };
         let enough = if on.evenly() { LEVELLED_EVENLY } else { LEVELLED };
@@ -721,7 +717,7 @@ pub(crate) fn best_fit<F: Fitting>(
     effort: &Effort,
     start: FitState,
     tolerance: f64,
-) -> Result<BestFit<F::Mark>, NotFinite> {
+) -> Result<BestFit<F::Mark>> {
     let fitted = |on: &F, start: FitState, enough: f64| {
         let (frame, g) = on.samples();
         fit(effort, frame, g, start, [enough * tolerance, tolerance])

@@ -5,7 +5,7 @@ use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refin
 use crate::part::Part;
 use crate::report::{Piece, Report};
 use crate::run::{RunSegment, SegmentRun, sample_lanes};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source};
+use crate::source::{BreakPoint, Quotient, Result, Source};
 use crate::stretch::StretchFitter;
 
 /// Settings for a search for fewer pieces across smooth joints.
@@ -54,7 +54,7 @@ pub(crate) fn joined<S: Source>(
     memory: &mut ReachMemory,
     out: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let mut i = 0;
     while let Some(first) = covered.get(i) {
         let mut run = SegmentRun::new(first.part.is_simple(), 8);
@@ -97,7 +97,7 @@ pub fn cover_far<S: Source>(
     corner: f64,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let (start, first) = (pieces.len(), report.pieces.len());
     fitter.cover(from, to, pieces, report)?;
     // Near slow spots, even samples do not suffice; and proofs over several pieces need ends on the curve.
@@ -129,7 +129,7 @@ pub(crate) fn fewest<S: Source + Clone>(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<usize, NotFinite> {
+) -> Result<usize> {
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
     let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly };
     let mut reaches = Reaches::new(run, own, settings, memory);

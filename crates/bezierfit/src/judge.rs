@@ -13,19 +13,19 @@ use crate::sample::{
     CHECKED, FITTED, IN_ORDER, InOrder, Lane, Lanes, MIDDLE, SIDE, UNIT, feet_between, highest_peak, interleaved,
     larger, largest, neighbours, parabola_peak, predicted_peak, sum, turns_little,
 };
-use crate::source::{NotFinite, SlowSpots, Source};
+use crate::source::{Result, SlowSpots, Source};
 use crate::stretch::{EIGHT_GROWTH, StretchFitter, THOROUGH_WORK};
 use kurbo::Vec2;
 
 impl<S: Source> StretchFitter<'_, S> {
     /// Error of a fit; above the tolerance if the fit must be rejected.
     #[inline(never)]
-    pub(crate) fn judge(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64, NotFinite> {
+    pub(crate) fn judge(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64> {
         let fitted = settled(&request.frame, request.g, fit, self.tolerance);
         if let Some(error) = self.by_eight(request, &fitted) {
             return Ok(error);
         }
-        let check = *self.checked(request)?;
+        let check = self.checked(request)?;
         let mut s = feet_between(&fitted.s);
         let squares = request.frame.distances(&check, fitted.state.a, fitted.state.b, &mut s, 1);
         let error = fitted.error.max(largest(&squares).sqrt());
@@ -62,7 +62,7 @@ impl<S: Source> StretchFitter<'_, S> {
         fitted: &Measured<'_>,
         (check, checked): (&Lanes, &Measured<'_>),
         feet: &InOrder,
-    ) -> Result<Option<f64>, NotFinite> {
+    ) -> Result<Option<f64>> {
         let tol = self.tolerance;
         let (state, error) = (fitted.state, checked.error);
         let Resolution { resolved, even } = request.resolution(check, state, &fitted.s, &checked.s);
@@ -88,13 +88,7 @@ impl<S: Source> StretchFitter<'_, S> {
 
     /// Error by many samples.
     #[inline(never)]
-    fn by_dense_check(
-        &self,
-        request: &FitRequest<'_>,
-        state: &FitState,
-        feet: &InOrder,
-        error: f64,
-    ) -> Result<f64, NotFinite> {
+    fn by_dense_check(&self, request: &FitRequest<'_>, state: &FitState, feet: &InOrder, error: f64) -> Result<f64> {
         let c = request.candidate(state);
         let (e, thorough) = dense(self.source, &c, feet, self.slow, self.tolerance)?;
         if thorough {
@@ -205,7 +199,7 @@ pub(crate) fn halfway(
     feet: &InOrder,
     errors: &InOrder,
     tolerance: f64,
-) -> Result<Option<f64>, NotFinite> {
+) -> Result<Option<f64>> {
     let mut all = [0.0; 2 * IN_ORDER - 1];
     let mut in_doubt = [false; IN_ORDER];
     let mut highest = 0.0f64;
@@ -252,12 +246,7 @@ const MORE_STEPS: usize = 4;
 /// Hausdorff distance between candidate and image, by sampling: for each point the nearest sample by search, the nearest point of the
 /// chords beside that, then Newton steps. Omitted steps only make distances larger.
 #[cold]
-pub(crate) fn thorough(
-    source: &impl Source,
-    c: &Candidate,
-    slow: &SlowSpots,
-    tolerance: f64,
-) -> Result<f64, NotFinite> {
+pub(crate) fn thorough(source: &impl Source, c: &Candidate, slow: &SlowSpots, tolerance: f64) -> Result<f64> {
     let taus = places(c, slow);
     let mut images = Vec::with_capacity(taus.len() / 8);
     let lanes = taus.chunks_exact(8).map(|chunk| std::array::from_fn(|i| c.param(chunk[i])));
@@ -380,7 +369,7 @@ fn from_cubic(
     images: &Sampled<'_>,
     enough: f64,
     mut worst: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let mut from = 0;
     let mut waiting = Vec::with_capacity(8);
     for q in curve {
@@ -410,13 +399,7 @@ struct Foot {
 }
 
 /// Measures the distances of up to eight points together. Returns the largest squared distance, or `worst` if that is larger.
-fn refined(
-    source: &impl Source,
-    c: &Candidate,
-    feet: &mut [Foot],
-    enough: f64,
-    mut worst: f64,
-) -> Result<f64, NotFinite> {
+fn refined(source: &impl Source, c: &Candidate, feet: &mut [Foot], enough: f64, mut worst: f64) -> Result<f64> {
     let origin = c.p0.to_vec2();
     for _ in 0..=STEPS {
         let last = feet.len() - 1;
@@ -461,7 +444,7 @@ pub(crate) fn dense(
     feet: &InOrder,
     slow: &SlowSpots,
     tolerance: f64,
-) -> Result<(f64, bool), NotFinite> {
+) -> Result<(f64, bool)> {
     let last = FootPoint { s: 0.0, slope: c.frame.t0 };
     let mut walk = Walk { source, c, feet, worst: 0.0, last };
     let by_search = || Ok((thorough(source, c, slow, tolerance)?, true));
@@ -511,7 +494,7 @@ struct Walk<'a, S> {
 impl<S: Source> Walk<'_, S> {
     /// Measures the next eight samples and returns their squared distances. `None` if the foot points do not advance, leap over a long part
     /// of the cubic, or if the cubic turns by 60° between two of them.
-    fn advance(&mut self, tau: &Lane) -> Result<Option<Lane>, NotFinite> {
+    fn advance(&mut self, tau: &Lane) -> Result<Option<Lane>> {
         let c = self.c;
         // Newton steps left out would only make distances larger.
         let Probe { s, squares, .. } = probe(self.source, c, self.feet, tau, 2)?;
@@ -531,7 +514,7 @@ impl<S: Source> Walk<'_, S> {
 
     /// Takes eight more samples beside every local maximum that is nearly the largest. Returns the highest distance found.
     /// Where the cubic nearly stops, the distance has a corner that no parabola follows.
-    fn zoom_on_peaks(&self, even: &[f64]) -> Result<f64, NotFinite> {
+    fn zoom_on_peaks(&self, even: &[f64]) -> Result<f64> {
         let mut highest = 0.0f64;
         for i in 0..even.len() {
             let (before, after) = (if i > 0 { even[i - 1] } else { 0.0 }, even.get(i + 1).copied().unwrap_or(0.0));
@@ -597,13 +580,7 @@ pub(crate) struct Probe {
 }
 
 /// Samples the image at `tau` and measures its distance from the cubic, after `steps` Newton steps for the foot points.
-pub(crate) fn probe(
-    source: &impl Source,
-    c: &Candidate,
-    feet: &InOrder,
-    tau: &Lane,
-    steps: usize,
-) -> Result<Probe, NotFinite> {
+pub(crate) fn probe(source: &impl Source, c: &Candidate, feet: &InOrder, tau: &Lane, steps: usize) -> Result<Probe> {
     let mut s: Lane = tau.map(|t| interpolated(feet, t));
     let g = c.images(source, tau)?;
     let squares = c.frame.distances(&g, c.a, c.b, &mut s, steps);

@@ -12,7 +12,7 @@ use crate::limits::{ACCEPTED, BETWEEN_TARGET, CARRY_BELOW, FINEST_STEP, JUMP_ERR
 use crate::report::{Assurance, Piece, Report};
 use crate::run::SegmentRun;
 use crate::run::{RunCubic, Stretch, Trial};
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, Result, Source};
 use std::collections::VecDeque;
 
 /// A cubic that was tried from one grid point to another.
@@ -128,7 +128,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// The break point at grid point `k`. An error if the curve is not finite there.
-    fn end(&mut self, k: usize) -> Result<BreakPoint, NotFinite> {
+    fn end(&mut self, k: usize) -> Result<BreakPoint> {
         let slot = k % self.memory.ends.len();
         if let Some((at, end)) = self.memory.ends[slot]
             && at == k
@@ -141,7 +141,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// The piece from grid point `k` to `m` with its checked or proven error. `None` if it is not within the tolerance.
-    fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>, NotFinite> {
+    fn piece(&mut self, k: usize, m: usize) -> Result<Option<(Piece, f64)>> {
         let i = self.entry(k, m)?;
         if let Some(cubic) = self.memory.tried[i].cubic.take() {
             let passed = self.checked(*cubic, k, m)?.map(Box::new);
@@ -164,7 +164,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// Checks a cubic. If it fails, or has a large error and will be carried, checks a closer fit too. Returns the better of both.
-    fn checked(&mut self, cubic: RunCubic, k: usize, m: usize) -> Result<Option<Passed>, NotFinite> {
+    fn checked(&mut self, cubic: RunCubic, k: usize, m: usize) -> Result<Option<Passed>> {
         let found = self.within(&cubic)?;
         let enough =
             if self.settings.marks && self.settings.again { CARRY_BELOW * self.tolerance } else { self.tolerance };
@@ -181,7 +181,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// Piece and error of a cubic, by the samples of all segments or proven segment by segment. `None` if it is not within the tolerance.
     /// `measure` leaves foot points in `distances.feet` for the proof and the marks.
-    fn within(&mut self, cubic: &RunCubic) -> Result<Option<Passed>, NotFinite> {
+    fn within(&mut self, cubic: &RunCubic) -> Result<Option<Passed>> {
         let enough = self.tolerance;
         let checked = self.memory.distances.measure(self.run, cubic, enough)?;
         let Some(mut error) = checked.filter(|e| *e <= enough) else { return Ok(None) };
@@ -196,7 +196,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         Ok(Some(Passed { piece: cubic.piece(), error, marked }))
     }
 
-    fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch, NotFinite> {
+    fn stretch(&mut self, k: usize, m: usize) -> Result<Stretch> {
         let ends = [self.end(k)?, self.end(m)?];
         let settings = (self.tolerance, self.settings.evenly);
         Ok(Stretch::new(self.run, ends, [self.run.sample(k), self.run.sample(m)], settings))
@@ -212,7 +212,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// The entry of the cubic from `k` to `m`, which is fitted on first use.
-    fn entry(&mut self, k: usize, m: usize) -> Result<usize, NotFinite> {
+    fn entry(&mut self, k: usize, m: usize) -> Result<usize> {
         if let Some(i) = self.known(k, m) {
             return Ok(i);
         }
@@ -228,7 +228,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// Error ÷ tolerance of the cubic from `k` to `m` at its samples.
-    pub(crate) fn error(&mut self, k: usize, m: usize) -> Result<f64, NotFinite> {
+    pub(crate) fn error(&mut self, k: usize, m: usize) -> Result<f64> {
         let i = self.entry(k, m)?;
         Ok(self.memory.tried[i].error)
     }
@@ -262,7 +262,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     ///
     /// If a stretch fails, nearly all longer ones do, so grid points are tried as in a bisection, with the sixth-order law of
     /// the error as the guess.
-    fn furthest(&mut self, k: usize) -> Result<usize, NotFinite> {
+    fn furthest(&mut self, k: usize) -> Result<usize> {
         let limit = self.limit(k);
         let grid = self.run.grid;
         let joint = (k / grid + 1) * grid;
@@ -281,13 +281,13 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
     }
 
     /// Returns `true` if `k` is the joint before `joint`, and the segment between them has a single piece.
-    fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool, NotFinite> {
+    fn own_leads_to(&mut self, joint: usize, k: usize) -> Result<bool> {
         Ok(k + self.run.grid == joint && self.own.count(k / self.run.grid)? == 1)
     }
 
     /// The furthest grid point that one cubic reaches from `k`, as far as its samples show; `k` if the segment's own piece leads as far, to
     /// `joint`. If `back`, grid points count from the end, and with `joint` = k + 1, own pieces do not matter.
-    fn seek(&mut self, k: usize, (joint, limit): (usize, usize), back: bool) -> Result<usize, NotFinite> {
+    fn seek(&mut self, k: usize, (joint, limit): (usize, usize), back: bool) -> Result<usize> {
         let start = self.place(k, back);
         let (mut low, mut high) = (k, limit + 1);
         // Errors at `low` and `high`, if known.
@@ -348,7 +348,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
 
     /// The grid points that divide the run into the fewest pieces, each in the middle of the range in which it may lie. `None` if no cubic
     /// leads from some grid point to the next.
-    pub(crate) fn middles(&mut self) -> Result<Option<Vec<usize>>, NotFinite> {
+    pub(crate) fn middles(&mut self) -> Result<Option<Vec<usize>>> {
         let last = self.last();
         let mut ways = [vec![0], vec![0]];
         for (way, back) in ways.iter_mut().zip([false, true]) {
@@ -402,9 +402,9 @@ pub struct Leg {
 }
 
 /// Function that fits a segment, given its index in the run, and appends its pieces.
-pub trait FitOwn: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {}
+pub trait FitOwn: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<()> {}
 
-impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite>> FitOwn for F {}
+impl<F: FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<()>> FitOwn for F {}
 
 /// Pieces of single segments, fitted only when they are needed. Where merging succeeds, few are.
 pub struct OwnPieces<F> {
@@ -422,7 +422,7 @@ impl<F: FitOwn> OwnPieces<F> {
         Self { fit, grid: MERGE_GRID, pieces: Vec::new(), known: vec![None; segments] }
     }
 
-    fn fitted(&mut self, i: usize) -> Result<&(usize, usize, Report), NotFinite> {
+    fn fitted(&mut self, i: usize) -> Result<&(usize, usize, Report)> {
         if self.known[i].is_none() {
             let (start, mut report) = (self.pieces.len(), Report::default());
             (self.fit)(i, &mut self.pieces, &mut report)?;
@@ -432,7 +432,7 @@ impl<F: FitOwn> OwnPieces<F> {
     }
 
     /// Number of pieces of segment `i`.
-    fn count(&mut self, i: usize) -> Result<usize, NotFinite> {
+    fn count(&mut self, i: usize) -> Result<usize> {
         self.fitted(i).map(|(from, to, _)| to - from)
     }
 
@@ -441,7 +441,7 @@ impl<F: FitOwn> OwnPieces<F> {
     }
 
     /// Number of pieces of all segments.
-    pub(crate) fn total(&mut self) -> Result<usize, NotFinite> {
+    pub(crate) fn total(&mut self) -> Result<usize> {
         (0..self.segments()).map(|i| self.count(i)).sum()
     }
 
@@ -449,13 +449,13 @@ impl<F: FitOwn> OwnPieces<F> {
     ///
     /// # Errors
     /// [`NotFinite`] if a segment is not finite.
-    pub fn count_of(&mut self, legs: Option<&[PassedLeg]>) -> Result<usize, NotFinite> {
+    pub fn count_of(&mut self, legs: Option<&[PassedLeg]>) -> Result<usize> {
         let Some(legs) = legs else { return self.total() };
         legs.iter().map(|(leg, _)| if leg.merged { Ok(1) } else { self.count(leg.from / self.grid) }).sum()
     }
 
     /// Appends the pieces of segment `i`.
-    fn append_segment(&mut self, i: usize, out: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+    fn append_segment(&mut self, i: usize, out: &mut Vec<Piece>, report: &mut Report) -> Result<()> {
         let (from, to, own) = self.fitted(i)?;
         let (from, to) = (*from, *to);
         report.add(own);
@@ -473,7 +473,7 @@ impl<F: FitOwn> OwnPieces<F> {
         assurance: Assurance,
         pieces: &mut Vec<Piece>,
         report: &mut Report,
-    ) -> Result<(), NotFinite> {
+    ) -> Result<()> {
         let Some(legs) = legs else {
             return (0..self.segments()).try_for_each(|i| self.append_segment(i, pieces, report));
         };
@@ -497,7 +497,7 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     ///
     /// # Errors
     /// [`NotFinite`] if a segment is not finite.
-    pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+    pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>> {
         let mut out = Vec::with_capacity(legs.len());
         for leg in legs {
             let piece = if leg.merged { self.piece(leg.from, leg.to)? } else { None };
@@ -512,7 +512,7 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     ///
     /// # Errors
     /// [`NotFinite`] if a segment is not finite.
-    pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+    pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>> {
         match fewest_legs(self)? {
             Some(legs) => self.pieces_of(&legs),
             None => Ok(None),
@@ -531,7 +531,7 @@ pub fn refined<S: Source + Clone, F: FitOwn>(
     legs: Option<Vec<PassedLeg>>,
     settings: MergeSettings,
     memory: &mut ReachMemory,
-) -> Result<(OwnPieces<F>, Option<Vec<PassedLeg>>), NotFinite> {
+) -> Result<(OwnPieces<F>, Option<Vec<PassedLeg>>)> {
     let pieces = own.count_of(legs.as_deref())?;
     let by = (24 * pieces / run.last_place()).next_power_of_two().min(MOST_REFINED);
     if by == 1 {
@@ -560,7 +560,7 @@ struct Furthest {
 }
 
 /// The legs with the fewest pieces. `None` if they are not fewer than the segments have.
-fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Option<Vec<Leg>>, NotFinite> {
+fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Option<Vec<Leg>>> {
     let (last, grid) = (reaches.last(), reaches.run.grid);
     let mut furthest = vec![Furthest { place: 0, leg: None }];
     // Number of pieces and joint to which the pieces of a single segment lead.
@@ -607,7 +607,7 @@ fn step(k: usize, m: usize) -> usize {
 }
 
 /// Follows the legs back from the end.
-fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Vec<Leg>, NotFinite> {
+fn legs(furthest: &[Furthest], reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Vec<Leg>> {
     let mut legs = Vec::new();
     let mut count = furthest.len() - 1;
     let mut to = reaches.last();

@@ -8,7 +8,7 @@ use crate::options::Nodes;
 use crate::part::Part;
 use crate::report::{Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source};
+use crate::source::{BreakPoint, NotFinite, Quotient, Result, Source};
 use crate::stretch::StretchFitter;
 use kurbo::{Point, Vec2};
 
@@ -78,7 +78,7 @@ pub fn placed<S: Source>(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<PlacedWork, NotFinite> {
+) -> Result<PlacedWork> {
     let places = Places { run, closed: settings.closed };
     let mut kept = match settings.nodes {
         Nodes::Auto => places.structure()?,
@@ -136,7 +136,7 @@ impl<'r, S: Source> Places<'r, S> {
     }
 
     /// All smooth extremes.
-    fn extremes(&self) -> Result<Vec<Place>, NotFinite> {
+    fn extremes(&self) -> Result<Vec<Place>> {
         let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
         let segment = |j: isize| &self.run.segments[j.rem_euclid(count / n) as usize];
         let mut out = Vec::new();
@@ -176,7 +176,7 @@ impl<'r, S: Source> Places<'r, S> {
     }
 
     /// The smooth extremes that lie on the bounding box of all.
-    fn outermost(&self) -> Result<Vec<Place>, NotFinite> {
+    fn outermost(&self) -> Result<Vec<Place>> {
         let all = self.extremes()?;
         let at: Vec<Point> = all.iter().map(|p| self.run.segments[p.segment].source.eval(p.t).0).collect();
         let bounds = at.iter().fold(None, |b: Option<kurbo::Rect>, p| {
@@ -189,7 +189,7 @@ impl<'r, S: Source> Places<'r, S> {
     }
 
     /// The nodes of the source that are its structure, moved to the nearest extreme if that is near.
-    fn structure(&self) -> Result<Vec<Place>, NotFinite> {
+    fn structure(&self) -> Result<Vec<Place>> {
         let mut out = Vec::new();
         for (j, segment) in self.run.segments.iter().enumerate() {
             if !segment.kept || (j == 0 && !self.closed) {
@@ -212,7 +212,7 @@ impl<'r, S: Source> Places<'r, S> {
 
     /// The nearest extreme before the next kept node up to which the curve turns by little from joint `j`, where it is off the axis by
     /// `off`.
-    fn near(&self, j: usize, c: Coordinate, off: f64) -> Result<Option<Place>, NotFinite> {
+    fn near(&self, j: usize, c: Coordinate, off: f64) -> Result<Option<Place>> {
         let (n, count) = (self.run.per_segment as isize, self.intervals() as isize);
         let start = j as isize * n;
         let is_kept = |k: isize| k % n == 0 && self.run.segments[(k / n).rem_euclid(count / n) as usize].kept;
@@ -248,7 +248,7 @@ impl<'r, S: Source> Places<'r, S> {
 
     /// The extreme of a coordinate between two samples, after which the coordinate changes with the sign of `after`. `None` if the
     /// derivatives show none.
-    fn extreme(&self, c: Coordinate, [from, to]: [isize; 2], after: f64) -> Result<Option<Place>, NotFinite> {
+    fn extreme(&self, c: Coordinate, [from, to]: [isize; 2], after: f64) -> Result<Option<Place>> {
         let (n, count) = (self.run.per_segment as isize, self.run.segments.len() as isize);
         let from = if self.closed { from } else { from.max(0) };
         for k in from..to {
@@ -279,7 +279,7 @@ impl<'r, S: Source> Places<'r, S> {
     }
 
     /// The stretch between two nodes as a run. After the last segment, segments are counted from the first again.
-    fn between(&self, from: Place, to: Place) -> Result<SegmentRun<Part<'r, S>>, NotFinite> {
+    fn between(&self, from: Place, to: Place) -> Result<SegmentRun<Part<'r, S>>> {
         let (run, count) = (self.run, self.run.segments.len());
         let mut out = SegmentRun::new(true, to.segment + 1 - from.segment);
         (out.per_segment, out.grid) = (run.per_segment, run.per_segment / 2);
@@ -321,11 +321,7 @@ fn axis_of(v: Vec2) -> Option<Vec2> {
 
 /// Parameter between two at which the derivative of a coordinate changes its sign to the sign of `after`, and the derivative, by the
 /// Illinois method.
-fn root<S: Source>(
-    source: &S,
-    (c, after): (Coordinate, f64),
-    [mut a, mut b]: [f64; 2],
-) -> Result<Option<(f64, Vec2)>, NotFinite> {
+fn root<S: Source>(source: &S, (c, after): (Coordinate, f64), [mut a, mut b]: [f64; 2]) -> Result<Option<(f64, Vec2)>> {
     let at = |t: f64| {
         let (p, d) = source.eval(t);
         if d.is_finite() { Ok((coordinate(d, c) / d.hypot(), d)) } else { Err(NotFinite { t, at: p }) }
@@ -384,7 +380,7 @@ fn evenly<S: Source + Clone>(
     memory: &mut ReachMemory,
     (pieces, report): (&mut Vec<Piece>, &mut Report),
     work: &mut PlacedWork,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let NodeSettings { tolerance, left, .. } = settings;
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
     let own = OwnPieces::new(run.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
@@ -402,7 +398,7 @@ fn evenly<S: Source + Clone>(
 
 impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// Legs with few pieces of about equal difficulty, chosen alike from either end. `None` if the segments have fewer pieces.
-    pub(crate) fn even(&mut self) -> Result<Option<Vec<PassedLeg>>, NotFinite> {
+    pub(crate) fn even(&mut self) -> Result<Option<Vec<PassedLeg>>> {
         let last = self.last();
         let (mut n, mut placements, mut searched) = (1, 0, false);
         let mut ends = vec![0, last];

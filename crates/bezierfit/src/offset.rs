@@ -1,7 +1,7 @@
 //! Offset curves: curves at a distance from another.
 
 use crate::path::Segment;
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, NotFinite, Result, Source};
 use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
@@ -185,7 +185,7 @@ impl Source for Offset {
         Some(true)
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         let (p, d) = self.eval(t);
         if !(p.is_finite() && d.is_finite()) {
             return Err(NotFinite { t, at: self.place(t) });

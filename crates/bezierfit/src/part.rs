@@ -2,7 +2,7 @@
 
 use crate::limits::JUMP;
 use crate::sample::{Lane, Lanes};
-use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, Source};
+use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, Result, Source};
 use kurbo::{Point, Vec2};
 use std::cell::Cell;
 
@@ -87,7 +87,7 @@ impl<S: Source> Source for Part<'_, S> {
         self.source.place(self.source_parameter(t))
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         if t == 0.0 || t == 1.0 {
             return Ok(self.ends[usize::from(t == 1.0)]);
         }
@@ -108,11 +108,7 @@ impl<S: Source> Source for Part<'_, S> {
 }
 
 /// The parts between the breaks of a source. Each counts its evaluations in `calls`.
-pub(crate) fn parts<'a, S: Source>(
-    source: &'a S,
-    tolerance: f64,
-    calls: &'a Cell<usize>,
-) -> Result<Vec<Part<'a, S>>, NotFinite> {
+pub(crate) fn parts<'a, S: Source>(source: &'a S, tolerance: f64, calls: &'a Cell<usize>) -> Result<Vec<Part<'a, S>>> {
     let mut ends = source.breaks();
     ends.retain(|t| *t > 0.0 && *t < 1.0);
     ends.push(1.0);
@@ -141,7 +137,7 @@ pub(crate) fn parts<'a, S: Source>(
 }
 
 /// The end of a smooth part at `t`, with the tangent and the speed a little further inside: after `t` if `side` is 1, before it if −1.
-fn one_sided_end<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
+fn one_sided_end<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint> {
     // Where the curve jumps, take the limit from the left.
     let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });
     let near = source.end(t + side * ONE_SIDED_STEP)?;

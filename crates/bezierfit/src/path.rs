@@ -10,7 +10,7 @@ use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
 use crate::scale::smooth_parts;
-use crate::source::{NotFinite, Quotient, SlowSpots, Source};
+use crate::source::{NotFinite, Quotient, Result, SlowSpots, Source};
 use crate::spline::Run;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
@@ -43,7 +43,7 @@ pub fn fit(source: &dyn Source, options: &Options) -> Result<Fitted, Error> {
     limited(options, &|options| Ok(fitted(&source, options)?))
 }
 
-fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted, NotFinite> {
+fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let calls = Cell::new(0);
@@ -70,7 +70,7 @@ fn merged_parts<S: Source>(
     (options, calls): (&Options, &Cell<usize>),
     memory: &mut ReachMemory,
     report: &mut Report,
-) -> Result<Vec<Piece>, NotFinite> {
+) -> Result<Vec<Piece>> {
     let slow = SlowSpots::default();
     let mut covered = Vec::with_capacity(parts.len());
     let mut out = Vec::new();
@@ -107,7 +107,7 @@ fn splines<S: Source>(
     parts: &[Part<'_, S>],
     (options, calls): (&Options, &Cell<usize>),
     out: &mut Fitted,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let spent = || calls.get() >= options.evaluations;
     let mut rest = parts;
     while let Some(first) = rest.first() {
@@ -173,7 +173,7 @@ pub fn fit_points(points: impl IntoIterator<Item = impl Into<Point>>, options: &
     simplify(&BezPath::from_vec(elements), options)
 }
 
-fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
+fn simplified(path: &BezPath, options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     for subpath in subpaths(path) {
@@ -219,7 +219,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
 }
 
 /// A run of the first segments, as far as they join smoothly, and their number.
-fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
+fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize)> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.nodes.merges() { segments.len() } else { 1 };
     let count = run.extend(&segments[..most], options.path_joint(), |segment| {
@@ -236,7 +236,7 @@ fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<S
 }
 
 /// Returns a function that appends one of the segments unchanged.
-fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {
+fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<()> {
     |i, pieces, report| {
         pieces.push(segments[i].piece());
         report.add_error(0.0, Assurance::Exact);
@@ -252,7 +252,7 @@ pub(crate) fn smooth_run(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<usize, NotFinite> {
+) -> Result<usize> {
     let (run, count) = smooth_start(segments, options)?;
     let mut itself = unchanged(segments);
     if options.nodes.are_placed() && count > usize::from(options.nodes == Nodes::Auto) {
@@ -270,7 +270,7 @@ pub(crate) fn smooth_run(
 }
 
 /// Appends quadratics for the first segments, as far as they join smoothly, and returns the number of those segments.
-fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
+fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize> {
     let (mut run, mut count) = smooth_start(segments, options)?;
     if let (true, Some(to)) = (options.nodes.are_placed(), (1..count).find(|i| run.segments[*i].kept)) {
         (run, count) = smooth_start(&segments[..to], options)?;

@@ -32,20 +32,14 @@
 use crate::fit::{Candidate, ChordFrame};
 use crate::sample::{CHECKED, FITTED, Lane, Lanes, fma, largest, sum};
 use crate::sampled::{MAX_VARIATION, ROUNDING, SampledProof, inverse};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
+use crate::source::{BreakPoint, NotFinite, Quotient, Result, Source, images};
 use kurbo::{CubicBez, Point, Vec2};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 /// Bound for the Hausdorff distance between candidate and image from Chebyshev nodes: few, or more if that bound is above the tolerance;
 /// infinite if none was found. `feet` approximate the foot points of the samples j/17.
-fn by_nodes(
-    source: &impl Source,
-    form: &Quotient,
-    c: &Candidate,
-    feet: &[f64; FEET],
-    tolerance: f64,
-) -> Result<f64, NotFinite> {
+fn by_nodes(source: &impl Source, form: &Quotient, c: &Candidate, feet: &[f64; FEET], tolerance: f64) -> Result<f64> {
     const V: usize = 4;
     let quick = if form.total(4, V) < 24 { with_nodes::<24, 4, V>(source, form, c, feet)? } else { f64::INFINITY };
     if quick <= tolerance { Ok(quick) } else { with_nodes::<NODES, PHI, CLEARING>(source, form, c, feet) }
@@ -58,7 +52,7 @@ pub(crate) fn stretch(
     t: [f64; 2],
     cubic: &CubicBez,
     tolerance: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let unit = |v: Vec2| if v == Vec2::ZERO { (v, 0.0) } else { (v / v.hypot(), v.hypot()) };
     let q = cubic.p3 - cubic.p0;
     let ((t0, a), (t1, b)) = (unit(cubic.p1 - cubic.p0), unit(cubic.p3 - cubic.p2));
@@ -88,7 +82,7 @@ fn with_nodes<const N: usize, const P: usize, const V: usize>(
     form: &Quotient,
     c: &Candidate,
     feet: &[f64; FEET],
-) -> Result<f64, NotFinite>
+) -> Result<f64>
 where
     ChebyshevTables<N, P>: SharedTables,
 {
@@ -249,7 +243,7 @@ pub(crate) fn piece(
     g: [&Lanes; 2],
     feet: [&Lane; 2],
     tolerance: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let sampled = SampledProof::new(source, form, c, g, tolerance);
     let identity = sampled.identity()?;
     if identity <= tolerance {
@@ -287,7 +281,7 @@ pub(crate) fn line(
     from: &BreakPoint,
     to: &BreakPoint,
     size: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let q = to.p - from.p;
     let length = q.hypot();
     let unit = if length > 0.0 { q / length } else { Vec2::ZERO };

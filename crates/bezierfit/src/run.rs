@@ -5,7 +5,7 @@ use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, best_fit
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
 use crate::report::{Assurance, Piece};
 use crate::sample::{IN_ORDER, InOrder, Lane, Lanes, UNIT, interleaved, larger, largest, parabola_extreme};
-use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images};
+use crate::source::{BreakPoint, NotFinite, Quotient, Result, SlowSpots, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
 use kurbo::{CubicBez, Line, Point, Vec2};
 
@@ -122,16 +122,12 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Samples a segment and appends it. Returns `false` if consecutive samples coincide: a stretch without length has no direction.
-    pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool, NotFinite> {
+    pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool> {
         self.push_sampled(segment, None)
     }
 
     /// Appends a segment by [`push`](Self::push), or by its `samples` if they are known.
-    pub(crate) fn push_sampled(
-        &mut self,
-        mut segment: RunSegment<S>,
-        samples: Option<[&[f64]; 2]>,
-    ) -> Result<bool, NotFinite> {
+    pub(crate) fn push_sampled(&mut self, mut segment: RunSegment<S>, samples: Option<[&[f64]; 2]>) -> Result<bool> {
         let n = self.per_segment;
         if self.x.is_empty() {
             self.x.push(segment.from.p.x);
@@ -192,8 +188,8 @@ impl<S: Source> SegmentRun<S> {
         &mut self,
         items: &'t [T],
         corner: f64,
-        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>, NotFinite>,
-    ) -> Result<usize, NotFinite> {
+        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>>,
+    ) -> Result<usize> {
         for (i, item) in items.iter().enumerate() {
             let Some(next) = segment(item)? else { return Ok(i) };
             let parts = self.segments.last().is_some_and(|last| last.parts(&next, corner));
@@ -224,7 +220,7 @@ impl<S: Source> SegmentRun<S> {
     ///
     /// # Errors
     /// [`NotFinite`] if a segment is not finite.
-    pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>, NotFinite>
+    pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>>
     where
         S: Clone,
     {
@@ -257,7 +253,7 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// The break point at grid point `k`, with the length as its parameter.
-    pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint, NotFinite> {
+    pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint> {
         let (i, part) = (k / self.grid, k % self.grid);
         let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
             (Some(segment), _) if part > 0 => segment.source.end(part as f64 / self.grid as f64)?,
@@ -322,7 +318,7 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Images at eight parameters of segment `i`.
-    pub(crate) fn images(&self, i: usize, t: &Lane) -> Result<Lanes, NotFinite> {
+    pub(crate) fn images(&self, i: usize, t: &Lane) -> Result<Lanes> {
         self.segments.get(i).map_or(Ok(Lanes::default()), |s| images(&s.source, t))
     }
 }
@@ -448,9 +444,9 @@ impl Stretch {
     }
 
     /// Fits a cubic: by least squares, and by further methods as long as the error is above the tolerance.
-    pub(crate) fn fitted(mut self) -> Result<Trial, NotFinite> {
+    pub(crate) fn fitted(mut self) -> Result<Trial> {
         let [from, to] = &self.ends;
-        if let Some((line, error)) = straight(&self.g, from, to, self.frame.size, self.tolerance) {
+        if let Some((line, error)) = straight(&self.g, [from, to], self.frame.size, self.tolerance) {
             let third = line.p0.distance(line.p1) / 3.0;
             return Ok(Trial { error, cubic: Some(self.with([third; 2], self.shares, true)) });
         }
@@ -463,7 +459,7 @@ impl Stretch {
     }
 
     /// Fits a cubic with the least error that can be reached, starting from `from`.
-    pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial, NotFinite> {
+    pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial> {
         let (state, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) }, self.tolerance);
         let fit = fit(&THOROUGH, &self.frame, &self.g, state, [0.0, tolerance]);
         let mut best = BestFit::judged(fit, &mut self, tolerance)?;
@@ -500,7 +496,7 @@ impl Fitting for Stretch {
         (&self.frame, &self.g)
     }
 
-    fn checked(&mut self) -> Result<Lanes, NotFinite> {
+    fn checked(&mut self) -> Result<Lanes> {
         Ok(self.check)
     }
 
@@ -520,7 +516,7 @@ impl Fitting for Stretch {
         out
     }
 
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, InOrder), NotFinite> {
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, InOrder)> {
         let (state, fitted) = (&fit.state, settled(&self.frame, &self.g, fit, self.tolerance));
         let mut s = self.feet_between(&fitted.s);
         let squares = self.frame.distances(&self.check, state.a, state.b, &mut s, 1);

@@ -32,7 +32,7 @@ mod tests;
 
 use crate::fit::Candidate;
 use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, fma, largest, sum};
-use crate::source::{NotFinite, Quotient, Source, images_into};
+use crate::source::{Quotient, Result, Source, images_into};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -76,23 +76,23 @@ impl<'a, S: Source> SampledProof<'a, S> {
     }
 
     /// The bound for the Hermite cubic with φ = τ, from sixteen samples.
-    pub(crate) fn identity(&self) -> Result<f64, NotFinite> {
+    pub(crate) fn identity(&self) -> Result<f64> {
         let hermite = [self.c.a, self.c.b] == self.c.frame.home;
         if hermite { self.with(&([0.0; 2], []), 1, DETERMINED[0]) } else { Ok(f64::INFINITY) }
     }
 
     /// The bound from sixteen samples, with approximate foot points.
-    pub(crate) fn sixteen(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
+    pub(crate) fn sixteen(&self, feet: [&Lane; 2]) -> Result<f64> {
         self.through::<3>(feet, DETERMINED[0])
     }
 
     /// The bound from thirty-two samples; the foot points should be accurate.
-    pub(crate) fn thirty_two(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
+    pub(crate) fn thirty_two(&self, feet: [&Lane; 2]) -> Result<f64> {
         self.through::<FREE>(feet, DETERMINED[1])
     }
 
     #[inline(always)]
-    fn through<const F: usize>(&self, feet: [&Lane; 2], most: usize) -> Result<f64, NotFinite> {
+    fn through<const F: usize>(&self, feet: [&Lane; 2], most: usize) -> Result<f64> {
         // The highest degree of φ that so many samples allow.
         let Some(p) = (5..=F + 3).rev().find(|p| self.degree(*p) <= most) else { return Ok(f64::INFINITY) };
         let [h0, h1] = self.c.frame.home;
@@ -105,7 +105,7 @@ impl<'a, S: Source> SampledProof<'a, S> {
 
     /// The bound with φ of degree `p` from samples that determine D up to degree `limit`.
     #[inline(always)]
-    fn with<const F: usize>(&self, phi: &Phi<F>, p: usize, limit: usize) -> Result<f64, NotFinite> {
+    fn with<const F: usize>(&self, phi: &Phi<F>, p: usize, limit: usize) -> Result<f64> {
         let tables = SampleTables::shared();
         let c = self.c;
         let n = self.degree(p);
@@ -158,7 +158,7 @@ impl<S: Source> ProofData<'_, S> {
 
     /// The bound with denominators, or from thirty-two samples.
     #[inline(never)]
-    fn by_more<const F: usize>(&self, phi: &Phi<F>, d: [Lanes; 2]) -> Result<f64, NotFinite> {
+    fn by_more<const F: usize>(&self, phi: &Phi<F>, d: [Lanes; 2]) -> Result<f64> {
         let tables = SampleTables::shared();
         let SampledProof { source, form, c, .. } = *self.proof;
         let few = self.few;

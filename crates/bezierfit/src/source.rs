@@ -155,6 +155,9 @@ impl std::fmt::Display for NotFinite {
 
 impl std::error::Error for NotFinite {}
 
+/// A value that needs a curve to be finite.
+pub(crate) type Result<T, E = NotFinite> = std::result::Result<T, E>;
+
 /// A point between two pieces, with the tangents on both sides.
 #[derive(Debug, Clone, Copy)]
 pub struct BreakPoint {
@@ -220,7 +223,7 @@ fn bernstein(b: &[f64], t: &Lane) -> Lane {
 
 /// Writes the points at eight parameters. An error unless all are finite.
 #[inline(always)]
-pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Result<(), NotFinite> {
+pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Result<()> {
     source.points(t, g);
     // One test for all: the sum is finite only if every term is. Terms whose sum overflows are too large to fit.
     let mut all = [0.0; 8];
@@ -232,7 +235,7 @@ pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Resu
 
 /// The points at eight parameters. An error unless all are finite.
 #[inline(always)]
-pub(crate) fn images(source: &impl Source, t: &Lane) -> Result<Lanes, NotFinite> {
+pub(crate) fn images(source: &impl Source, t: &Lane) -> Result<Lanes> {
     let mut out = Lanes::default();
     images_into(source, t, &mut out)?;
     Ok(out)

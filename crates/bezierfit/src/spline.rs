@@ -12,7 +12,7 @@
 use crate::banded::solve_banded;
 use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
 use crate::report::{Assurance, REPORT_MARGIN, Report};
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, NotFinite, Result, Source};
 use kurbo::{BezPath, Point, Vec2};
 
 /// Most rounds of a fit. The first is plain least squares.
@@ -92,12 +92,7 @@ impl Covered {
 
 impl<S: Source> Run<'_, S> {
     /// Appends few quadratics from the current point of `path`.
-    pub(crate) fn cover(
-        &self,
-        ends: [BreakPoint; 2],
-        path: &mut BezPath,
-        report: &mut Report,
-    ) -> Result<(), NotFinite> {
+    pub(crate) fn cover(&self, ends: [BreakPoint; 2], path: &mut BezPath, report: &mut Report) -> Result<()> {
         let unknown = |s: &S| s.resolved([0.0, 1.0], SPLINE_SAMPLES, self.tolerance).is_none();
         let assurance = if self.curves.iter().any(unknown) { Assurance::Sampled } else { Assurance::Checked };
         let mut futile = 0;
@@ -109,7 +104,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Groups the curves of the run: straight ones alone, and between them as many together as a spline may cover.
-    fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>, NotFinite> {
+    fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>> {
         let mut all: Vec<(Stretch, f64)> = Vec::new();
         let (mut from, last) = (ends[0], self.curves.len() - 1);
         for (curve, source) in self.curves.iter().enumerate() {
@@ -133,7 +128,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Covers a stretch, divided if it needs too many pieces, or fewer when divided.
-    fn covered(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>, NotFinite> {
+    fn covered(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>> {
         let (found, expected) = self.least(&stretch)?;
         let [t0, t1] = stretch.spans[0].t;
         let unsuited = |c: &Covered| c.pieces() as f64 > (UNSUITED * expected).max(2.0);
@@ -166,7 +161,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Divides a stretch between curves, or a curve in its middle.
-    fn halves(&self, stretch: Stretch) -> Result<[Stretch; 2], NotFinite> {
+    fn halves(&self, stretch: Stretch) -> Result<[Stretch; 2]> {
         let Stretch { spans, ends } = stretch;
         let (mut first, mut second) = (spans.clone(), spans);
         if let [span] = first[..] {
@@ -184,7 +179,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Covers a stretch with the fewest pieces, if [`MOST`] suffice. Also returns the expected number.
-    fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64), NotFinite> {
+    fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64)> {
         let Stretch { spans, ends } = stretch;
         let sampled = |n: usize| {
             let each = (SPLINE_SAMPLES * (n + 1)).div_ceil(spans.len());
@@ -231,7 +226,7 @@ impl<S: Source> Run<'_, S> {
         n: usize,
         samples: &Samples,
         ends: &[BreakPoint; 2],
-    ) -> Result<Result<(Spline, f64, f64), f64>, NotFinite> {
+    ) -> Result<Result<(Spline, f64, f64), f64>> {
         let (spline, [error, bound], u) = match Spline::best(n, samples, ends, self.tolerance) {
             Ok(found) => found,
             Err(error) => return Ok(Err(error)),
@@ -253,7 +248,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Samples `each` intervals of every span.
-    fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples, NotFinite> {
+    fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples> {
         let all = each * spans.len() + 1;
         let mut p = vec![ends[0].p];
         for span in spans {

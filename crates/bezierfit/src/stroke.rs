@@ -12,7 +12,7 @@ use crate::options::{Error, Options};
 use crate::path::{append, subpaths};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
-use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
+use crate::source::{BreakPoint, NotFinite, Result, SlowSpots, Source};
 use crate::stretch::StretchFitter;
 use kurbo::{
     Arc, BezPath, Cap, CubicBez, Join, Line, ParamCurve, PathEl, PathSeg, Point, Stroke, Vec2, common::solve_quadratic,
@@ -44,7 +44,7 @@ pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitte
     Ok(fit_contours(&contours, options)?)
 }
 
-pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted, NotFinite> {
+pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let inner = Options { tolerance: STROKED * options.tolerance, ..*options };
@@ -60,12 +60,7 @@ pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<
 
 /// One side of the strokes of closed subpaths, at a distance from them, with joins. Miters are cut off at the limit.
 #[cfg(feature = "area")]
-pub(crate) fn beside_area(
-    path: &BezPath,
-    style: &Stroke,
-    distance: f64,
-    options: &Options,
-) -> Result<Fitted, NotFinite> {
+pub(crate) fn beside_area(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Result<Fitted> {
     let whole = |edges: Vec<Kept>| whole(&edges, true);
     fit_contours(&edges_beside_area(path, style, distance, options).into_iter().map(whole).collect::<Vec<_>>(), options)
 }
@@ -84,12 +79,7 @@ pub(crate) fn edges_beside_area(path: &BezPath, style: &Stroke, distance: f64, o
 
 /// One side of an open path's stroke, at a distance from it, with joins.
 #[cfg(feature = "area")]
-pub(crate) fn beside_path(
-    path: &BezPath,
-    style: &Stroke,
-    distance: f64,
-    options: &Options,
-) -> Result<BezPath, NotFinite> {
+pub(crate) fn beside_path(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Result<BezPath> {
     let gap = GAPS * options.tolerance;
     let pen = Pen { style, clipped: false, half: distance.abs(), gap, point: POINTS * gap };
     let mut out = BezPath::new();
@@ -183,7 +173,7 @@ impl Edge {
     ///
     /// # Errors
     /// [`NotFinite`] if the edge is not finite.
-    pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
+    pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<()> {
         if let EdgeCurve::Side(_) = self.curve {
             // The Hermite cubic is usually near enough.
             let (v0, v1) = (self.eval(0.0).1 / 3.0, self.eval(1.0).1 / 3.0);
@@ -201,7 +191,7 @@ impl Edge {
     ///
     /// # Errors
     /// [`NotFinite`] if the edge is not finite.
-    pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+    pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<()> {
         if self.is_line() {
             pieces.push(Piece::Line(Line::new(self.p0, self.p1)));
             report.add_error(0.0, Assurance::Exact);
@@ -239,7 +229,7 @@ impl Source for Edge {
         Some(true)
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         let (p, d) = self.eval(t);
         match self.curve {
             EdgeCurve::Side(s) => Ok(BreakPoint { p, ..s.end(t)? }),
@@ -257,7 +247,7 @@ impl Source for Edge {
 ///
 /// # Errors
 /// [`NotFinite`] if a coordinate is not finite.
-pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
+pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>> {
     let control = |e: &PathEl| match *e {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
         PathEl::QuadTo(p, q) => vec![p, q],
@@ -753,12 +743,7 @@ fn goes_on(a: &Edge, b: &Edge) -> bool {
 }
 
 /// Fits a contour, with few pieces across smooth joints.
-fn fitted(
-    contour: &[Edge],
-    options: &Options,
-    memory: &mut ReachMemory,
-    report: &mut Report,
-) -> Result<Vec<Piece>, NotFinite> {
+fn fitted(contour: &[Edge], options: &Options, memory: &mut ReachMemory, report: &mut Report) -> Result<Vec<Piece>> {
     let mut pieces = Vec::with_capacity(contour.len());
     let mut i = 0;
     while i < contour.len() {
