@@ -33,7 +33,7 @@ impl<S: Source> StretchFitter<'_, S> {
     /// Appends pieces for the stretch between two break points.
     ///
     /// # Errors
-    /// [`NotFinite`] if the curve is not finite somewhere.
+    /// [`NotFinite`](crate::NotFinite) if the curve is not finite somewhere.
     #[inline(always)]
     pub fn cover(
         &mut self,

@@ -1,6 +1,6 @@
 //! Fits of whole curves and paths, to a tolerance or with a given number of pieces, which takes a search for the tolerance.
 
-use crate::joined::{Covered, JoinSettings, fewest, joined};
+use crate::joined::{Covered, JoinSettings, fewest, join};
 use crate::limits::CUBICS_FIRST;
 use crate::merge::{OwnPieces, ReachMemory};
 use crate::nodes::{NodeSettings, Side, is_structure, placed};
@@ -81,7 +81,7 @@ fn merged_parts<S: Source>(
         fitter.counted = Some((calls, options.evaluations.saturating_sub(ONE_ROUND)));
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         let own = Covered { part: *part, pieces, report };
-        own.add(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
+        own.append_to(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
     }
     if options.nodes.merges() {
         let Options { tolerance, certify, .. } = *options;
@@ -92,7 +92,7 @@ fn merged_parts<S: Source>(
             finely: covered.len() > parts.len(),
             evenly: false,
         };
-        joined(&covered, settings, memory, &mut out, report)?;
+        join(&covered, settings, memory, &mut out, report)?;
     } else {
         for own in covered {
             out.extend(own.pieces);
