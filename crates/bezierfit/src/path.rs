@@ -197,7 +197,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted> {
             out.path.move_to(start);
         }
         for part in parts {
-            let options = Options { tolerance: options.tolerance - part.off, ..*options };
+            let options = Options { tolerance: options.tolerance - part.distance, ..*options };
             let (mut rest, first) = (&part.segments[..], out.report.pieces.len());
             while !rest.is_empty() {
                 rest = &rest[match options.degree {
@@ -207,7 +207,7 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted> {
                     }
                 }..];
             }
-            out.report.widen(first, part.off);
+            out.report.widen(first, part.distance);
         }
         match options.degree {
             Degree::Cubic => append(&mut out.path, pieces.first().map_or(start, Piece::start), &pieces, closed),

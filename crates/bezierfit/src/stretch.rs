@@ -127,7 +127,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
             return Ok(None);
         };
         let error = match &self.form {
-            Some(form) if size > 0.0 => proof::line(self.source, form, request.from, request.to, size)?,
+            Some(form) if size > 0.0 => proof::line(self.source, form, [request.from, request.to], size)?,
             _ => off,
         };
         Ok(Some(FitOutcome { piece: Piece::Line(line), error, predicted: error, cusp: None }))
