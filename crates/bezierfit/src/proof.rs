@@ -35,25 +35,15 @@ use crate::sampled::{MAX_VARIATION, ROUNDING, SampledProof, inverse};
 use crate::source::{BreakPoint, NotFinite, Quotient, Result, Source};
 use kurbo::{CubicBez, Point, Vec2};
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// Bound for the Hausdorff distance between candidate and image from Chebyshev nodes: few, or more if that bound is above the tolerance;
 /// infinite if none was found. `feet` approximate the foot points of the samples j/17.
-fn by_nodes(
-    source: &impl Source,
-    form: &Quotient,
-    c: &Candidate,
-    feet: &[f64; FOOT_POINTS],
-    tolerance: f64,
-) -> Result<f64> {
-    const V: usize = 4;
-    let quick =
-        if form.total(4, V) < 24 { bound_from_nodes::<24, 4, V>(source, form, c, feet)? } else { f64::INFINITY };
-    if quick <= tolerance {
-        Ok(quick)
-    } else {
-        bound_from_nodes::<MAX_NODES, P_COEFFICIENTS, V_COEFFICIENTS>(source, form, c, feet)
-    }
+fn by_nodes(source: &impl Source, form: &Quotient, c: &Candidate, feet: &Feet, tolerance: f64) -> Result<f64> {
+    let is_low = form.total(4, 4) < 24;
+    let quick = if is_low { bound_from_nodes::<24, 4, 4>(&FEW, source, form, c, feet)? } else { f64::INFINITY };
+    let proven = quick <= tolerance;
+    if proven { Ok(quick) } else { bound_from_nodes::<_, _, V_COEFFICIENTS>(&MANY, source, form, c, feet) }
 }
 
 /// Bound for the Hausdorff distance between a cubic and the image of the stretch `t`, whose ends need not be those of the cubic.
@@ -82,15 +72,12 @@ pub(crate) fn stretch(
 /// The bound from N nodes, with P coefficients in p and V in the polynomial V.
 #[inline(never)]
 fn bound_from_nodes<const N: usize, const P: usize, const V: usize>(
+    tables: &ChebyshevTables<N, P>,
     source: &impl Source,
     form: &Quotient,
     c: &Candidate,
-    feet: &[f64; FOOT_POINTS],
-) -> Result<f64>
-where
-    ChebyshevTables<N, P>: SharedTables,
-{
-    let tables = ChebyshevTables::<N, P>::shared();
+    feet: &Feet,
+) -> Result<f64> {
     let Some(p) = fit_p(tables, feet) else { return Ok(f64::INFINITY) };
     let mut x = [0.0; N];
     let mut y = [0.0; N];
@@ -140,10 +127,7 @@ where
 
 /// The coefficients of p by least squares from the foot points. `None` if φ leaves [0, 1].
 #[inline(always)]
-fn fit_p<const N: usize, const P: usize>(
-    tables: &ChebyshevTables<N, P>,
-    feet: &[f64; FOOT_POINTS],
-) -> Option<[f64; P]> {
+fn fit_p<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, feet: &Feet) -> Option<[f64; P]> {
     let mut parts = [[0.0; 8]; 2];
     for i in 0..FOOT_POINTS {
         let lead = feet[i] - SAMPLES[i];
@@ -286,7 +270,7 @@ pub(crate) fn line(source: &impl Source, form: &Quotient, [from, to]: [&BreakPoi
     let length = q.hypot();
     let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
     const N: usize = MAX_NODES;
-    let tables = ChebyshevTables::<N, P_COEFFICIENTS>::shared();
+    let tables = &**MANY;
     let (mut across, mut pace, mut w) = ([0.0; N], [0.0; N], [1.0; N]);
     for b in (0..N).step_by(8) {
         let t: Lane = std::array::from_fn(|i| from.t + (to.t - from.t) * tables.tau[b + i]);
@@ -307,7 +291,7 @@ pub(crate) fn line(source: &impl Source, form: &Quotient, [from, to]: [&BreakPoi
     let mut share = 1.0;
     if form.below > 0 {
         let degree = form.below + V_COEFFICIENTS - 1;
-        let variation = clear_denominator::<N, P_COEFFICIENTS, V_COEFFICIENTS>(tables, &mut w, degree);
+        let variation = clear_denominator::<_, _, V_COEFFICIENTS>(tables, &mut w, degree);
         let Some(variation) = variation else { return Ok(f64::INFINITY) };
         for k in 0..N {
             across[k] *= w[k];
@@ -325,6 +309,7 @@ pub(crate) fn line(source: &impl Source, form: &Quotient, [from, to]: [&BreakPoi
 
 /// Number of samples with foot points, at j/17.
 pub(crate) const FOOT_POINTS: usize = 16;
+type Feet = [f64; FOOT_POINTS];
 
 /// Even and odd coefficients are computed apart, in groups of four. This is the largest number of groups of each, N/8 for N = 48.
 const MOST_QUARTERS: usize = 6;
@@ -344,27 +329,10 @@ pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
     pub(crate) feet: [[f64; 8]; FOOT_POINTS],
 }
 
-/// Tables that exist once per process.
-pub(crate) trait SharedTables: Sized + 'static {
-    /// Returns the tables, computing them on first use.
-    fn shared() -> &'static Self;
-}
-
-macro_rules! shared {
-    ($($n:literal, $p:literal;)*) => {$(
-        impl SharedTables for ChebyshevTables<$n, $p> {
-            fn shared() -> &'static Self {
-                static TABLES: OnceLock<Box<ChebyshevTables<$n, $p>>> = OnceLock::new();
-                TABLES.get_or_init(|| Box::new(ChebyshevTables::new()))
-            }
-        }
-    )*};
-}
-
-shared! {
-    24, 4;
-    48, 8;
-}
+/// Tables of the quick proof and of the longest.
+static FEW: LazyLock<Box<ChebyshevTables<24, 4>>> = LazyLock::new(|| Box::new(ChebyshevTables::new()));
+static MANY: LazyLock<Box<ChebyshevTables<MAX_NODES, P_COEFFICIENTS>>> =
+    LazyLock::new(|| Box::new(ChebyshevTables::new()));
 
 impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     fn new() -> Self {
@@ -482,17 +450,13 @@ mod tests {
     use super::*;
     use kurbo::Vec2;
 
-    fn the_bound_holds_with<const N: usize, const P: usize>(worst: f64)
-    where
-        ChebyshevTables<N, P>: SharedTables,
-    {
+    fn the_bound_holds_with<const N: usize, const P: usize>(t: &ChebyshevTables<N, P>, worst: f64) {
         // A polynomial of degree 9, whose maximum is found by sampling.
         let f = |t: f64| {
             let u = 2.0 * t - 1.0;
             let v = (9.0 * u.acos()).cos() * 0.01 + (4.0 * u.acos()).cos() + 0.3 * u;
             Vec2::new(v, 0.5 * v)
         };
-        let t = ChebyshevTables::<N, P>::shared();
         let (x, y) = (t.tau.map(|t| f(t).x), t.tau.map(|t| f(t).y));
         let most = (0..N).map(|k| x[k].hypot(y[k])).fold(0.0, f64::max);
         let truth = (0..=10_000).map(|i| f(f64::from(i) / 10_000.0).hypot()).fold(0.0, f64::max);
@@ -502,8 +466,8 @@ mod tests {
 
     #[test]
     fn the_bound_holds_and_is_not_far_off() {
-        the_bound_holds_with::<48, 8>(1.06);
-        the_bound_holds_with::<24, 4>(1.13);
+        the_bound_holds_with(&MANY, 1.06);
+        the_bound_holds_with(&FEW, 1.13);
     }
 
     #[test]

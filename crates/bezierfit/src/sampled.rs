@@ -34,7 +34,7 @@ use crate::fit::Candidate;
 use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, fma, larger, largest, sum};
 use crate::source::{Quotient, Result, Source, images_into};
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// Largest |VW − 1| allowed for a cleared denominator; the bound is divided by one minus |VW − 1|.
 pub(crate) const MAX_VARIATION: f64 = 0.5;
@@ -459,8 +459,8 @@ pub(crate) struct SampleTables {
 
 impl SampleTables {
     pub(crate) fn shared() -> &'static Self {
-        static TABLES: OnceLock<Box<SampleTables>> = OnceLock::new();
-        TABLES.get_or_init(|| Box::new(Self::new()))
+        static TABLES: LazyLock<Box<SampleTables>> = LazyLock::new(|| Box::new(SampleTables::new()));
+        &TABLES
     }
 
     fn new() -> Self {
