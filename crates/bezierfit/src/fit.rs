@@ -213,90 +213,7 @@ impl ChordFrame {
         }
         out
     }
-}
 
-/// The unknowns of a fit.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FitState {
-    /// Handle lengths.
-    pub(crate) a: f64,
-    pub(crate) b: f64,
-    /// Foot points: parameters of the points of the cubic nearest to the samples.
-    pub(crate) s: Lane,
-}
-
-/// Evaluation of a state. It lies in memory and separate functions write it, so that LLVM sees nothing but loops over the lanes and
-/// vectorises them.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Residuals {
-    /// Normal equations (`JᵀJ` and `Jᵀn`) and the sum of squares, each in four partial sums.
-    parts: [[f64; 4]; 6],
-    /// Squares of the normal residuals.
-    pub(crate) squares: Lane,
-    /// Newton step of the foot points, −ρ·C′/|C′|², and its derivatives with respect to a and b.
-    pub(crate) ds: Lane,
-    pub(crate) sa: Lane,
-    pub(crate) sb: Lane,
-}
-
-/// Residual ρ = C(s) − g of one sample at its foot point, with the derivatives by the handles.
-pub(crate) struct SampleResidual {
-    /// 1/|C′|².
-    pub(crate) k: f64,
-    /// Normal part times |C′|: ρ×C′.
-    pub(crate) n: f64,
-    pub(crate) na: f64,
-    pub(crate) nb: f64,
-    /// Newton step of the foot point, −ρ·C′/|C′|².
-    pub(crate) ds: f64,
-    pub(crate) sa: f64,
-    pub(crate) sb: f64,
-}
-
-impl SampleResidual {
-    /// Evaluates the cubic `c`, in the power basis and with unit end tangents `t0` and `t1`, at `s` against the sample (`x`, `y`).
-    #[inline(always)]
-    pub(crate) fn new(c: &[Vec2; 3], [t0, t1]: [Vec2; 2], s: f64, [x, y]: [f64; 2]) -> Self {
-        let u = 1.0 - s;
-        let (rx, ry, dx, dy) = residual_at(c, s, x, y);
-        let k = 1.0 / norm_squared(dx, dy);
-        let su = 3.0 * s * u;
-        let (b1, b2) = (su * u, su * s);
-        Self {
-            k,
-            n: fma(rx, dy, -(ry * dx)),
-            na: fma(t0.x, dy, -(t0.y * dx)) * b1,
-            nb: fma(t1.y, dx, -(t1.x * dy)) * b2,
-            ds: -fma(rx, dx, ry * dy) * k,
-            sa: -fma(t0.x, dx, t0.y * dy) * (b1 * k),
-            sb: fma(t1.x, dx, t1.y * dy) * (b2 * k),
-        }
-    }
-}
-
-/// Normal equations `[aa, ab, bb, an, bn]`, the sum of squares, and the square of the largest residual.
-pub(crate) type NormalEquations = ([f64; 5], f64, f64);
-
-impl Residuals {
-    pub(crate) const NONE: Self =
-        Self { parts: [[0.0; 4]; 6], squares: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
-
-    #[inline(always)]
-    pub(crate) fn sums(&self) -> NormalEquations {
-        let mut s = [0.0; 6];
-        self.add_up(&mut s);
-        ([s[0], s[1], s[2], s[3], s[4]], s[5], largest(&self.squares))
-    }
-
-    #[inline(never)]
-    fn add_up(&self, out: &mut [f64; 6]) {
-        for (s, v) in out.iter_mut().zip(&self.parts) {
-            *s = (v[0] + v[2]) + (v[1] + v[3]);
-        }
-    }
-}
-
-impl ChordFrame {
     /// Adds the pull towards the Hermite handles to the equations.
     #[inline(always)]
     pub(crate) fn add_pull(&self, (mut sums, squares, error): NormalEquations, state: &FitState) -> NormalEquations {
@@ -388,6 +305,87 @@ impl ChordFrame {
         let mut start = FitState { a, b, s: state.s };
         self.settle(g, a, b, &mut start.s);
         Some(start)
+    }
+}
+
+/// The unknowns of a fit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FitState {
+    /// Handle lengths.
+    pub(crate) a: f64,
+    pub(crate) b: f64,
+    /// Foot points: parameters of the points of the cubic nearest to the samples.
+    pub(crate) s: Lane,
+}
+
+/// Evaluation of a state. It lies in memory and separate functions write it, so that LLVM sees nothing but loops over the lanes and
+/// vectorises them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Residuals {
+    /// Normal equations (`JᵀJ` and `Jᵀn`) and the sum of squares, each in four partial sums.
+    parts: [[f64; 4]; 6],
+    /// Squares of the normal residuals.
+    pub(crate) squares: Lane,
+    /// Newton step of the foot points, −ρ·C′/|C′|², and its derivatives with respect to a and b.
+    pub(crate) ds: Lane,
+    pub(crate) sa: Lane,
+    pub(crate) sb: Lane,
+}
+
+/// Residual ρ = C(s) − g of one sample at its foot point, with the derivatives by the handles.
+pub(crate) struct SampleResidual {
+    /// 1/|C′|².
+    pub(crate) k: f64,
+    /// Normal part times |C′|: ρ×C′.
+    pub(crate) n: f64,
+    pub(crate) na: f64,
+    pub(crate) nb: f64,
+    /// Newton step of the foot point, −ρ·C′/|C′|².
+    pub(crate) ds: f64,
+    pub(crate) sa: f64,
+    pub(crate) sb: f64,
+}
+
+impl SampleResidual {
+    /// Evaluates the cubic `c`, in the power basis and with unit end tangents `t0` and `t1`, at `s` against the sample (`x`, `y`).
+    #[inline(always)]
+    pub(crate) fn new(c: &[Vec2; 3], [t0, t1]: [Vec2; 2], s: f64, [x, y]: [f64; 2]) -> Self {
+        let u = 1.0 - s;
+        let (rx, ry, dx, dy) = residual_at(c, s, x, y);
+        let k = 1.0 / norm_squared(dx, dy);
+        let su = 3.0 * s * u;
+        let (b1, b2) = (su * u, su * s);
+        Self {
+            k,
+            n: fma(rx, dy, -(ry * dx)),
+            na: fma(t0.x, dy, -(t0.y * dx)) * b1,
+            nb: fma(t1.y, dx, -(t1.x * dy)) * b2,
+            ds: -fma(rx, dx, ry * dy) * k,
+            sa: -fma(t0.x, dx, t0.y * dy) * (b1 * k),
+            sb: fma(t1.x, dx, t1.y * dy) * (b2 * k),
+        }
+    }
+}
+
+/// Normal equations `[aa, ab, bb, an, bn]`, the sum of squares, and the square of the largest residual.
+pub(crate) type NormalEquations = ([f64; 5], f64, f64);
+
+impl Residuals {
+    pub(crate) const NONE: Self =
+        Self { parts: [[0.0; 4]; 6], squares: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
+
+    #[inline(always)]
+    pub(crate) fn sums(&self) -> NormalEquations {
+        let mut s = [0.0; 6];
+        self.add_up(&mut s);
+        ([s[0], s[1], s[2], s[3], s[4]], s[5], largest(&self.squares))
+    }
+
+    #[inline(never)]
+    fn add_up(&self, out: &mut [f64; 6]) {
+        for (s, v) in out.iter_mut().zip(&self.parts) {
+            *s = (v[0] + v[2]) + (v[1] + v[3]);
+        }
     }
 }
 

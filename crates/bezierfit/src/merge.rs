@@ -307,7 +307,7 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
             if high <= joint + 1 && self.own_leads_to(joint, k)? {
                 return Ok(k);
             }
-            if low + search_step(k, low) >= high {
+            if low + ((low - k) / FINEST_STEP).max(1) >= high {
                 break;
             }
             let [fits, misses] = [low, high.min(limit)].map(|k| self.length_to(k, back) - start);
@@ -392,6 +392,32 @@ impl<'r, S: Source, F: FitOwn> Reaches<'r, S, F> {
         let (down, up) = (length - run.length_at(k), run.length_at(k + 1) - length);
         let towards = if 2.0 * length < whole { 1.0 } else { -1.0 };
         if down - up > -1e-6 * towards * whole / self.last() as f64 { k + 1 } else { k }
+    }
+
+    /// The legs with their pieces. `None` if one of them does not pass its check.
+    ///
+    /// # Errors
+    /// [`NotFinite`](crate::NotFinite) if a segment is not finite.
+    pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>> {
+        let mut out = Vec::with_capacity(legs.len());
+        for leg in legs {
+            let piece = if leg.merged { self.piece(leg.from, leg.to)? } else { None };
+            if piece.is_some() || !leg.merged {
+                out.push((*leg, piece));
+            }
+        }
+        Ok((out.len() == legs.len()).then_some(out))
+    }
+
+    /// The legs with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
+    ///
+    /// # Errors
+    /// [`NotFinite`](crate::NotFinite) if a segment is not finite.
+    pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>> {
+        match fewest_legs(self)? {
+            Some(legs) => self.pieces_of(&legs),
+            None => Ok(None),
+        }
     }
 }
 
@@ -496,34 +522,6 @@ impl<F: FitOwn> OwnPieces<F> {
 /// A leg, with the piece and its error if it is merged.
 pub type PassedLeg = (Leg, Option<(Piece, f64)>);
 
-impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
-    /// The legs with their pieces. `None` if one of them does not pass its check.
-    ///
-    /// # Errors
-    /// [`NotFinite`](crate::NotFinite) if a segment is not finite.
-    pub fn pieces_of(&mut self, legs: &[Leg]) -> Result<Option<Vec<PassedLeg>>> {
-        let mut out = Vec::with_capacity(legs.len());
-        for leg in legs {
-            let piece = if leg.merged { self.piece(leg.from, leg.to)? } else { None };
-            if piece.is_some() || !leg.merged {
-                out.push((*leg, piece));
-            }
-        }
-        Ok((out.len() == legs.len()).then_some(out))
-    }
-
-    /// The legs with the fewest pieces, all of which have passed their check. `None` if they are not fewer than the segments have.
-    ///
-    /// # Errors
-    /// [`NotFinite`](crate::NotFinite) if a segment is not finite.
-    pub fn fewest(&mut self) -> Result<Option<Vec<PassedLeg>>> {
-        match fewest_legs(self)? {
-            Some(legs) => self.pieces_of(&legs),
-            None => Ok(None),
-        }
-    }
-}
-
 /// Searches for legs with fewer pieces on a finer grid, with about 24 points for each piece: where pieces are hardly longer than segments,
 /// ending at the points of a coarse grid costs many. Its cubics have no marks. Returns `legs` if there are none with fewer pieces.
 ///
@@ -599,11 +597,6 @@ fn fewest_legs(reaches: &mut Reaches<'_, impl Source, impl FitOwn>) -> Result<Op
         }
     }
     Ok(None)
-}
-
-/// Number of grid points by which a cubic from `k` to about `m` may end early: a long one need not end at the last possible point.
-fn search_step(k: usize, m: usize) -> usize {
-    ((m - k) / FINEST_STEP).max(1)
 }
 
 /// Follows the legs back from the end.

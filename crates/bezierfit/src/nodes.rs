@@ -81,14 +81,15 @@ pub fn placed<S: Source>(
     pieces: &mut Vec<Piece>,
     report: &mut Report,
 ) -> Result<PlacedWork> {
-    let finder = NodeFinder { run, closed: settings.closed };
-    let mut ends = if settings.nodes == Nodes::Auto { finder.structure()? } else { finder.extremes()? };
-    if settings.closed && ends.is_empty() {
+    let NodeSettings { nodes, tolerance, closed, left } = settings;
+    let finder = NodeFinder { run, closed };
+    let mut ends = if nodes == Nodes::Auto { finder.structure()? } else { finder.extremes()? };
+    if closed && ends.is_empty() {
         ends = finder.outermost()?;
     }
     ends.sort_by(|a, b| a.position().total_cmp(&b.position()));
     ends.dedup_by(|b, a| b.position() - a.position() < SAME_NODE);
-    if !settings.closed || ends.is_empty() {
+    if !closed || ends.is_empty() {
         let [first, last] = [run.segments.first(), run.segments.last()];
         ends.insert(0, Node { segment: 0, t: 0.0, axis: first.and_then(|s| axis_of(s.from.away)) });
         ends.push(Node { segment: run.segments.len(), t: 0.0, axis: last.and_then(|s| axis_of(s.to.into)) });
@@ -98,7 +99,17 @@ pub fn placed<S: Source>(
     let mut work = PlacedWork::default();
     for w in ends.windows(2) {
         let stretch = finder.stretch_between(w[0], w[1])?;
-        cover_evenly(&stretch, settings, memory, (pieces, report), &mut work)?;
+        let proof = stretch.segments.first().is_some_and(RunSegment::is_provable);
+        let own = OwnPieces::new(stretch.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+            let segment = &stretch.segments[i];
+            let mut fitter = StretchFitter::new(&segment.source, &segment.slow, tolerance, (proof, 0.0), left);
+            fitter.evenly = true;
+            cover_far(&mut fitter, [&segment.from, &segment.to], SMOOTH_JOINT, pieces, report)?;
+            work.evaluations += fitter.evaluations();
+            Ok(())
+        });
+        memory.last_reach = 0;
+        work.tried += fewest(&stretch, own, (tolerance, true), memory, pieces, report)?;
     }
     Ok(work)
 }
@@ -366,29 +377,6 @@ const MAX_QUANTILES: usize = 2 * MAX_PLANNED;
 
 /// Largest error ÷ tolerance that predicts a number of pieces: four to the sixth power, for four pieces.
 const MAX_PREDICTIVE: f64 = 4096.0;
-
-/// Appends the pieces of a stretch, chosen alike from either end.
-fn cover_evenly<S: Source + Clone>(
-    run: &SegmentRun<S>,
-    settings: NodeSettings,
-    memory: &mut ReachMemory,
-    (pieces, report): (&mut Vec<Piece>, &mut Report),
-    work: &mut PlacedWork,
-) -> Result<()> {
-    let NodeSettings { tolerance, left, .. } = settings;
-    let proof = run.segments.first().is_some_and(RunSegment::is_provable);
-    let own = OwnPieces::new(run.segments.len(), |i: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-        let segment = &run.segments[i];
-        let mut fitter = StretchFitter::new(&segment.source, &segment.slow, tolerance, (proof, 0.0), left);
-        fitter.evenly = true;
-        cover_far(&mut fitter, [&segment.from, &segment.to], SMOOTH_JOINT, pieces, report)?;
-        work.evaluations += fitter.evaluations();
-        Ok(())
-    });
-    memory.last_reach = 0;
-    work.tried += fewest(run, own, (tolerance, true), memory, pieces, report)?;
-    Ok(())
-}
 
 impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// Legs with few pieces of about equal difficulty, chosen alike from either end. `None` if the segments have fewer pieces.

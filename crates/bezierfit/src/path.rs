@@ -218,7 +218,8 @@ fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<S
         let form = if options.certify { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
-        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, is_line)))
+        let is_smooth = segment.slow_spots().all().is_empty() && segment.has_length();
+        Ok(is_smooth.then(|| RunSegment::new(*segment, form, ends, is_line)))
     })?;
     for i in 0..count {
         let before = &segments[if i == 0 { segments.len() } else { i } - 1];
@@ -433,11 +434,6 @@ impl Segment {
     /// Returns `true` if the segment is more than a point.
     fn has_length(&self) -> bool {
         self.c[1..].iter().any(|c| c.hypot2() > 0.0)
-    }
-
-    /// Returns `true` if the segment has a length and no cusps.
-    fn is_smooth(&self) -> bool {
-        self.slow_spots().all().is_empty() && self.has_length()
     }
 }
 

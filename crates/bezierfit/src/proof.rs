@@ -199,7 +199,7 @@ pub(crate) fn clear_denominator<const N: usize, const P: usize, const V: usize>(
         w[k] *= value;
         most = larger((w[k] - 1.0).abs(), most);
     }
-    let variation = tables.between_nodes(most, degree);
+    let variation = most * tables.stretch[degree];
     (variation < MAX_VARIATION).then_some(variation)
 }
 
@@ -323,7 +323,7 @@ pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
     /// Row k: contributions of the value at node k to the coefficients 0, 2, 4… and 1, 3, 5…
     even: [[f64; N]; N],
     odd: [[f64; N]; N],
-    /// 1 / cos(πd/2N).
+    /// 1/cos(πd/2N), by which a polynomial of degree d can exceed its values at the nodes.
     stretch: [f64; N],
     /// Row i: contributions of the foot point of sample i to the coefficients of p, by least squares. P of the eight are used.
     pub(crate) feet: [[f64; 8]; FOOT_POINTS],
@@ -357,11 +357,6 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
             }
         }
         out
-    }
-
-    /// Bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
-    pub(crate) fn between_nodes(&self, most: f64, degree: usize) -> f64 {
-        most * self.stretch[degree]
     }
 
     /// Bound for the length of the vector polynomial with these values at the nodes, the longest of which is `most`: the least

@@ -133,7 +133,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     // The union removes edges inside the area.
     let area = union(&area, options.tolerance)?;
     if !area.is_empty() {
-        let moved = move_area(&area, distance, &style, &starts, options)?;
+        let moved = grow(&area, distance, &style, &starts, options)?;
         out.path.extend(&moved.path);
         out.report.add(&moved.report);
     }
@@ -151,13 +151,7 @@ fn lighter_path(path: &BezPath, options: &Options) -> Result<BezPath, Error> {
 }
 
 /// Moves the outlines of an area. The results begin near one of `starts`.
-fn move_area(
-    area: &BezPath,
-    distance: f64,
-    style: &Stroke,
-    starts: &[Point],
-    options: &Options,
-) -> Result<Fitted, Error> {
+fn grow(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], options: &Options) -> Result<Fitted, Error> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
@@ -260,9 +254,8 @@ fn area_where(
     if let Some(at) = [a, b].into_iter().find(|p| !p.is_finite()) {
         return Err(NotFinite { t: 0.0, at: at.control_box().center() }.into());
     }
-    let box_of = |p: &BezPath| if p.is_empty() { 0.0 } else { extent(p) };
     // Differences below this are rounding of the coordinates.
-    let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * box_of(a).max(box_of(b)));
+    let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * extent(a).max(extent(b)));
     let swept = |turn: &f64| {
         let turned = [a, b].map(|p| Affine::rotate(*turn) * closed(p));
         let sweep = || Some(Topology::from_paths_binary(&turned[0], &turned[1], fine).ok()?.contours(&inside));

@@ -90,6 +90,19 @@ impl Covered {
     fn pieces(&self) -> usize {
         self.spline.as_ref().map_or(1, |s| s.c.len())
     }
+
+    /// Appends the line or the quadratics.
+    fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
+        let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
+        match &self.spline {
+            None => path.line_to(self.ends[1].p),
+            Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
+        }
+        (0..self.pieces()).for_each(|_| report.add_error(error, assurance));
+        if !self.resolved {
+            report.unresolved.push(self.ends[0].p);
+        }
+    }
 }
 
 impl<S: Source> CurveRun<'_, S> {
@@ -255,21 +268,6 @@ impl<S: Source> CurveRun<'_, S> {
         }
         points[each * spans.len()] = ends[1].p;
         Ok(Samples::new((points, each), ends, self.tolerance))
-    }
-}
-
-impl Covered {
-    /// Appends the line or the quadratics.
-    fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
-        let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
-        match &self.spline {
-            None => path.line_to(self.ends[1].p),
-            Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
-        }
-        (0..self.pieces()).for_each(|_| report.add_error(error, assurance));
-        if !self.resolved {
-            report.unresolved.push(self.ends[0].p);
-        }
     }
 }
 

@@ -169,66 +169,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         }
         Ok(())
     }
-}
 
-/// The outcome of fitting one piece to a stretch.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FitOutcome {
-    /// The best piece found.
-    pub(crate) piece: Piece,
-    /// Error of the piece, proven where a proof is wanted and possible.
-    pub(crate) error: f64,
-    /// Error at the fitted samples, or a prediction after more iterations, from which the number of pieces is predicted.
-    pub(crate) predicted: f64,
-    /// A parameter at which the image nearly stops, if the piece misses.
-    pub(crate) cusp: Option<f64>,
-}
-
-impl FitOutcome {
-    pub(crate) fn fits(&self, tolerance: f64) -> bool {
-        self.error <= tolerance
-    }
-
-    /// Number of pieces that the stretch needs, as a fraction: the sixth root of error ÷ tolerance.
-    pub(crate) fn difficulty(&self, tolerance: f64) -> f64 {
-        // Limited to what can be planned at once, and above zero.
-        (self.predicted / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
-    }
-}
-
-/// A stretch and the fitter that judges its fits.
-struct Attempt<'f, 'r, 'a, S> {
-    fitter: &'f StretchFitter<'a, S>,
-    request: FitRequest<'r>,
-}
-
-impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
-    type Mark = ();
-
-    #[inline(always)]
-    fn samples(&self) -> (&ChordFrame, &Lanes) {
-        (&self.request.frame, self.request.g)
-    }
-
-    fn checked(&mut self) -> Result<Lanes> {
-        self.fitter.checked(&mut self.request)
-    }
-
-    fn feet_between(&self, s: &Lane) -> Lane {
-        feet_between(s)
-    }
-
-    fn evenly(&self) -> bool {
-        self.fitter.evenly
-    }
-
-    #[inline(always)]
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, ())> {
-        Ok((self.fitter.judge(&mut self.request, fit)?, ()))
-    }
-}
-
-impl<S: Source> StretchFitter<'_, S> {
     /// Fits one piece to a stretch. If it fits, makes sure that nothing hides between the samples.
     #[inline]
     pub(crate) fn attempt(&mut self, from: &BreakPoint, to: &BreakPoint) -> Result<FitOutcome> {
@@ -325,7 +266,7 @@ impl<S: Source> StretchFitter<'_, S> {
         let error = if of_low_degree && first.suffice(request.frame.size, self.tolerance, PACE_EIGHT) {
             EIGHT_GROWTH * first.worst.sqrt()
         } else {
-            self.hermite_error_at_sixteen(request, first, pace)?
+            self.hermite_by_sixteen(request, first, pace)?
         };
         let [a, b] = request.frame.home;
         let piece = Piece::Cubic(request.frame.cubic(request.from.p, request.to.p, a, b));
@@ -334,12 +275,7 @@ impl<S: Source> StretchFitter<'_, S> {
 
     /// Error of the Hermite cubic; infinite if sixteen samples leave it in doubt.
     #[inline(never)]
-    fn hermite_error_at_sixteen(
-        &self,
-        request: &mut FitRequest<'_>,
-        first: &HermiteResiduals,
-        pace: f64,
-    ) -> Result<f64> {
+    fn hermite_by_sixteen(&self, request: &mut FitRequest<'_>, first: &HermiteResiduals, pace: f64) -> Result<f64> {
         let check = self.checked(request)?;
         let second = HermiteResiduals::at_checked(request, &check);
         let both = first.and(&second);
@@ -418,6 +354,63 @@ impl<S: Source> StretchFitter<'_, S> {
             }
         }
         (least < (CUSP_SPEED * length).powi(2) && mid > 1e-3 && mid < 1.0 - 1e-3).then_some(from.t + h * mid)
+    }
+}
+
+/// The outcome of fitting one piece to a stretch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FitOutcome {
+    /// The best piece found.
+    pub(crate) piece: Piece,
+    /// Error of the piece, proven where a proof is wanted and possible.
+    pub(crate) error: f64,
+    /// Error at the fitted samples, or a prediction after more iterations, from which the number of pieces is predicted.
+    pub(crate) predicted: f64,
+    /// A parameter at which the image nearly stops, if the piece misses.
+    pub(crate) cusp: Option<f64>,
+}
+
+impl FitOutcome {
+    pub(crate) fn fits(&self, tolerance: f64) -> bool {
+        self.error <= tolerance
+    }
+
+    /// Number of pieces that the stretch needs, as a fraction: the sixth root of error ÷ tolerance.
+    pub(crate) fn difficulty(&self, tolerance: f64) -> f64 {
+        // Limited to what can be planned at once, and above zero.
+        (self.predicted / tolerance).clamp(1e-3, (MAX_PLANNED as f64).powi(6)).powf(1.0 / 6.0)
+    }
+}
+
+/// A stretch and the fitter that judges its fits.
+struct Attempt<'f, 'r, 'a, S> {
+    fitter: &'f StretchFitter<'a, S>,
+    request: FitRequest<'r>,
+}
+
+impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
+    type Mark = ();
+
+    #[inline(always)]
+    fn samples(&self) -> (&ChordFrame, &Lanes) {
+        (&self.request.frame, self.request.g)
+    }
+
+    fn checked(&mut self) -> Result<Lanes> {
+        self.fitter.checked(&mut self.request)
+    }
+
+    fn feet_between(&self, s: &Lane) -> Lane {
+        feet_between(s)
+    }
+
+    fn evenly(&self) -> bool {
+        self.fitter.evenly
+    }
+
+    #[inline(always)]
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, ())> {
+        Ok((self.fitter.judge(&mut self.request, fit)?, ()))
     }
 }
 

@@ -740,22 +740,17 @@ fn goes_on(a: &Edge, b: &Edge) -> bool {
 }
 
 /// Fits a contour, with few pieces across smooth joints.
-fn fit_contour(
-    contour: &[Edge],
-    options: &Options,
-    memory: &mut ReachMemory,
-    report: &mut Report,
-) -> Result<Vec<Piece>> {
-    let mut pieces = Vec::with_capacity(contour.len());
+fn fit_contour(edges: &[Edge], options: &Options, memory: &mut ReachMemory, report: &mut Report) -> Result<Vec<Piece>> {
+    let mut pieces = Vec::with_capacity(edges.len());
     let mut i = 0;
-    while i < contour.len() {
-        let mut run = SegmentRun::new(false, contour.len() - i);
-        let count = run.extend(&contour[i..], options.joint(), |edge| {
+    while i < edges.len() {
+        let mut run = SegmentRun::new(false, edges.len() - i);
+        let count = run.extend(&edges[i..], options.joint(), |edge| {
             let ends = [edge.end(0.0)?, edge.end(1.0)?];
             Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
         })?;
         let append_own = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            contour[i + k].fit(options.tolerance, pieces, report)
+            edges[i + k].fit(options.tolerance, pieces, report)
         };
         if count < 2 {
             append_own(0, &mut pieces, report)?;
