@@ -97,6 +97,7 @@ pub fn placed<S: Source>(
         ends.push(Node { segment: ends[0].segment + run.segments.len(), ..ends[0] });
     }
     let mut work = PlacedWork::default();
+    // Between two nodes, pieces are chosen alike from either end.
     for w in ends.windows(2) {
         let stretch = finder.stretch_between(w[0], w[1])?;
         let proof = stretch.segments.first().is_some_and(RunSegment::is_provable);

@@ -221,7 +221,6 @@ impl<'a> Polygon<'a> {
         self.flat.points[i % self.flat.points.len()]
     }
 
-    /// Number of sides.
     fn sides(&self) -> usize {
         self.vertices.len() - 1
     }

@@ -235,7 +235,8 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         }
         let frame = request.frame;
         let [a, b] = frame.home;
-        let first = HermiteResiduals::at_fitted(&request);
+        let next = Lanes { x: neighbours(&request.g.x), y: neighbours(&request.g.y) };
+        let first = HermiteResiduals::new(&frame, &FITTED, request.g, &next, 1.0);
         let hermite = if request.careful || a == 0.0 || b == 0.0 {
             self.exact_hermite(&mut request)?
         } else {
@@ -262,8 +263,8 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         if !first.suffice(request.frame.size, self.tolerance, pace) {
             return Ok(None);
         }
-        let of_low_degree = self.simple && self.form.is_none();
-        let error = if of_low_degree && first.suffice(request.frame.size, self.tolerance, PACE_EIGHT) {
+        let eight_may_suffice = self.simple && self.form.is_none();
+        let error = if eight_may_suffice && first.suffice(request.frame.size, self.tolerance, PACE_EIGHT) {
             EIGHT_GROWTH * first.worst.sqrt()
         } else {
             self.hermite_by_sixteen(request, first, pace)?
@@ -277,7 +278,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
     #[inline(never)]
     fn hermite_by_sixteen(&self, request: &mut FitRequest<'_>, first: &HermiteResiduals, pace: f64) -> Result<f64> {
         let check = self.checked(request)?;
-        let second = HermiteResiduals::at_checked(request, &check);
+        let second = HermiteResiduals::new(&request.frame, &CHECKED, &check, request.g, -1.0);
         let both = first.and(&second);
         if !both.suffice(request.frame.size, self.tolerance, pace) {
             return Ok(f64::INFINITY);
@@ -432,20 +433,10 @@ struct HermiteResiduals {
 }
 
 impl HermiteResiduals {
-    #[inline(always)]
-    fn at_fitted(request: &FitRequest<'_>) -> Self {
-        let next = Lanes { x: neighbours(&request.g.x), y: neighbours(&request.g.y) };
-        Self::at(&request.frame, &FITTED, request.g, &next, 1.0)
-    }
-
-    fn at_checked(request: &FitRequest<'_>, check: &Lanes) -> Self {
-        Self::at(&request.frame, &CHECKED, check, request.g, -1.0)
-    }
-
     /// Measures at the samples `set` with images `g`. `next` are their neighbours' images: following in the first half and preceding in the
     /// second if `side` is 1, the other way round if it is −1.
     #[inline(always)]
-    fn at(frame: &ChordFrame, set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Self {
+    fn new(frame: &ChordFrame, set: &Lane, g: &Lanes, next: &Lanes, side: f64) -> Self {
         let power = frame.power(frame.home[0], frame.home[1]);
         let (mut worst, mut drift, mut ds) = ([0.0; 8], [0.0; 8], [0.0; 8]);
         let (mut margin, mut pace, mut slowness) = ([0.0; 8], [0.0; 8], [0.0; 8]);
