@@ -414,7 +414,8 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
                     continue;
                 }
             }
-            let Some(quantiles) = self.quantiles(&ends, &sums, next).filter(|_| next <= MAX_QUANTILES) else {
+            let quantiles = if next <= MAX_QUANTILES { self.quantiles(&ends, &sums, next) } else { None };
+            let Some(quantiles) = quantiles else {
                 return if self.own.total()? <= next { Ok(None) } else { self.fewest() };
             };
             (ends, n) = (quantiles, next);
@@ -432,9 +433,39 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
             let leg = (1..n).find(|k| sums[*k] >= quantile).unwrap_or(n);
             let [a, b] = [ends[leg - 1], ends[leg]].map(|k| run.length_at(k));
             let length = a + (b - a) * (quantile - sums[leg - 1]) / (sums[leg] - sums[leg - 1]);
-            out.push(self.nearest_grid_point(length, [out[i - 1], last - 1]));
+            let next = self.nearest_grid_point(length, [out[i - 1], last - 1]);
+            if next == out[i - 1] || next == last {
+                return None;
+            }
+            out.push(next);
         }
         out.push(last);
-        out.windows(2).all(|w| w[0] < w[1]).then_some(out)
+        Some(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::MergeSettings;
+    use crate::path::Segment;
+    use kurbo::{Line, PathSeg};
+
+    /// Where nearly all difficulty lies before the last grid point, several quantiles are nearest to it.
+    #[test]
+    fn quantiles_do_not_leave_the_run() {
+        let mut run = SegmentRun::new(true, 2);
+        for x in [0.0, 1.0] {
+            let source = Segment::new(PathSeg::Line(Line::new((x, 0.0), (x + 1.0, 0.0))));
+            let ends = [source.end(0.0).unwrap(), source.end(1.0).unwrap()];
+            assert!(run.push(RunSegment::new(source, None, ends, true)).unwrap());
+        }
+        let own = OwnPieces::new(2, |_: usize, _: &mut Vec<Piece>, _: &mut Report| Ok(()));
+        let settings = MergeSettings { tolerance: 0.1, proof: false, marks: false, again: false, evenly: true };
+        let mut memory = ReachMemory::default();
+        let reaches = Reaches::new(&run, own, settings, &mut memory);
+        let last = reaches.last();
+        assert_eq!(reaches.quantiles(&[0, last - 1, last], &[0.0, 0.1, 8.1], 8), None);
+        assert_eq!(reaches.quantiles(&[0, last], &[0.0, 2.0], 2), Some(vec![0, last / 2, last]));
     }
 }
