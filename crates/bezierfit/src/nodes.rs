@@ -426,12 +426,11 @@ impl<S: Source, F: FitOwn> Reaches<'_, S, F> {
     /// `None` if two of the results coincide.
     fn quantiles(&self, ends: &[usize], sums: &[f64], parts: usize) -> Option<Vec<usize>> {
         let (n, last) = (ends.len() - 1, self.last());
-        let (run, total) = (self.run, sums[n]);
         let mut out = vec![0];
         for i in 1..parts {
-            let quantile = total * i as f64 / parts as f64;
+            let quantile = sums[n] * i as f64 / parts as f64;
             let leg = (1..n).find(|k| sums[*k] >= quantile).unwrap_or(n);
-            let [a, b] = [ends[leg - 1], ends[leg]].map(|k| run.length_at(k));
+            let [a, b] = [ends[leg - 1], ends[leg]].map(|k| self.run.length_at(k));
             let length = a + (b - a) * (quantile - sums[leg - 1]) / (sums[leg] - sums[leg - 1]);
             let next = self.nearest_grid_point(length, [out[i - 1], last - 1]);
             if next == out[i - 1] || next == last {

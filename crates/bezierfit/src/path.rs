@@ -184,7 +184,7 @@ fn simplify_path(path: &BezPath, options: &Options) -> Result<Fitted> {
         }
         let parts = smooth_parts(segments, closed, options);
         let start = parts.first().and_then(|p| p.segments.first()).map_or(start, |s| s.seg.start());
-        let (mut pieces, is_whole) = (Vec::new(), parts.len() == 1);
+        let (mut pieces, closes) = (Vec::new(), closed && parts.len() == 1);
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
         }
@@ -194,9 +194,7 @@ fn simplify_path(path: &BezPath, options: &Options) -> Result<Fitted> {
             while !rest.is_empty() {
                 rest = &rest[match options.degree {
                     Degree::Quadratic => append_quadratics(rest, &options, &mut out)?,
-                    Degree::Cubic => {
-                        smooth_run((rest, closed && is_whole), &options, &mut memory, &mut pieces, &mut out.report)?
-                    }
+                    Degree::Cubic => smooth_run((rest, closes), &options, &mut memory, &mut pieces, &mut out.report)?,
                 }..];
             }
             out.report.widen(first, part.distance);

@@ -286,9 +286,8 @@ impl Program {
         let mut state = self.state();
         loop {
             if state.silent >= MAX_TIMEOUTS {
-                return Err(Fault::Refused(format!(
-                    "gave no answer in time {MAX_TIMEOUTS} times; it is not asked again"
-                )));
+                let why = format!("gave no answer in time {MAX_TIMEOUTS} times; it is not asked again");
+                return Err(Fault::Refused(why));
             }
             let same = state.idle.iter().position(|s| s.instance == id);
             if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {

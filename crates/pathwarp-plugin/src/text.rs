@@ -57,10 +57,8 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
 }
 
 fn garbage(line: &str) -> Fault {
-    Fault::Garbage {
-        expected: "ok, error, note, warning, detail, crease or edge".into(),
-        found: beginning(line.as_bytes()),
-    }
+    let expected = "ok, error, note, warning, detail, crease or edge".into();
+    Fault::Garbage { expected, found: beginning(line.as_bytes()) }
 }
 
 /// Reads a number above zero.
