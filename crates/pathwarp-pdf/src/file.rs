@@ -27,6 +27,7 @@ pub(crate) struct File<'a> {
     pub(crate) failed: Option<Error>,
     /// The objects of embedded pictures, by their data, with `true` if they are interpolated.
     pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
+    /// Number of the last object.
     last: i32,
     states: HashMap<State, Ref>,
     inks: HashMap<String, Ref>,
@@ -127,8 +128,8 @@ impl<'a> File<'a> {
     }
 
     /// Adds a compressed stream.
-    pub(crate) fn compressed(&mut self, at: Ref, bytes: &[u8]) {
-        self.pdf.stream(at, &deflated(bytes)).filter(Filter::FlateDecode);
+    pub(crate) fn compressed(&mut self, object: Ref, bytes: &[u8]) {
+        self.pdf.stream(object, &deflated(bytes)).filter(Filter::FlateDecode);
     }
 
     /// Adds an isolated group with the content that `draw` draws. `bounds` is in the group's coordinates, which are written with the
@@ -137,14 +138,14 @@ impl<'a> File<'a> {
         let mut stream = Stream::shifted(shift);
         draw(self, &mut stream);
         let (bytes, used) = stream.finish();
-        let at = self.new_ref();
+        let group = self.new_ref();
         let bytes = deflated(&bytes);
-        let mut object = self.pdf.form_xobject(at, &bytes);
-        object.filter(Filter::FlateDecode);
-        object.bbox(pdf_rect(bounds - shift));
-        used.write(&mut object.resources());
-        object.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
-        at
+        let mut out = self.pdf.form_xobject(group, &bytes);
+        out.filter(Filter::FlateDecode);
+        out.bbox(pdf_rect(bounds - shift));
+        used.write(&mut out.resources());
+        out.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
+        group
     }
 
     /// Returns the colour space of an ink, adding it if it is new. A device without that ink shows it as magenta, or `All` as all process
@@ -153,13 +154,14 @@ impl<'a> File<'a> {
         if let Some(known) = self.inks.get(name) {
             return *known;
         }
-        let at = self.new_ref();
-        self.inks.insert(name.to_owned(), at);
+        let space = self.new_ref();
+        self.inks.insert(name.to_owned(), space);
+        // Cyan, magenta, yellow and black of the full tint.
         let full = if name == "All" { [1.0; 4] } else { [0.0, 1.0, 0.0, 0.0] };
-        let mut ink = self.pdf.color_space(at).separation(Name(name.as_bytes()));
+        let mut ink = self.pdf.color_space(space).separation(Name(name.as_bytes()));
         ink.alternate_color_space().device_cmyk();
         ink.tint_exponential().domain([0.0, 1.0]).n(1.0).c0([0.0; 4]).c1(full);
-        at
+        space
     }
 
     /// Returns the graphics state with these parameters, adding it if it is new.
