@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let root = json(bytes).ok_or_else(|| damaged("its JSON cannot be read".into()))?;
     let buffers = Buffers::of(&mut file)?;
     let document = &file.document;
-    let mut assets = Assets::of(&root);
+    let mut assets = Assets::from_json(&root);
     for (i, image) in document.images().enumerate() {
         if let gltf::image::Source::View { view, .. } = image.source() {
             let bytes =
