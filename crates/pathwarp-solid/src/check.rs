@@ -4,7 +4,7 @@
 
 use crate::deform::{Deformation3, Law3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
-use crate::settings::{Box3, Frame3, show};
+use crate::settings::{Box3, Frame3, grid, show};
 use glam::DVec3;
 use pathwarp::deform::Pairs;
 use pathwarp::param::Args;
@@ -62,9 +62,8 @@ fn build(entry: &dyn Deformation3, pairs: Pairs) -> Result<Arc<dyn Map3>, pathwa
 fn samples(map: &dyn Map3) -> Vec<DVec3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
-    let coordinate = |i: u32| 4.3 + 15.1 * f64::from(i);
-    let point = |n: u32| DVec3::new(coordinate(n % 6), coordinate((n / 6) % 6) + 1.1, coordinate(n / 36) + 2.3);
-    (0..216).map(point).filter(|p| creases.defined_at(*p)).collect()
+    let point = |n: [usize; 3]| DVec3::from_array(n.map(|i| 4.3 + 15.1 * i as f64)) + DVec3::new(0.0, 1.1, 2.3);
+    grid([6; 3]).map(point).filter(|p| creases.defined_at(*p)).collect()
 }
 
 fn derivatives(map: &dyn Map3, faults: &mut Vec<String>) {

@@ -47,7 +47,7 @@ impl<const C: usize> Tensor<C> {
     /// Iterates over the terms, as powers and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = ([usize; 3], &[f64; C])> {
         let [nx, ny, _] = self.size;
-        self.c.iter().enumerate().map(move |(n, c)| ([n % nx, n / nx % ny, n / (nx * ny)], c))
+        self.c.iter().enumerate().map(move |(n, c)| ([n % nx, (n / nx) % ny, n / (nx * ny)], c))
     }
 
     /// Returns the degrees along x, y and z.
@@ -82,6 +82,7 @@ impl<const C: usize> Tensor<C> {
     /// Returns the values for any kind of number.
     pub(crate) fn value<S: Real>(&self, t: [S; 3]) -> [S; C] {
         let [nx, ny, _] = self.size;
+        // A step of Horner's rule; the first one takes its coefficient as it is.
         let plus = |a: Option<[S; C]>, t: S, b: [S; C]| match a {
             Some(a) => Some(std::array::from_fn(|k| a[k] * t + b[k])),
             None => Some(b),
