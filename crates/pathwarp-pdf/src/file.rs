@@ -38,20 +38,9 @@ pub(crate) struct File<'a> {
 pub(crate) struct State {
     /// Opacity as bits.
     opacity: Option<u32>,
-    blend: Option<Blend>,
-    mask: Option<(MaskKind, Ref)>,
+    blend: Option<BlendMode>,
+    mask: Option<(MaskType, Ref)>,
     overprint: bool,
-}
-
-/// Index of a blend mode in [`BLEND_MODES`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Blend(u8);
-
-/// The property of a mask's content that determines what shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum MaskKind {
-    Luminosity,
-    Alpha,
 }
 
 impl State {
@@ -60,7 +49,7 @@ impl State {
         self
     }
 
-    pub(crate) fn mask(mut self, kind: MaskKind, group: Ref) -> Self {
+    pub(crate) fn mask(mut self, kind: MaskType, group: Ref) -> Self {
         self.mask = Some((kind, group));
         self
     }
@@ -72,7 +61,7 @@ impl State {
     }
 
     pub(crate) fn blend(mut self, mode: usvg::BlendMode) -> Self {
-        self.blend = BLEND_MODES.iter().position(|(m, _)| *m == mode).map(|i| Blend(i as u8));
+        self.blend = BLEND_MODES.iter().find(|(m, _)| *m == mode).map(|(_, mode)| *mode);
         self
     }
 
@@ -175,18 +164,14 @@ impl<'a> File<'a> {
         if let Some(opacity) = state.opacity.map(f32::from_bits) {
             out.non_stroking_alpha(opacity).stroking_alpha(opacity);
         }
-        if let Some((_, mode)) = state.blend.and_then(|b| BLEND_MODES.get(usize::from(b.0))) {
-            out.blend_mode(*mode);
+        if let Some(mode) = state.blend {
+            out.blend_mode(mode);
         }
         if state.overprint {
             out.overprint(true).overprint_fill(true).overprint_mode(OverprintMode::IgnoreZeroChannel);
         }
         if let Some((kind, group)) = state.mask {
-            let subtype = match kind {
-                MaskKind::Luminosity => MaskType::Luminosity,
-                MaskKind::Alpha => MaskType::Alpha,
-            };
-            out.soft_mask().subtype(subtype).group(group);
+            out.soft_mask().subtype(kind).group(group);
         }
         at
     }

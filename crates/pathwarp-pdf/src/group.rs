@@ -1,14 +1,15 @@
 //! Draws groups with their clip paths, masks, opacity, blend modes and content. A group with a filter becomes a picture.
 
-use crate::file::{File, MaskKind, State};
+use crate::file::{File, State};
 use crate::options::PRINT;
 use crate::stream::{Stream, affine, rect, roomy};
 use crate::{image, paint};
 use kurbo::{Affine, BezPath, Rect, Shape as _, Vec2};
 use pathwarp_raster::{Error, Pixmap, render_group};
 use pdf_writer::Ref;
+use pdf_writer::types::MaskType;
 use resvg::tiny_skia::Transform;
-use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, MaskType, Node};
+use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, Node};
 
 /// Draws a group.
 pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
@@ -46,7 +47,7 @@ fn draw_isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     let bounds = roomy(rect(group.layer_bounding_box().to_rect()));
     let mut masks = Vec::new();
     if let Some(clip) = group.clip_path() {
-        masks.extend(apply_clip(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
+        masks.extend(apply_clip(file, stream, clip, bounds).map(|m| (MaskType::Luminosity, m)));
     }
     masks.extend(group.mask().map(|m| add_mask(file, m, stream.shift)));
     let state = State::default().opacity(group.opacity().get()).blend(group.blend_mode());
@@ -76,10 +77,10 @@ fn compose(file: &mut File<'_>, stream: &mut Stream, state: State, object: Ref) 
     stream.object(object);
 }
 
-fn add_mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskKind, Ref) {
+fn add_mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskType, Ref) {
     let kind = match m.kind() {
-        MaskType::Luminance => MaskKind::Luminosity,
-        MaskType::Alpha => MaskKind::Alpha,
+        usvg::MaskType::Luminance => MaskType::Luminosity,
+        usvg::MaskType::Alpha => MaskType::Alpha,
     };
     let area: Rect = rect(m.rect().to_rect());
     let group = file.group(area, shift, |file, stream| {
@@ -125,7 +126,7 @@ fn apply_clip(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds:
         if let Some(next) = clip.clip_path()
             && let Some(mask) = apply_clip(file, stream, next, bounds)
         {
-            stream.state(file.state(State::default().mask(MaskKind::Luminosity, mask)));
+            stream.state(file.state(State::default().mask(MaskType::Luminosity, mask)));
         }
         stream.content.set_fill_gray(1.0);
         stream.transform(affine(clip.transform()));
@@ -200,7 +201,7 @@ fn fill_silhouette(file: &mut File<'_>, stream: &mut Stream, group: &Group, boun
         if let Some(clip) = group.clip_path()
             && let Some(mask) = apply_clip(file, stream, clip, inner)
         {
-            stream.state(file.state(State::default().mask(MaskKind::Luminosity, mask)));
+            stream.state(file.state(State::default().mask(MaskType::Luminosity, mask)));
         }
         fill_silhouette(file, stream, group, inner);
         stream.restore();

@@ -1,11 +1,11 @@
 //! Draws paths: fill and stroke with colours, gradients, tiling patterns, and their opacity.
 
-use crate::file::{File, MaskKind, State, deflated};
+use crate::file::{File, State, deflated};
 use crate::gradient::Gradient;
 use crate::group;
 use crate::stream::{Stream, affine, from_usvg, has_area, matrix, pdf_rect, rect, roomy};
 use kurbo::{Affine, BezPath, PathEl, Rect};
-use pdf_writer::types::{LineCapStyle, LineJoinStyle, PaintType, TilingType};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle, MaskType, PaintType, TilingType};
 use pdf_writer::{Filter, Ref};
 use usvg::{Fill, LineCap, LineJoin, Paint, PaintOrder, Path, Stroke};
 
@@ -34,7 +34,7 @@ fn with_paint(file: &mut File<'_>, stream: &mut Stream, paint_use: &PaintUse<'_>
             let [x, y, width, height] = [corner.x, corner.y, area.width(), area.height()].map(|v| v as f32);
             stream.content.rect(x, y, width, height).fill_nonzero();
         });
-        state = state.mask(MaskKind::Luminosity, group);
+        state = state.mask(MaskType::Luminosity, group);
     }
     // Every path sets its paint, so a gradient or pattern can stay set, but a state would affect later paths.
     let has_state = !state.is_plain();

@@ -155,7 +155,7 @@ impl Mesh {
 }
 
 /// Converts an index. One that needs more than 32 bits becomes [`NONE`].
-fn index32(i: usize) -> u32 {
+pub(crate) fn index32(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(NONE)
 }
 
