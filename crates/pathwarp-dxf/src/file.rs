@@ -36,28 +36,25 @@ const MILLIMETRES: i64 = 4;
 pub(crate) fn start(out: &mut Codes, layers: &Layers, options: &Options) {
     header(out, options);
     section(out, "TABLES");
-    table(out, "VPORT", handle::VIEWPORTS, 0);
-    end_table(out);
+    table(out, "VPORT", handle::VIEWPORTS, 0, |_| {});
     line_types(out);
     layer_table(out, layers);
     styles(out);
-    table(out, "VIEW", handle::VIEWS, 0);
-    end_table(out);
-    table(out, "UCS", handle::COORDINATES, 0);
-    end_table(out);
-    table(out, "APPID", handle::PROGRAMS, 1);
-    entry(out, "APPID", 5, handle::PROGRAMS, "AcDbRegAppTableRecord").text(2, "ACAD").whole(70, 0);
-    end_table(out);
-    table(out, "DIMSTYLE", handle::DIMENSIONS, 1);
-    out.text(100, "AcDbDimStyleTable");
-    entry(out, "DIMSTYLE", 105, handle::DIMENSIONS, "AcDbDimStyleTableRecord").text(2, "Standard").whole(70, 0);
-    end_table(out);
-    table(out, "BLOCK_RECORD", handle::BLOCKS, 2);
-    for (name, handle) in SPACES {
-        out.text(0, "BLOCK_RECORD").handle(5, handle).handle(330, handle::BLOCKS);
-        out.text(100, "AcDbSymbolTableRecord").text(100, "AcDbBlockTableRecord").text(2, name);
-    }
-    end_table(out);
+    table(out, "VIEW", handle::VIEWS, 0, |_| {});
+    table(out, "UCS", handle::COORDINATES, 0, |_| {});
+    table(out, "APPID", handle::PROGRAMS, 1, |out| {
+        entry(out, "APPID", 5, handle::PROGRAMS, "AcDbRegAppTableRecord").text(2, "ACAD").whole(70, 0);
+    });
+    table(out, "DIMSTYLE", handle::DIMENSIONS, 1, |out| {
+        out.text(100, "AcDbDimStyleTable");
+        entry(out, "DIMSTYLE", 105, handle::DIMENSIONS, "AcDbDimStyleTableRecord").text(2, "Standard").whole(70, 0);
+    });
+    table(out, "BLOCK_RECORD", handle::BLOCKS, SPACES.len(), |out| {
+        for (name, handle) in SPACES {
+            out.text(0, "BLOCK_RECORD").handle(5, handle).handle(330, handle::BLOCKS);
+            out.text(100, "AcDbSymbolTableRecord").text(100, "AcDbBlockTableRecord").text(2, name);
+        }
+    });
     end_section(out);
     blocks(out);
     section(out, "ENTITIES");
@@ -104,12 +101,11 @@ fn end_section(out: &mut Codes) {
     out.text(0, "ENDSEC");
 }
 
-fn table(out: &mut Codes, name: &str, handle: u64, entries: usize) {
+/// Writes a table with `count` entries, which `entries` writes.
+fn table(out: &mut Codes, name: &str, handle: u64, count: usize, entries: impl FnOnce(&mut Codes)) {
     out.text(0, "TABLE").text(2, name).handle(5, handle).handle(330, 0);
-    out.text(100, "AcDbSymbolTable").whole(70, entries as i64);
-}
-
-fn end_table(out: &mut Codes) {
+    out.text(100, "AcDbSymbolTable").whole(70, count as i64);
+    entries(out);
     out.text(0, "ENDTAB");
 }
 
@@ -121,28 +117,28 @@ fn entry<'c>(out: &'c mut Codes, name: &str, code: u16, table: u64, class: &str)
 
 fn line_types(out: &mut Codes) {
     let types = [("ByBlock", ""), ("ByLayer", ""), ("Continuous", "Solid line")];
-    table(out, "LTYPE", handle::LINE_TYPES, types.len());
-    for (name, meaning) in types {
-        entry(out, "LTYPE", 5, handle::LINE_TYPES, "AcDbLinetypeTableRecord").text(2, name).whole(70, 0);
-        out.text(3, meaning).whole(72, 65).whole(73, 0).length(40, 0.0);
-    }
-    end_table(out);
+    table(out, "LTYPE", handle::LINE_TYPES, types.len(), |out| {
+        for (name, meaning) in types {
+            entry(out, "LTYPE", 5, handle::LINE_TYPES, "AcDbLinetypeTableRecord").text(2, name).whole(70, 0);
+            out.text(3, meaning).whole(72, 65).whole(73, 0).length(40, 0.0);
+        }
+    });
 }
 
 fn layer_table(out: &mut Codes, layers: &Layers) {
-    table(out, "LAYER", handle::LAYERS, layers.all.len());
-    for (name, color) in &layers.all {
-        entry(out, "LAYER", 5, handle::LAYERS, "AcDbLayerTableRecord").text(2, name).whole(70, 0);
-        out.whole(62, (*color).into()).text(6, "Continuous");
-    }
-    end_table(out);
+    table(out, "LAYER", handle::LAYERS, layers.all.len(), |out| {
+        for (name, color) in &layers.all {
+            entry(out, "LAYER", 5, handle::LAYERS, "AcDbLayerTableRecord").text(2, name).whole(70, 0);
+            out.whole(62, (*color).into()).text(6, "Continuous");
+        }
+    });
 }
 
 fn styles(out: &mut Codes) {
-    table(out, "STYLE", handle::STYLES, 1);
-    entry(out, "STYLE", 5, handle::STYLES, "AcDbTextStyleTableRecord").text(2, "Standard").whole(70, 0);
-    out.length(40, 0.0).length(41, 1.0).length(50, 0.0).whole(71, 0).length(42, 2.5).text(3, "txt").text(4, "");
-    end_table(out);
+    table(out, "STYLE", handle::STYLES, 1, |out| {
+        entry(out, "STYLE", 5, handle::STYLES, "AcDbTextStyleTableRecord").text(2, "Standard").whole(70, 0);
+        out.length(40, 0.0).length(41, 1.0).length(50, 0.0).whole(71, 0).length(42, 2.5).text(3, "txt").text(4, "");
+    });
 }
 
 fn blocks(out: &mut Codes) {

@@ -150,15 +150,11 @@ impl Lattice3 {
         let at = ((p - self.region.min) / self.region.size()).to_array();
         let along = [0, 1, 2].map(|a| bspline::basis(self.degree[a], self.cells[a], at[a]));
         let [(i0, across), (j0, up), (k0, front)] = &along;
-        let mut out = Vec::with_capacity(across.len() * up.len() * front.len());
-        for (k, c) in front.iter().enumerate() {
-            for (j, b) in up.iter().enumerate() {
-                for (i, a) in across.iter().enumerate() {
-                    let node = [i0 + i, j0 + j, k0 + k];
-                    out.push((node, a * b * c * self.weight(node)));
-                }
-            }
-        }
+        let influence = |[i, j, k]: [usize; 3]| {
+            let node = [i0 + i, j0 + j, k0 + k];
+            (node, across[i] * up[j] * front[k] * self.weight(node))
+        };
+        let mut out: Vec<_> = grid([across.len(), up.len(), front.len()]).map(influence).collect();
         let sum: f64 = out.iter().map(|v| v.1).sum();
         out.iter_mut().for_each(|v| v.1 /= sum);
         out
@@ -189,25 +185,16 @@ impl Lattice3 {
 
     /// Returns the Bézier coefficients of one cell of a spline with the coefficients `c`, from the extraction matrices along the axes.
     fn bezier<const C: usize>(&self, cell: [usize; 3], matrices: &[Vec<Vec<f64>>; 3], c: &[[f64; C]]) -> Vec<[f64; C]> {
-        let [a, b, d] = matrices;
-        let mut out = Vec::with_capacity(a.len() * b.len() * d.len());
-        for front in d {
-            for up in b {
-                for across in a {
-                    let mut sum = [0.0; C];
-                    for (k, kc) in front.iter().enumerate() {
-                        for (j, kb) in up.iter().enumerate() {
-                            for (i, ka) in across.iter().enumerate() {
-                                let from = &c[self.index([cell[0] + i, cell[1] + j, cell[2] + k])];
-                                sum.iter_mut().zip(from).for_each(|(s, v)| *s += ka * kb * kc * v);
-                            }
-                        }
-                    }
-                    out.push(sum);
-                }
+        let coefficient = |row: [usize; 3]| {
+            let [across, up, front] = [0, 1, 2].map(|a| &matrices[a][row[a]]);
+            let mut sum = [0.0; C];
+            for [i, j, k] in grid([across.len(), up.len(), front.len()]) {
+                let from = &c[self.index([cell[0] + i, cell[1] + j, cell[2] + k])];
+                sum.iter_mut().zip(from).for_each(|(s, v)| *s += across[i] * up[j] * front[k] * v);
             }
-        }
-        out
+            sum
+        };
+        grid(matrices.each_ref().map(Vec::len)).map(coefficient).collect()
     }
 }
 

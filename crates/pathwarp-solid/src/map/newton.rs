@@ -119,12 +119,9 @@ impl NewtonInverse3 {
         let mut buckets = vec![Vec::new(); side * side * side];
         for (s, b) in boxes.iter().enumerate() {
             let (from, to) = (out.bucket(b.min), out.bucket(b.max));
-            for k in from[2]..=to[2] {
-                for j in from[1]..=to[1] {
-                    for i in from[0]..=to[0] {
-                        buckets[(k * side + j) * side + i].push(u32::try_from(s).unwrap_or(0));
-                    }
-                }
+            for [i, j, k] in grid([0, 1, 2].map(|a| (to[a] + 1).saturating_sub(from[a]))) {
+                let bucket = ((from[2] + k) * side + from[1] + j) * side + from[0] + i;
+                buckets[bucket].push(u32::try_from(s).unwrap_or(0));
             }
         }
         out.buckets = buckets.into();

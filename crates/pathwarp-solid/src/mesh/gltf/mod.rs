@@ -278,25 +278,28 @@ impl Buffers {
 
     /// Returns the numbers of an accessor, `N` at a time; missing components are 0.
     fn floats<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, MeshError> {
-        let normalized = accessor.normalized();
+        // Normalized integers are fractions of the largest one.
+        let largest = largest(accessor.data_type()).filter(|_| accessor.normalized());
         let mut out = Vec::new();
         self.each(accessor, |numbers| {
             let mut item = [0.0; N];
-            item.iter_mut().zip(numbers).for_each(|(o, v)| *o = v.float(normalized));
+            let values = numbers.iter().map(|v| largest.map_or(*v, |largest| (v / largest).max(-1.0)));
+            item.iter_mut().zip(values).for_each(|(o, v)| *o = v);
             out.push(item);
         })?;
         Ok(out)
     }
 
-    /// Returns the indices of an accessor.
+    /// Returns the indices of an accessor, out of range if its type is not one for indices.
     fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, MeshError> {
+        let is_unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
         let mut out = Vec::new();
-        self.each(accessor, |numbers| out.extend(numbers.first().map(Number::index)))?;
+        self.each(accessor, |numbers| out.extend(numbers.first().map(|v| if is_unsigned { *v as u32 } else { NONE })))?;
         Ok(out)
     }
 
     /// Calls `f` with the components of every item.
-    fn each(&self, accessor: &Accessor<'_>, mut f: impl FnMut(&[Number])) -> Result<(), MeshError> {
+    fn each(&self, accessor: &Accessor<'_>, mut f: impl FnMut(&[f64])) -> Result<(), MeshError> {
         let wrong = |what: &str| MeshError::whole(format!("accessor {} {what}", accessor.index()));
         if accessor.sparse().is_some() {
             return Err(wrong("is sparse, which is not read; save the model without sparse accessors"));
@@ -318,12 +321,12 @@ impl Buffers {
         if accessor.count() > 0 && end.is_none_or(|end| end > bytes.len()) {
             return Err(wrong(&format!("announces {} items, and its data ends before", accessor.count())));
         }
-        let mut numbers = [Number::U8(0); 4];
+        let mut numbers = [0.0; 4];
         for i in 0..accessor.count() {
             let start = accessor.offset() + i * stride;
             let item = &bytes[start..start + size];
             for (n, part) in numbers.iter_mut().zip(item.chunks_exact(size / components)) {
-                *n = Number::read(kind, part).ok_or_else(|| wrong("is damaged"))?;
+                *n = number(kind, part).ok_or_else(|| wrong("is damaged"))?;
             }
             f(&numbers[..components]);
         }
@@ -331,50 +334,27 @@ impl Buffers {
     }
 }
 
-/// A number of the type in which the file stores it.
-#[derive(Clone, Copy)]
-enum Number {
-    I8(i8),
-    U8(u8),
-    I16(i16),
-    U16(u16),
-    U32(u32),
-    F32(f32),
+/// Decodes a number of this type.
+fn number(kind: DataType, bytes: &[u8]) -> Option<f64> {
+    Some(match kind {
+        DataType::I8 => i8::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U8 => u8::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::I16 => i16::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U16 => u16::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U32 => u32::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::F32 => f32::from_le_bytes(bytes.try_into().ok()?).into(),
+    })
 }
 
-impl Number {
-    fn read(kind: DataType, bytes: &[u8]) -> Option<Self> {
-        Some(match kind {
-            DataType::I8 => Self::I8(i8::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U8 => Self::U8(u8::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::I16 => Self::I16(i16::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U16 => Self::U16(u16::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U32 => Self::U32(u32::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::F32 => Self::F32(f32::from_le_bytes(bytes.try_into().ok()?)),
-        })
-    }
-
-    /// Returns the value; normalized integers are fractions of the largest one.
-    fn float(self, normalized: bool) -> f64 {
-        let (value, largest) = match self {
-            Self::I8(v) => (f64::from(v), f64::from(i8::MAX)),
-            Self::U8(v) => (f64::from(v), f64::from(u8::MAX)),
-            Self::I16(v) => (f64::from(v), f64::from(i16::MAX)),
-            Self::U16(v) => (f64::from(v), f64::from(u16::MAX)),
-            Self::U32(v) => (f64::from(v), f64::from(u32::MAX)),
-            Self::F32(v) => return f64::from(v),
-        };
-        if normalized { (value / largest).max(-1.0) } else { value }
-    }
-
-    /// Returns the value as an index, out of range if the type is not one for indices.
-    fn index(&self) -> u32 {
-        match self {
-            Self::U8(v) => u32::from(*v),
-            Self::U16(v) => u32::from(*v),
-            Self::U32(v) => *v,
-            Self::I8(_) | Self::I16(_) | Self::F32(_) => u32::MAX,
-        }
+/// Returns the largest integer of this type.
+fn largest(kind: DataType) -> Option<f64> {
+    match kind {
+        DataType::I8 => Some(i8::MAX.into()),
+        DataType::U8 => Some(u8::MAX.into()),
+        DataType::I16 => Some(i16::MAX.into()),
+        DataType::U16 => Some(u16::MAX.into()),
+        DataType::U32 => Some(u32::MAX.into()),
+        DataType::F32 => None,
     }
 }
 
