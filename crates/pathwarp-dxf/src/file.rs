@@ -1,8 +1,8 @@
 //! The text of a DXF file: group codes, colours, layers, and the parts of a file around its entities.
 //!
-//! A file is a list of pairs of lines: a group code, which gives the meaning of the value, and the value. 0 begins a part or an object, 2 is a
-//! name, 5 a handle, 330 the owner's handle, 100 the class of what follows, 8 a layer, 62 and 420 are colours, 10 to 39 coordinates, and
-//! 70 to 79 flags or numbers.
+//! A file is a list of pairs of lines: a group code, which gives the meaning of the value, and the value. 0 begins a part or an object,
+//! 2 is a name, 5 a handle, 330 the owner's handle, 100 the class of what follows, 8 a layer, 62 and 420 are colours, 10 to 39
+//! coordinates, and 70 to 79 flags or numbers.
 
 use crate::model::{Options, Shape};
 use pathwarp::engine::decimal::push_trimmed;

@@ -94,10 +94,11 @@ pub fn build_within(
     points: &[DVec3],
     budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
+    let builder = Builder { registry, frame, budget };
     let out = if recipe.steps.len() > 1 && recipe.steps.iter().all(|s| s.inverse) {
-        build_inverse(&recipe.inverted(), registry, frame, points, budget)?
+        builder.build_inverse(&recipe.inverted(), points)?
     } else {
-        build_steps(recipe, registry, frame, points, budget)?
+        builder.build(recipe, points)?
     };
     charge(budget, &out.map, points.len())?;
     Ok(out)
@@ -108,80 +109,79 @@ fn charge(budget: &Budget, map: &dyn Map3, points: usize) -> Result<(), Geometry
     budget.spend(points as f64 * map.work()).map_err(GeometryError::Limit)
 }
 
-fn build_steps(
-    recipe: &Recipe,
-    registry: &Registry3,
-    mut frame: Frame3,
-    points: &[DVec3],
-    budget: &Arc<Budget>,
-) -> Result<BuiltRecipe3, Error> {
-    let mut out = BuiltRecipe3::new(budget);
-    let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
-    for (i, step) in recipe.steps.iter().enumerate() {
-        let entry = registry.get(&step.deformation).ok_or_else(|| {
-            let known = registry.entries().iter().map(|e| e.about().info.name).collect::<Vec<_>>().join(", ");
-            let problem = format!("there is no deformation of space `{}`; known are {known}", step.deformation);
-            Error::input(format!("step {}", i + 1), problem)
-        })?;
-        if i > 0 {
-            frame.bounds = Box3::around(images.iter().copied()).unwrap_or(frame.bounds);
-        }
-        let mut built = entry.build_from(&step.args, &frame)?;
-        if step.inverse {
-            built = invert_step(built, &frame.bounds, budget)?;
-        }
-        if i + 1 < recipe.steps.len() {
-            charge(budget, &*built.map, points.len())?;
-            built.map.points(&mut images);
-        }
-        out.push(built, frame);
-    }
-    Ok(out)
+/// The surroundings in which recipes are built.
+struct Builder<'a> {
+    registry: &'a Registry3,
+    frame: Frame3,
+    budget: &'a Arc<Budget>,
 }
 
-/// Builds the inverse of a recipe of several steps. The boxes of the steps depend on the points of the source, which depend on the boxes:
-/// both are computed in turn until the boxes settle.
-fn build_inverse(
-    recipe: &Recipe,
-    registry: &Registry3,
-    frame: Frame3,
-    images: &[DVec3],
-    budget: &Arc<Budget>,
-) -> Result<BuiltRecipe3, Error> {
-    /// Boxes that differ by less than this fraction of their size count as equal.
-    const SETTLED: f64 = 1e-12;
-    const MAX_ROUNDS: usize = 64;
-    // The distance between the corners of two boxes, as a fraction of their size.
-    let distance = |a: &Box3, b: &Box3| a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal();
-    let mut forward = build_steps(recipe, registry, frame, &grid_points(&frame.bounds).collect::<Vec<_>>(), budget)?;
-    let mut change = f64::INFINITY;
-    for _ in 0..MAX_ROUNDS {
-        if change <= SETTLED {
-            break;
+impl Builder<'_> {
+    fn build(&self, recipe: &Recipe, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+        let Self { registry, mut frame, budget } = *self;
+        let mut out = BuiltRecipe3::new(budget);
+        let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
+        for (i, step) in recipe.steps.iter().enumerate() {
+            let entry = registry.get(&step.deformation).ok_or_else(|| {
+                let known = registry.entries().iter().map(|e| e.about().info.name).collect::<Vec<_>>().join(", ");
+                let problem = format!("there is no deformation of space `{}`; known are {known}", step.deformation);
+                Error::input(format!("step {}", i + 1), problem)
+            })?;
+            if i > 0 {
+                frame.bounds = Box3::around(images.iter().copied()).unwrap_or(frame.bounds);
+            }
+            let mut built = entry.build_from(&step.args, &frame)?;
+            if step.inverse {
+                built = invert_step(built, &frame.bounds, budget)?;
+            }
+            if i + 1 < recipe.steps.len() {
+                charge(budget, &*built.map, points.len())?;
+                built.map.points(&mut images);
+            }
+            out.push(built, frame);
         }
-        let mut sources = images.to_vec();
-        for (step, frame) in forward.steps.iter().zip(&forward.frames).rev() {
-            let back = inverse(&step.map, &frame.bounds, budget);
-            charge(budget, &*back, sources.len())?;
-            back.points(&mut sources);
+        Ok(out)
+    }
+
+    /// Builds the inverse of a recipe of several steps. The steps' boxes depend on the points of the source, which depend on the boxes:
+    /// both are computed in turn until the boxes settle.
+    fn build_inverse(&self, recipe: &Recipe, images: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+        /// Boxes that differ by less than this fraction of their size count as equal.
+        const SETTLED: f64 = 1e-12;
+        const MAX_ROUNDS: usize = 64;
+        // The distance between the corners of two boxes, as a fraction of their size.
+        let distance = |a: &Box3, b: &Box3| a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal();
+        let Self { frame, budget, .. } = *self;
+        let mut forward = self.build(recipe, &grid_points(&frame.bounds).collect::<Vec<_>>())?;
+        let mut change = f64::INFINITY;
+        for _ in 0..MAX_ROUNDS {
+            if change <= SETTLED {
+                break;
+            }
+            let mut sources = images.to_vec();
+            for (step, frame) in forward.steps.iter().zip(&forward.frames).rev() {
+                let back = inverse(&step.map, &frame.bounds, budget);
+                charge(budget, &*back, sources.len())?;
+                back.points(&mut sources);
+            }
+            sources.retain(|p| p.is_finite());
+            let next = self.build(recipe, &sources)?;
+            let frames = next.frames.iter().zip(&forward.frames);
+            change = frames.map(|(a, b)| distance(&a.bounds, &b.bounds)).fold(0.0, f64::max);
+            forward = next;
         }
-        sources.retain(|p| p.is_finite());
-        let next = build_steps(recipe, registry, frame, &sources, budget)?;
-        let frames = next.frames.iter().zip(&forward.frames);
-        change = frames.map(|(a, b)| distance(&a.bounds, &b.bounds)).fold(0.0, f64::max);
-        forward = next;
+        let mut out = BuiltRecipe3::new(budget);
+        for (step, frame) in forward.steps.into_iter().zip(forward.frames).rev() {
+            out.push(invert_step(step, &frame.bounds, budget)?, frame);
+        }
+        if let Some(step) = out.steps.last_mut().filter(|_| change > SETTLED) {
+            step.warn(format!(
+                "the boxes to which percentages of later steps refer were not found again, and differ by {change:.1e} of their size: the \
+                 result is not the source; give those steps lengths instead"
+            ));
+        }
+        Ok(out)
     }
-    let mut out = BuiltRecipe3::new(budget);
-    for (step, frame) in forward.steps.into_iter().zip(forward.frames).rev() {
-        out.push(invert_step(step, &frame.bounds, budget)?, frame);
-    }
-    if let Some(step) = out.steps.last_mut().filter(|_| change > SETTLED) {
-        step.warn(format!(
-            "the boxes to which percentages of later steps refer were not found again, and differ by {change:.1e} of their size: the \
-             result is not the source; give those steps lengths instead"
-        ));
-    }
-    Ok(out)
 }
 
 /// Inverts a step over its box. Warns if the step folds space there.

@@ -31,19 +31,15 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
         let n = count(input, POINT, "points of a path")?;
         let at = input.offset();
         let format = input.u32("a path")?;
-        let mut tattoo = None;
-        match format {
-            1 => {}
-            2 => drop(input.u32("a path")?),
-            3 => {
-                input.u32("a path")?;
-                tattoo = Some(input.u32("a path")?);
-            }
-            other => {
-                let problem = format!("a path of format {other} is unknown; 1, 2 and 3 are known");
-                return Err(Error::unsupported(at, problem));
-            }
+        if !(1..=3).contains(&format) {
+            let problem = format!("a path of format {format} is unknown; 1, 2 and 3 are known");
+            return Err(Error::unsupported(at, problem));
         }
+        // Formats 2 and 3 have a word that is always 1, and format 3 the tattoo.
+        if format > 1 {
+            input.u32("a path")?;
+        }
+        let tattoo = if format == 3 { Some(input.u32("a path")?) } else { None };
         let points_at = input.offset();
         let size = u64::from(n) * POINT;
         input.need(size, count_at, || format!("{n} points of a path need {size} bytes"))?;

@@ -101,8 +101,8 @@ impl Bend3 {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a flat box, a wrong number of points, legs without length, and handles that do not exist, vanish, or differ on both
-    /// sides of a joint.
+    /// [`Error::Usage`] for a flat box, a wrong number of points, legs without length, and handles that do not exist, vanish, or differ
+    /// on both sides of a joint.
     pub fn build(&self) -> Result<Built3, Error> {
         let size = self.bounds.size()[self.axis];
         if !(size > 0.0 && size.is_finite()) {

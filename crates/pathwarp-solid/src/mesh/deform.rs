@@ -270,7 +270,7 @@ impl Refiner<'_> {
         Ok([0.25, 0.5, 0.75].iter().any(|t| from_chord(p, q, self.map.point(a.lerp(b, *t))) > self.tolerance))
     }
 
-    /// Returns `true` if the image of a face's middle is further from the middle of the image's corners than the tolerance, along the normal.
+    /// Returns `true` if the image of a face's middle is further than the tolerance, along the normal, from the middle of the image.
     fn is_bulging(&self, mesh: &Mesh, corners: &[Corner]) -> Result<bool, MeshError> {
         self.budget.spend(1.0)?;
         let n = corners.len() as f64;
@@ -396,8 +396,8 @@ fn add_triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], halved: [b
     }
 }
 
-/// Returns the parts, in its orientation, of a triangle with the corners 0, 1, 2 and the middles 3, 4, 5 of the sides from each to the next,
-/// of which some are halved.
+/// Returns the parts of a triangle some sides of which are halved. Its corners are 0, 1 and 2; 3, 4 and 5 are the middles of the sides
+/// from each corner to the next.
 pub(crate) fn parts_of_halved(sides: [bool; 3]) -> &'static [[usize; 3]] {
     match sides {
         [false, false, false] => &[[0, 1, 2]],

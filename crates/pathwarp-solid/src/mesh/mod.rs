@@ -12,7 +12,6 @@ use glam::DVec3;
 use pathwarp::budget::Exceeded;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
-use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -329,22 +328,15 @@ pub struct MeshError {
 }
 
 /// A fault in a mesh file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MeshFault {
     /// Description of the fault.
+    #[error("{0}")]
     Text(String),
     /// Reading takes more work than a limit allows.
+    #[error("the mesh takes {0}")]
     Limit(Exceeded),
-}
-
-impl fmt::Display for MeshFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Text(t) => f.write_str(t),
-            Self::Limit(e) => write!(f, "the mesh takes {e}"),
-        }
-    }
 }
 
 impl MeshError {

@@ -164,7 +164,11 @@ pub(super) fn exact_image(surface: &Surface, map: &Chain3, budget: &Budget) -> R
     for step in map.steps() {
         let image = match step.collineation() {
             Some(c) => Some(projected(&out, c)),
-            None => composed(&out, step, budget)?,
+            None => {
+                let (pieces, breaks) = out.pieces();
+                let max = MAX_DEGREE / out.degree[0].max(out.degree[1]);
+                fractions(&pieces, step, max, budget)?.and_then(|f| compose(&out, &pieces, &breaks, &f))
+            }
         };
         let is_sound = |s: &Surface| s.weights.iter().all(|w| *w > 0.0) && s.points.iter().all(|p| p.is_finite());
         let Some(image) = image.filter(is_sound) else { return Ok(None) };
@@ -202,14 +206,8 @@ fn fractions(
     Ok(Some(out))
 }
 
-fn composed(surface: &Surface, map: &dyn Map3, budget: &Budget) -> Result<Option<Surface>, Exceeded> {
-    let (pieces, breaks) = surface.pieces();
-    let max = MAX_DEGREE / surface.degree[0].max(surface.degree[1]);
-    let all = fractions(&pieces, map, max, budget)?;
-    Ok(all.and_then(|fractions| joined_exactly(surface, &pieces, &breaks, &fractions)))
-}
-
-fn joined_exactly(
+/// Returns the image of a surface from the map on each of its pieces, if the degree allows it and the pieces' images join.
+fn compose(
     surface: &Surface,
     pieces: &[BezierPatch],
     breaks: &[Vec<f64>; 2],

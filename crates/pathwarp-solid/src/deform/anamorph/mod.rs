@@ -280,7 +280,7 @@ fn perspective(eye: Eye3, delta: DVec4) -> DMat4 {
 /// Distance from a side of the moved region, relative to the coordinates, within which points count as on it.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns the value of a linear form in (x, y, z, 1), or 0 if that is rounding. The moved region is where the forms of its sides are positive.
+/// Returns the value of a linear form in (x, y, z, 1), or 0 if that is rounding. Forms are positive inside the side that they describe.
 fn signed_side(form: &DVec4, p: DVec3) -> f64 {
     let q = p.extend(1.0);
     let v = form.dot(q);
