@@ -72,9 +72,7 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
     if !root.has_tag_name((NAMESPACE, "svg")) {
         return Err(Error::damaged(root.range().start as u64, "not an SVG file"));
     }
-    let numbers = |text: &str| -> Vec<f64> {
-        text.split([' ', ',']).filter(|w| !w.is_empty()).filter_map(|w| w.parse().ok()).collect()
-    };
+    let numbers = |text: &str| text.split([' ', ',']).filter_map(|w| w.parse().ok()).collect::<Vec<f64>>();
     let size = match root.attribute("viewBox").map(numbers).as_deref() {
         Some([_, _, w, h]) if [w, h].iter().all(|v| v.is_finite() && **v > 0.0) => Some([*w, *h]),
         _ => None,

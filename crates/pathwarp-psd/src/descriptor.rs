@@ -101,10 +101,7 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
             Value::Numbers(doubles(input)?)
         }
         b"long" => Value::Number(f64::from(input.i32()?)),
-        b"comp" => {
-            input.take(8)?;
-            Value::Other
-        }
+        b"comp" => input.take(8).map(|_| Value::Other)?,
         b"bool" => Value::Number(f64::from(input.u8()?)),
         b"enum" => {
             id(input)?;
@@ -129,19 +126,13 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
             }
             numbers.into_iter().collect::<Option<Vec<f64>>>().map_or(Value::Other, Value::Numbers)
         }
-        b"type" | b"GlbC" => {
-            text_and_class(input)?;
-            Value::Other
-        }
+        b"type" | b"GlbC" => text_and_class(input).map(|()| Value::Other)?,
         b"alis" | b"tdta" | b"Pth " => {
             let n = count(input)?;
             input.take(n)?;
             Value::Other
         }
-        b"obj " => {
-            reference(input)?;
-            Value::Other
-        }
+        b"obj " => reference(input).map(|()| Value::Other)?,
         other => return Err(input.error(format!("unknown type of value `{}`", String::from_utf8_lossy(other)))),
     })
 }

@@ -87,7 +87,7 @@ impl Reference3 {
     ///
     /// # Errors
     /// [`Error::Usage`] when the points do not span such a reference, or the eye lies in the plane of a sheet.
-    pub fn new(points: &[DVec3], degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
+    pub fn new(points: &[DVec3], mut degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
         let eye = eye.into();
         let wrong = |problem: &str| Error::usage("reference", "", problem);
         let fits = degree[0] == degree[1] && (degree[1] == degree[2] || points.len() == 6);
@@ -102,9 +102,9 @@ impl Reference3 {
                 let (edge, base) = (d - a, (b - a).cross(c - a));
                 let size = edge.length().max((b - a).length()).max((c - a).length());
                 if (e - b - edge).length().max((f - c - edge).length()) > 1e3 * FLAT * size {
-                    return Err(wrong(
-                        "has six corners whose edges from the first three to the last are not parallel and equal; cut it into tetrahedra (`tetrahedra`)",
-                    ));
+                    let problem =
+                        "has six corners whose edges from the first three to the last are not parallel and equal";
+                    return Err(wrong(&format!("{problem}; cut it into tetrahedra (`tetrahedra`)")));
                 }
                 let volume = base.dot(edge).abs();
                 if volume.is_nan() || volume <= FLAT * size.powi(3) {
@@ -148,7 +148,6 @@ impl Reference3 {
                         Err(in_plane())
                     }
                     [axis] => {
-                        let mut degree = degree;
                         degree[axis] = 0;
                         Ok(Self::Rectangle(b, axis, degree))
                     }
