@@ -57,7 +57,7 @@ fn draw_isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
         return;
     }
     let mut content = file.group(bounds, stream.shift, |file, stream| draw_children(file, stream, group));
-    // A state has one mask; a second one goes into a group of its own.
+    // A state has one mask, so a second one goes into another group.
     if masks.len() > 1
         && let Some((kind, mask)) = masks.pop()
     {

@@ -257,7 +257,8 @@ impl LatticeMap3 {
     /// Returns the piece that applies to a whole box, `Some(None)` if nothing moves there, or `None` if a crease may cross the box.
     fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
         let slack = 4.0 * (self.inside.max - self.region.max);
-        if !self.extended && !(self.inside.contains(on.min) && self.inside.contains(on.max)) {
+        let is_covered = self.extended || (self.inside.contains(on.min) && self.inside.contains(on.max));
+        if !is_covered {
             let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
             return beside.then_some(None);
         }
@@ -272,7 +273,7 @@ impl LatticeMap3 {
     /// Returns the common denominator at `p`, which is positive where the map is defined.
     fn denominator(&self, p: DVec3) -> f64 {
         match self.piece(p) {
-            Some((local, Piece::Quotient(t))) => t.at(local.coordinates(p))[3],
+            Some((local, Piece::Quotient(t))) => t.value(local.coordinates(p).to_array())[3],
             _ => 1.0,
         }
     }
@@ -308,9 +309,11 @@ impl Map3 for LatticeMap3 {
     fn point(&self, p: DVec3) -> DVec3 {
         match self.piece(p) {
             None => p,
-            Some((local, Piece::Displacement(tensor))) => p + DVec3::from_array(tensor.at(local.coordinates(p))),
+            Some((local, Piece::Displacement(tensor))) => {
+                p + DVec3::from_array(tensor.value(local.coordinates(p).to_array()))
+            }
             Some((local, Piece::Quotient(tensor))) => {
-                let [x, y, z, w] = tensor.at(local.coordinates(p));
+                let [x, y, z, w] = tensor.value(local.coordinates(p).to_array());
                 DVec3::new(x, y, z) / w
             }
         }

@@ -219,7 +219,7 @@ impl Bend3 {
         let handles = self.handles_at_points(handles)?;
         let piece = |(i, p): (usize, Vec<DVec3>)| {
             let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
-            // The inner coefficients, from the derivatives S' and T' at the end next to them.
+            // The inner coefficients, from the derivatives S' and T' at the end next to them. The bound stands in for a leg `a` of no length.
             let inner = |pair: [DVec3; 2], a: DVec3| {
                 pair.map(|h| h - a * (h.dot(b - a) / (1.5 * a.length_squared()).max(1e-18 * b.length_squared())))
             };

@@ -341,7 +341,7 @@ pub enum MeshFault {
 
 impl MeshError {
     /// Makes an error at a line.
-    pub(crate) fn at(line: usize, problem: impl Into<String>) -> Self {
+    pub(crate) fn at_line(line: usize, problem: impl Into<String>) -> Self {
         Self { line: Some(line), problem: MeshFault::Text(problem.into()) }
     }
 

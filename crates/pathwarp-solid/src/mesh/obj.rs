@@ -29,7 +29,7 @@ pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let mut lines_before = 0;
     for (part, text) in read.into_iter().zip(&parts) {
-        let part = part.map_err(|(line, problem)| MeshError::at(lines_before + line, problem))?;
+        let part = part.map_err(|(line, problem)| MeshError::at_line(lines_before + line, problem))?;
         append(&mut mesh, part, &mut skipped);
         lines_before += text.iter().filter(|b| **b == b'\n').count();
     }
@@ -202,7 +202,7 @@ fn check_indices(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
     let counts = format!("{vertices} vertices, {uvs} texture coordinates and {normals} normals");
     let problem = format!("an index is out of range: there are {counts}");
     Err(match line_of(text, polygon) {
-        Some(line) => MeshError::at(line, problem),
+        Some(line) => MeshError::at_line(line, problem),
         None => MeshError::whole(problem),
     })
 }

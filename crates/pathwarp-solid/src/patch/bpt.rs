@@ -19,7 +19,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     for n in 1..=count[0] {
         let (degree, line) = whole_numbers::<2>(lines.next(), &format!("the degrees of patch {n} of {}", count[0]))?;
         if degree.iter().any(|d| !(1..=MAX_DEGREE).contains(d)) {
-            return Err(MeshError::at(line, format!("degrees are 1 to {MAX_DEGREE}")));
+            return Err(MeshError::at_line(line, format!("degrees are 1 to {MAX_DEGREE}")));
         }
         let [rows, columns] = degree.map(|d| d + 1);
         let mut points = Vec::with_capacity(rows * columns);
@@ -32,7 +32,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     }
     if let Some((line, text)) = lines.next() {
         let problem = format!("`{}` follows the {} patches that the file announces", beginning(text), count[0]);
-        return Err(MeshError::at(line, problem));
+        return Err(MeshError::at_line(line, problem));
     }
     if out.is_empty() {
         return Err(MeshError::whole("holds no patches"));
@@ -49,7 +49,7 @@ fn whole_numbers<const N: usize>(line: Option<(usize, &str)>, what: &str) -> Res
     let (line, text) = line.ok_or_else(|| MeshError::whole(format!("ends before {what}")))?;
     let numbers: Option<Vec<usize>> = text.split_whitespace().map(|w| w.parse().ok()).collect();
     let numbers = numbers.and_then(|n| n.try_into().ok());
-    numbers.map(|n| (n, line)).ok_or_else(|| MeshError::at(line, format!("`{}` is not {what}", beginning(text))))
+    numbers.map(|n| (n, line)).ok_or_else(|| MeshError::at_line(line, format!("`{}` is not {what}", beginning(text))))
 }
 
 fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> {
@@ -59,7 +59,7 @@ fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> 
         Some([x, y, z]) if [x, y, z].iter().all(|v| v.abs() < 1e100) => Ok(DVec3::new(*x, *y, *z)),
         _ => {
             let problem = format!("`{}` is not a control point `x y z` with finite numbers", beginning(text));
-            Err(MeshError::at(line, problem))
+            Err(MeshError::at_line(line, problem))
         }
     }
 }

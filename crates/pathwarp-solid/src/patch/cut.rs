@@ -260,7 +260,7 @@ fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     let surface = |rows: Vec<Vec<DVec3>>| {
         let cells = [n, rows.len() / 3];
         let mut out = Surface::bezier("", [3, 3], rows.concat());
-        out.knots = cells.map(|c| surface::joined(3, &breaks(c)));
+        out.knots = cells.map(|c| surface::bezier_knots(3, &breaks(c)));
         out
     };
     stacks.into_iter().map(surface).collect()

@@ -140,7 +140,7 @@ fn refit_together(
         }
         if distance <= tolerance || n >= MAX_CELLS {
             for ((i, _, breaks), cells) in to_refit.iter().zip(&fitted) {
-                images[*i] = vec![refit::joined(&surfaces[*i], breaks, cells)];
+                images[*i] = vec![refit::join_cells(&surfaces[*i], breaks, cells)];
             }
             return Ok(distance);
         }

@@ -130,7 +130,7 @@ impl Cells {
 }
 
 /// Joins the images of a surface's patches, u fastest, all with one number of cells.
-pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]) -> Surface {
+pub(super) fn join_cells(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]) -> Surface {
     let n = pieces.first().map_or(1, |c| c.n);
     let spans = breaks.each_ref().map(|b| b.len() - 1);
     let size = spans.map(|s| 3 * n * s + 1);
@@ -148,7 +148,7 @@ pub(super) fn joined(surface: &Surface, breaks: &[Vec<f64>; 2], pieces: &[Cells]
     Surface {
         name: surface.name.clone(),
         degree: [3, 3],
-        knots: breaks.each_ref().map(|b| surface::joined(3, &cut(b))),
+        knots: breaks.each_ref().map(|b| surface::bezier_knots(3, &cut(b))),
         weights: vec![1.0; points.len()],
         points,
         trims: surface.trims.clone(),
@@ -243,7 +243,7 @@ fn compose(
     Some(Surface {
         name: surface.name.clone(),
         degree,
-        knots: [0, 1].map(|a| surface::joined(degree[a], &breaks[a])),
+        knots: [0, 1].map(|a| surface::bezier_knots(degree[a], &breaks[a])),
         points: all.iter().map(|p| p.xyz() / p.w).collect(),
         // The weights of a polynomial surface are known to be 1; products would round them.
         weights: all.iter().map(|p| if is_polynomial { 1.0 } else { p.w }).collect(),

@@ -295,11 +295,11 @@ impl Scaled {
 
 /// Returns the knots of a single Bézier span over 0..1.
 pub(super) fn single(degree: usize) -> Vec<f64> {
-    joined(degree, &[0.0, 1.0])
+    bezier_knots(degree, &[0.0, 1.0])
 }
 
 /// Returns the knots of Bézier spans joined at these parameters.
-pub(super) fn joined(degree: usize, breaks: &[f64]) -> Vec<f64> {
+pub(super) fn bezier_knots(degree: usize, breaks: &[f64]) -> Vec<f64> {
     let last = breaks.len().saturating_sub(1);
     let times = |i: usize| if i == 0 || i == last { degree + 1 } else { degree };
     breaks.iter().enumerate().flat_map(|(i, b)| std::iter::repeat_n(*b, times(i))).collect()
@@ -472,6 +472,6 @@ mod tests {
         ] {
             assert!(knot_fault(1, knots).unwrap().contains(part), "{knots:?}: {:?}", knot_fault(1, knots));
         }
-        assert_eq!(knot_fault(2, &joined(2, &[0.0, 1.0, 3.0])), None);
+        assert_eq!(knot_fault(2, &bezier_knots(2, &[0.0, 1.0, 3.0])), None);
     }
 }

@@ -49,6 +49,7 @@ pub fn tessellate_image(
         Some(_) => 1,
         None => DEFAULT_SIDE,
     };
+    // Testing a quad against a side of a loop takes about a tenth of an evaluation.
     budget.spend((corners * side * side) as f64 * 0.1)?;
     if let Some(within) = within {
         // Powers of two, so that parameters counted from either end of an edge are equal numbers.

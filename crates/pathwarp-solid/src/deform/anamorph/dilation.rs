@@ -246,7 +246,7 @@ impl Dilation3 {
     /// Returns δ at `p`.
     pub(super) fn value(&self, p: DVec3) -> f64 {
         match self {
-            Self::Cuboid { local, tensor } => tensor.at(local.coordinates(p))[0],
+            Self::Cuboid { local, tensor } => tensor.value(local.coordinates(p).to_array())[0],
             _ => self.jet(p).0,
         }
     }

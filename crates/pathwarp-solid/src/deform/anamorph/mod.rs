@@ -138,7 +138,7 @@ impl Anamorph3 {
                 let mut lattice = rest.clone();
                 for ([i, j, k, _], delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
                     let node = [*i, *j, *k];
-                    lattice.place(node, self.eye.moved(rest.point(node) - base, *delta) + base);
+                    lattice.place(node, self.eye.image(rest.point(node) - base, *delta) + base);
                     if let Eye3::At(_) = self.eye {
                         lattice.set_weight(node, *delta * rest.weight(node));
                     }
@@ -176,7 +176,7 @@ impl Anamorph3 {
         }
         for (node, delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
             let from = self.reference.point(*node);
-            let to = self.eye.moved(from, *delta);
+            let to = self.eye.image(from, *delta);
             built.note(format!("control point at {} moves to {}", show(from + base), show(to + base)));
             built.guides.push([self.eye.before(from, 0.0), from, to].map(|p| p + base).to_vec());
         }
@@ -342,7 +342,7 @@ impl Map3 for RadialMap {
         match self.eye {
             Eye3::At(eye) => {
                 let d = (DMat3::IDENTITY - outer(local - eye) * (1.0 / delta)) * (1.0 / delta);
-                Jet3 { p: self.eye.moved(local, delta) + self.base, d }
+                Jet3 { p: self.eye.image(local, delta) + self.base, d }
             }
             Eye3::Infinite(towards) => Jet3 { p: p + towards * (delta - 1.0), d: DMat3::IDENTITY + outer(towards) },
         }
@@ -353,7 +353,7 @@ impl Map3 for RadialMap {
             return p;
         }
         let local = p - self.base;
-        self.eye.moved(local, self.dilation.value(local)) + self.base
+        self.eye.image(local, self.dilation.value(local)) + self.base
     }
 
     fn points(&self, ps: &mut [DVec3]) {

@@ -48,7 +48,7 @@ impl Eye3 {
     }
 
     /// Returns the image of a point that moves along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
-    pub(super) fn moved(self, p: DVec3, delta: f64) -> DVec3 {
+    pub(super) fn image(self, p: DVec3, delta: f64) -> DVec3 {
         match self {
             Self::At(_) if delta == 1.0 => p,
             Self::At(eye) => eye + (p - eye) / delta,
