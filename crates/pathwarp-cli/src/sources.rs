@@ -2,7 +2,7 @@
 
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::{display, split_reference};
-use pathwarp_engine::output::{behind, is_device, is_stdout};
+use pathwarp_engine::output::{is_device, is_stdout, link_target};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
@@ -98,7 +98,7 @@ impl Folders {
     fn real(&mut self, file: &Path) -> Option<PathBuf> {
         if !cfg!(unix) || file.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
             // The target may not exist yet.
-            return (!file.exists()).then(|| real(&behind(file)));
+            return (!file.exists()).then(|| real(&link_target(file)));
         }
         let (folder, name) = (file.parent()?, file.file_name()?);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

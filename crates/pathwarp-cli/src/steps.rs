@@ -10,7 +10,7 @@ use pathwarp_engine::catalogue::Catalogue;
 use pathwarp_engine::edits::{self, EDITS};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Given;
-use pathwarp_engine::steps::{INVERSE, assign, in_lower_case};
+use pathwarp_engine::steps::{INVERSE, as_known_name, assign};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
@@ -112,7 +112,7 @@ pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
             }
         } else {
             for v in m.get_many::<String>(p.name).into_iter().flatten() {
-                args.push(p.name, in_lower_case(p, v));
+                args.push(p.name, as_known_name(p, v));
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The table that declares all common options.
 
 use super::common::{
-    CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
-    side_of_page, simplifying,
+    CommonOptions, OnFailure, family_name, frame, image_size, limit, outset_step, positive, positive_length, ratio,
+    side_of_page, simplify_step,
 };
 use crate::format::Format;
 use pathwarp::refit::Nodes;
@@ -132,7 +132,7 @@ pub static OPTIONS: &[CommonOption] = &[
         OptionValue::Text {
             name: "D",
             minus: LeadingMinus::Any,
-            set: |o, text| simplifying(text).map(|step| drop(o.edits.splice(0..0, step))),
+            set: |o, text| simplify_step(text).map(|step| drop(o.edits.splice(0..0, step))),
         },
         "Before bending, give paths the fewest nodes within this distance, such as 0.2mm or 0.1% (of the artwork's diagonal), as \
          `pathwarp simplify` does",
@@ -142,7 +142,7 @@ pub static OPTIONS: &[CommonOption] = &[
         OptionValue::Text {
             name: "D",
             minus: LeadingMinus::Any,
-            set: |o, text| growing(text).map(|step| o.edits.extend(step)),
+            set: |o, text| outset_step(text).map(|step| o.edits.extend(step)),
         },
         "Before bending, let areas grow by this distance, as `pathwarp offset` does; below zero, they shrink",
     ),
@@ -651,6 +651,11 @@ pub enum LeadingMinus {
 }
 
 impl CommonOption {
+    /// Finds an option by its long name or alias.
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name))
+    }
+
     /// Returns the help text with the default.
     pub fn help(&self) -> String {
         match self.default {
