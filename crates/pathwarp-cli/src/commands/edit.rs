@@ -3,13 +3,11 @@
 use crate::arguments;
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::ending::Status;
-use crate::interruption;
 use crate::plugins::Plugins;
-use crate::terminal;
+use crate::{interruption, terminal};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
-use pathwarp_editor::EngineHost;
-use pathwarp_editor::{News, Options, Purpose};
+use pathwarp_editor::{EngineHost, News, Options, Purpose};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Given;
 use pathwarp_engine::{input, output};
@@ -58,9 +56,8 @@ pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Re
     };
     // Ctrl-C is the usual end of this command.
     interruption::end_quietly();
-    let host = Arc::new(
-        EngineHost::new(registry.clone(), Given::default(), arguments::given(m)).with_plugins(plugins.options()),
-    );
+    let host = EngineHost::new(registry.clone(), Given::default(), arguments::given(m));
+    let host = Arc::new(host.with_plugins(plugins.options()));
     let announce = |news: &News<'_>| match news {
         News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),
         News::NoBrowser(e) => terminal::warning(&format!("no browser can be started ({e}); open the address in one")),

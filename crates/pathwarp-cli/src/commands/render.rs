@@ -1,11 +1,10 @@
 //! Commands for pictures: `render` draws an SVG file; `gallery` shows artwork under presets, or words in fonts, on one sheet.
 
-use crate::arguments;
-use crate::arguments::{reading_args, some_options};
-use crate::commands::args::{choice, file_arg, given_file, out_arg, target};
+use crate::arguments::{self, reading_args, some_options};
+use crate::commands::args::{choice, file_arg, given_file, out_arg, switch, target};
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Param};
 use pathwarp::refit;
@@ -67,26 +66,23 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
     let target = target(m, [file])?;
     let options = arguments::given(m).read()?;
     let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
-    let size = if let Some(&w) = m.get_one::<u32>("width") {
-        Size::Width(w)
-    } else if let Some(&h) = m.get_one::<u32>("height") {
-        Size::Height(h)
-    } else {
-        m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
+    let side = |name: &str| m.get_one::<u32>(name).copied();
+    let size = match (side("width"), side("height"), m.get_one::<f32>("scale")) {
+        (Some(width), ..) => Size::Width(width),
+        (None, Some(height), _) => Size::Height(height),
+        (None, None, scale) => scale.map_or(Size::Native, |s| Size::Scale(*s)),
     };
     terminal::refuse_terminal(target, "the picture", format.extension())?;
-    let background = match m.get_one::<Background>("background") {
-        Some(Background(None)) if format == Format::Jpeg => {
-            return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
-        }
-        Some(Background(color)) => *color,
-        // JPEG files get a white background when they are encoded.
-        None => None,
-    };
+    let background = m.get_one::<Background>("background");
+    if matches!(background, Some(Background(None))) && format == Format::Jpeg {
+        return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
+    }
+    // By default, JPEG files get a white background when they are encoded.
+    let background = background.and_then(|b| b.0);
     let bytes = input::bytes(file)?;
     let name = input::display(file);
-    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading))
-        .map_err(|e| input::not_a_drawing(&bytes, file, e.into()))?;
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading));
+    let read = read.map_err(|e| input::not_a_drawing(&bytes, file, e.into()))?;
     let limits = options.reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
@@ -126,10 +122,8 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
             "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
         ))
         .args(some_options(&["format", "quality", "page-width", "page-height", "show-nodes"]))
-        .arg(
-            choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
-        )
-        .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
+        .arg(choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]))
+        .arg(switch(ALL, "The same as --set all").conflicts_with("set"))
         .arg(
             Arg::new(FONTS)
                 .long(FONTS)
@@ -203,7 +197,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         ));
     }
     let file = file.unwrap_or(Path::new("-"));
-    let Content { mut cells, title, left_out } = match fonts {
+    let Contents { mut cells, title, left_out } = match fonts {
         Some(words) => in_fonts(words, &options)?,
         None => under_presets(registry, m, file, &options)?,
     };
@@ -235,16 +229,17 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
 }
 
 /// The cells and the title of a sheet, with the reasons for missing cells.
-struct Content {
+struct Contents {
     cells: Vec<Cell>,
     title: String,
     left_out: Vec<String>,
 }
 
 /// Sets words in every installed family that has all their letters.
-fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
+fn in_fonts(words: &str, options: &CommonOptions) -> Result<Contents, Failure> {
     let (read, limits) = (options.reading.read_options(), options.reading.limits.for_input(words.len()));
     let families = families(&read);
+    // The cell, and `true` if the family has all letters.
     let set = |family: &String| -> Result<_, Failure> {
         let file = find_font(family, REGULAR, false, &read)?;
         let text = laid_out(words, &[read_font(family, &file)?], &TextStyle::default(), &limits)?;
@@ -258,7 +253,7 @@ fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
         return Err(Failure::usage(format!("--{FONTS}: no installed family has all letters of “{words}”")));
     }
     let (shown, all) = (cells.len(), families.len());
-    Ok(Content { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
+    Ok(Contents { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
 }
 
 /// Bends a drawing by every preset of a set.
@@ -267,18 +262,17 @@ fn under_presets(
     m: &ArgMatches,
     file: &Path,
     options: &CommonOptions,
-) -> Result<Content, Failure> {
+) -> Result<Contents, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
     let doc = input::document(file, &options.reading)?;
-    let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
-
+    let bounds = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
-    let presets: Vec<Preset<'_>> =
-        sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
+    let presets = sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis));
+    let presets: Vec<Preset<'_>> = presets.collect();
     let lettering = doc.lettering(&Selection::default());
-    let frame = Frame::new(frame);
+    let frame = Frame::new(bounds);
     let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
     let draw = |p: &Preset<'_>| {
         let WarpedDocument { svg, skipped, .. } = p.warp(&doc, &frame)?;
@@ -293,7 +287,7 @@ fn under_presets(
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
     let left_out = skipped.iter().map(|reason| format!("{}: {reason}", input::display(file))).collect();
-    Ok(Content { cells, title: title(file, &sets, bend, axis), left_out })
+    Ok(Contents { cells, title: title(file, &sets, bend, axis), left_out })
 }
 
 /// Lists the first reasons why something is not warped, or is left out, in a cell, and counts the others.
@@ -333,11 +327,8 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
     let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map_or(&[][..], Param::names);
     let preset = |&name: &&'static str| {
         let mut args = Args::from_pairs(&[(gallery.presets, name)]);
-        for (param, value) in [(gallery.bend, bend), (gallery.axis, axis)] {
-            if let Some(param) = param {
-                args.push(param, value);
-            }
-        }
+        gallery.bend.into_iter().for_each(|param| args.push(param, bend));
+        gallery.axis.into_iter().for_each(|param| args.push(param, axis));
         Preset { entry, name, args }
     };
     names.iter().map(preset).collect()
@@ -348,9 +339,7 @@ impl Preset<'_> {
     fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
-        let options = WarpOptions::new(
-            refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone()),
-        );
-        Ok(doc.warp(&built.map, &options)?)
+        let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone());
+        Ok(doc.warp(&built.map, &WarpOptions::new(refit))?)
     }
 }
