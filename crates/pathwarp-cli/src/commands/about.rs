@@ -1,6 +1,6 @@
 //! The commands that describe the program: `list`, `schema`, `man` and `completions`.
 
-use crate::commands::args::switch;
+use crate::commands::args::{option, switch};
 use crate::ending::Status;
 use crate::plugins::Plugins;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -171,12 +171,9 @@ pub(super) fn man_command() -> Command {
         .about("Print the manual page of the program, or of one command")
         .arg(Arg::new(PAGE).value_name("NAME").help("A command or deformation [default: the program]"))
         .arg(
-            Arg::new("out-dir")
-                .long("out-dir")
-                .value_name("DIR")
+            option("out-dir", "DIR", "Write the pages of the program and of all commands to this folder: pathwarp.1, pathwarp-NAME.1")
                 .value_parser(value_parser!(PathBuf))
-                .conflicts_with(PAGE)
-                .help("Write the pages of the program and of all commands to this folder: pathwarp.1, pathwarp-NAME.1"),
+                .conflicts_with(PAGE),
         )
         .after_help(
             "Examples:\n  pathwarp man | man -l -\n  pathwarp man shaper | man -l -\n  pathwarp man --out-dir ~/.local/share/man/man1",

@@ -1,10 +1,10 @@
 //! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
 
 use crate::arguments::{self, reading_args};
-use crate::commands::args::{file_arg, given_file, switch};
+use crate::commands::args::{file_arg, given_file, option, switch};
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
 use pathwarp::kurbo::Rect;
@@ -22,20 +22,15 @@ use std::sync::Arc;
 const VISIBLE: u8 = 16;
 
 pub(super) fn compare_command() -> Command {
-    let limit = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
-    };
+    let limit = |name, value, help| option(name, value, help).value_parser(value_parser!(f64));
     Command::new("compare")
         .about("Measure the distance between two drawings, path by path and pixel by pixel")
         .arg(file_arg("A", "An SVG file"))
         .arg(file_arg("B", "An SVG file"))
         .arg(
-            Arg::new("width")
-                .long("width")
-                .value_name("PX")
+            option("width", "PX", "Width in pixels of the renderings that are compared")
                 .value_parser(value_parser!(u32).range(1..))
-                .default_value("1000")
-                .help("Width in pixels of the renderings that are compared"),
+                .default_value("1000"),
         )
         .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))

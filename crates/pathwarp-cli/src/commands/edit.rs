@@ -1,11 +1,11 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
 use crate::arguments;
-use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
+use crate::commands::args::{file_arg, given_file, option, out_arg, switch, target};
 use crate::ending::Status;
 use crate::plugins::Plugins;
 use crate::{interruption, terminal};
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp_editor::{EngineHost, News, Options, Purpose};
 use pathwarp_engine::failure::Failure;
@@ -19,11 +19,8 @@ pub(super) fn edit_command() -> Command {
         .arg(file_arg("FILE", "An SVG file, a picture (PNG, JPEG, WebP), or a result of this command, to go on with it"))
         .arg(out_arg("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
         .arg(
-            Arg::new("port")
-                .long("port")
-                .value_name("N")
-                .value_parser(value_parser!(u16).range(1..))
-                .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
+            option("port", "N", "Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]")
+                .value_parser(value_parser!(u16).range(1..)),
         )
         .arg(switch("no-open", "Only print the page's address"))
         .args(arguments::reading_args())

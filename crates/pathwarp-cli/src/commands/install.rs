@@ -1,6 +1,6 @@
 //! `pathwarp install gimp|inkscape`: installs the plug-in, with a copy of this program, in another program's folder.
 
-use crate::commands::args::switch;
+use crate::commands::args::{option, switch};
 use crate::ending::Status;
 use crate::inkscape::inx::{self, Program};
 use crate::terminal;
@@ -14,9 +14,7 @@ use std::process::{self, Stdio};
 use std::{env, fs};
 
 pub(super) fn install_command() -> Command {
-    let path = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
-    };
+    let path = |name, value, help| option(name, value, help).value_parser(value_parser!(PathBuf));
     Command::new("install")
         .about("Install the plug-in for another program")
         .arg(

@@ -1,7 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
 use crate::arguments::{self, reading_args};
-use crate::commands::args::switch;
+use crate::commands::args::{option, switch};
 use crate::commands::exact::{self, Curves};
 use crate::ending::{Ending, Status};
 use crate::steps;
@@ -50,11 +50,8 @@ pub(super) fn map_command(registry: &Registry) -> Command {
              keeps it under projective maps and has degree p n under others of degree n, p (m + n) under lattices of degree m x n.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
              0,0,100,100 --points -",
         );
-    let frame = Arg::new("frame")
-        .long("frame")
-        .value_name("X,Y,W,H")
-        .allow_hyphen_values(true)
-        .help("Box that percentages and defaults refer to [default: the bounding box of the points]");
+    let help = "Box that percentages and defaults refer to [default: the bounding box of the points]";
+    let frame = option("frame", "X,Y,W,H", help).allow_hyphen_values(true);
     let all = switch("all", "Print all points that the maps of steps with --inverse lead back to").requires(INVERSE);
     let frame_and_all = [frame, all.conflicts_with("jacobian")];
     for info in registry.infos() {
@@ -67,12 +64,8 @@ pub(super) fn map_command(registry: &Registry) -> Command {
 
 /// The arguments for the file of points, and for derivatives.
 pub(super) fn points_args() -> [Arg; 2] {
-    let points = Arg::new("points")
-        .long("points")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .default_value("-")
-        .help("File of points; - is standard input");
+    let points = option("points", "FILE", "File of points; - is standard input");
+    let points = points.value_parser(value_parser!(PathBuf)).default_value("-");
     [points, switch("jacobian", "Print the partial derivatives too")]
 }
 

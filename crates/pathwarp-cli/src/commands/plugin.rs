@@ -1,5 +1,6 @@
 //! Commands for authors of plug-ins: `new-plugin` writes a template, and `check` checks a plug-in or a built-in deformation.
 
+use crate::commands::args::option;
 use crate::commands::install::{Part, install_files};
 use crate::ending::Status;
 use crate::plugins::{Plugins, is_file_name};
@@ -127,12 +128,7 @@ pub(super) fn new_plugin_command() -> Command {
         )
         .arg(Arg::new("NAME").required(true).help("Name of the deformation: lower-case words joined by hyphens"))
         .arg(
-            Arg::new("dir")
-                .long("dir")
-                .value_name("DIR")
-                .default_value(".")
-                .value_parser(value_parser!(PathBuf))
-                .help("Folder to write to"),
+            option("dir", "DIR", "Folder to write to").default_value(".").value_parser(value_parser!(PathBuf)),
         )
         .after_help(
             "Existing files are not overwritten.\n\nExamples:\n  pathwarp new-plugin python ripple\n  pathwarp check \

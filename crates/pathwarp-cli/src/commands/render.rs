@@ -1,10 +1,10 @@
 //! Commands for pictures: `render` draws an SVG file; `gallery` shows artwork under presets, or words in fonts, on one sheet.
 
 use crate::arguments::{self, reading_args, some_options};
-use crate::commands::args::{choice, file_arg, given_file, out_arg, switch, target};
+use crate::commands::args::{choice, file_arg, given_file, option, out_arg, switch, target};
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Param};
 use pathwarp::refit;
@@ -26,9 +26,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 pub(super) fn render_command() -> Command {
-    let pixels = |name: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
-    };
+    let pixels = |name, help| option(name, "PX", help).value_parser(value_parser!(u32).range(1..));
     Command::new("render")
         .about("Draw an SVG file as a picture: PNG, JPEG or WebP")
         .arg(file_arg("INPUT", "An SVG file; - is standard input"))
@@ -39,20 +37,15 @@ pub(super) fn render_command() -> Command {
         .args(some_options(&["format", "quality", "quiet"]))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
-        .arg(
-            Arg::new("scale")
-                .long("scale")
-                .value_name("S")
-                .value_parser(value_parser!(f32))
-                .help("Pixels per px of the drawing"),
-        )
+        .arg(option("scale", "S", "Pixels per px of the drawing").value_parser(value_parser!(f32)))
         .group(ArgGroup::new("size").args(["width", "height", "scale"]))
         .arg(
-            Arg::new("background")
-                .long("background")
-                .value_name("COLOUR|none")
-                .value_parser(background)
-                .help("Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]"),
+            option(
+                "background",
+                "COLOUR|none",
+                "Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]",
+            )
+            .value_parser(background),
         )
         .after_help(
             "Examples:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white\n  pathwarp render \
@@ -125,47 +118,28 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
         .arg(choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]))
         .arg(switch(ALL, "The same as --set all").conflicts_with("set"))
         .arg(
-            Arg::new(FONTS)
-                .long(FONTS)
-                .value_name("WORDS")
-                .conflicts_with_all(["INPUT", "set", ALL])
-                .help("Draw these words in every installed family that has their letters, and in the bundled ones"),
+            option(FONTS, "WORDS", "Draw these words in every installed family that has their letters, and in the bundled ones")
+                .conflicts_with_all(["INPUT", "set", ALL]),
         )
         .arg(
-            Arg::new("bend")
-                .long("bend")
-                .value_name("NUMBER")
+            option("bend", "NUMBER", "Amount of bend of the presets that bend")
                 .allow_hyphen_values(true)
-                .default_value("50%")
-                .help("Amount of bend of the presets that bend"),
+                .default_value("50%"),
         )
         .arg(
             choice("axis", &["horizontal", "vertical"], "Direction in which artwork runs through the presets")
                 .default_value("horizontal"),
         )
         .arg(
-            Arg::new("columns")
-                .long("columns")
-                .value_name("N")
+            option("columns", "N", "Number of cells per row")
                 .value_parser(value_parser!(u32).range(1..=64))
-                .default_value("4")
-                .help("Number of cells per row"),
+                .default_value("4"),
         )
+        .arg(option("cell", "WxH", "Size of a cell in px").value_parser(cell).default_value("260x190"))
         .arg(
-            Arg::new("cell")
-                .long("cell")
-                .value_name("WxH")
-                .value_parser(cell)
-                .default_value("260x190")
-                .help("Size of a cell in px"),
-        )
-        .arg(
-            Arg::new("scale")
-                .long("scale")
-                .value_name("S")
+            option("scale", "S", "Pixels per px of a sheet that is a picture")
                 .value_parser(value_parser!(f32))
-                .default_value("1")
-                .help("Pixels per px of a sheet that is a picture"),
+                .default_value("1"),
         )
         .args(reading_args())
         .after_help(

@@ -138,6 +138,22 @@ impl CommonOptions {
     pub fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
         distance(self.tolerance, TOLERANCE_OF_DIAGONAL, artwork, frame)
     }
+
+    /// Returns the scale that fits a page of this size in px into `--page-width` and `--page-height`, if any is given.
+    pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
+        let sides = [(self.page_width, page.width), (self.page_height, page.height)];
+        let scales = sides.into_iter().filter_map(|(given, side)| {
+            let Length { value, unit, .. } = given?;
+            Some(PageScale { by: value * unit.px().unwrap_or(1.0) / side, unit })
+        });
+        scales.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
+    }
+
+    /// Returns `true` if the tolerance is a length on the result's page, which differs in scale from the source's.
+    pub(crate) fn has_tolerance_of_result(&self) -> bool {
+        let resizes = self.page_width.is_some() || self.page_height.is_some();
+        resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
+    }
 }
 
 /// Returns a tolerance in user units; if none is given, a share of the diagonal of the artwork's bounding box.
@@ -172,24 +188,6 @@ pub(crate) struct PageScale {
     pub(crate) by: f64,
     /// The unit of the size given.
     pub(crate) unit: LengthUnit,
-}
-
-impl CommonOptions {
-    /// Returns the scale that fits a page of this size in px into `--page-width` and `--page-height`, if any is given.
-    pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
-        let sides = [(self.page_width, page.width), (self.page_height, page.height)];
-        let scales = sides.into_iter().filter_map(|(given, side)| {
-            let Length { value, unit, .. } = given?;
-            Some(PageScale { by: value * unit.px().unwrap_or(1.0) / side, unit })
-        });
-        scales.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
-    }
-
-    /// Returns `true` if the tolerance is a length on the result's page, which differs in scale from the source's.
-    pub(crate) fn has_tolerance_of_result(&self) -> bool {
-        let resizes = self.page_width.is_some() || self.page_height.is_some();
-        resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
-    }
 }
 
 /// The options of every command that reads drawings.

@@ -1,6 +1,7 @@
 //! Arguments that the subcommands of `solid` share.
 
 use crate::arguments::{INPUT, some_options};
+use crate::commands::args::option;
 use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::kurbo::Rect;
 use pathwarp::param::{Axis, Frame, Length, LengthUnit};
@@ -39,17 +40,15 @@ pub(super) fn model_args() -> Vec<Arg> {
         .help(
             "Models: OBJ, STL, PLY or glTF files, curved surfaces (.bpt, .json), or SVG drawings; - or none reads standard input",
         );
-    let option = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).help_heading("Common options").help(help)
-    };
-    let refine = option(
+    let common = |name, value, help| option(name, value, help).help_heading("Common options");
+    let refine = common(
         "refine",
         "D",
         "Subdivide faces until the deformed surface is within D of the exact one: units of the model, or a length such as 0.05mm; \
          without it, vertices move and edges stay straight. For curved surfaces the largest distance where the image is not exact \
          [default: a ten-thousandth of their size]",
     );
-    let extrude = option(
+    let extrude = common(
         "extrude",
         "DEPTH",
         "Make a drawing's fills and strokes solids of this depth, such as 5mm; without it they are flat",
@@ -87,12 +86,8 @@ fn length(m: &ArgMatches, option: &str) -> Result<Option<Length>, Failure> {
 
 /// The option `--box`.
 pub(super) fn frame_arg() -> Arg {
-    Arg::new("box")
-        .long("box")
-        .value_name("X,Y,Z,W,H,D")
-        .allow_hyphen_values(true)
-        .help_heading("Common options")
-        .help("Box that percentages and defaults refer to [default: the model's box]")
+    let help = "Box that percentages and defaults refer to [default: the model's box]";
+    option("box", "X,Y,Z,W,H,D", help).allow_hyphen_values(true).help_heading("Common options")
 }
 
 /// Returns the box given by `--box`.

@@ -6,8 +6,8 @@
 
 use super::on_path::{as_letters, bend_line, on_page, unbent_path};
 use super::style::{Em, style};
-use crate::commands::args::choice;
-use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use crate::commands::args::{choice, option, switch};
+use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _, Vec2};
 use pathwarp::outline::boundary;
@@ -64,10 +64,7 @@ const CENTER_MARGIN: f64 = 0.12;
 const EM: f64 = 100.0;
 
 pub(super) fn args() -> Vec<Arg> {
-    let text = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
-    };
-    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    let text = |name, value, help| option(name, value, help).allow_hyphen_values(true);
     vec![
         Arg::new("WORDS")
             .value_names(["UPPER", "LOWER"])
@@ -80,31 +77,29 @@ pub(super) fn args() -> Vec<Arg> {
             "LENGTH",
             "Width of the badge; with a unit such as 60mm, the page has that unit too [default: 480]",
         ),
-        Arg::new("ring")
-            .long("ring")
-            .value_name("N")
-            .value_parser(value_parser!(u8).range(0..=4))
-            .default_value("2")
-            .help("Lines of the ring: 1 is outside, 2 on both sides of the text, 3 doubles the outer one, 4 both"),
+        option(
+            "ring",
+            "N",
+            "Lines of the ring: 1 is outside, 2 on both sides of the text, 3 doubles the outer one, 4 both",
+        )
+        .value_parser(value_parser!(u8).range(0..=4))
+        .default_value("2"),
         text(
             "band",
             "LENGTH",
             "Width of the ring between its lines; percentages refer to the width [default: 18%, less for long lines]",
         ),
-        flag("dots").help("Dots between the lines, as --separator circle"),
-        flag("stars").help("Stars between the lines, as --separator star").conflicts_with("dots"),
+        switch("dots", "Dots between the lines, as --separator circle"),
+        switch("stars", "Stars between the lines, as --separator star").conflicts_with("dots"),
         text(
             SEPARATOR,
             "PATHREF",
             "A shape between the lines: its name, such as heart or leaf, FILE#NAME or path data",
         )
         .conflicts_with_all(["dots", "stars"]),
-        Arg::new("center")
-            .long("center")
+        option("center", "FILE", "A drawing for the middle, as large as the room within the ring allows")
             .visible_alias("centre")
-            .value_name("FILE")
-            .value_parser(value_parser!(PathBuf))
-            .help("A drawing for the middle, as large as the room within the ring allows"),
+            .value_parser(value_parser!(PathBuf)),
         text("size", "LENGTH", "Size of the em [default: what the ring has room for]"),
     ]
 }

@@ -6,7 +6,7 @@ mod on_path;
 mod style;
 
 use crate::arguments::{self, OUTPUT_OPTIONS, reading_args, some_options};
-use crate::commands::args::{choice, out_arg, switch, target};
+use crate::commands::args::{choice, option, out_arg, switch, target};
 use crate::ending::Status;
 use crate::{data, mistakes, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -248,7 +248,7 @@ Examples:
 
 /// An option with a value that is parsed later, and may start with a minus.
 fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
-    Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
+    option(name, value, help).allow_hyphen_values(true)
 }
 
 /// Returns all options, in the order of help.
@@ -269,12 +269,9 @@ fn text_and_font() -> Vec<Arg> {
         Arg::new("WORDS").num_args(0..).help(
             "The text. \\n and every further argument start a new line; \\\\ is a backslash; - reads standard input",
         ),
-        Arg::new("file")
-            .long("file")
-            .value_name("FILE")
+        option("file", "FILE", "Read the text from a file; - is standard input")
             .value_parser(value_parser!(PathBuf))
-            .conflicts_with("WORDS")
-            .help("Read the text from a file; - is standard input"),
+            .conflicts_with("WORDS"),
         out_arg(
             "OUT.svg",
             "Write the drawing to this file: .svg, .svgz, .pdf or .dxf; - or none writes to standard output",

@@ -1,10 +1,11 @@
-//! `--on` sets lines on a path, each bend_letters onto it by the deformation `bend`.
+//! `--on` sets lines on a path, each bent onto it by the deformation `bend`.
 //!
 //! The upper line stands with its baseline on the path, on the outer side of a closed path, centred at the top. The lower line hangs from
 //! the path by the height of its capitals, centred at the bottom, and also reads from left to right, so that both lie in one ring.
 //! `--inside` swaps the edges that touch the path, which puts the ring inside of it.
 
 use super::style::Em;
+use crate::commands::args::switch;
 use crate::steps;
 use clap::{Arg, ArgAction, ArgMatches};
 use pathwarp::budget::Budget;
@@ -70,12 +71,12 @@ pub(super) fn args(registry: &Registry) -> Vec<Arg> {
             "A line on the lower side of the path, in one ring with the other: the height of its capitals lies on the path, its \
              middle at the bottom of a closed one",
         ),
-        Arg::new("inside").long("inside").action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
-            "Set the lines within the path: the height of capitals lies on it above, the baseline below",
-        ),
-        Arg::new(KEEP).long(KEEP).action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
-            "Leave the path in the drawing, as a line a twentieth of the size wide",
-        ),
+        switch("inside", "Set the lines within the path: the height of capitals lies on it above, the baseline below")
+            .requires(ON)
+            .help_heading(HEADING),
+        switch(KEEP, "Leave the path in the drawing, as a line a twentieth of the size wide")
+            .requires(ON)
+            .help_heading(HEADING),
         text_arg(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
             "Middle of the line on a circle or an arc, clockwise from the right, as in arc: [default: 270, the top]; --below is \
              opposite, or where a second --at says",
@@ -226,7 +227,7 @@ impl<'a> Curve<'a> {
                 let direction = if is_below == reverse { 1.0 } else { -1.0 };
                 path = r.around(middle, direction, gap);
                 // Without this, `bend` would choose the direction and the start.
-                args.push("as-unbent_path", "true");
+                args.push("as-drawn", "true");
             }
             _ => {
                 // `bend` runs closed paths clockwise and open ones from left to right. On a closed path, a lower line reads against that.
