@@ -46,14 +46,14 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> R
     };
     let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
     let stage = Stage { registry: &plugins.added_to(registry), convert, call: &call };
-    let done = match &call.job {
+    let result = match &call.job {
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
         Job::Release => release(&stage),
         Job::Hand => by_hand::by_hand(&stage),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
-    let svg = done.map_err(|f| in_a_window(&stage, &f))?;
+    let svg = result.map_err(|f| in_a_window(&stage, &f))?;
     output::to_stdout(svg.as_bytes())?;
     Ok(Status::Complete)
 }

@@ -15,6 +15,7 @@ use pathwarp_engine::links::Destination;
 use pathwarp_engine::meter;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::report::FileReport;
+use pathwarp_engine::session::warp_bytes;
 use pathwarp_engine::{input, references};
 use pathwarp_raster::Picture;
 use pathwarp_svg::objects::Guides;
@@ -95,9 +96,8 @@ impl Stage<'_> {
         }
         references::resolve_files(self.registry, &mut recipe, &reading)?;
         // The drawing is open with its page, which stays.
-        let place = (&*self.call.file, Destination::Back);
-        let (bytes, warped) =
-            pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, place, svg.as_bytes())?;
+        let path = (&*self.call.file, Destination::Back);
+        let (bytes, warped) = warp_bytes(self.registry, &recipe, &given, None, path, svg.as_bytes())?;
         let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
         let skipped = skipped.iter().map(ToString::to_string);
         Ok(Outcome {

@@ -283,9 +283,9 @@ pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
 /// Returns the output of `input` by the file name `pattern`. `below` is the input's folder within one given with `--recursive`, which is
 /// repeated. `None` if the input has no name.
 pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
-    let named = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
-    let file = named.file_name()?;
-    Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
+    let output = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
+    let file = output.file_name()?;
+    Some(output.parent().unwrap_or(Path::new("")).join(below).join(file))
 }
 
 /// Returns the output of `input` in the folder `dir`, or by the pattern `dir` of folders or of a file with an extension. In a folder, it

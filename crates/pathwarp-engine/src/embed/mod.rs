@@ -171,11 +171,11 @@ impl PointMap {
         }
     }
 
-    /// Computes the two columns of the Jacobian at each of `at`: the derivatives by x and by y.
-    pub fn jacobians(&self, at: &[Point], out: &mut [[Vec2; 2]]) {
-        let mut jets = vec![Jet::default(); at.len()];
-        self.map.jets(at, &mut jets);
-        for ((p, jet), columns) in at.iter().zip(&jets).zip(out) {
+    /// Computes the two columns of the Jacobian at each point: the derivatives by x and by y.
+    pub fn jacobians(&self, points: &[Point], out: &mut [[Vec2; 2]]) {
+        let mut jets = vec![Jet::default(); points.len()];
+        self.map.jets(points, &mut jets);
+        for ((p, jet), columns) in points.iter().zip(&jets).zip(out) {
             let jet = if self.creases.defined_at(*p) { jet } else { &Jet::UNDEFINED };
             *columns = [jet.dx, jet.dy];
         }

@@ -301,7 +301,7 @@ impl Warper {
             let budget = Arc::new(Budget::new(options.reading.limits));
             let whole = self.build(&options, &frame, &hatching(frame.rect), &budget)?;
             let mut checks = Vec::new();
-            check::map(&whole.as_one(), frame.rect, |done| checks.push(done));
+            check::map(&whole.as_one(), frame.rect, |check| checks.push(check));
             check_maps(&whole).map(|()| checks)
         })
     }
@@ -399,10 +399,10 @@ impl Warper {
         guarded(&self.registry, || {
             self.options()?;
             self.given.check_conflicts().map_err(Failure::Usage)?;
-            let place = (name.unwrap_or(FilePath::new("")), Destination::Anywhere);
-            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, place, bytes)?;
-            let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
-            Ok(Drawing { bytes, report, warnings: done.report.warnings, notes: done.notes })
+            let path = (name.unwrap_or(FilePath::new("")), Destination::Anywhere);
+            let (bytes, warped) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, path, bytes)?;
+            let report = serde_json::to_string(&warped.report).map_err(|e| Failure::Output(e.to_string()))?;
+            Ok(Drawing { bytes, report, warnings: warped.report.warnings, notes: warped.notes })
         })
     }
 

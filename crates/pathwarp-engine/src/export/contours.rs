@@ -33,7 +33,7 @@ impl Cells {
     /// Returns the items in the cell of a point and in the eight around it; these include all within `near`.
     fn around(&self, p: Point) -> impl Iterator<Item = usize> {
         let [x, y] = [p.x, p.y].map(|v| (v / self.near).floor() as i64);
-        let keys = (-1..=1).flat_map(move |i| (-1..=1).map(move |k| [x.saturating_add(i), y.saturating_add(k)]));
+        let keys = (-1..=1).flat_map(move |dx| (-1..=1).map(move |dy| [x.saturating_add(dx), y.saturating_add(dy)]));
         keys.filter_map(|key| self.cells.get(&key)).flatten().copied()
     }
 }

@@ -50,14 +50,14 @@ pub(crate) fn planned(
     let (edit, (tolerance, suited)) = match &*step.deformation {
         "simplify" => {
             let corner = s.number_if("corners")?.map(f64::to_radians);
-            let held = if let Some(within) = s.number_if("within")? {
+            if let Some(within) = s.number_if("within")? {
                 measurable("simplify", within, painted)?;
-                (within, false)
+                (Edit::Simplify { corner }, (within, false))
             } else {
                 let given = options.tolerance.filter(|_| is_last);
-                (distance(given, SIMPLIFY_DISTANCE, painted, frame)?, given.is_none())
-            };
-            (Edit::Simplify { corner }, held)
+                let tolerance = distance(given, SIMPLIFY_DISTANCE, painted, frame)?;
+                (Edit::Simplify { corner }, (tolerance, given.is_none()))
+            }
         }
         "offset" => {
             let join = match s.choice("join")? {
@@ -186,16 +186,16 @@ impl Edits {
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Edits shift the positions of elements.
-        let named =
+        let with_ids =
             self.use_positions().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
         let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
-        let mut document = match named {
-            named if !captions.is_empty() => {
-                let (document, lacking) = captioned(named.as_ref().unwrap_or(source), &captions, read, options)?;
+        let mut document = match with_ids {
+            with_ids if !captions.is_empty() => {
+                let (document, lacking) = captioned(with_ids.as_ref().unwrap_or(source), &captions, read, options)?;
                 warnings.extend(lacking);
                 document
             }
-            Some(named) => named,
+            Some(with_ids) => with_ids,
             None => Document::read(source.source(), name, read)?,
         };
         self.steps.iter().chain([&self.whole]).try_for_each(|s| document.check_selection(s))?;

@@ -130,8 +130,9 @@ impl SvgArtwork {
     /// Returns a preview while something is dragged, and its page if that changes: within the tolerance, but with the source's nodes,
     /// affine fits of gradients and coarse bitmaps.
     pub fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
-        let draft = |k: usize, built: &BuiltRecipe| {
-            let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
+        let draft = |part: usize, built: &BuiltRecipe| {
+            let mut options =
+                self.warp_options(request, part, built).with_gradients(Gradients::Fit).with_overhang(false);
             options.filters = Filters::Affine;
             let nodes = if request.edit.is_some() { options.refit.nodes } else { Nodes::Source };
             options.refit = options.refit.with_nodes(nodes);
@@ -235,7 +236,7 @@ impl SvgArtwork {
     }
 
     /// Returns the options for a part of the drawing.
-    fn warp_options(&self, request: &WarpRequest<'_>, k: usize, built: &BuiltRecipe) -> WarpOptions {
+    fn warp_options(&self, request: &WarpRequest<'_>, part: usize, built: &BuiltRecipe) -> WarpOptions {
         let WarpRequest { options, tolerance, .. } = request;
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
@@ -261,7 +262,7 @@ impl SvgArtwork {
             .with_union(options.union)
             .with_text(options.text)
             .with_structure(options.structure)
-            .with_selection(self.selection(Which::Part(k)).clone())
+            .with_selection(self.selection(Which::Part(part)).clone())
             .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_filters(filters)
@@ -274,7 +275,7 @@ impl SvgArtwork {
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
-        let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| k == 0);
+        let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| part == 0);
         let warp = warp.with_line(request.line.clone()).with_sight(sight);
         let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
         if self.paths.is_none() {
@@ -311,11 +312,11 @@ impl SvgArtwork {
     /// Returns the orientation of every shape of a part under the map.
     fn orientations(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
     ) -> Result<Vec<(&str, Orientation)>, Error> {
-        let bounds = self.bounding_box(Which::Part(k));
+        let bounds = self.bounding_box(Which::Part(part));
         let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
         let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
@@ -343,7 +344,7 @@ impl SvgArtwork {
     /// Returns the orientation of every picture of a part under the map.
     fn picture_orientations(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
     ) -> Result<Vec<(String, Orientation)>, Error> {
@@ -351,7 +352,7 @@ impl SvgArtwork {
         if pictures.is_empty() || matches!(options.images, Images::Keep) {
             return Ok(Vec::new());
         }
-        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), 4 * pictures.len());
+        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(part)), 4 * pictures.len());
         survey.spend(pictures.len(), 4 * pictures.len(), 1, self.doc.budget())?;
         let orientation = |o: &Outline| survey.orientation_of_copies(o, &built.placement.copies, true);
         Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
@@ -360,7 +361,7 @@ impl SvgArtwork {
     /// Finds the folds of the shapes and pictures of a part. Returns those of shapes by id, and the warnings.
     fn folds(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
         warped: &WarpedDocument,
@@ -368,14 +369,14 @@ impl SvgArtwork {
         // Parts of a text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(k, built, options)? {
+        for (id, o) in self.orientations(part, built, options)? {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
         }
-        let pictures = self.picture_orientations(k, built, options)?;
+        let pictures = self.picture_orientations(part, built, options)?;
         all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
-        all = self.bounding_box(Which::Part(k)).map_or(all, |bounds| all.usual(&built.map, bounds));
+        all = self.bounding_box(Which::Part(part)).map_or(all, |bounds| all.usual(&built.map, bounds));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
         let placement = &built.placement;
         let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
@@ -411,8 +412,8 @@ impl SvgArtwork {
         warped: &WarpedDocument,
     ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
         let (mut folds, mut warnings) = (Vec::new(), Vec::new());
-        for (k, (built, options)) in parts.iter().zip(options).enumerate() {
-            let (folds_of_part, warnings_of_part) = self.folds(k, built, options, warped)?;
+        for (part, (built, options)) in parts.iter().zip(options).enumerate() {
+            let (folds_of_part, warnings_of_part) = self.folds(part, built, options, warped)?;
             folds.push(folds_of_part);
             warnings.extend(warnings_of_part);
         }

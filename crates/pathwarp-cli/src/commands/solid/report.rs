@@ -66,7 +66,7 @@ impl Run<'_> {
     }
 
     /// Returns the report on curved surfaces.
-    pub(super) fn surface_report(&self, all: [&[Surface]; 2], done: &DeformedPatches) -> Result<String, Failure> {
+    pub(super) fn surface_report(&self, all: [&[Surface]; 2], deformed: &DeformedPatches) -> Result<String, Failure> {
         #[derive(Serialize)]
         struct Counts {
             /// Surfaces whose images are exact.
@@ -80,7 +80,7 @@ impl Run<'_> {
             /// Points of a grid on the surfaces at which the map turns space inside out.
             folded: usize,
         }
-        let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *done;
+        let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *deformed;
         self.json(all.map(SurfaceMeasures::of), Counts { exact, refitted, cut, distance, folded })
     }
 }

@@ -306,8 +306,13 @@ impl Badge<'_> {
     /// Computes the layout with the largest type that fits.
     fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
         let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
-        let w = LINE * half;
-        let from = [0.0, w, w, w * (THIN + LINE_GAP + 1.0), w * (THIN + LINE_GAP + 1.0)][usize::from(rings)];
+        let line_width = LINE * half;
+        // Outside of the band are a line, or a thin one, a gap and a line.
+        let band_start = match rings {
+            0 => 0.0,
+            1 | 2 => line_width,
+            _ => line_width * (THIN + LINE_GAP + 1.0),
+        };
         let heights = Heights::of(natural);
         let kind = usize::from(self.shape() != "circle");
         let widest = BAND[kind];
@@ -325,32 +330,35 @@ impl Badge<'_> {
         });
         // Lengths without a size are in em.
         let gap = if separator.is_some() { 2.0 * SPACE + separator_width } else { 1.5 * SPACE } * heights.capitals;
-        let between: usize = natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
-        let is_free = self.m.get_one::<String>("letter-spacing").is_none();
-        let least = if is_free { LEAST_TRACKING[kind] } else { 0.0 };
+        let letter_gaps: usize =
+            natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
+        let may_space = self.m.get_one::<String>("letter-spacing").is_none();
+        let least = if may_space { LEAST_TRACKING[kind] } else { 0.0 };
         let widths: f64 =
-            natural.iter().filter_map(|t| Some(t.ink()?.width() / EM)).sum::<f64>() + least * between as f64;
+            natural.iter().filter_map(|t| Some(t.ink()?.width() / EM)).sum::<f64>() + least * letter_gaps as f64;
         let gaps = gap * natural.len() as f64;
-        let room = |t: f64| {
+        let layout_at = |t: f64| {
             let (band, size) = band_and_size(t);
-            let (path, length) = self.middle(from, from + band)?;
+            let (path, length) = self.middle(band_start, band_start + band)?;
             Ok::<_, Failure>((path, length, band, size))
         };
-        let spare = |length: f64, size: f64| length - size * (widths + gaps);
-        let mut found = room(1.0)?;
-        if spare(found.1, found.3) < 0.0 && given_size.is_none() {
+        // The length of the path that letters and gaps leave.
+        let spare = |(_, length, _, size): &(Outline, f64, f64, f64)| length - size * (widths + gaps);
+        let mut found = layout_at(1.0)?;
+        if spare(&found) < 0.0 && given_size.is_none() {
             let (mut fits, mut too_large) = (LEAST_BAND, 1.0);
-            found = room(fits)?;
-            while spare(found.1, found.3) > 0.0 && too_large - fits > 0.01 {
+            found = layout_at(fits)?;
+            while spare(&found) > 0.0 && too_large - fits > 0.01 {
                 let t = 0.5 * (fits + too_large);
-                let tried = room(t)?;
-                if spare(tried.1, tried.3) >= 0.0 {
+                let tried = layout_at(t)?;
+                if spare(&tried) >= 0.0 {
                     (fits, found) = (t, tried);
                 } else {
                     too_large = t;
                 }
             }
         }
+        let spare = spare(&found);
         let (path, length, band, size) = found;
         let condensed = ((length / size - gaps) / widths).min(1.0);
         if condensed < NARROWEST {
@@ -361,15 +369,16 @@ impl Badge<'_> {
                 if given_size.is_some() { ", or make --size smaller" } else { "" }
             )));
         }
-        let more = if is_free && between > 0 { 0.5 * spare(length, size) / between as f64 } else { 0.0 };
+        let more = if may_space && letter_gaps > 0 { 0.5 * spare / letter_gaps as f64 } else { 0.0 };
         let tracking = least * size + more.clamp(0.0, (TRACKING - least) * size);
         let mut lines = Vec::new();
-        let to = from + band;
-        lines.extend((rings >= 3).then_some((0.5 * THIN * w, THIN * w)));
-        lines.extend((rings >= 1).then_some((from - 0.5 * w, w)));
-        lines.extend((rings >= 2).then_some((to + 0.5 * w, w)));
-        lines.extend((rings == 4).then_some((to + w * (1.0 + LINE_GAP + 0.5 * THIN), THIN * w)));
-        let free = lines.last().filter(|_| rings > 1).map_or(to, |(inset, width)| inset + 0.5 * width);
+        let band_end = band_start + band;
+        lines.extend((rings >= 3).then_some((0.5 * THIN * line_width, THIN * line_width)));
+        lines.extend((rings >= 1).then_some((band_start - 0.5 * line_width, line_width)));
+        lines.extend((rings >= 2).then_some((band_end + 0.5 * line_width, line_width)));
+        lines
+            .extend((rings == 4).then_some((band_end + line_width * (1.0 + LINE_GAP + 0.5 * THIN), THIN * line_width)));
+        let free = lines.last().filter(|_| rings > 1).map_or(band_end, |(inset, width)| inset + 0.5 * width);
         let (middle, capitals) = (heights.middle * size, heights.capitals * size);
         Ok(Layout { lines, path, length, size, condensed, tracking, middle, capitals, free })
     }
