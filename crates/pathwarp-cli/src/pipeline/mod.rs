@@ -263,7 +263,8 @@ impl<'a> Collected<'a> {
         }
         let (count, all, names) = (self.partial.len(), self.inputs, readable::listed(&self.partial, NAMED));
         terminal::warning(&format!(
-            "{count} of {all} inputs were not warped in full, so the exit code is 1: {names}; the warnings and --report FILE say what was left"
+            "{count} of {all} inputs were not warped in full, so the exit code is 1: {names}; the warnings and --report FILE say what was \
+             left"
         ));
     }
 
