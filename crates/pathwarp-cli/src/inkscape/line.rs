@@ -174,7 +174,7 @@ fn lines(text: &str) -> Vec<String> {
 /// Changes a recipe: `bend=30%` sets a value, `bend=` removes it, in the first step that has the setting, or else in the first step.
 ///
 /// # Errors
-/// A message that quotes the first line of another form.
+/// The message that a line, which it quotes, has another form.
 pub(super) fn change(words: &mut Vec<String>, changes: &str) -> Result<(), String> {
     for line in lines(changes) {
         let (name, value) = line.split_once('=').ok_or_else(|| format!("`{line}` is not of the form name=value"))?;

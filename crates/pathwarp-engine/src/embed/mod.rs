@@ -153,7 +153,7 @@ impl PointMap {
     /// Checks the points mapped so far.
     ///
     /// # Errors
-    /// An error if a plug-in or function has failed, so that points became NaN.
+    /// [`ErrorKind::Input`] if a plug-in or function has failed, so that points became NaN.
     pub fn check(&self) -> Result<(), Error> {
         guarded(&self.registry, || self.built.failure().map_or(Ok(()), |e| Err(e.into())))
     }

@@ -245,7 +245,8 @@ impl Warper {
     /// Returns the text of a recipe file for `folder`.
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) if a step is a function of this program; an error if the current folder cannot be read.
+    /// [`Usage`](super::ErrorKind::Usage) if a step is a function of this program, [`Input`](super::ErrorKind::Input) if the current folder
+    /// cannot be read.
     pub fn to_recipe(&self, folder: &FilePath) -> Result<String, Error> {
         if self.steps().any(is_function) {
             return Err(Error::usage("a recipe file cannot hold a function of this program; write it as a plug-in"));
@@ -293,7 +294,8 @@ impl Warper {
     /// Checks the map over the option `frame`, or else over the box 0,0,100,100, by [`pathwarp::check::map`].
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) for a wrong value; an error if the map cannot be built, or a plug-in or function fails.
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if no map results, and
+    /// [`Input`](super::ErrorKind::Input) if a plug-in or function fails.
     pub fn check(&self) -> Result<Vec<Check>, Error> {
         guarded(&self.registry, || {
             let options = self.options()?;
@@ -309,8 +311,8 @@ impl Warper {
     /// Bends a path, given as SVG path data.
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path;
-    /// an error for malformed data.
+    /// [`Input`](super::ErrorKind::Input) for malformed data, [`Usage`](super::ErrorKind::Usage) for a wrong value,
+    /// [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_path(&self, data: &str) -> Result<Path, Error> {
         let outline = guarded(&self.registry, || Ok(Outline::from_svg(data).map_err(pathwarp::Error::from)?))?;
         self.warp_outline(&outline)
