@@ -74,7 +74,7 @@ export class Report {
     if (app.appends) return show("note", "Choose the shape of the next step, or press Escape");
     if (app.steps.length === 0) return show("note", "Choose a shape");
     if (app.step?.hidden) return show("note", "This step is hidden: it bends nothing. The eye in the list brings it back");
-    if (app.tooSmall("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
+    if (app.leastRadius("along") !== null) return show("note", "The artwork is longer than its circle: pull the circle larger, or see the settings");
     // The handles have not arrived yet.
     if (!handles) return;
     const pulls = handles.lines().some(({ kind }) => kind === "path") ? "Pull a blue point or line" : "Pull a blue point";
