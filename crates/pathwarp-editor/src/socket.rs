@@ -1,6 +1,6 @@
 //! One connection of a page: answers its requests in order, and announces changes made by other pages.
 
-use crate::picture::{Picture, Quick};
+use crate::picture::{PathUpdate, Picture};
 use crate::protocol::{Message, Request};
 use crate::session::{Session, Shown};
 use serde_json::{Value, json};
@@ -15,19 +15,19 @@ use tungstenite::{Error, WebSocket};
 /// Largest message in bytes, enough for a dropped drawing.
 const LARGEST_MESSAGE: usize = 256 << 20;
 /// Time after which an idle page learns of changes made by others.
-const GLANCE: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Serves a page until it closes.
 pub(crate) fn run(stream: TcpStream, shared: &Arc<Shared>) -> Result<(), Error> {
-    stream.set_read_timeout(Some(GLANCE))?;
+    stream.set_read_timeout(Some(POLL_INTERVAL))?;
     let config =
         WebSocketConfig::default().max_message_size(Some(LARGEST_MESSAGE)).max_frame_size(Some(LARGEST_MESSAGE));
     let mut page = Page {
         socket: WebSocket::from_raw_socket(stream, Role::Server, Some(config)),
         shared: Arc::clone(shared),
         picture: None,
-        quick: None,
-        seen: shared.pages.changes.load(Ordering::SeqCst),
+        path_update: None,
+        known_changes: shared.pages.changes.load(Ordering::SeqCst),
     };
     loop {
         match page.socket.read() {
@@ -50,9 +50,9 @@ struct Page {
     /// The last picture sent.
     picture: Option<Picture>,
     /// The quick update from that picture to the next draft, if nothing but path data may change.
-    quick: Option<Quick>,
+    path_update: Option<PathUpdate>,
     /// The number of changes that the page has been told.
-    seen: usize,
+    known_changes: usize,
 }
 
 impl Page {
@@ -63,10 +63,10 @@ impl Page {
     /// Announces changes by other pages.
     fn announce(&mut self) -> Result<(), Error> {
         let now = self.shared.pages.changes.load(Ordering::SeqCst);
-        if now == self.seen {
+        if now == self.known_changes {
             return Ok(());
         }
-        self.seen = now;
+        self.known_changes = now;
         let state = self.shared.with_session(|s| s.state());
         self.send(&json!({ "event": "changed", "state": state }))
     }
@@ -78,8 +78,8 @@ impl Page {
         };
         let shared = Arc::clone(&self.shared);
         let mut answer = shared.with_session(|session| {
-            // `said` calls the drawing by its name in the program that waits, if one does.
-            self.respond(session, request).unwrap_or_else(|problem| json!({ "error": session.said(&problem) }))
+            self.respond(session, request)
+                .unwrap_or_else(|problem| json!({ "error": session.with_drawing_name(&problem) }))
         });
         answer["id"] = json!(id);
         self.send(&answer)
@@ -89,7 +89,7 @@ impl Page {
     fn respond(&mut self, session: &mut Session, request: Request) -> Result<Value, String> {
         match request {
             Request::Hello => {
-                (self.picture, self.quick) = (None, None);
+                (self.picture, self.path_update) = (None, None);
                 Ok(json!({ "catalogue": session.catalogue(), "state": session.state() }))
             }
             Request::Background => Ok(json!({ "background": *self.shared.background() })),
@@ -109,11 +109,11 @@ impl Page {
                 self.changed(session, shown)
             }
             Request::Undo { shown } => {
-                let shown = session.turn(true, shown)?;
+                let shown = session.undo(shown)?;
                 self.changed(session, shown)
             }
             Request::Redo { shown } => {
-                let shown = session.turn(false, shown)?;
+                let shown = session.redo(shown)?;
                 self.changed(session, shown)
             }
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),
@@ -170,8 +170,8 @@ impl Page {
     /// Returns the message with a picture.
     fn show(&mut self, shown: Shown) -> Result<Value, String> {
         let is_draft = shown.is_draft;
-        if let (true, Some(quick), Some(picture)) = (is_draft, &mut self.quick, &mut self.picture)
-            && let Some(changes) = quick.next(&shown.svg)
+        if let (true, Some(update), Some(picture)) = (is_draft, &mut self.path_update, &mut self.picture)
+            && let Some(changes) = update.next(&shown.svg)
         {
             picture.redraw(&changes);
             let mut answer = shown.about;
@@ -179,7 +179,7 @@ impl Page {
             return Ok(answer);
         }
         let picture = shown.picture()?;
-        self.quick = is_draft.then(|| Quick::from(shown.svg, &picture)).flatten();
+        self.path_update = is_draft.then(|| PathUpdate::prepare(shown.svg, &picture)).flatten();
         let mut answer = shown.about;
         answer["picture"] = picture.message(self.picture.as_ref());
         self.picture = Some(picture);
@@ -196,7 +196,7 @@ impl Page {
 
     /// Counts a change that this page has made.
     fn count_change(&mut self) {
-        self.seen = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
+        self.known_changes = self.shared.pages.changes.fetch_add(1, Ordering::SeqCst) + 1;
     }
 }
 
