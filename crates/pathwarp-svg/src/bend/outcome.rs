@@ -66,14 +66,13 @@ impl ShapeReport {
     /// Reports on a shape whose paints and strokes need no remark.
     #[must_use]
     pub fn new(id: &str, copies: usize, path: PathReport) -> Self {
-        let (paint_residual, stroke_error) = (None, None);
         Self {
             id: id.to_owned(),
             copies,
             path,
-            paint_residual,
+            paint_residual: None,
             pictures: 0,
-            stroke_error,
+            stroke_error: None,
             outlined_strokes: 0,
             united: Vec::new(),
         }
@@ -113,18 +112,15 @@ pub struct Overhang {
 
 impl WarpedDocument {
     /// Adds a part to its shape's report, whose index is `known` if there is one. Returns the index of the report.
-    pub(super) fn report(&mut self, id: String, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
+    pub(super) fn report(&mut self, id: &str, part: &WarpedPart, copies: usize, known: Option<usize>) -> usize {
         let mut path = part.report.clone();
         path.max_error += part.rounding;
         let of_part = ShapeReport {
-            id,
-            copies,
-            path,
             paint_residual: part.residual,
             pictures: usize::from(part.fill_image.is_some()) + usize::from(part.stroke_image.is_some()),
             stroke_error: part.stroke_error,
             outlined_strokes: usize::from(part.stroke.outline().is_some()),
-            united: Vec::new(),
+            ..ShapeReport::new(id, copies, path)
         };
         if let Some((i, shape)) = known.and_then(|i| Some((i, self.shapes.get_mut(i)?))) {
             shape.add(of_part);
@@ -174,6 +170,7 @@ impl PartOutcome {
     }
 }
 
+/// The image of a part, with the replacements of its paints.
 #[derive(Debug)]
 pub(crate) struct WarpedPart {
     /// Outline in the part's user space.
@@ -240,6 +237,7 @@ impl WarpedPart {
     }
 }
 
+/// Result for a stroke.
 #[derive(Debug)]
 pub(crate) enum StrokeOutcome {
     /// Factor for width and dashes.
@@ -335,12 +333,8 @@ impl Display for Warning {
                 write_names(f, names)
             }
             Self::Arrivals(names) => {
-                let shapes = if names.len() == 1 {
-                    "shape that lay off the page has"
-                } else {
-                    "shapes that lay off the page have"
-                };
-                write!(f, "{} {shapes} moved onto it", names.len())?;
+                let [shapes, have] = if names.len() == 1 { ["shape", "has"] } else { ["shapes", "have"] };
+                write!(f, "{} {shapes} that lay off the page {have} moved onto it", names.len())?;
                 write_names(f, names)
             }
         }
