@@ -1,7 +1,7 @@
 //! Bends an outline and writes it as path data: keeps arcs, chooses decimals, drops closing lines that come from rounding.
 
 use super::options::Edit;
-use super::united::FINE;
+use super::united::AREA_SHARE;
 use crate::source::number::{MAX_DECIMALS, arcs_data, path_data, path_data_by};
 use pathwarp::edit::{Area, Offset, OpenPaths};
 use pathwarp::engine::{SharedEdges, Span, SpanReport};
@@ -46,8 +46,9 @@ pub fn edit_path(
     };
     if let Edit::Unite { .. } = edit {
         // Find the area within a share of the tolerance; the rest is for its gaps.
-        let area = Area::of(outline, false, FINE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
-        let united = area.with_arcs_of(outline, FINE * options.tolerance);
+        let area =
+            Area::of(outline, false, AREA_SHARE * options.tolerance)?.with_gaps_closed(options.tolerance, outline);
+        let united = area.with_arcs_of(outline, AREA_SHARE * options.tolerance);
         return warp_path(&united, &AffineMap::IDENTITY, options, precision);
     }
     let Some(RefittedPath { path, report, .. }) = edit.apply(outline, options, &[])? else {
