@@ -115,6 +115,18 @@
   function s(tag, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, tag), attributes, children);
   }
+  function button(attributes, click, ...children) {
+    const element = h("button", { type: "button", ...attributes }, ...children);
+    element.addEventListener("click", click);
+    return element;
+  }
+  function onFile(field, take) {
+    field.addEventListener("change", () => {
+      const file = field.files?.[0];
+      field.value = "";
+      if (file) take(file);
+    });
+  }
   function byId(id) {
     const found = document.getElementById(id);
     if (!found) throw new Error(`the page has no #${id}`);
@@ -1187,11 +1199,12 @@
     get isLive() {
       return this.isConnected && !this.isDone;
     }
-    listen(listener) {
-      this.listeners.push(listener);
+    /** Calls a listener after these changes. */
+    listen(changes, listener) {
+      this.listeners.push({ changes, listener });
     }
     tell(change) {
-      for (const listener of this.listeners) listener(change);
+      for (const { changes, listener } of this.listeners) if (changes.includes(change)) listener();
     }
     get step() {
       return this.steps[this.selected];
@@ -1719,13 +1732,9 @@
   var Opening = class {
     constructor(app2) {
       this.app = app2;
-      const chosen = byId("open-file");
-      byId("open").addEventListener("click", () => chosen.click());
-      chosen.addEventListener("change", () => {
-        const file = chosen.files?.[0];
-        chosen.value = "";
-        if (file) void this.open(file);
-      });
+      const fileInput = byId("open-file");
+      byId("open").addEventListener("click", () => fileInput.click());
+      onFile(fileInput, (file) => void this.open(file));
       window.addEventListener("dragover", (e) => {
         e.preventDefault();
         if (e.dataTransfer) e.dataTransfer.dropEffect = "copy";
@@ -1793,15 +1802,10 @@
       stage2.around = () => this.file ? this.corners : [];
       stage2.onLayout.push(() => this.placeFrame());
       this.button.addEventListener("click", () => this.file ? this.show(this.box.hidden !== false) : this.fileInput.click());
-      this.fileInput.addEventListener("change", () => {
-        const file = this.fileInput.files?.[0];
-        this.fileInput.value = "";
-        if (file) {
-          void this.take(file).then(() => {
-            app2.screen.reveal();
-            return this.keep();
-          });
-        }
+      onFile(this.fileInput, async (file) => {
+        await this.take(file);
+        app2.screen.reveal();
+        await this.keep();
       });
       this.opacity.addEventListener("input", () => this.showOpacity());
       this.opacity.addEventListener("change", () => void this.keep());
@@ -1826,9 +1830,9 @@
       this.ground.addEventListener("pointerdown", (e) => this.drag(e, ([x, y]) => ([px, py]) => ({ x: this.placement.x + px - x, y: this.placement.y + py - y })));
       this.ground.addEventListener("keydown", (e) => this.key(e));
       this.knobs.forEach((knob, i) => knob.addEventListener("pointerdown", (e) => this.drag(e, (from) => i < 4 ? this.scaling(i, from) : this.rotation(from))));
-      app2.listen((change) => {
-        if (change === "link") this.isKept = false;
-        if (change !== "state" || this.isKept) return;
+      app2.listen(["link"], () => this.isKept = false);
+      app2.listen(["state"], () => {
+        if (this.isKept) return;
         this.isKept = true;
         void (this.file ? this.keep() : this.restore());
       });
@@ -2141,10 +2145,8 @@
   var Gallery = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "state") this.build();
-        if (change === "steps") this.mark();
-      });
+      app2.listen(["state"], () => this.build());
+      app2.listen(["steps"], () => this.mark());
       this.search.addEventListener("input", () => this.filter());
       this.search.addEventListener("keydown", (e) => {
         if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
@@ -2213,20 +2215,18 @@
     showPresets(names) {
       this.names = names;
       const entry = (name) => {
-        const use = h("button", { type: "button", class: "preset" }, name);
-        use.addEventListener("click", async () => {
+        const use = button({ class: "preset" }, async () => {
           const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
           if (answer?.steps) await this.app.arrange(answer.steps.map((step2) => ({ ...step2, exclude: this.app.locks })), answer.steps.length - 1);
           document.body.classList.remove("shapes-open");
-        });
-        const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
-        forget.addEventListener("click", async () => {
+        }, name);
+        const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
           const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
           if (!answer?.presets) return;
           this.showPresets(answer.presets);
           const others = this.userPresets.querySelectorAll(".small");
           (others[Math.min(names.indexOf(name), others.length - 1)] ?? this.search).focus();
-        });
+        }, icon("close"));
         return h("li", {}, use, forget);
       };
       this.userPresets.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
@@ -2234,18 +2234,17 @@
     }
     section(title, cards) {
       const items = h("div", { class: "grid", role: "group", "aria-label": title }, ...cards.map((c) => c.button));
-      cards.forEach(({ button }, i) => button.tabIndex = i === 0 ? 0 : -1);
+      cards.forEach(({ button: button2 }, i) => button2.tabIndex = i === 0 ? 0 : -1);
       items.addEventListener("keydown", (e) => walk(e, items));
       return h("section", {}, h("h2", {}, title), items);
     }
     card(deformation, args, steps, text, variant = null) {
       const image = h("img", { alt: "", draggable: "false" });
-      const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
+      const cardButton = button({ class: "card" }, () => void this.choose(card), h("span", { class: "thumb" }, image), text);
       const terms = [...this.app.deformation(deformation)?.knownAs ?? [], variant && deformation !== "envelope" ? "" : SEARCH_TERMS[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
-      const card = { button, image, steps, deformation, args, variant, searchText: [button.textContent, ...terms].join(" ") };
-      button.addEventListener("click", () => void this.choose(card));
+      const card = { button: cardButton, image, steps, deformation, args, variant, searchText: [cardButton.textContent, ...terms].join(" ") };
       this.cards.push(card);
-      this.observer.observe(button);
+      this.observer.observe(cardButton);
       return card;
     }
     async choose({ deformation, args, variant }) {
@@ -2267,7 +2266,7 @@
     }
     /** Returns `true` if an earlier shape has this name; the later one then needs a description. */
     isTaken(name) {
-      return this.cards.some(({ button }) => button.textContent === name);
+      return this.cards.some(({ button: button2 }) => button2.textContent === name);
     }
     presetCards(d) {
       const { presets } = d.gallery;
@@ -2296,23 +2295,23 @@
     /** Marks the shape of the edited step. */
     mark() {
       const { step: step2 } = this.app;
-      for (const { button, deformation, args, variant } of this.cards) {
+      for (const { button: button2, deformation, args, variant } of this.cards) {
         const variants = this.app.deformation(deformation)?.variants ?? [];
         const isVariant = variant ? step2?.args[variant.param] !== void 0 && variants.find((v) => v.param === variant.param) === variant : !variants.some((v) => step2?.args[v.param]);
         const isChosen = step2?.deformation === deformation && isVariant && Object.entries(args).every(([k, v]) => step2.args[k]?.[0] === v[0]);
-        button.setAttribute("aria-pressed", String(isChosen));
+        button2.setAttribute("aria-pressed", String(isChosen));
       }
     }
     filter() {
       const plain2 = (text) => text.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, " ").trim();
       const typedWords = plain2(this.search.value).split(" ");
       const fits = (text) => typedWords.every((word) => plain2(text).includes(word));
-      for (const { button, searchText } of this.cards) button.hidden = !fits(searchText);
+      for (const { button: button2, searchText } of this.cards) button2.hidden = !fits(searchText);
       const presets = Array.from(this.userPresets.querySelectorAll("li"));
       for (const preset of presets) preset.hidden = !fits(preset.textContent ?? "");
       this.userPresets.hidden = presets.every((preset) => preset.hidden);
       this.none.textContent = `No shape is called “${this.search.value.trim()}”`;
-      this.none.hidden = !this.userPresets.hidden || this.cards.some(({ button }) => !button.hidden);
+      this.none.hidden = !this.userPresets.hidden || this.cards.some(({ button: button2 }) => !button2.hidden);
       for (const section of Array.from(this.box.children)) {
         if (section === this.userPresets || section === this.none) continue;
         const shown3 = Array.from(section.querySelectorAll(".card")).filter((card) => !card.hidden);
@@ -2371,9 +2370,7 @@
     drawing = "";
     constructor(app2) {
       this.show(this.chosen);
-      app2.listen((change) => {
-        if (change === "report") this.suit(app2.state?.drawing ?? "");
-      });
+      app2.listen(["report"], () => this.suit(app2.state?.drawing ?? ""));
       byId("ground").addEventListener("click", () => {
         this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]);
         localStorage.setItem(CHOSEN, this.shown);
@@ -2499,10 +2496,8 @@
       this.app = app2;
       this.stage = stage2;
       this.modes = modes2;
-      app2.listen((change) => {
-        if (change === "state") void this.load();
-        if (change === "steps") this.show();
-      });
+      app2.listen(["state"], () => void this.load());
+      app2.listen(["steps"], () => this.show());
       byId("parts-all").addEventListener("click", () => void app2.scope([]));
       stage2.onPart = (name, adds) => this.clicked(name, adds);
     }
@@ -2536,21 +2531,16 @@
     }
     row(part) {
       const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag, letter) => capital((ELEMENTS2[tag] ?? tag) + letter));
-      const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
-      choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
+      const choose = button({ class: "part-name", title: part.name }, (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey), title);
       choose.addEventListener("pointerenter", () => this.stage.outlineParts([part, ...this.contentsOf(part)].map(({ name }) => name)));
       choose.addEventListener("pointerleave", () => this.show());
-      const button = (kind, label, action) => {
-        const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
-        b.addEventListener("click", action);
-        return b;
-      };
+      const iconButton = (kind, label, click) => button({ class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, click, icon(kind));
       const row = h(
         "li",
         {},
         choose,
-        button("eye", "Hide here:", () => this.hide(part)),
-        button("lock", "Lock:", () => void this.lock(part))
+        iconButton("eye", "Hide here:", () => this.hide(part)),
+        iconButton("lock", "Lock:", () => void this.lock(part))
       );
       row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
       return row;
@@ -2626,7 +2616,7 @@
       stage2.onFocus = (handle) => this.show(handle);
       stage2.onKeys = (handle) => this.say(handle);
       this.fields = this.inputs.map((input, i) => {
-        const place = (typed) => {
+        const coordinate = (typed) => {
           const q = evaluate(typed, "");
           const [x, y, w, h2] = app2.handles?.frame ?? [0, 0, 1, 1];
           if (!q || q.unit === "") return q?.value ?? null;
@@ -2640,13 +2630,13 @@
           stage2.moveTo(this.handle, i === 0 ? [value, at[1]] : [at[0], value]);
         };
         const read = () => this.handle ? shown2(this.handle)[i] : "";
-        const isWrong = (typed) => place(typed) === null ? `${asked("")} or 50 %` : null;
+        const isWrong = (typed) => coordinate(typed) === null ? `${asked("")} or 50 %` : null;
         const take = (typed) => {
-          if (this.handle && typed !== read()) move(place(typed));
+          if (this.handle && typed !== read()) move(coordinate(typed));
           return null;
         };
         const nudge = (typed, by) => {
-          const value = place(typed);
+          const value = coordinate(typed);
           if (value === null || !this.handle) return null;
           move(value + by);
           return read();
@@ -2658,9 +2648,7 @@
       this.remove.addEventListener("click", () => {
         if (this.handle) stage2.remove(this.handle);
       });
-      app2.listen((change) => {
-        if (change === "handles") this.show(stage2.focusedHandle);
-      });
+      app2.listen(["handles"], () => this.show(stage2.focusedHandle));
     }
     show(handle) {
       this.handle = handle;
@@ -2953,12 +2941,10 @@
           return stage2.camera.pixel;
         }
       };
-      app2.listen((change) => {
-        if (change === "state") this.takeState();
-        if (change === "handles") this.rebuild();
-        if (change === "report" && this.showsStretch) void this.drawStretch();
-        if (change === "report" || change === "steps") void this.drawEnd();
-      });
+      app2.listen(["state"], () => this.takeState());
+      app2.listen(["handles"], () => this.rebuild());
+      app2.listen(["report"], () => this.showsStretch && void this.drawStretch());
+      app2.listen(["report", "steps"], () => void this.drawEnd());
       this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
       this.svg.addEventListener("keydown", (e) => this.key(e));
       this.svg.addEventListener("keyup", (e) => {
@@ -3535,8 +3521,8 @@
           if (this.down.has(pointerId)) this.down.set(pointerId, stage2.point(e));
         });
       }
-      app2.listen((change) => {
-        if (change === "link" && !app2.isLive) this.finish?.();
+      app2.listen(["link"], () => {
+        if (!app2.isLive) this.finish?.();
       });
       for (const end2 of ["pointerup", "pointercancel"]) window.addEventListener(end2, (e) => this.down.delete(e.pointerId));
     }
@@ -3808,12 +3794,10 @@
   var Report = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "report" || change === "state") this.figures();
-        if (change === "state") this.buttons();
-        if (change === "handles" || change === "steps") this.hint();
-        if (change === "link") this.link();
-      });
+      app2.listen(["report", "state"], () => this.figures());
+      app2.listen(["state"], () => this.buttons());
+      app2.listen(["handles", "steps"], () => this.hint());
+      app2.listen(["link"], () => this.link());
       app2.connection.onBusy = (isBusy) => this.busy(isBusy);
       byId("warnings").addEventListener("click", () => toast(app2.warnings.join(" · ")));
     }
@@ -3939,9 +3923,7 @@
       this.unit.addEventListener("change", () => this.size.value = this.unit.value === "%" ? "100" : String(USUAL_WIDTH));
       this.recall();
       byId("copy-command").addEventListener("click", () => void this.copyCommand());
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
+      app2.listen(["state"], () => this.show());
     }
     app;
     dialog = byId("save-dialog");
@@ -4134,9 +4116,7 @@
         e.preventDefault();
         void this.set();
       });
-      app2.listen((change) => {
-        if (change === "state") this.show();
-      });
+      app2.listen(["state"], () => this.show());
     }
     app;
     dialog = byId("words-dialog");
@@ -4221,10 +4201,8 @@
   var Settings = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "steps" || change === "state" || change === "handles") this.build();
-        if (change === "values") this.refresh();
-      });
+      app2.listen(["steps", "state", "handles"], () => this.build());
+      app2.listen(["values"], () => this.refresh());
     }
     app;
     box = byId("settings");
@@ -4295,13 +4273,9 @@
         case "angle":
           return this.slider(p, id, label, title);
         case "path": {
-          const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
-          pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-          const draws = ["line", "path", "circle"].map((kind) => {
-            const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
-            button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
-            return button;
-          });
+          const set2 = (value) => this.app.set(p.name, [value], true);
+          const pick = button({ class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, () => this.onPick((name) => set2(`#${name}`)), "Pick from drawing");
+          const draws = ["line", "path", "circle"].map((kind) => button({ class: "link", title: SKETCHES[kind] }, () => this.onDraw(kind, set2), `Draw ${kind}`));
           const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
           return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...radius || [], this.text(p, id));
         }
@@ -4347,8 +4321,7 @@
       };
       const field = new Field(input, () => hundredths((circle2()?.[2] ?? 0) / unit).toString(), (text) => set2(number(text)), (text) => number(text) > 0 ? null : asked("mm", 0));
       const note = h("p", { class: "wrong", role: "status" });
-      const grow = h("button", { type: "button", class: "link" });
-      grow.addEventListener("click", () => void set2(Number(grow.dataset.mm)));
+      const grow = button({ class: "link" }, () => void set2(Number(grow.dataset.mm)));
       const warning = h("div", { hidden: true }, note, grow);
       this.refreshers.push(() => {
         field.refresh();
@@ -4425,16 +4398,11 @@
     /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
     chooseFile(p) {
       const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
-      input.addEventListener("change", async () => {
-        const file = input.files?.[0];
-        input.value = "";
-        if (!file) return;
+      onFile(input, async (file) => {
         const written = await bring(this.app, file);
         if (written) this.app.set(p.name, [written], true);
       });
-      const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
-      button.addEventListener("click", () => input.click());
-      return h("span", {}, input, button);
+      return h("span", {}, input, button({ class: "link", title: "A copy is put beside the drawing" }, () => input.click(), "Choose file…"));
     }
     select(p, id) {
       const select = h("select", { id }, ...(p.words ?? []).map((word) => h("option", { value: word }, words(word))));
@@ -4728,14 +4696,12 @@
   var Steps = class {
     constructor(app2) {
       this.app = app2;
-      app2.listen((change) => {
-        if (change === "steps" || change === "state") this.build();
-        if (change === "report" && app2.gone.join() !== this.gone) this.build();
-      });
+      app2.listen(["steps", "state"], () => this.build());
+      app2.listen(["report"], () => app2.gone.join() !== this.gone && this.build());
       this.add.addEventListener("click", () => this.append());
       this.list.addEventListener("dblclick", (e) => {
-        const button = e.target.closest("button.step");
-        if (button) this.rename(Array.from(this.list.children).indexOf(button.parentElement));
+        const button2 = e.target.closest("button.step");
+        if (button2) this.rename(Array.from(this.list.children).indexOf(button2.parentElement));
       });
     }
     app;
@@ -4781,35 +4747,29 @@
       const count = step2.select?.length ?? 0;
       const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
       const gone = app2.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
-      const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : void 0 }, `${i + 1}. ${title}`, scope, gone);
-      choose.addEventListener("click", () => {
-        if (!this.isDragged) void app2.select(i);
-      });
+      const attributes = { class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : void 0 };
+      const choose = button(attributes, () => this.isDragged || void app2.select(i), `${i + 1}. ${title}`, scope, gone);
       choose.addEventListener("pointerdown", (e) => this.drag(e, i, edits, moveTo));
       const moveTo = (to) => {
         this.movedTo = to;
         void app2.arrange(steps.toSpliced(i, 1).toSpliced(to, 0, step2), to);
       };
       const hide2 = () => void app2.arrange(steps.map((s2, k) => k === i ? { ...s2, hidden: !step2.hidden || void 0 } : s2), selected);
-      const button = (name, label, action, disabled = false) => {
-        const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
-        b.addEventListener("click", action);
-        return b;
-      };
+      const iconButton = (name, label, click, disabled = false) => button({ class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, click, icon(name));
       const remove = () => void app2.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
       return h(
         "li",
         { class: `${i === selected ? "chosen" : ""} ${step2.hidden ? "hidden" : ""}` },
         choose,
-        !app2.isProposal && button("eye", `${step2.hidden ? "Show" : "Hide"} ${title}`, hide2),
-        steps.length > 1 && button("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
-        steps.length > 1 && button("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
-        !app2.isProposal && button("close", `Remove ${title}`, remove),
+        !app2.isProposal && iconButton("eye", `${step2.hidden ? "Show" : "Hide"} ${title}`, hide2),
+        steps.length > 1 && iconButton("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
+        steps.length > 1 && iconButton("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
+        !app2.isProposal && iconButton("close", `Remove ${title}`, remove),
         !app2.isProposal && i === selected && h(
           "span",
           { class: "acts" },
-          button("pen", `Rename ${title}`, () => this.rename(i)),
-          i >= edits && button("copy", `Duplicate ${title}`, () => void app2.arrange(steps.toSpliced(i + 1, 0, structuredClone(step2)), i + 1))
+          iconButton("pen", `Rename ${title}`, () => this.rename(i)),
+          i >= edits && iconButton("copy", `Duplicate ${title}`, () => void app2.arrange(steps.toSpliced(i + 1, 0, structuredClone(step2)), i + 1))
         )
       );
     }
@@ -4917,13 +4877,13 @@
     byId("undo").focus();
   });
   function toggle(id, get, set2) {
-    const button = byId(id);
-    const show2 = () => button.setAttribute("aria-pressed", String(get()));
+    const button2 = byId(id);
+    const show2 = () => button2.setAttribute("aria-pressed", String(get()));
     const turn = () => {
       set2(!get());
       show2();
     };
-    button.addEventListener("click", turn);
+    button2.addEventListener("click", turn);
     show2();
     return turn;
   }
@@ -4955,8 +4915,8 @@
   var SHEETS = { "shapes-open": "open-shapes", "settings-open": "open-settings" };
   var { classList } = document.body;
   var closeSheets = () => classList.remove(...Object.keys(SHEETS));
-  for (const [sheet, button] of Object.entries(SHEETS)) {
-    on(button, () => {
+  for (const [sheet, button2] of Object.entries(SHEETS)) {
+    on(button2, () => {
       const opens = !classList.contains(sheet);
       closeSheets();
       classList.toggle(sheet, opens);
@@ -4970,7 +4930,7 @@
     const now = Object.keys(SHEETS).find((sheet) => classList.contains(sheet)) ?? "";
     if (now === opened) return;
     opened = now;
-    for (const [sheet, button] of Object.entries(SHEETS)) byId(button).setAttribute("aria-expanded", String(sheet === now));
+    for (const [sheet, button2] of Object.entries(SHEETS)) byId(button2).setAttribute("aria-expanded", String(sheet === now));
     stage.fit();
   }).observe(document.body, { attributeFilter: ["class"] });
   var before = byId("before");

@@ -19,7 +19,7 @@ const VISIBLE_MM = 0.05;
 /** Parameters that determine the number of control points of a net. */
 const NET_PARAMS = new Set(["degree", "cells", "spline"]);
 
-/** What listeners are told: `values` is a change of the edited step's values, `link` of the connection, `report` of messages. */
+/** Changes that are told to listeners: `values` are those of the edited step, `link` is the connection, `report` the messages. */
 export type Change = "state" | "steps" | "handles" | "values" | "report" | "link";
 
 /** The view that shows pictures. */
@@ -64,7 +64,7 @@ export class App {
   hold: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
-  private listeners: ((change: Change) => void)[] = [];
+  private listeners: { changes: Change[]; listener: () => void }[] = [];
   /** `true` while a draft is being made, and if another one is to follow. */
   private isDrafting = false;
   private isDraftWanted = false;
@@ -97,12 +97,13 @@ export class App {
     return this.isConnected && !this.isDone;
   }
 
-  listen(listener: (change: Change) => void): void {
-    this.listeners.push(listener);
+  /** Calls a listener after these changes. */
+  listen(changes: Change[], listener: () => void): void {
+    this.listeners.push({ changes, listener });
   }
 
   tell(change: Change): void {
-    for (const listener of this.listeners) listener(change);
+    for (const { changes, listener } of this.listeners) if (changes.includes(change)) listener();
   }
 
   get step(): Step | undefined {

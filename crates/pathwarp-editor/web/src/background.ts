@@ -1,7 +1,7 @@
 // The background: another drawing or a picture behind the artwork, as a template. Only this page shows it, and it is never saved.
 
 import type { App } from "./app";
-import { ARROWS, byId, s } from "./dom";
+import { ARROWS, byId, onFile, s } from "./dom";
 import { apart } from "./drawing";
 import { Field, asked, inUnits, MM } from "./fields";
 import { base64 } from "./opening";
@@ -63,15 +63,10 @@ export class Background {
     stage.around = () => (this.file ? this.corners : []);
     stage.onLayout.push(() => this.placeFrame());
     this.button.addEventListener("click", () => (this.file ? this.show(this.box.hidden !== false) : this.fileInput.click()));
-    this.fileInput.addEventListener("change", () => {
-      const file = this.fileInput.files?.[0];
-      this.fileInput.value = "";
-      if (file) {
-        void this.take(file).then(() => {
-          app.screen.reveal();
-          return this.keep();
-        });
-      }
+    onFile(this.fileInput, async (file) => {
+      await this.take(file);
+      app.screen.reveal();
+      await this.keep();
     });
     this.opacity.addEventListener("input", () => this.showOpacity());
     this.opacity.addEventListener("change", () => void this.keep());
@@ -96,9 +91,9 @@ export class Background {
     this.ground.addEventListener("pointerdown", (e) => this.drag(e, ([x, y]) => ([px, py]) => ({ x: this.placement.x + px - x, y: this.placement.y + py - y })));
     this.ground.addEventListener("keydown", (e) => this.key(e));
     this.knobs.forEach((knob, i) => knob.addEventListener("pointerdown", (e) => this.drag(e, (from) => (i < 4 ? this.scaling(i, from) : this.rotation(from)))));
-    app.listen((change) => {
-      if (change === "link") this.isKept = false;
-      if (change !== "state" || this.isKept) return;
+    app.listen(["link"], () => (this.isKept = false));
+    app.listen(["state"], () => {
+      if (this.isKept) return;
       this.isKept = true;
       void (this.file ? this.keep() : this.restore());
     });

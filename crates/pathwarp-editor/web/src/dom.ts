@@ -27,6 +27,22 @@ export function s<K extends keyof SVGElementTagNameMap>(
   return fill(document.createElementNS(SVG, tag) as SVGElementTagNameMap[K], attributes, children);
 }
 
+/** Creates a button that reacts to clicks. */
+export function button(attributes: Attributes, click: (e: MouseEvent) => void, ...children: Child[]): HTMLButtonElement {
+  const element = h("button", { type: "button", ...attributes }, ...children);
+  element.addEventListener("click", click);
+  return element;
+}
+
+/** Receives the files chosen in a field, also the same one again. */
+export function onFile(field: HTMLInputElement, take: (file: File) => void): void {
+  field.addEventListener("change", () => {
+    const file = field.files?.[0];
+    field.value = "";
+    if (file) take(file);
+  });
+}
+
 /** Returns the element of the page with this id. */
 export function byId<E extends Element = HTMLElement>(id: string): E {
   const found = document.getElementById(id);

@@ -1,7 +1,7 @@
 // The choice of shapes: every deformation and preset, each with a small picture of the present artwork.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import { called, capital, stepName, words } from "./names";
 import { toast } from "./toast";
 import { DRAGGED } from "./values";
@@ -64,10 +64,8 @@ export class Gallery {
   }, { rootMargin: "150px" });
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "state") this.build();
-      if (change === "steps") this.mark();
-    });
+    app.listen(["state"], () => this.build());
+    app.listen(["steps"], () => this.mark());
     this.search.addEventListener("input", () => this.filter());
     this.search.addEventListener("keydown", (e) => {
       if (e.key === "Enter" && this.search.value.trim() !== "") this.box.querySelector<HTMLElement>("section:not([hidden]) :is(.card, .preset):not([hidden])")?.click();
@@ -112,21 +110,19 @@ export class Gallery {
   showPresets(names: string[]): void {
     this.names = names;
     const entry = (name: string) => {
-      const use = h("button", { type: "button", class: "preset" }, name);
-      use.addEventListener("click", async () => {
+      const use = button({ class: "preset" }, async () => {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
         if (answer?.steps) await this.app.arrange(answer.steps.map((step) => ({ ...step, exclude: this.app.locks })), answer.steps.length - 1);
         document.body.classList.remove("shapes-open");
-      });
-      const forget = h("button", { type: "button", class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, icon("close"));
-      forget.addEventListener("click", async () => {
+      }, name);
+      const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
         const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
         if (!answer?.presets) return;
         this.showPresets(answer.presets);
         // Keep the focus nearby.
         const others = this.userPresets.querySelectorAll<HTMLElement>(".small");
         (others[Math.min(names.indexOf(name), others.length - 1)] ?? this.search).focus();
-      });
+      }, icon("close"));
       return h("li", {}, use, forget);
     };
     this.userPresets.replaceChildren(h("h2", {}, "Your presets"), h("ul", { class: "presets" }, ...names.map(entry)));
@@ -142,12 +138,11 @@ export class Gallery {
 
   private card(deformation: string, args: Record<string, string[]>, steps: Step[] | null, text: Node, variant: Card["variant"] = null): Card {
     const image = h("img", { alt: "", draggable: "false" });
-    const button = h("button", { type: "button", class: "card" }, h("span", { class: "thumb" }, image), text);
+    const cardButton = button({ class: "card" }, () => void this.choose(card), h("span", { class: "thumb" }, image), text);
     const terms = [...(this.app.deformation(deformation)?.knownAs ?? []), variant && deformation !== "envelope" ? "" : SEARCH_TERMS[Object.values(args)[0]?.[0] ?? deformation] ?? ""];
-    const card: Card = { button, image, steps, deformation, args, variant, searchText: [button.textContent, ...terms].join(" ") };
-    button.addEventListener("click", () => void this.choose(card));
+    const card: Card = { button: cardButton, image, steps, deformation, args, variant, searchText: [cardButton.textContent, ...terms].join(" ") };
     this.cards.push(card);
-    this.observer.observe(button);
+    this.observer.observe(cardButton);
     return card;
   }
 

@@ -17,9 +17,7 @@ export class Ground {
 
   constructor(app: App) {
     this.show(this.chosen);
-    app.listen((change) => {
-      if (change === "report") this.suit(app.state?.drawing ?? "");
-    });
+    app.listen(["report"], () => this.suit(app.state?.drawing ?? ""));
     byId("ground").addEventListener("click", () => {
       this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]!);
       localStorage.setItem(CHOSEN, this.shown);

@@ -2,7 +2,7 @@
 // drawing; locked parts stay unchanged.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import type { Modes } from "./modes";
 import { capital, isCaption } from "./names";
 import type { Stage } from "./stage";
@@ -24,10 +24,8 @@ export class Parts {
   private file = "";
 
   constructor(private app: App, private stage: Stage, private modes: Modes) {
-    app.listen((change) => {
-      if (change === "state") void this.load();
-      if (change === "steps") this.show();
-    });
+    app.listen(["state"], () => void this.load());
+    app.listen(["steps"], () => this.show());
     byId("parts-all").addEventListener("click", () => void app.scope([]));
     stage.onPart = (name, adds) => this.clicked(name, adds);
   }
@@ -51,19 +49,15 @@ export class Parts {
 
   private row(part: Part): HTMLLIElement {
     const title = part.label ?? part.name.replace(/^([a-z]+)(.*) at \d+:\d+$/i, (_, tag: string, letter: string) => capital((ELEMENTS[tag] ?? tag) + letter));
-    const choose = h("button", { type: "button", class: "part-name", title: part.name }, title);
-    choose.addEventListener("click", (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey));
+    const choose = button({ class: "part-name", title: part.name }, (e) => this.toggle(part, e.shiftKey || e.ctrlKey || e.metaKey), title);
     choose.addEventListener("pointerenter", () => this.stage.outlineParts([part, ...this.contentsOf(part)].map(({ name }) => name)));
     choose.addEventListener("pointerleave", () => this.show());
-    const button = (kind: "eye" | "lock", label: string, action: () => void) => {
-      const b = h("button", { type: "button", class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, icon(kind));
-      b.addEventListener("click", action);
-      return b;
-    };
+    const iconButton = (kind: "eye" | "lock", label: string, click: () => void) =>
+      button({ class: `small ${kind}`, "aria-label": `${label} ${title}`, title: `${label} ${title}` }, click, icon(kind));
     const row = h(
       "li", {}, choose,
-      button("eye", "Hide here:", () => this.hide(part)),
-      button("lock", "Lock:", () => void this.lock(part)),
+      iconButton("eye", "Hide here:", () => this.hide(part)),
+      iconButton("lock", "Lock:", () => void this.lock(part)),
     );
     row.style.setProperty("--depth", String(Math.min(part.depth, 8)));
     return row;

@@ -45,8 +45,8 @@ export class Pointing {
         if (this.down.has(pointerId)) this.down.set(pointerId, stage.point(e as PointerEvent));
       });
     }
-    app.listen((change) => {
-      if (change === "link" && !app.isLive) this.finish?.();
+    app.listen(["link"], () => {
+      if (!app.isLive) this.finish?.();
     });
     for (const end of ["pointerup", "pointercancel"] as const) window.addEventListener(end, (e) => this.down.delete(e.pointerId));
   }

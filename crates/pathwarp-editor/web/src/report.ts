@@ -15,12 +15,10 @@ export class Report {
   private slow = 0;
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "report" || change === "state") this.figures();
-      if (change === "state") this.buttons();
-      if (change === "handles" || change === "steps") this.hint();
-      if (change === "link") this.link();
-    });
+    app.listen(["report", "state"], () => this.figures());
+    app.listen(["state"], () => this.buttons());
+    app.listen(["handles", "steps"], () => this.hint());
+    app.listen(["link"], () => this.link());
     app.connection.onBusy = (isBusy) => this.busy(isBusy);
     byId("warnings").addEventListener("click", () => toast(app.warnings.join(" · ")));
   }

@@ -74,9 +74,7 @@ export class Saving {
     this.unit.addEventListener("change", () => (this.size.value = this.unit.value === "%" ? "100" : String(USUAL_WIDTH)));
     this.recall();
     byId("copy-command").addEventListener("click", () => void this.copyCommand());
-    app.listen((change) => {
-      if (change === "state") this.show();
-    });
+    app.listen(["state"], () => this.show());
   }
 
   private show(): void {

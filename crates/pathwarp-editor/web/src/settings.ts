@@ -1,7 +1,7 @@
 // The settings of a step: a control for each parameter, made from the registry's table.
 
 import type { App } from "./app";
-import { byId, h, s } from "./dom";
+import { button, byId, h, onFile, s } from "./dom";
 import { asked, evaluate, Field, inUnits, MM, type Quantity } from "./fields";
 import { capital, isCaption, paramName, words } from "./names";
 import { bring } from "./opening";
@@ -42,10 +42,8 @@ export class Settings {
   onOther: () => void = () => {};
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "steps" || change === "state" || change === "handles") this.build();
-      if (change === "values") this.refresh();
-    });
+    app.listen(["steps", "state", "handles"], () => this.build());
+    app.listen(["values"], () => this.refresh());
   }
 
   private build(): void {
@@ -98,13 +96,9 @@ export class Settings {
       case "name": return h("div", { class: "field", title }, h("div", { class: "row" }, label, this.chooseFile(p)), this.select(p, id));
       case "number": case "length": case "angle": return this.slider(p, id, label, title);
       case "path": {
-        const pick = h("button", { type: "button", class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, "Pick from drawing");
-        pick.addEventListener("click", () => this.onPick((name) => this.app.set(p.name, [`#${name}`], true)));
-        const draws = (["line", "path", "circle"] as const).map((kind) => {
-          const button = h("button", { type: "button", class: "link", title: SKETCHES[kind] }, `Draw ${kind}`);
-          button.addEventListener("click", () => this.onDraw(kind, (value) => this.app.set(p.name, [value], true)));
-          return button;
-        });
+        const set = (value: string) => this.app.set(p.name, [value], true);
+        const pick = button({ class: "link", title: "Click a path of the drawing; it is then a guide and no artwork" }, () => this.onPick((name) => set(`#${name}`)), "Pick from drawing");
+        const draws = (["line", "path", "circle"] as const).map((kind) => button({ class: "link", title: SKETCHES[kind] }, () => this.onDraw(kind, set), `Draw ${kind}`));
         const radius = this.app.grip(p.name)?.circle && this.radius(p, id);
         return h("div", { class: "field", title }, h("div", { class: "row" }, label, pick), h("div", { class: "row draws" }, ...draws), ...(radius || []), this.text(p, id));
       }
@@ -153,8 +147,7 @@ export class Settings {
     };
     const field = new Field(input, () => hundredths((circle()?.[2] ?? 0) / unit).toString(), (text) => set(number(text)), (text) => (number(text) > 0 ? null : asked("mm", 0)));
     const note = h("p", { class: "wrong", role: "status" });
-    const grow = h("button", { type: "button", class: "link" });
-    grow.addEventListener("click", () => void set(Number(grow.dataset.mm)));
+    const grow = button({ class: "link" }, () => void set(Number(grow.dataset.mm)));
     const warning = h("div", { hidden: true }, note, grow);
     this.refreshers.push(() => {
       field.refresh();
@@ -237,16 +230,11 @@ export class Settings {
   /** Returns a button to choose a file. Pages do not learn its folder, so it is copied beside the drawing. */
   private chooseFile(p: Param): HTMLElement {
     const input = h("input", { type: "file", hidden: true, "aria-label": paramName(p) });
-    input.addEventListener("change", async () => {
-      const file = input.files?.[0];
-      input.value = "";
-      if (!file) return;
+    onFile(input, async (file) => {
       const written = await bring(this.app, file);
       if (written) this.app.set(p.name, [written], true);
     });
-    const button = h("button", { type: "button", class: "link", title: "A copy is put beside the drawing" }, "Choose file…");
-    button.addEventListener("click", () => input.click());
-    return h("span", {}, input, button);
+    return h("span", {}, input, button({ class: "link", title: "A copy is put beside the drawing" }, () => input.click(), "Choose file…"));
   }
 
   private select(p: Param, id: string): HTMLSelectElement {

@@ -118,12 +118,10 @@ export class Stage {
       reveal: () => this.reveal(),
       get pixel() { return stage.camera.pixel; },
     };
-    app.listen((change) => {
-      if (change === "state") this.takeState();
-      if (change === "handles") this.rebuild();
-      if (change === "report" && this.showsStretch) void this.drawStretch();
-      if (change === "report" || change === "steps") void this.drawEnd();
-    });
+    app.listen(["state"], () => this.takeState());
+    app.listen(["handles"], () => this.rebuild());
+    app.listen(["report"], () => this.showsStretch && void this.drawStretch());
+    app.listen(["report", "steps"], () => void this.drawEnd());
     this.svg.addEventListener("dblclick", (e) => this.doubleClick(e));
     this.svg.addEventListener("keydown", (e) => this.key(e));
     this.svg.addEventListener("keyup", (e) => {

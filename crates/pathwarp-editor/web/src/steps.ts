@@ -1,7 +1,7 @@
 // The list of steps: the selection of the edited one, their order, and adding and removing them.
 
 import type { App } from "./app";
-import { byId, h, icon } from "./dom";
+import { button, byId, h, icon } from "./dom";
 import { stepName } from "./names";
 import type { Step } from "./types";
 
@@ -20,11 +20,9 @@ export class Steps {
   private add = byId<HTMLButtonElement>("add-step");
 
   constructor(private app: App) {
-    app.listen((change) => {
-      if (change === "steps" || change === "state") this.build();
-      // The picture tells which steps wait for their letters.
-      if (change === "report" && app.gone.join() !== this.gone) this.build();
-    });
+    app.listen(["steps", "state"], () => this.build());
+    // The picture tells which steps wait for their letters.
+    app.listen(["report"], () => app.gone.join() !== this.gone && this.build());
     this.add.addEventListener("click", () => this.append());
     // The first click may have replaced the row.
     this.list.addEventListener("dblclick", (e) => {
@@ -70,31 +68,26 @@ export class Steps {
     const count = step.select?.length ?? 0;
     const scope = count > 0 && h("small", { class: "muted" }, count === 1 ? " one part" : ` ${count} parts`);
     const gone = app.gone.includes(i) && h("small", { class: "muted" }, count === 1 ? " (its letter is gone)" : " (its letters are gone)");
-    const choose = h("button", { type: "button", class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : undefined }, `${i + 1}. ${title}`, scope, gone);
-    choose.addEventListener("click", () => {
-      if (!this.isDragged) void app.select(i);
-    });
+    const attributes = { class: "step", "data-kind": "step", title: "Drag it to move it, double-click to rename it", "aria-current": i === selected ? "step" : undefined };
+    const choose = button(attributes, () => this.isDragged || void app.select(i), `${i + 1}. ${title}`, scope, gone);
     choose.addEventListener("pointerdown", (e) => this.drag(e, i, edits, moveTo));
     const moveTo = (to: number) => {
       this.movedTo = to;
       void app.arrange(steps.toSpliced(i, 1).toSpliced(to, 0, step), to);
     };
     const hide = () => void app.arrange(steps.map((s, k) => (k === i ? { ...s, hidden: !step.hidden || undefined } : s)), selected);
-    const button = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, action: () => void, disabled = false) => {
-      const b = h("button", { type: "button", class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, icon(name));
-      b.addEventListener("click", action);
-      return b;
-    };
+    const iconButton = (name: "up" | "down" | "close" | "eye" | "copy" | "pen", label: string, click: () => void, disabled = false) =>
+      button({ class: "small", "data-kind": name, "aria-label": label, title: label, disabled }, click, icon(name));
     const remove = () => void app.arrange(steps.filter((_, k) => k !== i), steps.length - 2);
     return h(
       "li", { class: `${i === selected ? "chosen" : ""} ${step.hidden ? "hidden" : ""}` }, choose,
-      !app.isProposal && button("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
-      steps.length > 1 && button("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
-      steps.length > 1 && button("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
-      !app.isProposal && button("close", `Remove ${title}`, remove),
+      !app.isProposal && iconButton("eye", `${step.hidden ? "Show" : "Hide"} ${title}`, hide),
+      steps.length > 1 && iconButton("up", `Move ${title} up`, () => moveTo(i - 1), i <= edits),
+      steps.length > 1 && iconButton("down", `Move ${title} down`, () => moveTo(i + 1), i < edits || i === steps.length - 1),
+      !app.isProposal && iconButton("close", `Remove ${title}`, remove),
       !app.isProposal && i === selected && h("span", { class: "acts" },
-        button("pen", `Rename ${title}`, () => this.rename(i)),
-        i >= edits && button("copy", `Duplicate ${title}`, () => void app.arrange(steps.toSpliced(i + 1, 0, structuredClone(step)), i + 1))),
+        iconButton("pen", `Rename ${title}`, () => this.rename(i)),
+        i >= edits && iconButton("copy", `Duplicate ${title}`, () => void app.arrange(steps.toSpliced(i + 1, 0, structuredClone(step)), i + 1))),
     );
   }
 

@@ -35,9 +35,7 @@ export class WordsDialog {
       e.preventDefault();
       void this.set();
     });
-    app.listen((change) => {
-      if (change === "state") this.show();
-    });
+    app.listen(["state"], () => this.show());
   }
 
   private show(): void {

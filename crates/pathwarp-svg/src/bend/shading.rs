@@ -113,7 +113,7 @@ impl Shading {
             GradientShape::Radial { centre, radius, focus, focal_radius } if centre == focus => {
                 let per_unit = 1.0 / (radius - focal_radius);
                 pairs.for_each(|(t, p)| {
-                    *t = ((self.to_gradient * *p - focus).hypot2().sqrt() - focal_radius) * per_unit
+                    *t = ((self.to_gradient * *p - focus).hypot2().sqrt() - focal_radius) * per_unit;
                 });
             }
             GradientShape::Radial { .. } => {
