@@ -368,11 +368,11 @@
   function corners({ start, segments }, frame) {
     return [start, ...segments].map((p) => point([p[0], p[1]], frame)).join(" ");
   }
-  var SHARES = 1e6;
+  var LARGEST_SHARE = 1e6;
   var PER_CENT = 1e3;
   var DEGREE = 6e4;
   function adjustUnit(a) {
-    return a.most > SHARES ? ["deg", DEGREE] : ["%", PER_CENT];
+    return a.most > LARGEST_SHARE ? ["deg", DEGREE] : ["%", PER_CENT];
   }
   function adjustName(all, i) {
     return all.length === 1 ? "Shape" : `Shape ${i + 1}`;
@@ -429,19 +429,19 @@
   // src/dials.ts
   var FIRST_RADIUS = 0.3;
   var NEXT_RADIUS = 1.25;
-  function dials(place) {
+  function dials(geometry) {
     const out = [];
-    let radius = FIRST_RADIUS * Math.max(place.frame[2], place.frame[3]);
-    for (const param of place.deformation.params) {
-      const grip = place.grips[param.name];
+    let radius = FIRST_RADIUS * Math.max(geometry.frame[2], geometry.frame[3]);
+    for (const param of geometry.deformation.params) {
+      const grip = geometry.grips[param.name];
       if (!grip) continue;
-      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, place.frame)));
+      grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust, i, geometry.frame)));
       if (grip.value === void 0 || param.default === void 0) continue;
       if (param.kind === "angle" && !param.name.startsWith("skew")) {
-        out.push(angleDial(param, grip, place, radius));
+        out.push(angleDial(param, grip, geometry, radius));
         radius *= NEXT_RADIUS;
-      } else if (param.kind === "length" && !place.grips.about?.point) {
-        out.push(lengthArm(param, grip, place.frame));
+      } else if (param.kind === "length" && !geometry.grips.about?.point) {
+        out.push(lengthArm(param, grip, geometry.frame));
       }
     }
     return out;
@@ -630,6 +630,7 @@
     }
     deformation;
     step;
+    frame;
     handles = [];
     grips;
     /** Handles of numbers. */
@@ -638,7 +639,6 @@
     released = null;
     /** Indices of the control points of nets that have been moved, by parameter. */
     moved = {};
-    frame;
     collect() {
       this.handles = [];
       for (const { name } of this.deformation.params) {
@@ -653,8 +653,8 @@
         if (grip.circle) this.addCircle(name, grip);
         grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
       }
-      const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };
-      this.dials = this.handles.every(({ param }) => param === "about") ? dials(place) : this.grips.eye || this.grips["eye-height"] ? inSpace(place) : [];
+      const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
+      this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
       this.handles.push(...this.dials.map(({ handle }) => handle));
     }
     /** The net whose control points are handles. */
@@ -3937,7 +3937,7 @@
     unit = byId("save-unit");
     background = byId("save-background");
     colour = byId("save-colour");
-    /** The photograph for which the dialog last photographOffered the full size, 100 %; empty for other drawings. */
+    /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
     photographOffered = "";
     /** The steps downloaded last, as JSON. */
     downloaded = "";
@@ -4706,7 +4706,7 @@
     }
     app;
     list = byId("steps");
-    /** The index to which a row has been moveTo, whose focus follows. */
+    /** The index to which a row has been moved, whose focus follows. */
     movedTo = null;
     /** The indices of the steps shown as lacking their letters. */
     gone = "";

@@ -1,10 +1,8 @@
 // Handles of numbers, for steps without points: dials for angles, arms for lengths, and tracks for the adjust values of text shapes.
 
-import type { Adjust, Deformation, Grip, Handle, Line, Param, XY } from "./types";
+import type { Adjust, Deformation, Frame, Grip, Handle, Line, Param, XY } from "./types";
 import { adjustName } from "./values";
 import { words } from "./names";
-
-type Frame = [number, number, number, number];
 
 /** The radius of the first dial, as a share of the frame's longer side, and the ratio of the next dial's radius. */
 const FIRST_RADIUS = 0.3;
@@ -16,27 +14,28 @@ export interface Dial {
   line: () => Line;
 }
 
-export interface Place {
+/** The step whose parameters get handles. */
+export interface StepGeometry {
   deformation: Deformation;
   grips: Record<string, Grip>;
   frame: Frame;
 }
 
 /** Returns the dials of a step whose other handles are not enough to change it. */
-export function dials(place: Place): Dial[] {
+export function dials(geometry: StepGeometry): Dial[] {
   const out: Dial[] = [];
-  let radius = FIRST_RADIUS * Math.max(place.frame[2], place.frame[3]);
-  for (const param of place.deformation.params) {
-    const grip = place.grips[param.name];
+  let radius = FIRST_RADIUS * Math.max(geometry.frame[2], geometry.frame[3]);
+  for (const param of geometry.deformation.params) {
+    const grip = geometry.grips[param.name];
     if (!grip) continue;
-    grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust!, i, place.frame)));
+    grip.adjust?.forEach((_, i) => out.push(track(param, grip.adjust!, i, geometry.frame)));
     if (grip.value === undefined || param.default === undefined) continue;
     // A skew is not a rotation.
     if (param.kind === "angle" && !param.name.startsWith("skew")) {
-      out.push(angleDial(param, grip, place, radius));
+      out.push(angleDial(param, grip, geometry, radius));
       radius *= NEXT_RADIUS;
-    } else if (param.kind === "length" && !place.grips.about?.point) {
-      out.push(lengthArm(param, grip, place.frame));
+    } else if (param.kind === "length" && !geometry.grips.about?.point) {
+      out.push(lengthArm(param, grip, geometry.frame));
     }
   }
   return out;
@@ -51,7 +50,7 @@ export function dial(param: Param, key: string, label: string, from: () => XY, g
 }
 
 /** A dial for an angle about a centre, clockwise from the right. */
-function angleDial(param: Param, grip: Grip, { grips, frame: [x, y, w, h] }: Place, radius: number): Dial {
+function angleDial(param: Param, grip: Grip, { grips, frame: [x, y, w, h] }: StepGeometry, radius: number): Dial {
   const centre = (): XY => grips.about?.point ?? [x + w / 2, y + h / 2];
   const get = (): XY => {
     const [cx, cy] = centre();

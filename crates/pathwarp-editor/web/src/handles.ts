@@ -1,6 +1,6 @@
 // The handles of a step, computed from the geometry of its parameters.
 
-import type { Deformation, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
+import type { Arc, Deformation, Frame, Grip, Handle, Line, Net, Param, Shape, Step, StepGrips, Subpath, XY } from "./types";
 import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
@@ -41,8 +41,9 @@ const SKELETONS = new Set(["along"]);
 
 /** The handles of a step, which change as they are moved. */
 export class Handles {
+  readonly frame: Frame;
   handles: Handle[] = [];
-  private grips: Record<string, Grip>;
+  readonly grips: Record<string, Grip>;
   /** Handles of numbers. */
   private dials: Dial[] = [];
   /** A path of the drawing that a parameter referred to before its line was dragged. */
@@ -50,14 +51,12 @@ export class Handles {
   /** Indices of the control points of nets that have been moved, by parameter. */
   private moved: Record<string, Set<number>> = {};
 
-  constructor(private deformation: Deformation, private step: Step, grips: StepGrips) {
+  constructor(readonly deformation: Deformation, private step: Step, grips: StepGrips) {
     this.frame = grips.frame;
     this.grips = structuredClone(grips.params);
     for (const [name, { adjust }] of Object.entries(this.grips)) if (adjust) readAdjust(adjust, step.args[name] ?? []);
     this.collect();
   }
-
-  readonly frame: [number, number, number, number];
 
   private collect(): void {
     this.handles = [];
@@ -75,8 +74,8 @@ export class Handles {
       grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.pointsOf(name) === "any" ? closed(sub) : sub, `${i}.${j}`)));
     }
     // The fixed point of a rotation or scaling has no effect alone, so dials are added.
-    const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };
-    this.dials = this.handles.every(({ param }) => param === "about") ? dials(place) : this.grips.eye || this.grips["eye-height"] ? inSpace(place) : [];
+    const isAnamorphosis = this.grips.eye || this.grips["eye-height"];
+    this.dials = this.handles.every(({ param }) => param === "about") ? dials(this) : isAnamorphosis ? inSpace(this) : [];
     this.handles.push(...this.dials.map(({ handle }) => handle));
   }
 
@@ -321,7 +320,7 @@ export class Handles {
     const ends = isCurve ? [handle(spot.piece, "/out"), handle(next, "/in")] : [handle(spot.piece), handle(next)];
     const [first, second] = ends;
     if (!first || !second) return null;
-    // The point at t follows the pointer: the control points move by (1 - t) : t, weighed by their Bernstein polynomials.
+    // The point at t follows the pointer, and the control points move in the ratio (1 - t) : t.
     const t = Math.min(Math.max(spot.t, END_MARGIN), 1 - END_MARGIN);
     const weight = isCurve ? 3 * t * (1 - t) * ((1 - t) ** 2 + t ** 2) : 1;
     const shares = isCurve ? [(1 - t) / weight, t / weight] : [1, 1];
@@ -504,7 +503,7 @@ export class Handles {
 }
 
 /** Returns the point of a circle in a direction, clockwise from the right. */
-function onCircle([cx, cy, r]: NonNullable<Grip["circle"]>, degrees: number): XY {
+function onCircle([cx, cy, r]: Arc, degrees: number): XY {
   return [cx + r * Math.cos((degrees * Math.PI) / 180), cy + r * Math.sin((degrees * Math.PI) / 180)];
 }
 

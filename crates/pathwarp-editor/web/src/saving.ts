@@ -48,7 +48,7 @@ export class Saving {
   private unit = byId<HTMLSelectElement>("save-unit");
   private background = byId<HTMLSelectElement>("save-background");
   private colour = byId<HTMLInputElement>("save-colour");
-  /** The photograph for which the dialog last photographOffered the full size, 100 %; empty for other drawings. */
+  /** The photograph for which the dialog last offered the full size, 100 %; empty for other drawings. */
   private photographOffered = "";
   /** The steps downloaded last, as JSON. */
   private downloaded = "";
@@ -165,7 +165,7 @@ export class Saving {
       return null;
     }
     const background = this.background.value === "colour" ? this.colour.value : this.background.value;
-    // The photographOffered size of a photograph is not stored.
+    // The offered size of a photograph is not stored.
     if (!this.photographOffered) localStorage.setItem(CHOICES_KEY, JSON.stringify({ unit, size, background } satisfies Choices));
     const picture = { ...(unit === "%" ? { scale: size / 100 } : { width: size }), background: background === "none" ? null : background };
     return { name, folder, picture };

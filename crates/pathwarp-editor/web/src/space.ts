@@ -1,6 +1,6 @@
 // The handles of an anamorphosis: the eye's height, the picture's width, and the sizes of the surface or mirror, in the drawing's plane.
 
-import { dial, type Dial, type Place } from "./dials";
+import { dial, type Dial, type StepGeometry } from "./dials";
 import { words } from "./names";
 import type { Grip, Param, XY } from "./types";
 import { short } from "./values";
@@ -9,7 +9,7 @@ import { short } from "./values";
 const CIRCLE_SEGMENTS = 60;
 
 /** Returns the handles for parameters of an anamorphosis that are not points. */
-export function inSpace({ deformation, grips, frame: [x, y, w, h] }: Place): Dial[] {
+export function inSpace({ deformation, grips, frame: [x, y, w, h] }: StepGeometry): Dial[] {
   const out: Dial[] = [];
   const foot: XY = [x + w / 2, y + h];
   // The height of the picture, which keeps its proportions.

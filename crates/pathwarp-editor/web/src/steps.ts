@@ -10,7 +10,7 @@ const CLICK_DISTANCE = 5;
 
 export class Steps {
   private list = byId("steps");
-  /** The index to which a row has been moveTo, whose focus follows. */
+  /** The index to which a row has been moved, whose focus follows. */
   private movedTo: number | null = null;
   /** The indices of the steps shown as lacking their letters. */
   private gone = "";
