@@ -1285,7 +1285,7 @@
       return this.inTurn(async () => {
         const { step: step2, selected } = this;
         if (!step2 || this.isFirst(step2) || select.length === 0 && this.selectors.length === 0) return;
-        const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+        const answer = await this.request({ do: "scope", steps: this.visible, select });
         if (!answer?.step) return;
         this.steps = this.steps.map((s2, i) => i === selected ? answer.step : s2);
         this.tell("steps");
@@ -1530,7 +1530,7 @@
     }
     /** Changes the number of control points of the step's net, which bends as before. */
     async renet(values) {
-      const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+      const answer = await this.request({ do: "renet", steps: this.visible, values });
       if (!answer?.step) return this.tell("steps");
       const [a, b] = this.state?.toPx ?? [1, 0];
       const mm = (answer.moved ?? 0) * Math.hypot(a, b) * 25.4 / 96;
@@ -1600,6 +1600,10 @@
         return null;
       }
     }
+    /** Asks the server, and shows its message if it refuses. */
+    request(question) {
+      return this.attempt(() => this.connection.ask(question));
+    }
     fail(problem) {
       this.problem = problem;
       this.tell("report");
@@ -1631,15 +1635,15 @@
       for (let k = this.visible.length; k > 0; k--) {
         const steps = this.visible.slice(0, k);
         if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
-        at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+        at = (await this.request({ do: "preimage", steps, at }))?.at ?? at;
       }
       return at;
     }
     /** Returns the point of the artwork that the step maps to `at`. */
     async preimage(at) {
-      const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
-      if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
-      return answer?.at ?? null;
+      const source = (await this.request({ do: "preimage", steps: this.visible, at }))?.at;
+      if (source === null) this.fail("No place of the artwork comes to lie there");
+      return source ?? null;
     }
   };
 
@@ -1774,7 +1778,7 @@
   };
   async function bring(app2, file) {
     const bytes = await base64(file);
-    const answer = await app2.attempt(() => app2.connection.ask({ do: "bring", name: file.name, bytes }));
+    const answer = await app2.request({ do: "bring", name: file.name, bytes });
     if (!answer?.written) return null;
     if (answer.copied) toast(`${file.name} was copied beside the drawing`);
     return answer.written;
@@ -1874,10 +1878,10 @@
     async keep() {
       const { file, placement, opacity } = this;
       const background2 = file && { name: file.name, type: file.type, bytes: await base64(file), lie: placement, opacity: opacity.value };
-      await this.app.attempt(() => this.app.connection.ask({ do: "keep-background", background: background2 }));
+      await this.app.request({ do: "keep-background", background: background2 });
     }
     async restore() {
-      const kept2 = (await this.app.attempt(() => this.app.connection.ask({ do: "background" })))?.background;
+      const kept2 = (await this.app.request({ do: "background" }))?.background;
       if (!kept2) return;
       const content = Uint8Array.from(atob(kept2.bytes), (c) => c.charCodeAt(0));
       if (!await this.take(new File([content], kept2.name, { type: kept2.type }))) return;
@@ -2029,7 +2033,7 @@
       if (!this.isDrawing) return this.onRound(choose);
       if (outlines.childElementCount === 0) {
         const bytes = await base64(file);
-        const answer = await app2.attempt(() => app2.connection.ask({ do: "drawn", name: file.name, bytes }));
+        const answer = await app2.request({ do: "drawn", name: file.name, bytes });
         const root = apart(answer?.svg, "behind");
         if (!root) return;
         outlines.dataset.width = root.getAttribute("width") ?? "1";
@@ -2176,7 +2180,7 @@
       }
     }, { rootMargin: "150px" });
     build() {
-      if (this.drawing === "") void this.loadPresets();
+      if (this.drawing === "") void this.app.request({ do: "presets" }).then((answer) => answer?.presets && this.showPresets(answer.presets));
       const { drawing = "" } = this.app.state ?? {};
       if (drawing === this.drawing || this.app.catalogue.length === 0) return;
       this.drawing = drawing;
@@ -2207,21 +2211,17 @@
       this.mark();
       this.filter();
     }
-    async loadPresets() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
-      if (answer?.presets) this.showPresets(answer.presets);
-    }
     /** Shows the user's presets. */
     showPresets(names) {
       this.names = names;
       const entry = (name) => {
         const use = button({ class: "preset" }, async () => {
-          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+          const answer = await this.app.request({ do: "preset", name });
           if (answer?.steps) await this.app.arrange(answer.steps.map((step2) => ({ ...step2, exclude: this.app.locks })), answer.steps.length - 1);
           document.body.classList.remove("shapes-open");
         }, name);
         const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
-          const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+          const answer = await this.app.request({ do: "forget-preset", name });
           if (!answer?.presets) return;
           this.showPresets(answer.presets);
           const others = this.userPresets.querySelectorAll(".small");
@@ -2521,8 +2521,7 @@
       this.listed = listed;
       if (file !== this.file) this.hidden.clear();
       this.file = file;
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
-      this.all = answer?.parts ?? [];
+      this.all = (await this.app.request({ do: "parts" }))?.parts ?? [];
       this.stage.parts = new Set(this.all.map(({ name }) => name));
       this.rows = this.all.map((part) => this.row(part));
       this.list.replaceChildren(...this.rows);
@@ -3149,7 +3148,7 @@
       if (on2 === this.isBefore) return;
       this.isBefore = on2;
       if (on2 && this.beforeArt.childElementCount === 0) {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
+        const answer = await this.app.request({ do: "before" });
         this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
       }
       this.svg.classList.toggle("before", this.isBefore);
@@ -3163,8 +3162,7 @@
     }
     /** Shows or hides the stretch of the visible steps. */
     drawStretch = latest(async () => {
-      const { app: app2 } = this;
-      const answer = this.showsStretch ? await app2.attempt(() => app2.connection.ask({ do: "stretch", steps: app2.visible })) : null;
+      const answer = this.showsStretch ? await this.app.request({ do: "stretch", steps: this.app.visible }) : null;
       const stretch = this.showsStretch ? answer?.stretch : null;
       this.heat.replaceChildren(...stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []);
     });
@@ -3967,7 +3965,7 @@
     }
     /** Hands the steps to the program that waits for them. */
     async handOver() {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+      const answer = await this.app.request({ do: "hand-over" });
       if (!answer?.done) return;
       this.app.finish();
       window.close();
@@ -3980,7 +3978,7 @@
       if (state?.program) return byId("save").disabled ? void 0 : this.handOver();
       if (!state) return;
       if (state.steps.length === 0) return this.open();
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+      const answer = await this.app.request({ do: "save", name: null, replace: false });
       if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
       if (answer?.written) this.reportSaved(answer.written, answer.state, answer.warnings ?? []);
     }
@@ -4141,7 +4139,7 @@
     }
     async open() {
       if (!await this.app.settle()) return;
-      const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+      const answer = this.families ? null : await this.app.request({ do: "families" });
       this.families ??= answer?.families ?? [];
       const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
       [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
@@ -4301,7 +4299,7 @@
         select.value = value;
       };
       this.refreshers.push(show2);
-      void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+      void this.app.request({ do: "families" }).then((answer) => {
         select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
         show2();
       });

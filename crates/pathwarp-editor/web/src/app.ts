@@ -196,7 +196,7 @@ export class App {
     return this.inTurn(async () => {
       const { step, selected } = this;
       if (!step || this.isFirst(step) || (select.length === 0 && this.selectors.length === 0)) return;
-      const answer = await this.attempt(() => this.connection.ask({ do: "scope", steps: this.visible, select }));
+      const answer = await this.request({ do: "scope", steps: this.visible, select });
       if (!answer?.step) return;
       this.steps = this.steps.map((s, i) => (i === selected ? answer.step! : s));
       this.tell("steps");
@@ -469,7 +469,7 @@ export class App {
 
   /** Changes the number of control points of the step's net, which bends as before. */
   private async renet(values: Record<string, string[]>): Promise<void> {
-    const answer = await this.attempt(() => this.connection.ask({ do: "renet", steps: this.visible, values }));
+    const answer = await this.request({ do: "renet", steps: this.visible, values });
     if (!answer?.step) return this.tell("steps");
     const [a, b] = this.state?.toPx ?? [1, 0];
     const mm = ((answer.moved ?? 0) * Math.hypot(a, b) * 25.4) / 96; // A px is 1/96 in.
@@ -548,6 +548,11 @@ export class App {
     }
   }
 
+  /** Asks the server, and shows its message if it refuses. */
+  request(question: Parameters<Connection["ask"]>[0]): Promise<Answer | null> {
+    return this.attempt(() => this.connection.ask(question));
+  }
+
   fail(problem: string | null): void {
     this.problem = problem;
     this.tell("report");
@@ -583,15 +588,15 @@ export class App {
     for (let k = this.visible.length; k > 0; k--) {
       const steps = this.visible.slice(0, k);
       if (this.isFirst(steps[k - 1]) || steps[k - 1]?.hidden || this.gone.includes(k - 1)) continue;
-      at = (await this.attempt(() => this.connection.ask({ do: "preimage", steps, at })))?.at ?? at;
+      at = (await this.request({ do: "preimage", steps, at }))?.at ?? at;
     }
     return at;
   }
 
   /** Returns the point of the artwork that the step maps to `at`. */
   private async preimage(at: XY): Promise<XY | null> {
-    const answer = await this.attempt(() => this.connection.ask({ do: "preimage", steps: this.visible, at }));
-    if (answer?.at === null) this.fail("No place of the artwork comes to lie there");
-    return answer?.at ?? null;
+    const source = (await this.request({ do: "preimage", steps: this.visible, at }))?.at;
+    if (source === null) this.fail("No place of the artwork comes to lie there");
+    return source ?? null;
   }
 }

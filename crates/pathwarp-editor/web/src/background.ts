@@ -103,11 +103,11 @@ export class Background {
   private async keep(): Promise<void> {
     const { file, placement, opacity } = this;
     const background = file && { name: file.name, type: file.type, bytes: await base64(file), lie: placement, opacity: opacity.value };
-    await this.app.attempt(() => this.app.connection.ask({ do: "keep-background", background }));
+    await this.app.request({ do: "keep-background", background });
   }
 
   private async restore(): Promise<void> {
-    const kept = (await this.app.attempt(() => this.app.connection.ask({ do: "background" })))?.background;
+    const kept = (await this.app.request({ do: "background" }))?.background;
     if (!kept) return;
     const content = Uint8Array.from(atob(kept.bytes), (c) => c.charCodeAt(0));
     if (!(await this.take(new File([content], kept.name, { type: kept.type })))) return;
@@ -272,7 +272,7 @@ export class Background {
     if (!this.isDrawing) return this.onRound(choose);
     if (outlines.childElementCount === 0) {
       const bytes = await base64(file);
-      const answer = await app.attempt(() => app.connection.ask({ do: "drawn", name: file.name, bytes }));
+      const answer = await app.request({ do: "drawn", name: file.name, bytes });
       const root = apart(answer?.svg, "behind");
       if (!root) return;
       outlines.dataset.width = root.getAttribute("width") ?? "1";

@@ -73,7 +73,7 @@ export class Gallery {
   }
 
   private build(): void {
-    if (this.drawing === "") void this.loadPresets();
+    if (this.drawing === "") void this.app.request({ do: "presets" }).then((answer) => answer?.presets && this.showPresets(answer.presets));
     const { drawing = "" } = this.app.state ?? {};
     if (drawing === this.drawing || this.app.catalogue.length === 0) return;
     this.drawing = drawing;
@@ -101,22 +101,17 @@ export class Gallery {
     this.filter();
   }
 
-  private async loadPresets(): Promise<void> {
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "presets" }));
-    if (answer?.presets) this.showPresets(answer.presets);
-  }
-
   /** Shows the user's presets. */
   showPresets(names: string[]): void {
     this.names = names;
     const entry = (name: string) => {
       const use = button({ class: "preset" }, async () => {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "preset", name }));
+        const answer = await this.app.request({ do: "preset", name });
         if (answer?.steps) await this.app.arrange(answer.steps.map((step) => ({ ...step, exclude: this.app.locks })), answer.steps.length - 1);
         document.body.classList.remove("shapes-open");
       }, name);
       const forget = button({ class: "small", "aria-label": `Forget ${name}`, title: `Forget ${name}` }, async () => {
-        const answer = await this.app.attempt(() => this.app.connection.ask({ do: "forget-preset", name }));
+        const answer = await this.app.request({ do: "forget-preset", name });
         if (!answer?.presets) return;
         this.showPresets(answer.presets);
         // Keep the focus nearby.

@@ -54,7 +54,7 @@ export class Opening {
 /** Copies a file to the drawing's folder, where steps can read it. Returns the text that names it in a step. */
 export async function bring(app: App, file: File): Promise<string | null> {
   const bytes = await base64(file);
-  const answer = await app.attempt(() => app.connection.ask({ do: "bring", name: file.name, bytes }));
+  const answer = await app.request({ do: "bring", name: file.name, bytes });
   if (!answer?.written) return null;
   if (answer.copied) toast(`${file.name} was copied beside the drawing`);
   return answer.written;

@@ -38,8 +38,7 @@ export class Parts {
     // Other words have letters of the same names, which stay hidden.
     if (file !== this.file) this.hidden.clear();
     this.file = file;
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "parts" }));
-    this.all = answer?.parts ?? [];
+    this.all = (await this.app.request({ do: "parts" }))?.parts ?? [];
     this.stage.parts = new Set(this.all.map(({ name }) => name));
     this.rows = this.all.map((part) => this.row(part));
     this.list.replaceChildren(...this.rows);

@@ -107,7 +107,7 @@ export class Saving {
 
   /** Hands the steps to the program that waits for them. */
   private async handOver(): Promise<void> {
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "hand-over" }));
+    const answer = await this.app.request({ do: "hand-over" });
     if (!answer?.done) return;
     this.app.finish();
     // Browsers only close pages that a script has opened.
@@ -122,7 +122,7 @@ export class Saving {
     if (state?.program) return byId<HTMLButtonElement>("save").disabled ? undefined : this.handOver();
     if (!state) return;
     if (state.steps.length === 0) return this.open();
-    const answer = await this.app.attempt(() => this.app.connection.ask({ do: "save", name: null, replace: false }));
+    const answer = await this.app.request({ do: "save", name: null, replace: false });
     if (answer?.exists || answer?.unwritable) return this.open(answer.unwritable);
     if (answer?.written) this.reportSaved(answer.written, answer.state, answer.warnings ?? []);
   }

@@ -126,7 +126,7 @@ export class Settings {
       select.value = value;
     };
     this.refreshers.push(show);
-    void this.app.attempt(() => this.app.connection.ask({ do: "families" })).then((answer) => {
+    void this.app.request({ do: "families" }).then((answer) => {
       select.append(...(answer?.families ?? []).map((name) => h("option", { value: name }, name)));
       show();
     });

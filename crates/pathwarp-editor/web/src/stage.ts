@@ -260,7 +260,7 @@ export class Stage {
     if (on === this.isBefore) return;
     this.isBefore = on;
     if (on && this.beforeArt.childElementCount === 0) {
-      const answer = await this.app.attempt(() => this.app.connection.ask({ do: "before" }));
+      const answer = await this.app.request({ do: "before" });
       this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
     }
     this.svg.classList.toggle("before", this.isBefore);
@@ -276,8 +276,7 @@ export class Stage {
 
   /** Shows or hides the stretch of the visible steps. */
   readonly drawStretch = latest(async () => {
-    const { app } = this;
-    const answer = this.showsStretch ? await app.attempt(() => app.connection.ask({ do: "stretch", steps: app.visible })) : null;
+    const answer = this.showsStretch ? await this.app.request({ do: "stretch", steps: this.app.visible }) : null;
     const stretch = this.showsStretch ? answer?.stretch : null;
     this.heat.replaceChildren(...(stretch ? cells(stretch, (p) => this.camera.inPx(p)) : []));
   });

@@ -49,7 +49,7 @@ export class WordsDialog {
 
   private async open(): Promise<void> {
     if (!(await this.app.settle())) return;
-    const answer = this.families ? null : await this.app.attempt(() => this.app.connection.ask({ do: "families" }));
+    const answer = this.families ? null : await this.app.request({ do: "families" });
     this.families ??= answer?.families ?? [];
     const { text, font, size, spacing } = this.app.state?.words ?? { text: "", font: null, size: 20, spacing: 0 };
     [this.text.value, this.size.value, this.spacing.value, this.search.value] = [text, String(size), String(spacing), ""];
