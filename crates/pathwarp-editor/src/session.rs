@@ -529,15 +529,18 @@ impl Session {
         Ok(presets::all()?.into_iter().map(|p| p.name).collect())
     }
 
-    /// Stores the present steps as a preset.
-    pub(crate) fn keep_preset(&mut self, name: &str) -> Result<(), String> {
+    /// Stores the present steps as a preset. Returns the names of all presets.
+    pub(crate) fn keep_preset(&mut self, name: &str) -> Result<Vec<String>, String> {
         let given = self.history.now.steps.clone();
         let frames = self.frames(&given)?;
-        presets::keep(&*self.host, name, given, &frames)
+        presets::keep(&*self.host, name, given, &frames)?;
+        self.presets()
     }
 
-    pub(crate) fn forget_preset(&self, name: &str) -> Result<(), String> {
-        presets::forget(&*self.host, name)
+    /// Deletes a preset. Returns the names of the others.
+    pub(crate) fn forget_preset(&self, name: &str) -> Result<Vec<String>, String> {
+        presets::forget(&*self.host, name)?;
+        self.presets()
     }
 
     /// Returns the steps of a preset, adapted to this drawing.

@@ -100,22 +100,10 @@ impl Page {
             Request::Ahead { steps, draft } => Ok(json!({ "svg": session.bend(&steps, draft)?.picture()?.text() })),
             Request::Drawn { name, bytes } => Ok(json!({ "svg": session.drawn(&name, &bytes)?.text() })),
             Request::Parts => Ok(json!({ "parts": session.parts()? })),
-            Request::Bend { steps, draft } => {
-                let shown = session.bend(&steps, draft)?;
-                self.show(shown)
-            }
-            Request::Commit { steps, shown } => {
-                let shown = session.commit(steps, shown)?;
-                self.changed(session, shown)
-            }
-            Request::Undo { shown } => {
-                let shown = session.undo(shown)?;
-                self.changed(session, shown)
-            }
-            Request::Redo { shown } => {
-                let shown = session.redo(shown)?;
-                self.changed(session, shown)
-            }
+            Request::Bend { steps, draft } => session.bend(&steps, draft).and_then(|picture| self.show(picture)),
+            Request::Commit { steps, shown } => session.commit(steps, shown).and_then(|p| self.changed(session, p)),
+            Request::Undo { shown } => session.undo(shown).and_then(|picture| self.changed(session, picture)),
+            Request::Redo { shown } => session.redo(shown).and_then(|picture| self.changed(session, picture)),
             Request::Before => Ok(json!({ "svg": session.before()?.text() })),
             Request::Stretch { steps } => Ok(json!({ "stretch": session.stretch(&steps)? })),
             Request::Opening { deformation, variant, steps, select } => {
@@ -152,14 +140,8 @@ impl Page {
                 Ok(json!({ "done": true }))
             }
             Request::Presets => Ok(json!({ "presets": session.presets()? })),
-            Request::KeepPreset { name } => {
-                session.keep_preset(&name)?;
-                Ok(json!({ "presets": session.presets()? }))
-            }
-            Request::ForgetPreset { name } => {
-                session.forget_preset(&name)?;
-                Ok(json!({ "presets": session.presets()? }))
-            }
+            Request::KeepPreset { name } => Ok(json!({ "presets": session.keep_preset(&name)? })),
+            Request::ForgetPreset { name } => Ok(json!({ "presets": session.forget_preset(&name)? })),
             Request::Preset { name } => Ok(json!({ "steps": session.preset(&name)? })),
             Request::Preimage { steps, at } => session.preimage(&steps, at.into()),
             Request::Renet { steps, values } => session.renet(&steps, values),

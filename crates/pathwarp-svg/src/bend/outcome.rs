@@ -163,10 +163,7 @@ pub(crate) enum PartOutcome {
 
 impl PartOutcome {
     pub(crate) fn warped(&self) -> Option<&WarpedPart> {
-        match self {
-            Self::Kept => None,
-            Self::Warped(w) => Some(w),
-        }
+        if let Self::Warped(part) = self { Some(part) } else { None }
     }
 }
 
@@ -249,18 +246,12 @@ pub(crate) enum StrokeOutcome {
 impl StrokeOutcome {
     /// The outline of an expanded stroke.
     pub(crate) fn outline(&self) -> Option<&BezPath> {
-        match self {
-            Self::Scaled(_) => None,
-            Self::Outlined(o) => Some(o),
-        }
+        if let Self::Outlined(outline) = self { Some(outline) } else { None }
     }
 
     /// Factor for width and dashes; 1 for an expanded stroke.
     pub(crate) fn scale(&self) -> f64 {
-        match self {
-            Self::Scaled(s) => *s,
-            Self::Outlined(_) => 1.0,
-        }
+        if let Self::Scaled(factor) = self { *factor } else { 1.0 }
     }
 }
 
@@ -309,9 +300,7 @@ impl Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flattened(why) => write!(f, "the file is flattened, as its structure cannot be kept: {why}"),
-            Self::FittedGradient { id, why } => {
-                write!(f, "a gradient of {id} only follows the best affine fit: {why}")
-            }
+            Self::FittedGradient { id, why } => write!(f, "a gradient of {id} only follows the best affine fit: {why}"),
             Self::SingleWidth { id, error } => {
                 write!(f, "the stroke of {id} extends to where the map is undefined; it keeps a single width")?;
                 if error.is_finite() { write!(f, ", off by up to {error:.3} units") } else { Ok(()) }
