@@ -2082,6 +2082,7 @@
     box = byId("caption-box");
     text = byId("caption-text");
     step = null;
+    /** The words when typing began; empty for new ones. */
     before = "";
     /** Asks for the position of words with these values. */
     begin(args) {
@@ -2104,9 +2105,9 @@
       if (this.box.hidden || !at) return;
       const [x, y] = this.stage.camera.toScreen(at);
       const { clientWidth, clientHeight } = this.stage.svg;
-      const within = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
-      this.box.style.left = `${within(x, clientWidth - this.box.offsetWidth)}px`;
-      this.box.style.top = `${within(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
+      const clamp2 = (v, most) => Math.min(Math.max(v, 0), Math.max(most, 0));
+      this.box.style.left = `${clamp2(x, clientWidth - this.box.offsetWidth)}px`;
+      this.box.style.top = `${clamp2(y + BELOW, clientHeight - this.box.offsetHeight)}px`;
     }
     typed() {
       this.text.rows = this.text.value.split("\n").length;
@@ -2362,7 +2363,7 @@
 
   // src/ground.ts
   var GROUNDS = ["white", "black", "checks"];
-  var CHOSEN = "pathwarp-ground";
+  var CHOICE_KEY = "pathwarp-ground";
   var PALE = 235;
   var Ground = class {
     shown = "white";
@@ -2370,14 +2371,14 @@
     drawing = "";
     constructor(app2) {
       this.show(this.chosen);
-      app2.listen(["report"], () => this.suit(app2.state?.drawing ?? ""));
+      app2.listen(["report"], () => this.adapt(app2.state?.drawing ?? ""));
       byId("ground").addEventListener("click", () => {
         this.show(GROUNDS[(GROUNDS.indexOf(this.shown) + 1) % GROUNDS.length]);
-        localStorage.setItem(CHOSEN, this.shown);
+        localStorage.setItem(CHOICE_KEY, this.shown);
       });
     }
     get chosen() {
-      return GROUNDS.find((name) => name === localStorage.getItem(CHOSEN)) ?? "white";
+      return GROUNDS.find((name) => name === localStorage.getItem(CHOICE_KEY)) ?? "white";
     }
     show(name) {
       this.shown = name;
@@ -2385,7 +2386,7 @@
       byId("ground-name").textContent = name === "checks" ? "transparent" : name;
     }
     /** Shows an all-white drawing on black if the user has chosen white. */
-    suit(drawing) {
+    adapt(drawing) {
       const art = Array.from(document.querySelectorAll("#stage .art:not([visibility=hidden]) :is(path, image)"));
       if (drawing === this.drawing || art.length === 0) return;
       this.drawing = drawing;
@@ -2715,15 +2716,14 @@
   };
 
   // src/heat.ts
-  var FULL = Math.log2(2);
-  function cells({ columns, points, factors }, place) {
+  function cells({ columns, points, factors }, toPx) {
     const byColour = /* @__PURE__ */ new Map();
     factors.forEach((factor2, k) => {
       const [i, j] = [k % columns, Math.floor(k / columns)];
       const at = (di, dj) => points[(j + dj) * (columns + 1) + i + di];
       const corners2 = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
       if (factor2 === null || corners2.some((c) => !c)) return;
-      const d = corners2.map((c) => place(c).map((v) => v.toFixed(2)).join(",")).join("L");
+      const d = corners2.map((c) => toPx(c).map((v) => v.toFixed(2)).join(",")).join("L");
       const colour = shade(factor2);
       byColour.set(colour, [...byColour.get(colour) ?? [], `M${d}Z`]);
     });
@@ -2732,13 +2732,13 @@
       return s("path", { d: d.join(""), fill: fill2, "fill-opacity": opacity });
     });
   }
-  var STRONGEST = 0.8;
+  var FULL_OPACITY = 0.8;
   var STEPS = 16;
   function shade(factor2) {
     if (factor2 < 0) return "#e11d2e/0.85";
-    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor2, 1e-6)) / FULL));
+    const amount = Math.max(-1, Math.min(1, Math.log2(Math.max(factor2, 1e-6))));
     const step2 = Math.round(amount * STEPS) / STEPS;
-    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(STRONGEST * Math.abs(step2)).toFixed(3)}`;
+    return `${step2 < 0 ? "#2563eb" : "#ea7706"}/${(FULL_OPACITY * Math.abs(step2)).toFixed(3)}`;
   }
 
   // src/selection.ts
@@ -4097,7 +4097,8 @@
 
   // src/words.ts
   var BUNDLED = "Noto Sans (bundled)";
-  var LARGEST = 2e3;
+  var MAX_SIZE = 2e3;
+  var MAX_SPACING = 500;
   var WordsDialog = class {
     constructor(app2) {
       this.app = app2;
@@ -4166,8 +4167,8 @@
       const { app: app2 } = this;
       const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
       if (this.text.value.trim() === "") return this.say("Type some words first");
-      if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-      if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+      if (!(size > 0 && size <= MAX_SIZE)) return this.say(`The size is a number of mm up to ${MAX_SIZE}, such as 20`);
+      if (!(Math.abs(spacing) <= MAX_SPACING)) return this.say("The spacing is a number of per cent, such as 5");
       try {
         const words2 = { text: this.text.value, font: this.font, size, spacing };
         await app2.enter(async () => {

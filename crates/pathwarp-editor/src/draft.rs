@@ -141,13 +141,10 @@ pub(crate) fn state() -> Option<PathBuf> {
 
 /// Returns the folder `pathwarp` in the folder that an environment variable names: `windows` there, elsewhere `xdg` or below `HOME`.
 fn user_folder(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
-    let folder = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    let folder = if cfg!(windows) {
-        folder(windows)?
-    } else {
-        folder(xdg).filter(|p| p.is_absolute()).or_else(|| Some(folder("HOME")?.join(below_home)))?
-    };
-    Some(folder.join("pathwarp"))
+    let named = |variable: &str| std::env::var_os(variable).filter(|v| !v.is_empty()).map(PathBuf::from);
+    let xdg = || named(xdg).filter(|p| p.is_absolute()).or_else(|| Some(named("HOME")?.join(below_home)));
+    let folder = if cfg!(windows) { named(windows) } else { xdg() };
+    Some(folder?.join("pathwarp"))
 }
 
 /// Makes a name from a drawing's absolute path and `content`.

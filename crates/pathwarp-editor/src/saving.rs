@@ -24,9 +24,8 @@ pub(crate) fn words_file(text: &str, beside: &Path) -> PathBuf {
 
 /// Returns an unused name beside a file, numbered if necessary.
 fn unused_name(beside: &Path, stem: &str) -> PathBuf {
-    numbered_names(beside, stem)
-        .find(|p| !p.exists())
-        .unwrap_or_else(|| beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg")))
+    let last = || beside.with_file_name(format!("{stem}-{MOST_NAMES}.svg"));
+    numbered_names(beside, stem).find(|p| !p.exists()).unwrap_or_else(last)
 }
 
 /// Returns names beside a file, numbered from the second on.

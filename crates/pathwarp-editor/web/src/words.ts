@@ -6,7 +6,9 @@ import { inUnits, inWords, reason } from "./fields";
 import { toast } from "./toast";
 
 export const BUNDLED = "Noto Sans (bundled)";
-const LARGEST = 2000;
+/** The largest size of words in mm, and the largest absolute spacing in percent. */
+const MAX_SIZE = 2000;
+const MAX_SPACING = 500;
 
 export class WordsDialog {
   private dialog = byId<HTMLDialogElement>("words-dialog");
@@ -78,8 +80,8 @@ export class WordsDialog {
     const { app } = this;
     const [size, spacing] = [inUnits(this.size.value, "mm") ?? NaN, inUnits(this.spacing.value, "%") ?? NaN];
     if (this.text.value.trim() === "") return this.say("Type some words first");
-    if (!(size > 0 && size <= LARGEST)) return this.say(`The size is a number of mm up to ${LARGEST}, such as 20`);
-    if (!(Math.abs(spacing) <= 500)) return this.say("The spacing is a number of per cent, such as 5");
+    if (!(size > 0 && size <= MAX_SIZE)) return this.say(`The size is a number of mm up to ${MAX_SIZE}, such as 20`);
+    if (!(Math.abs(spacing) <= MAX_SPACING)) return this.say("The spacing is a number of per cent, such as 5");
     try {
       const words = { text: this.text.value, font: this.font, size, spacing };
       await app.enter(async () => {

@@ -113,7 +113,7 @@ pub(super) fn stroke(
         }
     }
     // The stretch on the path, from its user space to root user space.
-    let known = width.as_ref().map(StrokeWidth::stretch).filter(|s| *s > 0.0 && s.is_finite());
+    let known = width.as_ref().map(|w| w.stretch).filter(|s| *s > 0.0 && s.is_finite());
     match outline(t, s, known.unwrap_or_else(|| stretch(p.frame))) {
         Ok((path, report)) => Ok(BentStroke::outlined(path, Some(report))),
         // The outline may leave the map's domain; scale the width instead.

@@ -67,7 +67,7 @@ pub(super) struct StrokeWidth<'a> {
     /// `true` if part of the edge lies outside the map's domain.
     leaves_domain: bool,
     /// Largest factor by which lengths are stretched on the path, from the stroke's user space to root user space.
-    stretch: f64,
+    pub(super) stretch: f64,
     /// For dashes: the sum of the path's turns, in radians.
     turns: f64,
 }
@@ -109,10 +109,6 @@ impl<'a> StrokeWidth<'a> {
             out.add_outline(&piece.cut_from(&t.whole), &map, pieces / t.pieces.len())?;
         }
         Some(out)
-    }
-
-    pub(super) fn stretch(&self) -> f64 {
-        self.stretch
     }
 
     /// The mean local scale along the path.
