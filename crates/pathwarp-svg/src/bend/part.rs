@@ -209,7 +209,7 @@ fn filled_area(t: &PartTask<'_>, tolerance: f64) -> Option<(Outline, Vec<f64>)> 
     Some((Outline { subpaths: outline.subpaths.iter().filter(encloses).map(closed).collect() }, contours))
 }
 
-/// Returns `true` if one of the part's paints follows the affine fit: it is neither replaced by a gradient or a picture nor laid out as tiles.
+/// Returns `true` if one of the part's paints follows the affine fit: no gradient, picture or tiles replace it.
 fn follows_fit(p: &Part, warped: &WarpedPart, options: &WarpOptions) -> bool {
     let w = warped;
     let fill_replaced = w.fill_gradient.is_some() || w.fill_image.is_some() || p.fill_tiles.is_some();
