@@ -28,6 +28,7 @@ impl<C: ParamCurveFit> Source for Kurbo<C> {
     }
 
     fn breaks(&self) -> Vec<f64> {
+        /// A curve with more cusps would hang its caller.
         const MOST: usize = 10_000;
         let (mut out, mut parts) = (Vec::new(), vec![0.0..1.0]);
         while let Some(Range { start, end }) = parts.pop().filter(|_| out.len() < MOST) {

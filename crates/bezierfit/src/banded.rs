@@ -11,7 +11,8 @@ pub(crate) trait Right:
 impl Right for f64 {}
 impl Right for kurbo::Vec2 {}
 
-/// Solves a symmetric positive definite system, given the upper half of its band, by L·D·Lᵀ. `None` if it is not definite.
+/// Solves a symmetric positive definite system by L·D·Lᵀ. `band[i][d]` is the entry in row i and column i + d. `None` if it is not definite
+/// even with 1e-13 of the largest diagonal entry added to the diagonal, which is rounding.
 pub(crate) fn solve_banded<const BAND: usize, V: Right>(mut band: Vec<[f64; BAND]>, mut x: Vec<V>) -> Option<Vec<V>> {
     let n = x.len();
     let most = band.iter().map(|b| b[0]).fold(0.0, f64::max);
@@ -24,11 +25,10 @@ pub(crate) fn solve_banded<const BAND: usize, V: Right>(mut band: Vec<[f64; BAND
         for d in 1..BAND.min(n - i) {
             let factor = band[i][d] / pivot;
             for e in d..BAND.min(n - i) {
-                let by = factor * band[i][e];
-                band[i + d][e - d] -= by;
+                band[i + d][e - d] -= factor * band[i][e];
             }
-            let own = x[i];
-            x[i + d] -= own * factor;
+            let right = x[i];
+            x[i + d] -= right * factor;
         }
     }
     for i in (0..n).rev() {

@@ -14,22 +14,26 @@ use crate::limits::{BISECTION_MARGIN, BISECTIONS, FULL, HOPE, MAX_PLANNED, MIN_S
 use crate::path::Segment;
 use crate::report::{Assurance, Piece, REPORT_MARGIN, Report};
 use crate::sample::{CHECKED, FITTED, UNEVEN, larger, spaced};
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, Result, Source};
 use crate::stretch::{FitOutcome, StretchFitter};
 use kurbo::Line;
 
 /// Stretches that are still to be covered, the first on top, each with the outcome of a single piece if it is known.
 type Stack = Vec<(BreakPoint, BreakPoint, Option<FitOutcome>)>;
 
-/// A division of a stretch into `n` parts, with the outcomes that are known.
+/// A division of a stretch into `n` parts, with the outcomes of those that were attempted.
 struct Plan {
     n: usize,
+    /// Ends of the parts: the first n + 1 count.
     ends: [BreakPoint; MAX_PLANNED + 1],
     outcomes: [Option<FitOutcome>; MAX_PLANNED],
 }
 
 impl<S: Source> StretchFitter<'_, S> {
-    /// Appends pieces for the stretch between two break points. An error if the curve is not finite somewhere.
+    /// Appends pieces for the stretch between two break points.
+    ///
+    /// # Errors
+    /// [`NotFinite`](crate::NotFinite) if the curve is not finite somewhere.
     #[inline(always)]
     pub fn cover(
         &mut self,
@@ -37,7 +41,7 @@ impl<S: Source> StretchFitter<'_, S> {
         to: &BreakPoint,
         out: &mut Vec<Piece>,
         report: &mut Report,
-    ) -> Result<(), NotFinite> {
+    ) -> Result<()> {
         let first = self.attempt(from, to)?;
         if first.fits(self.tolerance) {
             self.accept(&first, out, report);
@@ -55,7 +59,7 @@ impl<S: Source> StretchFitter<'_, S> {
         first: FitOutcome,
         out: &mut Vec<Piece>,
         report: &mut Report,
-    ) -> Result<(), NotFinite> {
+    ) -> Result<()> {
         let mut stack: Stack = vec![(*from, *to, Some(first))];
         while let Some((from, to, known)) = stack.pop() {
             let outcome = match known {
@@ -72,27 +76,27 @@ impl<S: Source> StretchFitter<'_, S> {
                 report.unresolved.push(self.source.place(0.5 * (from.t + to.t)));
                 // Where the curve swings too fast for its derivatives to be of use, a line is nearer.
                 let line = Piece::Line(Line::new(from.p, to.p));
-                let [own, straight] = [outcome.piece, line].map(|piece| self.measured(&from, &to, piece));
-                let (own, straight) = (larger(outcome.error, own?), straight?);
-                let (piece, error) = if straight < own { (line, straight) } else { (outcome.piece, own) };
+                let fitted = larger(outcome.error, self.distance(&from, &to, outcome.piece)?);
+                let straight = self.distance(&from, &to, line)?;
+                let (piece, error) = if straight < fitted { (line, straight) } else { (outcome.piece, fitted) };
                 report.add_error(error * REPORT_MARGIN, Assurance::Checked);
                 out.push(piece);
                 continue;
             }
-            if let Some(t) = self.slow.inside(from.t, to.t).or(outcome.cusp) {
+            if let Some(t) = self.slow.middlemost(from.t, to.t).or(outcome.cusp) {
                 let mid = self.source.end(t)?;
                 stack.push((mid, to, None));
                 stack.push((from, mid, None));
                 continue;
             }
-            self.plan(from, to, &outcome, &mut stack)?;
+            self.plan([from, to], &outcome, &mut stack)?;
         }
         Ok(())
     }
 
     /// Hausdorff distance between a stretch and a piece that misses it.
     #[cold]
-    fn measured(&self, from: &BreakPoint, to: &BreakPoint, piece: Piece) -> Result<f64, NotFinite> {
+    fn distance(&self, from: &BreakPoint, to: &BreakPoint, piece: Piece) -> Result<f64> {
         let c = Segment::from(piece).segment().to_cubic();
         let [t0, t1, q] = [c.p1 - c.p0, c.p3 - c.p2, c.p3 - c.p0];
         // Handles of length one along unnormalised tangents serve also where a handle vanishes.
@@ -114,23 +118,18 @@ impl<S: Source> StretchFitter<'_, S> {
         out.push(outcome.piece);
     }
 
-    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Some may not fit.
-    fn plan(
-        &mut self,
-        from: BreakPoint,
-        to: BreakPoint,
-        whole: &FitOutcome,
-        stack: &mut Stack,
-    ) -> Result<(), NotFinite> {
+    /// Divides a stretch that one piece does not fit into parts of equal difficulty, and puts them on the stack. Some may not fit. Parts
+    /// are added until all fit, there are [`MAX_PLANNED`], the work is spent, or a cusp is found.
+    fn plan(&mut self, [from, to]: [BreakPoint; 2], whole: &FitOutcome, stack: &mut Stack) -> Result<()> {
         let tol = self.tolerance;
         // Begin with fewer parts than the difficulty predicts, of equal length.
         let n = ((whole.difficulty(tol) * HOPE).ceil() as usize).clamp(2, MAX_PLANNED);
         let mut plan = Plan { n, ends: [from; MAX_PLANNED + 1], outcomes: [None; MAX_PLANNED] };
         plan.ends[n] = to;
-        let places = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
-        self.announce(from.t, &(1..n).map(places), to.t);
+        let parameter = |i: usize| from.t + (to.t - from.t) * i as f64 / n as f64;
+        self.announce(from.t, &(1..n).map(parameter), to.t);
         for (i, end) in plan.ends.iter_mut().enumerate().take(n).skip(1) {
-            *end = self.source.end(places(i))?;
+            *end = self.source.end(parameter(i))?;
         }
         let mut placements = 0;
         loop {
@@ -164,7 +163,7 @@ impl<S: Source> StretchFitter<'_, S> {
             if next > MAX_PLANNED {
                 break;
             }
-            self.replace(&mut plan, next, to, &sums)?;
+            self.place_at_quantiles(&mut plan, next, &sums)?;
         }
         for i in (0..plan.n).rev() {
             stack.push((plan.ends[i], plan.ends[i + 1], plan.outcomes[i]));
@@ -172,47 +171,39 @@ impl<S: Source> StretchFitter<'_, S> {
         Ok(())
     }
 
-    /// Moves the break points to the quantiles of the difficulty for `next` parts. `sums` are sums of the difficulty up to the old ones.
-    fn replace(
-        &self,
-        plan: &mut Plan,
-        next: usize,
-        to: BreakPoint,
-        sums: &[f64; MAX_PLANNED + 1],
-    ) -> Result<(), NotFinite> {
+    /// Divides the plan's stretch into `next` parts at quantiles of the difficulty, whose sums up to the old break points are `sums`.
+    fn place_at_quantiles(&self, plan: &mut Plan, next: usize, sums: &[f64; MAX_PLANNED + 1]) -> Result<()> {
         let (n, old) = (plan.n, plan.ends);
-        let total = sums[n];
-        let mut at = 0;
-        let mut places = [0.0; MAX_PLANNED + 1];
-        for (i, place) in places.iter_mut().enumerate().take(next).skip(1) {
-            let want = total * i as f64 / next as f64;
-            while at + 1 < n && sums[at + 1] < want {
-                at += 1;
+        let mut part = 0;
+        let mut parameters = [0.0; MAX_PLANNED + 1];
+        for (i, parameter) in parameters.iter_mut().enumerate().take(next).skip(1) {
+            let quantile = sums[n] * i as f64 / next as f64;
+            while part + 1 < n && sums[part + 1] < quantile {
+                part += 1;
             }
-            let share = (want - sums[at]) / (sums[at + 1] - sums[at]);
-            *place = old[at].t + (old[at + 1].t - old[at].t) * share.clamp(0.0, 1.0);
+            let share = (quantile - sums[part]) / (sums[part + 1] - sums[part]);
+            *parameter = old[part].t + (old[part + 1].t - old[part].t) * share.clamp(0.0, 1.0);
         }
-        self.announce(old[0].t, &places[1..next].iter().copied(), to.t);
-        for (end, place) in plan.ends[1..next].iter_mut().zip(&places[1..next]) {
-            *end = self.source.end(*place)?;
+        self.announce(old[0].t, &parameters[1..next].iter().copied(), old[n].t);
+        for (end, parameter) in plan.ends[1..next].iter_mut().zip(&parameters[1..next]) {
+            *end = self.source.end(*parameter)?;
         }
-        plan.ends[next] = to;
-        plan.outcomes = [None; MAX_PLANNED];
-        plan.n = next;
+        plan.ends[next] = old[n];
+        (plan.n, plan.outcomes) = (next, [None; MAX_PLANNED]);
         Ok(())
     }
 
-    /// Announces the break points at the parameters `places` in the stretch from `first` to `last`, and the samples of each part.
-    fn announce(&self, first: f64, places: &(impl Iterator<Item = f64> + Clone), last: f64) {
-        let starts = std::iter::once(first).chain(places.clone());
-        let parts = starts.zip(places.clone().chain([last]));
+    /// Announces the break points at some parameters in the stretch from `first` to `last`, and the samples of each part.
+    fn announce(&self, first: f64, breaks: &(impl Iterator<Item = f64> + Clone), last: f64) {
+        let starts = std::iter::once(first).chain(breaks.clone());
+        let parts = starts.zip(breaks.clone().chain([last]));
         let lanes = parts.flat_map(|(a, b)| [&FITTED, &CHECKED, &UNEVEN].map(|set| spaced(a, b - a, set)));
-        S::announce(&mut lanes.map(|t| (self.source, t)), &mut places.clone().map(|t| (self.source, t)));
+        S::announce(&mut lanes.map(|t| (self.source, t)), &mut breaks.clone().map(|t| (self.source, t)));
     }
 
     /// Moves break points between a piece that misses and a neighbour that fits until both fit. Near its limit, a piece's
     /// error is not a smooth function of its length, so that quantiles fail. Returns `true` if all pieces fit now.
-    fn repair(&mut self, plan: &mut Plan) -> Result<bool, NotFinite> {
+    fn repair(&mut self, plan: &mut Plan) -> Result<bool> {
         let tol = self.tolerance;
         let fits = |o: &Option<FitOutcome>| o.is_some_and(|o| o.fits(tol));
         let (ends, outcomes) = (&mut plan.ends[..=plan.n], &mut plan.outcomes[..plan.n]);
@@ -230,22 +221,19 @@ impl<S: Source> StretchFitter<'_, S> {
     }
 
     /// Moves the break point between two pieces, one of which fits, until both fit or clearly cannot.
-    fn balance(&mut self, ends: &mut [BreakPoint], outcomes: &mut [Option<FitOutcome>]) -> Result<(), NotFinite> {
+    fn balance(&mut self, ends: &mut [BreakPoint], outcomes: &mut [Option<FitOutcome>]) -> Result<()> {
         let tol = self.tolerance;
         let [from, mid, to] = *ends else { return Ok(()) };
-        let [Some(a), Some(b)] = *outcomes else { return Ok(()) };
+        let [Some(first), Some(second)] = *outcomes else { return Ok(()) };
         let (mut lo, mut hi, mut t) = (from.t, to.t, mid.t);
-        let mut now = [a, b];
+        let mut now = [first, second];
         for _ in 0..BISECTIONS {
             // Let the piece that fits grow.
-            if now[0].fits(tol) {
-                lo = t;
-            } else {
-                hi = t;
-            }
-            let [da, db] = [now[0].difficulty(tol), now[1].difficulty(tol)];
-            let half = 0.5 * (da + db);
-            t = if half < da { from.t + (t - from.t) * half / da } else { to.t - (to.t - t) * half / db };
+            *if now[0].fits(tol) { &mut lo } else { &mut hi } = t;
+            // Move the break point to half of the difficulty.
+            let [before, after] = now.map(|o| o.difficulty(tol));
+            let half = 0.5 * (before + after);
+            t = if half < before { from.t + (t - from.t) * half / before } else { to.t - (to.t - t) * half / after };
             let margin = BISECTION_MARGIN * (hi - lo);
             if !(t > lo + margin && t < hi - margin) {
                 t = 0.5 * (lo + hi);

@@ -1,22 +1,28 @@
-//! Checks a cubic over several segments. The error is smooth along each segment and may have corners at the joints.
+//! Checks a cubic over several segments of a run: its distance from the run, and a proven bound for it.
+//!
+//! Samples of the run are numbered from its start; `first` is the number of the cubic's first sample, and every segment has a sample at
+//! either end. The error is smooth along each segment and may have corners at the joints. So peaks are predicted segment by segment, and
+//! the run is sampled more closely where a predicted peak, a wide gap between samples, or a turn at a joint leaves the error in doubt.
+//! Where the cubic turns sharply between two samples, it may bulge away from the image, and distances are measured both ways.
 
 use crate::fit::FOOT_ROUNDING;
 use crate::limits::{COARSE_CHECK, PEAK_FACTOR, PEAK_NEAR, SHARP_TURN, SHORT_FACTOR, SHORT_PART};
 use crate::proof;
 use crate::report::Piece;
-use crate::run::RunCubic;
-use crate::run::SegmentRun;
+use crate::run::{RunCubic, SegmentRun};
 use crate::sample::{
-    ALL, Evenly, Lane, Lanes, extreme, larger, largest, parabola_peak, predicted_end_peak, predicted_peak, turns_little,
+    IN_ORDER, InOrder, Lane, Lanes, larger, largest, parabola_extreme, parabola_peak, predicted_end_peak,
+    predicted_peak, turns_little,
 };
-use crate::source::{NotFinite, Source};
+use crate::source::{Result, Source};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveDeriv, ParamCurveNearest, Point, Vec2};
 
-/// Distances and foot points of all samples under a cubic.
+/// Distances and foot points of a cubic's samples, the first of which has index 0.
 #[derive(Default)]
 pub(crate) struct Distances {
     /// Distances, signed by the side of the cubic.
     pub(crate) errors: Vec<f64>,
+    /// Foot points: parameters of the points of the cubic nearest to the samples.
     pub(crate) feet: Vec<f64>,
 }
 
@@ -44,16 +50,14 @@ pub struct MarkBatch {
     pub tangents: [Vec2; 8],
 }
 
+/// A segment's number in the run, and the numbers of two of its samples.
+type Gap = (usize, [usize; 2]);
+
 impl Distances {
     /// Distance between the cubic and the run, by the run's samples, and by closer ones where it may exceed `enough` between them.
     /// `None` if samples may miss something: the foot points do not advance along the cubic, or it may turn by more than 60° from one to
     /// the next.
-    pub(crate) fn measure(
-        &mut self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        enough: f64,
-    ) -> Result<Option<f64>, NotFinite> {
+    pub(crate) fn measure(&mut self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Result<Option<f64>> {
         let mut worst = self.at_samples(run, c, enough);
         if worst > enough {
             return Ok(Some(worst));
@@ -61,26 +65,26 @@ impl Distances {
         if self.feet.windows(2).any(|w| w[1] < w[0] - FOOT_ROUNDING) || !self.advances(run, c) {
             return Ok(None);
         }
-        let doubtful = self.doubtful(run, c, enough);
+        let doubtful = self.doubtful_gaps(run, c, enough);
         if doubtful.len() > 1 {
-            let source = |i: usize| run.segments.get(i).map(|s| &s.source);
-            let mut lanes = doubtful.iter().filter_map(|(i, between)| Some((source(*i)?, places(run, *i, *between))));
+            let mut lanes =
+                doubtful.iter().filter_map(|gap| Some((&run.segments.get(gap.0)?.source, inside(run, *gap))));
             Source::announce(&mut lanes, &mut std::iter::empty());
         }
-        for (i, between) in doubtful {
-            worst = worst.max(self.closely(run, c, i, between)?);
+        for gap in doubtful {
+            worst = worst.max(self.error_in_gap(c, run.images(gap.0, &inside(run, gap))?, gap.1));
         }
-        for (i, between) in self.bulging(run, c, enough) {
+        for gap in self.bulging_gaps(run, c, enough) {
             if worst <= enough {
-                worst = worst.max(self.both_ways(run, c, i, between)?);
+                worst = worst.max(self.error_both_ways(run, c, gap)?);
             }
         }
         Ok(Some(worst))
     }
 
-    /// Pairs of neighbouring samples, each with its segment, between which the cubic turns so sharply that it may leave the image by
-    /// more than `enough`. An arc that turns by θ bulges by θ/8 of its chord.
-    fn bulging(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
+    /// Gaps between neighbouring samples in which the cubic turns so sharply that it may leave the image by more than `enough`. An arc
+    /// that turns by θ bulges by θ/8 of its chord.
+    fn bulging_gaps(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<Gap> {
         let power = c.frame.power(c.a, c.b);
         let first = c.samples[0];
         // Angles between samples are less than 60°; their tangents are upper bounds for them.
@@ -106,15 +110,9 @@ impl Distances {
         out
     }
 
-    /// Hausdorff distance between cubic and image between two samples of segment `i`.
-    fn both_ways(
-        &self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        i: usize,
-        [a, b]: [usize; 2],
-    ) -> Result<f64, NotFinite> {
-        let g = run.images(i, &places(run, i, [a, b]))?;
+    /// Hausdorff distance between cubic and image in a gap.
+    fn error_both_ways(&self, run: &SegmentRun<impl Source>, c: &RunCubic, (i, [a, b]): Gap) -> Result<f64> {
+        let g = run.images(i, &inside(run, (i, [a, b])))?;
         let sample = |k: usize| Point::new(run.x[k], run.y[k]);
         let mut image = [sample(a); 10];
         for k in 0..8 {
@@ -128,11 +126,11 @@ impl Distances {
             sides.fold(f64::INFINITY, f64::min)
         };
         let worst = feet.into_iter().map(|s| squared(cubic.eval(s))).fold(0.0, f64::max).sqrt();
-        Ok(worst.max(self.between(c, g, [a, b])))
+        Ok(worst.max(self.error_in_gap(c, g, [a, b])))
     }
 
-    /// Pairs of samples, each with its segment, between which the error may exceed `enough`.
-    fn doubtful(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<(usize, [usize; 2])> {
+    /// Gaps in which the error may exceed `enough`. Those around a predicted peak span two intervals.
+    fn doubtful_gaps(&self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> Vec<Gap> {
         let mut out = Vec::new();
         let [first, last] = c.samples;
         let coarse = COARSE_CHECK * (run.length[last] - run.length[first]);
@@ -181,6 +179,7 @@ impl Distances {
         let [first, last] = c.samples;
         let [c1, c2, c3] = c.frame.power(c.a, c.b);
         let n = run.per_segment;
+        // Two samples for each segment, evenly from end to end.
         let count = (last - first).div_ceil(4 * n);
         let batch = |b: usize| {
             let chosen: [usize; 8] = std::array::from_fn(|i| (8 * b + i + 1) * (last - first) / (8 * count + 1));
@@ -200,11 +199,11 @@ impl Distances {
         let first = c.samples[0];
         parts(run.per_segment, c.samples)
             .flat_map(|(_, [from, to])| self.errors[from - first..=to - first].windows(3))
-            .map(|w| extreme([w[0], w[1], w[2]]))
+            .map(|w| parabola_extreme([w[0], w[1], w[2]]))
             .fold(0.0, larger)
     }
 
-    /// Largest distance of a sample. Above `enough`, only a sign that the cubic fails: the remaining samples are not measured.
+    /// Largest distance of a sample, after measuring all of them. If it exceeds `enough`, only some were measured.
     fn at_samples(&mut self, run: &SegmentRun<impl Source>, c: &RunCubic, enough: f64) -> f64 {
         let [first, last] = c.samples;
         let origin = c.ends[0];
@@ -249,19 +248,8 @@ impl Distances {
         })
     }
 
-    /// Largest distance between two samples of segment `i`, by eight more and the parabolas through all ten.
-    fn closely(
-        &self,
-        run: &SegmentRun<impl Source>,
-        c: &RunCubic,
-        i: usize,
-        [a, b]: [usize; 2],
-    ) -> Result<f64, NotFinite> {
-        Ok(self.between(c, run.images(i, &places(run, i, [a, b]))?, [a, b]))
-    }
-
     /// Largest distance between two samples, by eight images `g` evenly between them and the parabolas through all ten.
-    fn between(&self, c: &RunCubic, mut g: Lanes, [a, b]: [usize; 2]) -> f64 {
+    fn error_in_gap(&self, c: &RunCubic, mut g: Lanes, [a, b]: [usize; 2]) -> f64 {
         let first = c.samples[0];
         for i in 0..8 {
             g.x[i] -= c.ends[0].x;
@@ -280,10 +268,14 @@ impl Distances {
     }
 }
 
-/// Eight parameters of segment `i`, evenly between two samples.
-fn places(run: &SegmentRun<impl Source>, i: usize, [a, b]: [usize; 2]) -> Lane {
-    let param = |k: usize| (k - i * run.per_segment) as f64 / run.per_segment as f64;
-    spread([param(a), param(b)])
+/// Parameters of a gap's ends in its segment.
+fn parameters(run: &SegmentRun<impl Source>, (i, gap): Gap) -> [f64; 2] {
+    gap.map(|k| (k - i * run.per_segment) as f64 / run.per_segment as f64)
+}
+
+/// Eight parameters evenly inside a gap.
+fn inside(run: &SegmentRun<impl Source>, gap: Gap) -> Lane {
+    spread(parameters(run, gap))
 }
 
 /// Eight parameters evenly between two.
@@ -292,7 +284,7 @@ fn spread([a, b]: [f64; 2]) -> Lane {
 }
 
 /// Segments between two samples, each with its first and last sample.
-pub(crate) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Iterator<Item = (usize, [usize; 2])> {
+pub(crate) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Iterator<Item = Gap> {
     let n = per_segment;
     (first / n..last.div_ceil(n)).map(move |i| (i, [first.max(i * n), last.min((i + 1) * n)]))
 }
@@ -301,12 +293,12 @@ pub(crate) fn parts(per_segment: usize, [first, last]: [usize; 2]) -> impl Itera
 /// share before.
 #[inline(always)]
 fn interpolated(c: &RunCubic, share: f64, knot: &mut usize) -> f64 {
-    let (at, feet): (&Evenly, &Evenly) = (&c.shares, &c.feet);
-    while *knot + 2 < ALL && at[*knot + 1] < share {
+    let (shares, feet): (&InOrder, &InOrder) = (&c.shares, &c.feet);
+    while *knot + 2 < IN_ORDER && shares[*knot + 1] < share {
         *knot += 1;
     }
-    let (k, step) = (*knot, at[*knot + 1] - at[*knot]);
-    if step > 0.0 { feet[k] + (feet[k + 1] - feet[k]) * ((share - at[k]) / step) } else { feet[k] }
+    let (k, step) = (*knot, shares[*knot + 1] - shares[*knot]);
+    if step > 0.0 { feet[k] + (feet[k + 1] - feet[k]) * ((share - shares[k]) / step) } else { feet[k] }
 }
 
 /// Returns `true` if the cubic C(s) = ((c₃s + c₂)s + c₁)s turns little between two parameters: if the three control vectors of its
@@ -325,12 +317,7 @@ fn controls([c1, c2, c3]: &[Vec2; 3], [s, t]: [f64; 2]) -> [Vec2; 3] {
 
 /// Proven distance of a cubic from the run; infinite if none can be proven. The cubic is divided at the foot points of the joints.
 /// `feet` are the foot points of its samples.
-pub(crate) fn proven(
-    run: &SegmentRun<impl Source>,
-    c: &RunCubic,
-    feet: &[f64],
-    tolerance: f64,
-) -> Result<f64, NotFinite> {
+pub(crate) fn proven(run: &SegmentRun<impl Source>, c: &RunCubic, feet: &[f64], tolerance: f64) -> Result<f64> {
     let cubic = c.cubic();
     let [first, last] = c.samples;
     let (mut s, mut worst) = (0.0, 0.0f64);
@@ -342,9 +329,8 @@ pub(crate) fn proven(
         if next <= s {
             return Ok(f64::INFINITY);
         }
-        let param = |k: usize| (k - i * run.per_segment) as f64 / run.per_segment as f64;
         let part = cubic.subsegment(s..next);
-        worst = worst.max(proof::stretch(&segment.source, form, [param(a), param(b)], &part, tolerance)?);
+        worst = worst.max(proof::stretch(&segment.source, form, parameters(run, (i, [a, b])), &part, tolerance)?);
         if worst > tolerance {
             break;
         }

@@ -32,25 +32,25 @@
 //! |h| is the least error that three residuals allow, and the least error of all sixteen is the largest |h| of any three. So the sample
 //! with the largest residual replaces the one of the reference that leaves the largest |h|, until no residual exceeds |h|.
 //!
-//! In the code `z` is a state (a, b, s), `n` a normal residual with the derivatives `na`, `nb` by the handles, and `ds` the Newton step of
-//! a foot point with the derivatives `sa`, `sb`.
+//! In the code a *state* is (a, b, s), `g` are the samples, `n` is a normal residual with the derivatives `na`, `nb` by the handles, and `ds`
+//! the Newton step of a foot point with the derivatives `sa`, `sb`. Every stage works on eight samples at once (`Lane`, `Lanes`).
 
 use crate::limits::{
     GIVE_UP, GOOD_ENOUGH, MAX_EVALUATIONS, MIN_GAIN, MINIMAX_HOPE, MINIMAX_WITHIN, PROMISE_AFTER, RESTART_FACTOR,
     RESTART_WITHIN, RUN_EVALUATIONS, TRUST_RADIUS,
 };
 use crate::sample::{Lane, Lanes, clamp_unit, fma, larger, largest, norm_squared, residual_at};
-use crate::source::{BreakPoint, NotFinite, Source, images};
+use crate::source::{BreakPoint, Result, Source, images};
 use kurbo::{CubicBez, Point, Vec2};
 
 /// Result of a fit: the state with the smallest sum of squares.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fit {
-    pub(crate) z: FitState,
+    pub(crate) state: FitState,
     /// The largest normal residual.
     pub(crate) error: f64,
     /// If the fit was given up, a prediction of the largest residual it would have reached; otherwise `error`.
-    pub(crate) reach: f64,
+    pub(crate) predicted: f64,
     /// Newton step that the foot points still have to take.
     pub(crate) ds: Lane,
     /// Squares of the normal residuals.
@@ -67,58 +67,58 @@ pub(crate) struct Effort {
     gives_up: bool,
 }
 
-/// Limits for single segments, most of which one cubic fits.
+/// Limits for parts of one segment, most of which one cubic fits.
 pub(crate) const USUAL: Effort = Effort { evaluations: MAX_EVALUATIONS, trust_radius: TRUST_RADIUS, gives_up: true };
 
 /// Limits for several segments under one cubic. It may turn much, so that the handles to start from are far off.
 pub(crate) const THOROUGH: Effort = Effort { evaluations: RUN_EVALUATIONS, trust_radius: 1.0, gives_up: false };
 
-/// Fits from `start` until the largest residual is at most `enough` or stops improving. If it stays far above `wanted`, a
-/// rough fit suffices: it only has to predict the number of pieces.
-///
-/// The foot points of `start` must be within a Newton step of the nearest points; see [`ChordFrame::settle`].
+/// Fits from `start` until the largest residual is at most `enough` or stops improving. With [`Effort::gives_up`], the fit also ends where
+/// it is bound to stay far above `wanted`. The foot points of `start` must be within a Newton step ([`ChordFrame::settle`]) of the nearest
+/// points.
 #[inline(never)]
 pub(crate) fn fit(effort: &Effort, frame: &ChordFrame, g: &Lanes, start: FitState, [enough, wanted]: [f64; 2]) -> Fit {
     let (enough, beyond) = (enough * enough, (GIVE_UP * wanted).powi(2));
     // The best state so far and the trial state alternate between two slots. Errors are squared in this function.
-    let mut z = [start, start];
+    let mut states = [start, start];
     let mut r = [Residuals::NONE; 2];
     let (mut best, mut error) = (0, f64::INFINITY);
     let (mut sums, mut squares) = ([0.0; 5], f64::INFINITY);
     let (mut step, mut length) = ([0.0; 2], 0.0);
     let mut trust = 0.5 * effort.trust_radius * frame.size;
-    let mut left = 1.0;
-    for k in 1.. {
-        let [z0, z1] = &mut z;
+    let mut remaining = 1.0;
+    for evaluation in 1.. {
+        let [state0, state1] = &mut states;
         let [r0, r1] = &mut r;
-        let (from, to) = if best == 0 { ((z0, r0), (z1, r1)) } else { ((z1, r1), (z0, r0)) };
-        frame.advance(g, step, from.0, from.1, to.0, to.1);
-        let (sn, sq, en) = frame.pulled(to.1.sums(), to.0);
-        // The first steps also settle the foot points, which may raise the sum a little.
-        if sq <= squares {
-            (sums, squares, error) = (sn, sq, en);
+        let (from, to) = if best == 0 { ((&*state0, &*r0), (state1, r1)) } else { ((&*state1, &*r1), (state0, r0)) };
+        frame.advance(g, step, from, to.0, to.1);
+        let (new_sums, new_squares, new_error) = frame.add_pull(to.1.sums(), to.0);
+        // A step that raises the sum of squares is not taken; the next one from the best state is shorter.
+        if new_squares <= squares {
+            (sums, squares, error) = (new_sums, new_squares, new_error);
             best = 1 - best;
             trust *= 2.0;
-        } else if k == 1 {
+        } else if evaluation == 1 {
             // The sum is NaN.
             break;
         } else {
             trust = 0.25 * length;
         }
-        if k == effort.evaluations || error <= enough {
+        if evaluation == effort.evaluations || error <= enough {
             break;
         }
         let Some((newton, gain)) = gauss_newton(&sums) else { break };
-        if k > 1 && gain < MIN_GAIN * squares {
+        if evaluation > 1 && gain < MIN_GAIN * squares {
             break;
         }
-        if effort.gives_up && k > PROMISE_AFTER && error * (squares - gain) > beyond * squares {
-            left = 1.0 - gain / squares;
+        if effort.gives_up && evaluation > PROMISE_AFTER && error * (squares - gain) > beyond * squares {
+            remaining = 1.0 - gain / squares;
             break;
         }
-        (step[0], step[1], length) = frame.bent(newton, &z[best], trust);
+        (step[0], step[1], length) = frame.bend_step(newton, &states[best], trust);
     }
-    Fit { z: z[best], error: error.sqrt(), reach: (error * left).sqrt(), ds: r[best].ds, squares: r[best].squares }
+    let Residuals { ds, squares, .. } = r[best];
+    Fit { state: states[best], error: error.sqrt(), predicted: (error * remaining).sqrt(), ds, squares }
 }
 
 /// Chord, end tangents and limits of the handles of a piece.
@@ -140,7 +140,8 @@ pub struct ChordFrame {
     pub pull: f64,
 }
 
-/// Size of a piece with chord `q`: the largest distance of some samples from its first point; if `evenly`, from either end.
+/// Size of a piece with chord `q`: the largest distance of the chord's end and of samples 3 and 6 from its first point; if `evenly`, also
+/// of their mirror images 4 and 1 from its last point.
 #[inline(always)]
 pub(crate) fn size(q: Vec2, g: &Lanes, evenly: bool) -> f64 {
     let far = |i: usize, p: Vec2| (Vec2::new(g.x[i], g.y[i]) - p).hypot2();
@@ -211,6 +212,99 @@ impl ChordFrame {
             out[i] = squares[i].sqrt().copysign(fma(rx, dy, -(ry * dx)));
         }
         out
+    }
+
+    /// Adds the pull towards the Hermite handles to the equations.
+    #[inline(always)]
+    pub(crate) fn add_pull(&self, (mut sums, squares, error): NormalEquations, state: &FitState) -> NormalEquations {
+        let (da, db) = (state.a - self.home[0], state.b - self.home[1]);
+        sums[0] += self.pull;
+        sums[2] += self.pull;
+        sums[3] += self.pull * da;
+        sums[4] += self.pull * db;
+        (sums, squares + self.pull * (da * da + db * db), error)
+    }
+
+    /// Moves the handles of a state by (da, db) and the foot points along with them, and evaluates the result.
+    #[inline(never)]
+    pub(crate) fn advance(
+        &self,
+        g: &Lanes,
+        [da, db]: [f64; 2],
+        (state, residuals): (&FitState, &Residuals),
+        next: &mut FitState,
+        out: &mut Residuals,
+    ) {
+        (next.a, next.b) = (state.a + da, state.b + db);
+        for i in 0..8 {
+            let along = fma(da, residuals.sa[i], fma(db, residuals.sb[i], residuals.ds[i]));
+            next.s[i] = clamp_unit(state.s[i] + along);
+        }
+        self.measure(g, next, out);
+    }
+
+    /// Evaluates `state`. The normal part of a residual ρ is ρ×C′/|C′|; products of two such need only the factor 1/|C′|², no root.
+    #[inline(always)]
+    fn measure(&self, g: &Lanes, state: &FitState, out: &mut Residuals) {
+        let c = self.power(state.a, state.b);
+        let tangents = [self.t0, self.t1];
+        let o = [0.0; 8];
+        let (mut n, mut na, mut nb, mut kn, mut ka, mut kb) = (o, o, o, o, o, o);
+        for i in 0..8 {
+            let r = SampleResidual::new(&c, tangents, state.s[i], [g.x[i], g.y[i]]);
+            let k = r.k;
+            (n[i], na[i], nb[i]) = (r.n, r.na, r.nb);
+            (kn[i], ka[i], kb[i]) = (n[i] * k, na[i] * k, nb[i] * k);
+            out.squares[i] = n[i] * n[i] * k;
+            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
+        }
+        for i in 0..4 {
+            let j = i + 4;
+            out.parts[0][i] = fma(ka[i], na[i], ka[j] * na[j]);
+            out.parts[1][i] = fma(ka[i], nb[i], ka[j] * nb[j]);
+            out.parts[2][i] = fma(kb[i], nb[i], kb[j] * nb[j]);
+            out.parts[3][i] = fma(ka[i], n[i], ka[j] * n[j]);
+            out.parts[4][i] = fma(kb[i], n[i], kb[j] * n[j]);
+            out.parts[5][i] = fma(kn[i], n[i], kn[j] * n[j]);
+        }
+    }
+
+    /// Shortens a step to `most` and bends it along the valley of equal area. Returns the step and its length.
+    #[inline(always)]
+    pub(crate) fn bend_step(&self, [mut da, mut db]: [f64; 2], state: &FitState, most: f64) -> (f64, f64, f64) {
+        let longest = da.abs().max(db.abs());
+        if longest > most {
+            [da, db] = [da, db].map(|d| d * (most / longest));
+        }
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let (ga, gb) = (self.q.cross(self.t0) - k2 * state.b, self.t1.cross(self.q) - k2 * state.a);
+        let g2 = ga * ga + gb * gb;
+        let (va, vb) = (ga / g2, gb / g2);
+        let e = k2 * da * db;
+        // The correction is of second order in the step. If it is not small, the quadratic model of the valley is wrong.
+        if e * e < 0.25 * (da * da + db * db) * g2 {
+            da += e * va;
+            db += e * vb;
+        }
+        ((state.a + da).max(self.floor[0]) - state.a, (state.b + db).max(self.floor[1]) - state.b, longest.min(most))
+    }
+
+    /// The state of equal area with handle number `scaled` (0 or 1) `factor` times as long. `None` if a handle is out of range.
+    #[inline(always)]
+    pub(crate) fn along_valley(&self, g: &Lanes, state: &FitState, (scaled, factor): (usize, f64)) -> Option<FitState> {
+        let k2 = 0.5 * self.t1.cross(self.t0);
+        let k = [self.q.cross(self.t0), self.t1.cross(self.q)];
+        let (mut new, other) = ([state.a, state.b], 1 - scaled);
+        new[scaled] *= factor;
+        new[other] = (k[0] * state.a + k[1] * state.b - k2 * state.a * state.b - k[scaled] * new[scaled])
+            / (k[other] - k2 * new[scaled]);
+        if !(new[other] > self.floor[other] && new[other] < self.size) {
+            return None;
+        }
+        let [a, b] = new;
+        let mut start = FitState { a, b, s: state.s };
+        self.settle(g, a, b, &mut start.s);
+        Some(start)
     }
 }
 
@@ -295,111 +389,14 @@ impl Residuals {
     }
 }
 
-impl ChordFrame {
-    /// Adds the pull towards the Hermite handles to the equations.
-    #[inline(always)]
-    pub(crate) fn pulled(&self, (mut sums, squares, error): NormalEquations, z: &FitState) -> NormalEquations {
-        let (da, db) = (z.a - self.home[0], z.b - self.home[1]);
-        sums[0] += self.pull;
-        sums[2] += self.pull;
-        sums[3] += self.pull * da;
-        sums[4] += self.pull * db;
-        (sums, squares + self.pull * (da * da + db * db), error)
-    }
-
-    /// Moves the handles of `z` by (da, db) and the foot points along with them, and evaluates the result.
-    #[inline(never)]
-    pub(crate) fn advance(
-        &self,
-        g: &Lanes,
-        [da, db]: [f64; 2],
-        z: &FitState,
-        at: &Residuals,
-        to: &mut FitState,
-        out: &mut Residuals,
-    ) {
-        (to.a, to.b) = (z.a + da, z.b + db);
-        for i in 0..8 {
-            to.s[i] = clamp_unit(z.s[i] + fma(da, at.sa[i], fma(db, at.sb[i], at.ds[i])));
-        }
-        self.measure(g, to, out);
-    }
-
-    /// Evaluates `z`. The normal part of a residual ρ is ρ×C′/|C′|; products of two such need only the factor 1/|C′|², no root.
-    #[inline(always)]
-    fn measure(&self, g: &Lanes, z: &FitState, out: &mut Residuals) {
-        let c = self.power(z.a, z.b);
-        let tangents = [self.t0, self.t1];
-        let o = [0.0; 8];
-        let (mut n, mut na, mut nb, mut kn, mut ka, mut kb) = (o, o, o, o, o, o);
-        for i in 0..8 {
-            let r = SampleResidual::new(&c, tangents, z.s[i], [g.x[i], g.y[i]]);
-            let k = r.k;
-            (n[i], na[i], nb[i]) = (r.n, r.na, r.nb);
-            (kn[i], ka[i], kb[i]) = (n[i] * k, na[i] * k, nb[i] * k);
-            out.squares[i] = n[i] * n[i] * k;
-            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
-        }
-        for i in 0..4 {
-            let j = i + 4;
-            out.parts[0][i] = fma(ka[i], na[i], ka[j] * na[j]);
-            out.parts[1][i] = fma(ka[i], nb[i], ka[j] * nb[j]);
-            out.parts[2][i] = fma(kb[i], nb[i], kb[j] * nb[j]);
-            out.parts[3][i] = fma(ka[i], n[i], ka[j] * n[j]);
-            out.parts[4][i] = fma(kb[i], n[i], kb[j] * n[j]);
-            out.parts[5][i] = fma(kn[i], n[i], kn[j] * n[j]);
-        }
-    }
-
-    /// Shortens a step to `most` and bends it along the valley of equal area. Returns the step and its length.
-    #[inline(always)]
-    pub(crate) fn bent(&self, [mut da, mut db]: [f64; 2], z: &FitState, most: f64) -> (f64, f64, f64) {
-        let longest = da.abs().max(db.abs());
-        if longest > most {
-            [da, db] = [da, db].map(|d| d * (most / longest));
-        }
-        let k2 = 0.5 * self.t1.cross(self.t0);
-        let (ga, gb) = (self.q.cross(self.t0) - k2 * z.b, self.t1.cross(self.q) - k2 * z.a);
-        let g2 = ga * ga + gb * gb;
-        let (va, vb) = (ga / g2, gb / g2);
-        let e = k2 * da * db;
-        // The correction is of second order in the step. If it is not small, the quadratic model of the valley is wrong.
-        if e * e < 0.25 * (da * da + db * db) * g2 {
-            da += e * va;
-            db += e * vb;
-        }
-        ((z.a + da).max(self.floor[0]) - z.a, (z.b + db).max(self.floor[1]) - z.b, longest.min(most))
-    }
-}
-
 /// The Gauss–Newton step and the decrease of the sum of squares that it promises. `None` if the samples do not determine a step.
 #[inline(always)]
 pub(crate) fn gauss_newton(sums: &[f64; 5]) -> Option<([f64; 2], f64)> {
     let [aa, ab, bb, an, bn] = *sums;
     let det = aa * bb - ab * ab;
-    let k = 1.0 / det;
-    let (da, db) = ((ab * bn - bb * an) * k, (ab * an - aa * bn) * k);
-    (det > 0.0 && k.is_finite()).then_some(([da, db], -(da * an + db * bn)))
-}
-
-impl ChordFrame {
-    /// The state of equal area with handle number `scaled` (0 or 1) `factor` times as long. `None` if a handle is out of range.
-    #[inline(always)]
-    pub(crate) fn along_valley(&self, g: &Lanes, z: &FitState, (scaled, factor): (usize, f64)) -> Option<FitState> {
-        let k2 = 0.5 * self.t1.cross(self.t0);
-        let k = [self.q.cross(self.t0), self.t1.cross(self.q)];
-        let (mut new, other) = ([z.a, z.b], 1 - scaled);
-        new[scaled] *= factor;
-        new[other] =
-            (k[0] * z.a + k[1] * z.b - k2 * z.a * z.b - k[scaled] * new[scaled]) / (k[other] - k2 * new[scaled]);
-        if !(new[other] > self.floor[other] && new[other] < self.size) {
-            return None;
-        }
-        let [a, b] = new;
-        let mut start = FitState { a, b, s: z.s };
-        self.settle(g, a, b, &mut start.s);
-        Some(start)
-    }
+    let inverse = 1.0 / det;
+    let (da, db) = ((ab * bn - bb * an) * inverse, (ab * an - aa * bn) * inverse);
+    (det > 0.0 && inverse.is_finite()).then_some(([da, db], -(da * an + db * bn)))
 }
 
 /// Ends, frame and samples of a piece that is to be fitted.
@@ -411,19 +408,19 @@ pub(crate) struct FitRequest<'a> {
     pub(crate) g: &'a Lanes,
     /// Images at the checked samples; taken on demand.
     pub(crate) check: Option<Lanes>,
-    /// Forces a dense check.
+    /// Set if a slow spot lies in the stretch: samples alone must not decide.
     pub(crate) careful: bool,
 }
 
 impl FitRequest<'_> {
     /// The cubic of a state.
-    pub(crate) fn cubic(&self, z: &FitState) -> CubicBez {
-        self.frame.cubic(self.from.p, self.to.p, z.a, z.b)
+    pub(crate) fn cubic(&self, state: &FitState) -> CubicBez {
+        self.frame.cubic(self.from.p, self.to.p, state.a, state.b)
     }
 
     /// The cubic of a state, in the form that checks and proofs take.
-    pub(crate) fn candidate(&self, z: &FitState) -> Candidate {
-        Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: z.a, b: z.b }
+    pub(crate) fn candidate(&self, state: &FitState) -> Candidate {
+        Candidate { t0: self.from.t, t1: self.to.t, p0: self.from.p, frame: self.frame, a: state.a, b: state.b }
     }
 }
 
@@ -453,12 +450,8 @@ impl Candidate {
     }
 
     /// Points of the image at `tau`, relative to the first point.
-    pub(crate) fn images(&self, source: &impl Source, tau: &Lane) -> Result<Lanes, NotFinite> {
-        let mut t = [0.0; 8];
-        for i in 0..8 {
-            t[i] = self.param(tau[i]);
-        }
-        let mut g = images(source, &t)?;
+    pub(crate) fn images(&self, source: &impl Source, tau: &Lane) -> Result<Lanes> {
+        let mut g = images(source, &tau.map(|tau| self.param(tau)))?;
         for i in 0..8 {
             g.x[i] -= self.p0.x;
             g.y[i] -= self.p0.y;
@@ -471,12 +464,13 @@ impl Candidate {
 pub const FOOT_ROUNDING: f64 = 1e-9;
 
 /// A normal residual differs from the distance by κδ²/2, where κ is the curvature and δ the way that the foot point still has to go. Below
-/// this share of the tolerance the difference is ignored; κ is taken as the inverse of the piece's size and δ as a share of the size.
+/// this share of the tolerance the difference is ignored; κ is taken as the inverse of the piece's size, δ as the size times the step of the
+/// foot point.
 pub(crate) const DRIFT: f64 = 0.02;
 
 /// A state with settled foot points and the squared distances of the fitted samples.
 pub(crate) struct Measured<'a> {
-    pub(crate) z: &'a FitState,
+    pub(crate) state: &'a FitState,
     pub(crate) s: Lane,
     pub(crate) squares: Lane,
     pub(crate) error: f64,
@@ -485,21 +479,21 @@ pub(crate) struct Measured<'a> {
 /// Moves the foot points by the Newton step that is left to do. Measures the distances anew if a foot point moves too far.
 #[inline(always)]
 pub(crate) fn settled<'f>(frame: &ChordFrame, g: &Lanes, fit: &'f Fit, tolerance: f64) -> Measured<'f> {
-    let z = &fit.z;
+    let state = &fit.state;
     let mut s = [0.0; 8];
     let mut drift = [0.0; 8];
     for i in 0..8 {
-        s[i] = clamp_unit(z.s[i] + fit.ds[i]);
+        s[i] = clamp_unit(state.s[i] + fit.ds[i]);
         drift[i] = fit.ds[i].abs();
     }
     let drift = largest(&drift);
     let (mut error, mut squares) = (fit.error, fit.squares);
     if drift * drift * frame.size > DRIFT * tolerance {
-        s = z.s;
-        squares = frame.distances(g, z.a, z.b, &mut s, 2);
+        s = state.s;
+        squares = frame.distances(g, state.a, state.b, &mut s, 2);
         error = largest(&squares).sqrt();
     }
-    Measured { z, s, squares, error }
+    Measured { state, s, squares, error }
 }
 
 /// Normal residuals at eight samples, with their derivatives.
@@ -516,18 +510,16 @@ struct Normals {
 
 impl Normals {
     const NONE: Self = Self { n: [0.0; 8], na: [0.0; 8], nb: [0.0; 8], ds: [0.0; 8], sa: [0.0; 8], sb: [0.0; 8] };
-}
 
-impl ChordFrame {
-    /// Evaluates the normal residuals of `z`. Not inlined: alone, the loop is vectorised.
+    /// Evaluates the state. Not inlined: alone, the loop is vectorised.
     #[inline(never)]
-    fn normals(&self, g: &Lanes, z: &FitState, out: &mut Normals) {
-        let c = self.power(z.a, z.b);
+    fn measure(&mut self, frame: &ChordFrame, g: &Lanes, state: &FitState) {
+        let c = frame.power(state.a, state.b);
         for i in 0..8 {
-            let r = SampleResidual::new(&c, [self.t0, self.t1], z.s[i], [g.x[i], g.y[i]]);
+            let r = SampleResidual::new(&c, [frame.t0, frame.t1], state.s[i], [g.x[i], g.y[i]]);
             let unit = r.k.sqrt();
-            (out.n[i], out.na[i], out.nb[i]) = (r.n * unit, r.na * unit, r.nb * unit);
-            (out.ds[i], out.sa[i], out.sb[i]) = (r.ds, r.sa, r.sb);
+            (self.n[i], self.na[i], self.nb[i]) = (r.n * unit, r.na * unit, r.nb * unit);
+            (self.ds[i], self.sa[i], self.sb[i]) = (r.ds, r.sa, r.sb);
         }
     }
 }
@@ -541,31 +533,31 @@ pub(crate) fn minimax(
     start: [FitState; 2],
     ([wanted, tolerance], enough): ([f64; 2], f64),
 ) -> ([FitState; 2], f64) {
-    let mut z = start;
+    let mut state = start;
     let mut best = (start, f64::INFINITY);
     let mut r = [Normals::NONE; 2];
-    for k in 0..=STEPS {
+    for taken in 0..=STEPS {
         for h in 0..2 {
-            frame.normals(g[h], &z[h], &mut r[h]);
+            r[h].measure(frame, g[h], &state[h]);
         }
         let error = larger(largest(&r[0].n.map(f64::abs)), largest(&r[1].n.map(f64::abs)));
         let gains = error < best.1;
         if gains {
-            best = (z, error);
+            best = (state, error);
         }
-        if !gains || error <= wanted || k == STEPS {
+        if !gains || error <= wanted || taken == STEPS {
             break;
         }
         let Some((step, level)) = levelled(&r, enough) else { break };
         if level > MINIMAX_HOPE * tolerance {
             break;
         }
-        let (da, db, _) = frame.bent(step, &z[0], TRUST_RADIUS * frame.size);
+        let (da, db, _) = frame.bend_step(step, &state[0], TRUST_RADIUS * frame.size);
         for h in 0..2 {
-            z[h].a += da;
-            z[h].b += db;
+            state[h].a += da;
+            state[h].b += db;
             for i in 0..8 {
-                z[h].s[i] = clamp_unit(z[h].s[i] + fma(da, r[h].sa[i], fma(db, r[h].sb[i], r[h].ds[i])));
+                state[h].s[i] = clamp_unit(state[h].s[i] + fma(da, r[h].sa[i], fma(db, r[h].sb[i], r[h].ds[i])));
             }
         }
     }
@@ -578,8 +570,8 @@ const STEPS: usize = 3;
 /// Most exchanges of a sample in one step. Two or three usually suffice.
 const EXCHANGES: usize = 8;
 
-/// The samples of the first reference: those next to a fifth, a half and four fifths, where the leading form of the residual,
-/// s²(1−s)²((s−½)²−c), has its extremes.
+/// The samples of the first reference, counted over the fitted ones (0–7), then the checked ones (8–15): those next to a fifth, a half and
+/// four fifths, where the leading form of the residual, s²(1−s)²((s−½)²−c), has its extremes.
 const EXTREMES: [usize; 3] = [1, 11, 14];
 
 /// The step that makes the largest linearised residual as small as possible, and the level |h| of that residual. `None` if the samples do
@@ -593,7 +585,7 @@ fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
     let mut rows = reference.map(row);
     let mut found = None;
     for _ in 0..EXCHANGES {
-        let Some((step, level)) = Level::of(&rows).step(&rows) else { break };
+        let Some((step, level)) = Level::new(&rows).step(&rows) else { break };
         found = Some((step, level));
         let mut residuals = [0.0; 16];
         for (half, r) in residuals.chunks_exact_mut(8).zip(r) {
@@ -611,7 +603,7 @@ fn levelled(r: &[Normals; 2], enough: f64) -> Option<([f64; 2], f64)> {
         for k in 0..3 {
             let mut other = rows;
             other[k] = new;
-            let level = Level::of(&other).height().abs();
+            let level = Level::new(&other).height().abs();
             if level > highest.1 {
                 highest = (k, level);
             }
@@ -639,7 +631,7 @@ struct Level {
 
 impl Level {
     /// Makes the level of three rows, each a residual with its derivatives by the handles.
-    fn of([p, q, r]: &[[f64; 3]; 3]) -> Self {
+    fn new([p, q, r]: &[[f64; 3]; 3]) -> Self {
         let cross = |u: &[f64; 3], v: &[f64; 3]| u[1] * v[2] - u[2] * v[1];
         let weights = [cross(q, r), cross(r, p), cross(p, q)];
         Self { weights, sum: weights[0] * p[0] + weights[1] * q[0] + weights[2] * r[0] }
@@ -673,19 +665,19 @@ pub(crate) trait Fitting {
     fn samples(&self) -> (&ChordFrame, &Lanes);
 
     /// The checked samples, which lie between the fitted ones.
-    fn checked(&mut self) -> Result<Lanes, NotFinite>;
+    fn checked(&mut self) -> Result<Lanes>;
 
     /// Foot points of the checked samples, interpolated from those of the fitted ones.
-    fn between(&self, s: &Lane) -> Lane;
+    fn feet_between(&self, s: &Lane) -> Lane;
 
     /// Returns `true` if fits must be the same from either end, so that even handles stay even.
     fn evenly(&self) -> bool;
 
     /// Error of a fit that promises to come within the tolerance; above the tolerance if the fit must be rejected.
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark), NotFinite>;
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, Self::Mark)>;
 }
 
-/// The best fit so far, with its error: the judged one if the fit came within the tolerance, else [`Fit::reach`].
+/// The best fit so far, with its error: the judged one if the fit came within the tolerance, else [`Fit::predicted`].
 pub(crate) struct BestFit<M> {
     pub(crate) fit: Fit,
     pub(crate) error: f64,
@@ -695,25 +687,21 @@ pub(crate) struct BestFit<M> {
 impl<M: Default> BestFit<M> {
     /// Judges a fit, unless it is predicted to miss the tolerance.
     #[inline(always)]
-    pub(crate) fn of(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self, NotFinite> {
-        let (error, mark) = if fit.reach <= tolerance { on.judge(&fit)? } else { (fit.reach, M::default()) };
+    pub(crate) fn judged(fit: Fit, on: &mut impl Fitting<Mark = M>, tolerance: f64) -> Result<Self> {
+        let (error, mark) = if fit.predicted <= tolerance { on.judge(&fit)? } else { (fit.predicted, M::default()) };
         Ok(Self { fit, error, mark })
     }
 
     /// Improves the fit by minimax on all sixteen samples until the error is at most `wanted`.
-    pub(crate) fn minimised(
-        &mut self,
-        on: &mut impl Fitting<Mark = M>,
-        [wanted, tolerance]: [f64; 2],
-    ) -> Result<(), NotFinite> {
-        let (z, check) = (self.fit.z, on.checked()?);
-        let other = FitState { s: on.between(&z.s), ..z };
+    pub(crate) fn minimise(&mut self, on: &mut impl Fitting<Mark = M>, [wanted, tolerance]: [f64; 2]) -> Result<()> {
+        let (state, check) = (self.fit.state, on.checked()?);
+        let other = FitState { s: on.feet_between(&state.s), ..state };
         let enough = if on.evenly() { LEVELLED_EVENLY } else { LEVELLED };
         let (frame, g) = on.samples();
-        let (z, error) = minimax(frame, [g, &check], [z, other], ([wanted, tolerance], enough));
+        let (state, error) = minimax(frame, [g, &check], [state, other], ([wanted, tolerance], enough));
         if error < self.error {
-            let fit = Fit { z: z[0], error, reach: error, ds: [1.0; 8], squares: [0.0; 8] };
-            *self = Self::of(fit, on, tolerance)?;
+            let fit = Fit { state: state[0], error, predicted: error, ds: [1.0; 8], squares: [0.0; 8] };
+            *self = Self::judged(fit, on, tolerance)?;
             self.error = larger(self.error, error);
         }
         Ok(())
@@ -722,29 +710,29 @@ impl<M: Default> BestFit<M> {
 
 /// The best fit from `start` on. Each further attempt is made only if the ones before it have failed.
 #[inline(always)]
-pub(crate) fn improved<F: Fitting>(
+pub(crate) fn best_fit<F: Fitting>(
     on: &mut F,
     effort: &Effort,
     start: FitState,
     tolerance: f64,
-) -> Result<BestFit<F::Mark>, NotFinite> {
+) -> Result<BestFit<F::Mark>> {
     let fitted = |on: &F, start: FitState, enough: f64| {
         let (frame, g) = on.samples();
         fit(effort, frame, g, start, [enough * tolerance, tolerance])
     };
-    let mut best = BestFit::of(fitted(on, start, GOOD_ENOUGH), on, tolerance)?;
+    let mut best = BestFit::judged(fitted(on, start, GOOD_ENOUGH), on, tolerance)?;
     if best.error <= tolerance {
         return Ok(best);
     }
     // Iterate to convergence a fit that stopped early but was rejected.
     if best.fit.error <= GOOD_ENOUGH * tolerance {
-        let (mut start, (frame, g)) = (best.fit.z, on.samples());
+        let (mut start, (frame, g)) = (best.fit.state, on.samples());
         frame.settle(g, start.a, start.b, &mut start.s);
-        best = BestFit::of(fitted(on, start, 0.0), on, tolerance)?;
+        best = BestFit::judged(fitted(on, start, 0.0), on, tolerance)?;
     }
     // Start again farther along the valley of equal area, from more even handles first, which more often succeeds. If fits must be the
     // same from either end, the shorter handle is scaled, and even handles are left alone.
-    let FitState { a, b, .. } = best.fit.z;
+    let FitState { a, b, .. } = best.fit.state;
     let even = if a < b || on.evenly() { RESTART_FACTOR } else { 1.0 / RESTART_FACTOR };
     let scaled = usize::from(on.evenly() && b < a);
     let near = best.error < RESTART_WITHIN * tolerance && !(on.evenly() && (a - b).abs() <= SAME_HANDLES * a);
@@ -753,17 +741,17 @@ pub(crate) fn improved<F: Fitting>(
             break;
         }
         let (frame, g) = on.samples();
-        let Some(start) = frame.along_valley(g, &best.fit.z, (scaled, factor)) else { continue };
+        let Some(start) = frame.along_valley(g, &best.fit.state, (scaled, factor)) else { continue };
         let other = fitted(on, start, GOOD_ENOUGH);
-        if other.reach < best.error {
-            let other = BestFit::of(other, on, tolerance)?;
+        if other.predicted < best.error {
+            let other = BestFit::judged(other, on, tolerance)?;
             if other.error < best.error {
                 best = other;
             }
         }
     }
     if best.error > tolerance && best.error <= MINIMAX_WITHIN * tolerance {
-        best.minimised(on, [0.0, tolerance])?;
+        best.minimise(on, [0.0, tolerance])?;
     }
     Ok(best)
 }
@@ -806,7 +794,7 @@ mod tests {
             for i in 0..16 {
                 for j in 0..i {
                     for k in 0..j {
-                        least = least.max(Level::of(&[row(&r, i), row(&r, j), row(&r, k)]).height().abs());
+                        least = least.max(Level::new(&[row(&r, i), row(&r, j), row(&r, k)]).height().abs());
                     }
                 }
             }

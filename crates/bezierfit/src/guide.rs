@@ -1,24 +1,29 @@
-//! Guides: splines of cubics with continuous derivative, near to points by least squares. Their parameter is nearly arc length.
+//! Guides: splines of cubics with continuous derivative, near to points.
+//!
+//! The values and derivatives at the knots minimise the weighted squares of the distances at the samples' parameters, plus a little bending
+//! energy, which fixes what the samples leave open: a banded system. The samples' foot points are the next parameters. Intervals between
+//! knots are halved where the guide is too far away or, in the mean, to one side; and weights move towards the furthest samples (Lawson).
+//! The parameter `s` is nearly arc length, so that derivatives are nearly unit vectors.
 
 use crate::banded::solve_banded;
 use kurbo::{CubicBez, Point, Vec2};
 
-/// Points with their parameters along a curve (`place`) and their weights.
+/// Points with their parameters along a curve and their weights.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Samples {
-    pub(crate) place: Vec<f64>,
-    pub(crate) point: Vec<Point>,
-    pub(crate) weight: Vec<f64>,
-    /// Distances from the last guide, not squared.
-    off: Vec<f64>,
+    parameters: Vec<f64>,
+    points: Vec<Point>,
+    weights: Vec<f64>,
+    /// Distances from the last guide.
+    distances: Vec<f64>,
 }
 
 impl Samples {
-    pub(crate) fn push(&mut self, place: f64, point: Point, weight: f64) {
-        self.place.push(place);
-        self.point.push(point);
-        self.weight.push(weight);
-        self.off.push(0.0);
+    pub(crate) fn push(&mut self, parameter: f64, point: Point, weight: f64) {
+        self.parameters.push(parameter);
+        self.points.push(point);
+        self.weights.push(weight);
+        self.distances.push(0.0);
     }
 }
 
@@ -27,7 +32,7 @@ impl Samples {
 pub(crate) struct End {
     pub(crate) point: Point,
     /// Direction, if it is given.
-    pub(crate) along: Option<Vec2>,
+    pub(crate) direction: Option<Vec2>,
 }
 
 /// The ends of a guide.
@@ -49,59 +54,60 @@ pub(crate) struct Guide {
 }
 
 /// Weight of the bending of an interval relative to the distances of its points.
-const STIFF: f64 = 1e-6;
-/// Weight of given ends.
-const FIXED: f64 = 1e3;
+const STIFFNESS: f64 = 1e-6;
+/// Weight of given ends relative to that of all samples.
+const END_WEIGHT: f64 = 1e3;
 /// A guide up to this multiple of the allowed distance away may still come within it by other weights.
-const UNEVEN: f64 = 2.5;
+const REACHABLE: f64 = 2.5;
 
-/// The cubic Hermite basis on an interval of length h.
+/// The cubic Hermite basis on an interval of length h, at the share t of it.
 fn basis(t: f64, h: f64) -> [f64; 4] {
-    let s = 1.0 - t;
-    [s * s * (1.0 + 2.0 * t), s * s * t * h, t * t * (3.0 - 2.0 * t), -t * t * s * h]
+    let u = 1.0 - t;
+    [u * u * (1.0 + 2.0 * t), u * u * t * h, t * t * (3.0 - 2.0 * t), -t * t * u * h]
 }
 
 impl Guide {
     /// The spline with these knots that is nearest to the samples.
-    fn nearest(knots: Vec<f64>, samples: &Samples, ends: Ends) -> Option<Self> {
+    fn least_squares(knots: Vec<f64>, samples: &Samples, ends: Ends) -> Option<Self> {
         let n = knots.len();
         let (mut band, mut right, mut weights) = (vec![[0.0; 4]; 2 * n], vec![Vec2::ZERO; 2 * n], vec![0.0; n]);
-        for i in 0..samples.place.len() {
-            let (place, p, weight) = (samples.place[i], samples.point[i], samples.weight[i]);
-            let k = interval(&knots, place);
+        for i in 0..samples.parameters.len() {
+            let (s, p, weight) = (samples.parameters[i], samples.points[i], samples.weights[i]);
+            let k = interval(&knots, s);
             let h = knots[k + 1] - knots[k];
-            let b = basis((place - knots[k]) / h, h);
-            for r in 0..4 {
-                for s in r..4 {
-                    band[2 * k + r][s - r] += weight * b[r] * b[s];
+            let b = basis((s - knots[k]) / h, h);
+            for i in 0..4 {
+                for j in i..4 {
+                    band[2 * k + i][j - i] += weight * b[i] * b[j];
                 }
-                right[2 * k + r] += p.to_vec2() * (weight * b[r]);
+                right[2 * k + i] += p.to_vec2() * (weight * b[i]);
             }
             weights[k] += weight;
         }
         let total: f64 = weights.iter().sum();
         for k in 0..n - 1 {
             let h = knots[k + 1] - knots[k];
-            let stiff = STIFF * (weights[k] + 1e-3 * total / n as f64); // Intervals without samples are stiff, too.
+            let stiffness = STIFFNESS * (weights[k] + 1e-3 * total / n as f64); // Intervals without samples are stiff, too.
+            // ∫ Bᵢ″Bⱼ″ over the interval, times h³.
             let bending = [
                 [12.0, 6.0 * h, -12.0, 6.0 * h],
                 [0.0, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
                 [0.0, 0.0, 12.0, -6.0 * h],
                 [0.0, 0.0, 0.0, 4.0 * h * h],
             ];
-            for r in 0..4 {
-                for s in r..4 {
-                    band[2 * k + r][s - r] += stiff * bending[r][s];
+            for i in 0..4 {
+                for j in i..4 {
+                    band[2 * k + i][j - i] += stiffness * bending[i][j];
                 }
             }
         }
         if let Ends::Open(ends) = ends {
-            for (i, End { point, along }) in [(0, ends[0]), (2 * n - 2, ends[1])] {
+            for (i, End { point, direction }) in [(0, ends[0]), (2 * n - 2, ends[1])] {
                 // Parameters are nearly lengths, so that derivatives are directions.
-                for (i, given) in [(i, Some(point.to_vec2())), (i + 1, along)] {
+                for (i, given) in [(i, Some(point.to_vec2())), (i + 1, direction)] {
                     if let Some(given) = given {
-                        band[i][0] += FIXED * total;
-                        right[i] += given * (FIXED * total);
+                        band[i][0] += END_WEIGHT * total;
+                        right[i] += given * (END_WEIGHT * total);
                     }
                 }
             }
@@ -110,15 +116,15 @@ impl Guide {
         let values = values.chunks_exact(2).map(|v| (v[0].to_point(), v[1])).collect();
         let mut out = Self { knots, values };
         if let Ends::Open(ends) = ends {
-            for (i, End { point, along }) in [(0, ends[0]), (n - 1, ends[1])] {
-                out.values[i] = (point, along.unwrap_or(out.values[i].1));
+            for (i, End { point, direction }) in [(0, ends[0]), (n - 1, ends[1])] {
+                out.values[i] = (point, direction.unwrap_or(out.values[i].1));
             }
         }
         Some(out)
     }
 
     /// The part between two knots, which become one.
-    fn closed(&self, [first, last]: [usize; 2]) -> Self {
+    fn closed_part(&self, [first, last]: [usize; 2]) -> Self {
         let mut values = self.values[first..=last].to_vec();
         let [(p, d), (q, e)] = [values[0], values[last - first]];
         let both = (p.midpoint(q), (d + e) * 0.5);
@@ -127,10 +133,10 @@ impl Guide {
     }
 
     /// Point, first and second derivative.
-    fn jet(&self, place: f64) -> (Point, Vec2, Vec2) {
-        let k = interval(&self.knots, place);
+    fn jet(&self, s: f64) -> (Point, Vec2, Vec2) {
+        let k = interval(&self.knots, s);
         let h = self.knots[k + 1] - self.knots[k];
-        let t = (place - self.knots[k]) / h;
+        let t = (s - self.knots[k]) / h;
         let [(p, d), (q, e)] = [self.values[k], self.values[k + 1]];
         let (a, b) = (d * h, e * h);
         let (c2, c3) = ((q - p) * 3.0 - a * 2.0 - b, (p - q) * 2.0 + a + b);
@@ -138,18 +144,19 @@ impl Guide {
         (point, (a + (c2 * 2.0 + c3 * (3.0 * t)) * t) / h, (c2 * 2.0 + c3 * (6.0 * t)) / (h * h))
     }
 
-    /// The parameter of the point nearest to `p`, sought from `place`, the distance, and the signed distance of `p` to the left.
-    fn foot(&self, p: Point, place: f64) -> (f64, f64, f64) {
-        let (mut best, mut at, mut left) = (f64::INFINITY, place, 0.0);
-        let mut now = place;
+    /// The parameter of the point nearest to `p`, sought from `s`, the distance, and the signed distance of `p` to the left.
+    fn foot(&self, p: Point, s: f64) -> (f64, f64, f64) {
+        let (mut least, mut nearest, mut left) = (f64::INFINITY, s, 0.0);
+        let mut now = s;
         let ends = [self.knots[0], self.knots[self.knots.len() - 1]];
         for _ in 0..3 {
             let (q, d, dd) = self.jet(now);
             let v = p - q;
             let far = v.hypot();
-            if far < best {
-                (best, at, left) = (far, now, d.cross(v) / d.hypot());
+            if far < least {
+                (least, nearest, left) = (far, now, d.cross(v) / d.hypot());
             }
+            // Newton's method for the derivative of the squared distance, whose second derivative is kept positive.
             let slope = d.hypot2() - v.dot(dd).min(0.5 * d.hypot2());
             let step = v.dot(d) / slope;
             // Stop if the step would shorten the squared distance by less than a millionth.
@@ -158,7 +165,7 @@ impl Guide {
             }
             now = (now + step).clamp(ends[0], ends[1]);
         }
-        (at, best, left)
+        (nearest, least, left)
     }
 
     /// The cubics of the spline.
@@ -173,7 +180,7 @@ impl Guide {
     /// Guides whose distance from all samples is at most `within`, with that distance: first with few knots, then with as many as it takes
     /// to come near to the samples without their noise. Intervals between knots are not shorter than `finest`. If no guide is found, `Err`
     /// holds the intervals in which the last one was too far away.
-    pub(crate) fn all(
+    pub(crate) fn candidates(
         samples: &mut Samples,
         mut knots: Vec<f64>,
         ends: Ends,
@@ -186,16 +193,16 @@ impl Guide {
         let (mut out, mut failed, fine) = (Vec::new(), Vec::new(), 0.25 * within);
         let (mut levels, mut rounds) = (NEAR.iter().peekable(), 0);
         while let Some(near) = levels.peek() {
-            // Fit once more with the foot points as parameters.
-            let once = Self::missed(&knots, samples, ends);
-            let Some((guide, mut misses)) = once.and_then(|_| Self::missed(&knots, samples, ends)) else {
+            // Fit twice: the second time, the foot points are the parameters.
+            let first = Self::fitted(&knots, samples, ends);
+            let Some((guide, mut misses)) = first.and_then(|_| Self::fitted(&knots, samples, ends)) else {
                 break;
             };
-            guide.strays(samples, ends, fine, &mut misses);
+            guide.add_edge_distances(samples, ends, fine, &mut misses);
             let far = furthest(&misses);
-            if far <= UNEVEN * within {
+            if far <= REACHABLE * within {
                 // Try more weight for far samples before dividing intervals.
-                let evened = Self::evened(&knots, samples, ends, fine);
+                let evened = Self::even_out(&knots, samples, ends, fine);
                 out.extend([Some((guide, far)), evened].into_iter().flatten().filter(|(_, far)| *far <= within));
             }
             let far = (0..misses.len()).filter(|k| misses[*k].far > within);
@@ -221,7 +228,7 @@ impl Guide {
 
     /// A spline whose largest distance is nearly as small as possible. In each round, samples gain weight with their distance (C. L.
     /// Lawson, *Contributions to the theory of linear least maximum approximation*, 1961).
-    fn evened(knots: &[f64], samples: &Samples, ends: Ends, fine: f64) -> Option<(Self, f64)> {
+    fn even_out(knots: &[f64], samples: &Samples, ends: Ends, fine: f64) -> Option<(Self, f64)> {
         const ROUNDS: usize = 4;
         /// Share of the weight that a sample keeps.
         const KEPT: f64 = 0.05;
@@ -229,10 +236,10 @@ impl Guide {
         const GAIN: f64 = 0.99;
         let (mut samples, mut best): (Samples, Option<(Self, f64)>) = (samples.clone(), None);
         for _ in 0..ROUNDS {
-            let (guide, misses) = Self::missed(knots, &mut samples, ends)?;
+            let (guide, misses) = Self::fitted(knots, &mut samples, ends)?;
             let far = furthest(&misses);
-            for (weight, off) in samples.weight.iter_mut().zip(&samples.off) {
-                *weight *= KEPT + off / far.max(f64::MIN_POSITIVE);
+            for (weight, distance) in samples.weights.iter_mut().zip(&samples.distances) {
+                *weight *= KEPT + distance / far.max(f64::MIN_POSITIVE);
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(_, least)| *least);
             if far < least {
@@ -244,16 +251,16 @@ impl Guide {
         }
         let (guide, _) = best?;
         let mut misses = guide.misses(&mut samples);
-        guide.strays(&samples, ends, fine, &mut misses);
+        guide.add_edge_distances(&samples, ends, fine, &mut misses);
         Some((guide, furthest(&misses)))
     }
 
     /// The nearest spline, with the misses of its intervals. The samples' parameters become their foot points.
-    fn missed(knots: &[f64], samples: &mut Samples, ends: Ends) -> Option<(Self, Vec<Miss>)> {
+    fn fitted(knots: &[f64], samples: &mut Samples, ends: Ends) -> Option<(Self, Vec<Miss>)> {
         let guide = match ends {
-            Ends::Open(_) => Self::nearest(knots.to_vec(), samples, ends)?,
-            Ends::Closed => Self::nearest_closed(knots, samples)?,
-        };
+            Ends::Open(_) => Self::least_squares(knots.to_vec(), samples, ends),
+            Ends::Closed => Self::least_squares_closed(knots, samples),
+        }?;
         let misses = guide.misses(samples);
         Some((guide, misses))
     }
@@ -261,42 +268,42 @@ impl Guide {
     /// Misses of each interval. The samples' parameters become their foot points.
     fn misses(&self, samples: &mut Samples) -> Vec<Miss> {
         let mut out = vec![Miss::default(); self.knots.len() - 1];
-        for i in 0..samples.place.len() {
-            let (place, off, left) = self.foot(samples.point[i], samples.place[i]);
-            let k = interval(&self.knots, place);
-            out[k].add((place - self.knots[k]) / (self.knots[k + 1] - self.knots[k]), off, left, samples.weight[i]);
-            (samples.place[i], samples.off[i]) = (place, off);
+        for i in 0..samples.parameters.len() {
+            let (s, distance, left) = self.foot(samples.points[i], samples.parameters[i]);
+            let k = interval(&self.knots, s);
+            out[k].add((s - self.knots[k]) / (self.knots[k + 1] - self.knots[k]), distance, left, samples.weights[i]);
+            (samples.parameters[i], samples.distances[i]) = (s, distance);
         }
         out
     }
 
     /// Adds the distances of the guide from the edges between neighbouring samples, measured in steps of about `fine` between foot points.
-    fn strays(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
+    fn add_edge_distances(&self, samples: &Samples, ends: Ends, fine: f64, misses: &mut [Miss]) {
         /// Most steps between two samples.
         const MOST: f64 = 64.0;
-        let mut order: Vec<usize> = (0..samples.place.len()).collect();
-        order.sort_by(|a, b| samples.place[*a].total_cmp(&samples.place[*b]));
+        let mut order: Vec<usize> = (0..samples.parameters.len()).collect();
+        order.sort_by(|a, b| samples.parameters[*a].total_cmp(&samples.parameters[*b]));
         let Some(first) = order.first() else { return };
         let [from, to] = match ends {
             Ends::Open(ends) => ends.map(|e| e.point),
-            Ends::Closed => [samples.point[*first]; 2],
+            Ends::Closed => [samples.points[*first]; 2],
         };
         let [start, end] = [self.knots[0], self.knots[self.knots.len() - 1]];
-        let stops = order.iter().map(|i| (samples.place[*i], samples.point[*i]));
-        let before = std::iter::once((start, from)).chain(stops.clone());
-        for ((a, p), (b, q)) in before.zip(stops.chain([(end, to)])) {
+        let inner = order.iter().map(|i| (samples.parameters[*i], samples.points[*i]));
+        let before = std::iter::once((start, from)).chain(inner.clone());
+        for ((a, p), (b, q)) in before.zip(inner.chain([(end, to)])) {
             let speed = self.jet(a).1.hypot().max(self.jet(0.5 * (a + b)).1.hypot());
             let steps = ((b - a) * speed / fine).min(MOST);
             for j in 1..steps.ceil() as usize {
-                let place = a + (b - a) * j as f64 / steps.ceil();
-                let miss = &mut misses[interval(&self.knots, place)];
-                miss.far = miss.far.max(off(self.jet(place).0, [p, q]).sqrt());
+                let s = a + (b - a) * j as f64 / steps.ceil();
+                let miss = &mut misses[interval(&self.knots, s)];
+                miss.far = miss.far.max(squared_distance(self.jet(s).0, [p, q]).sqrt());
             }
         }
     }
 
     /// The nearest closed spline for knots from 0 to the length, fitted to samples that are repeated before the start and after the end.
-    fn nearest_closed(knots: &[f64], samples: &Samples) -> Option<Self> {
+    fn least_squares_closed(knots: &[f64], samples: &Samples) -> Option<Self> {
         let n = knots.len() - 1;
         let length = knots[n];
         let more = n.min(3);
@@ -305,20 +312,20 @@ impl Guide {
         all.extend(knots[1..=more].iter().map(|k| k + length));
         let [low, high] = [all[0], all[all.len() - 1]];
         let mut around = samples.clone();
-        for i in 0..samples.place.len() {
-            for by in [-length, length] {
-                let place = samples.place[i] + by;
-                if place >= low && place <= high {
-                    around.push(place, samples.point[i], samples.weight[i]);
+        for i in 0..samples.parameters.len() {
+            for round in [-length, length] {
+                let s = samples.parameters[i] + round;
+                if s >= low && s <= high {
+                    around.push(s, samples.points[i], samples.weights[i]);
                 }
             }
         }
-        Some(Self::nearest(all, &around, Ends::Closed)?.closed([more, more + n])) // `Closed`: ends without conditions.
+        Some(Self::least_squares(all, &around, Ends::Closed)?.closed_part([more, more + n])) // `Closed`: ends without conditions.
     }
 }
 
 /// Squared distance of a point from an edge.
-pub(crate) fn off(p: Point, [a, b]: [Point; 2]) -> f64 {
+pub(crate) fn squared_distance(p: Point, [a, b]: [Point; 2]) -> f64 {
     let (v, w) = (b - a, p - a);
     let t = (w.dot(v) / v.hypot2()).clamp(0.0, 1.0);
     let t = if t.is_finite() { t } else { 0.0 };
@@ -341,8 +348,9 @@ struct Miss {
 }
 
 impl Miss {
-    fn add(&mut self, share: f64, off: f64, left: f64, weight: f64) {
-        self.far = self.far.max(off);
+    /// Adds a sample at a share of the interval, with its distance and its signed distance to the left.
+    fn add(&mut self, share: f64, distance: f64, left: f64, weight: f64) {
+        self.far = self.far.max(distance);
         self.count += 1;
         let quarter = &mut self.quarters[((4.0 * share) as usize).min(3)];
         quarter[0] += left * weight;
@@ -368,11 +376,11 @@ fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> 
     for (ends, miss) in knots.windows(2).zip(misses) {
         // Samples that are equally far to both sides are noise, which no division brings nearer.
         let noise = f64::max(BIASED, CHANCE / (miss.count as f64).sqrt()) * miss.far;
-        let wanted = miss.far > within && miss.bias() > noise || miss.bias() > near;
+        let wanted = (miss.far > within && miss.bias() > noise) || miss.bias() > near;
         if wanted && ends[1] - ends[0] > 2.0 * finest && miss.count >= FEW {
             out.push(0.5 * (ends[0] + ends[1]));
         } else {
-            hopeless |= miss.far > UNEVEN * within;
+            hopeless |= miss.far > REACHABLE * within;
         }
         out.push(ends[1]);
     }
@@ -380,6 +388,6 @@ fn divided(knots: &[f64], misses: &[Miss], [within, near, finest]: [f64; 3]) -> 
 }
 
 /// Index of the interval between knots that contains a parameter.
-fn interval(knots: &[f64], place: f64) -> usize {
-    knots[1..knots.len() - 1].partition_point(|k| *k <= place)
+fn interval(knots: &[f64], s: f64) -> usize {
+    knots[1..knots.len() - 1].partition_point(|k| *k <= s)
 }

@@ -1,11 +1,12 @@
-//! Fewer pieces for consecutive stretches: across smooth joints, and across the pieces of one long curve.
+//! Fewer pieces for consecutive stretches: across smooth joints, and across the pieces of one long curve. Stretches that join smoothly
+//! become the segments of a run, whose fewest pieces `merge` searches for.
 
 use crate::limits::{LONG, LONG_GRID, LONG_SEGMENT, LONG_WORK, LONGEST_RUN};
 use crate::merge::{FitOwn, MergeSettings, OwnPieces, ReachMemory, Reaches, refined};
 use crate::part::Part;
 use crate::report::{Piece, Report};
 use crate::run::{RunSegment, SegmentRun, sample_lanes};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source};
+use crate::source::{BreakPoint, Quotient, Result, Source};
 use crate::stretch::StretchFitter;
 
 /// Settings for a search for fewer pieces across smooth joints.
@@ -30,8 +31,8 @@ pub(crate) struct Covered<'a, S> {
 }
 
 impl<'a, S: Source> Covered<'a, S> {
-    /// Appends a part, divided into the stretches of its pieces if they are several and `joints` are the last ends of each.
-    pub(crate) fn add(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
+    /// Appends the stretch to a list: piece by piece if it has at least [`LONG`], whose last ends are `joints`; else as a whole.
+    pub(crate) fn append_to(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
         let Self { part, pieces, report } = self;
         if pieces.len() < LONG || pieces.len() != joints.len() || !report.unresolved.is_empty() {
             out.push(Self { part, pieces, report });
@@ -41,20 +42,20 @@ impl<'a, S: Source> Covered<'a, S> {
         for ((piece, own), to) in pieces.into_iter().zip(&report.pieces).zip(joints) {
             let mut report = Report::default();
             report.add_error(own.error, own.assurance);
-            out.push(Self { part: part.within([from, *to]), pieces: vec![piece], report });
+            out.push(Self { part: part.sub_part([from, *to]), pieces: vec![piece], report });
             from = *to;
         }
     }
 }
 
 /// Appends the pieces of consecutive stretches, or fewer that cross smooth joints between stretches with at most two pieces.
-pub(crate) fn joined<S: Source>(
+pub(crate) fn join<S: Source>(
     covered: &[Covered<'_, S>],
     settings: JoinSettings,
     memory: &mut ReachMemory,
     out: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let mut i = 0;
     while let Some(first) = covered.get(i) {
         let mut run = SegmentRun::new(first.part.is_simple(), 8);
@@ -65,60 +66,55 @@ pub(crate) fn joined<S: Source>(
         let count = run.extend(&covered[i..end], settings.corner, |Covered { part, pieces, report }| {
             let form = if settings.certify { part.quotient().and_then(Quotient::provable) } else { None };
             let is_line = matches!(pieces[..], [Piece::Line(_)]);
-            let joins = pieces.len() <= 2 && report.unresolved.is_empty();
-            let joins =
-                joins && (form.is_some() || part.resolved([0.0, 1.0], samples, settings.tolerance) != Some(false));
+            let is_resolved = || part.resolved([0.0, 1.0], samples, settings.tolerance) != Some(false);
+            let joins = pieces.len() <= 2 && report.unresolved.is_empty() && (form.is_some() || is_resolved());
             Ok(joins.then(|| RunSegment::new(*part, form, part.ends, is_line)))
         })?;
-        let known = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+        let append_own = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
             pieces.extend(&covered[i + k].pieces);
             report.add(&covered[i + k].report);
             Ok(())
         };
         if count < 2 {
-            known(0, out, report)?;
-            i += 1;
+            append_own(0, out, report)?;
         } else {
             let settings = (settings.tolerance, settings.evenly);
-            fewest(&run, OwnPieces::new(count, known), settings, memory, out, report)?;
-            i += count;
+            fewest(&run, OwnPieces::new(count, append_own), settings, memory, out, report)?;
         }
+        i += count.max(1);
     }
     Ok(())
 }
 
-/// Covers a stretch by [`StretchFitter::cover`], and then with fewer pieces if it takes several and has no slow spots.
+/// Covers a stretch piece by piece, and then with fewer pieces if it takes several and has no slow spots.
 ///
 /// # Errors
-/// [`NotFinite`] if the curve is not finite somewhere.
+/// [`NotFinite`](crate::NotFinite) if the curve is not finite somewhere.
 pub fn cover_far<S: Source>(
     fitter: &mut StretchFitter<'_, S>,
     [from, to]: [&BreakPoint; 2],
     corner: f64,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let (start, first) = (pieces.len(), report.pieces.len());
     fitter.cover(from, to, pieces, report)?;
     // Near slow spots, even samples do not suffice; and proofs over several pieces need ends on the curve.
     let count = fitter.joints.len();
-    let differs = !fitter.slow.all().is_empty() || fitter.form.as_ref().is_some_and(|f| f.blur > 0.0);
-    if count < LONG_SEGMENT || pieces.len() - start != count || differs {
+    let is_unfit = !fitter.slow.all().is_empty() || fitter.form.as_ref().is_some_and(|f| f.blur > 0.0);
+    if count < LONG_SEGMENT || pieces.len() - start != count || is_unfit {
         return Ok(());
     }
-    let own = Covered {
-        part: Part::between(fitter.source, [*from, *to]),
-        pieces: pieces.split_off(start),
-        report: report.split_off(first),
-    };
+    let part = Part::between(fitter.source, [*from, *to]);
+    let whole = Covered { part, pieces: pieces.split_off(start), report: report.split_off(first) };
     let mut covered = Vec::with_capacity(count);
-    own.add(&fitter.joints, &mut covered);
+    whole.append_to(&fitter.joints, &mut covered);
     let StretchFitter { tolerance, evenly, .. } = *fitter;
     let settings = JoinSettings { tolerance, corner, certify: fitter.form.is_some(), finely: true, evenly };
     fitter.extra.set(fitter.extra.get() + (2 * LONG_GRID + LONG_WORK) * covered.len());
     let lanes = covered.iter().flat_map(|c| sample_lanes(2 * LONG_GRID).map(move |t| (&c.part, t)));
     Source::announce(&mut { lanes }, &mut std::iter::empty());
-    joined(&covered, settings, &mut ReachMemory::default(), pieces, report)
+    join(&covered, settings, &mut ReachMemory::default(), pieces, report)
 }
 
 /// Appends the fewest pieces of a run or, if `evenly`, few that are alike from either end. Returns the number of cubics that were tried.
@@ -129,7 +125,7 @@ pub(crate) fn fewest<S: Source + Clone>(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<usize, NotFinite> {
+) -> Result<usize> {
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
     let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly };
     let mut reaches = Reaches::new(run, own, settings, memory);

@@ -1,7 +1,7 @@
 //! Offset curves: curves at a distance from another.
 
 use crate::path::Segment;
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, NotFinite, Result, Source};
 use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 
 /// The curve at a distance from a segment: to its left where y points up, to its right where y points down; on the other side if the
@@ -12,7 +12,8 @@ use kurbo::{ParamCurve, PathSeg, Point, Vec2};
 pub struct Offset {
     segment: Segment,
     distance: f64,
-    /// A vector along the segment that vanishes at neither end, in the power basis. The segment's derivative is this vector times a factor.
+    /// A vector along the segment that vanishes at neither end, in the power basis. The segment's derivative, which vanishes where a handle
+    /// does, is this vector times a factor.
     along: [Vec2; 3],
     /// a and b of the factor a + b·t; both 0 stand for the factor 2t(1 − t).
     factor: [f64; 2],
@@ -83,10 +84,11 @@ impl Offset {
     /// The vector along the segment with its derivative, taken a little aside where it vanishes, and the speed of the segment.
     fn along(&self, t: f64) -> (Vec2, Vec2, f64) {
         let [q0, q1, q2] = self.along;
-        let at = |t: f64| ((q2 * t + q1) * t + q0, q2 * (2.0 * t) + q1);
-        let (mut q, mut dq) = at(t);
+        let jet = |t: f64| ((q2 * t + q1) * t + q0, q2 * (2.0 * t) + q1);
+        let (mut q, mut dq) = jet(t);
+        // At an inner cusp of the segment, a length below 1e-12 of the usual one is rounding.
         if q.hypot2() <= 1e-24 * (q0.hypot2() + q1.hypot2() + q2.hypot2()) {
-            (q, dq) = at(if t < 0.5 { t + 1e-7 } else { t - 1e-7 });
+            (q, dq) = jet(if t < 0.5 { t + 1e-7 } else { t - 1e-7 });
         }
         let factor = if self.factor == [0.0; 2] { 2.0 * t * (1.0 - t) } else { self.factor[0] + self.factor[1] * t };
         (q, dq, factor * q.hypot())
@@ -115,31 +117,28 @@ impl Offset {
         if (0..=8).all(is_calm) {
             return Vec::new();
         }
-        let at = |i: usize| i as f64 / SAMPLES as f64;
-        let speeds: Vec<f64> = (0..=SAMPLES).map(|i| self.speed(at(i))).collect();
-        let mut ends: Vec<f64> = (0..=SAMPLES).map(at).collect();
-        // If there are two cusps between samples of one sign, the speed has the other sign at its extremum between them.
+        let parameter = |i: usize| i as f64 / SAMPLES as f64;
+        let mut ends: Vec<f64> = (0..=SAMPLES).map(parameter).collect();
+        let speeds: Vec<f64> = ends.iter().map(|t| self.speed(*t)).collect();
+        // If there are two cusps between samples of one sign, the speed has the other sign at its extremum between them, which is found by
+        // trisection.
         for i in 1..SAMPLES {
             let [a, b, c] = [speeds[i - 1], speeds[i], speeds[i + 1]];
             if a * b > 0.0 && b * c > 0.0 && b.abs() < a.abs().min(c.abs()) {
-                let (mut low, mut high) = (at(i - 1), at(i + 1));
+                let (mut low, mut high) = (parameter(i - 1), parameter(i + 1));
                 for _ in 0..30 {
                     let (u, v) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
                     let [u_speed, v_speed] = [u, v].map(|t| self.speed(t) * b.signum());
-                    if u_speed < v_speed {
-                        high = v;
-                    } else {
-                        low = u;
-                    }
                     if u_speed.min(v_speed) < 0.0 {
                         ends.push(if u_speed < v_speed { u } else { v });
                         break;
                     }
+                    (low, high) = if u_speed < v_speed { (low, v) } else { (u, high) };
                 }
             }
         }
         ends.sort_by(f64::total_cmp);
-        let crossing = |w: &[f64]| {
+        let cusp_between = |w: &[f64]| {
             let (mut a, mut b) = (w[0], w[1]);
             let before = self.speed(a);
             if before * self.speed(b) >= 0.0 {
@@ -152,7 +151,7 @@ impl Offset {
             Some(b)
         };
         let mut out: Vec<f64> = Vec::new();
-        for t in ends.windows(2).filter_map(crossing).filter(|t| *t > NEAR && *t < 1.0 - NEAR) {
+        for t in ends.windows(2).filter_map(cusp_between).filter(|t| *t > NEAR && *t < 1.0 - NEAR) {
             // Between cusps so near to each other, the curve hardly moves.
             if out.last().is_some_and(|last| t - last < NEAR) {
                 out.pop();
@@ -185,7 +184,7 @@ impl Source for Offset {
         Some(true)
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         let (p, d) = self.eval(t);
         if !(p.is_finite() && d.is_finite()) {
             return Err(NotFinite { t, at: self.place(t) });

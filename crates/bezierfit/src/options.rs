@@ -123,7 +123,7 @@ impl Options {
     }
 
     /// Returns an error if a value is out of range.
-    pub(crate) fn checked(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
             return Err(Error::Tolerance(self.tolerance));
         }

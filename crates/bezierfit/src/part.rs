@@ -2,7 +2,7 @@
 
 use crate::limits::JUMP;
 use crate::sample::{Lane, Lanes};
-use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, Source};
+use crate::source::{BreakPoint, NotFinite, ONE_SIDED_STEP, Quotient, Result, Source};
 use kurbo::{Point, Vec2};
 use std::cell::Cell;
 
@@ -35,12 +35,12 @@ impl<'a, S> Part<'a, S> {
     }
 
     /// The stretch between two break points of this part.
-    pub(crate) fn within(&self, [from, to]: [BreakPoint; 2]) -> Self {
-        let t = [from.t, to.t].map(|t| self.at(t));
+    pub(crate) fn sub_part(&self, [from, to]: [BreakPoint; 2]) -> Self {
+        let t = [from.t, to.t].map(|t| self.source_parameter(t));
         Self { t, calls: self.calls, ..Part::between(self.source, [from, to]) }
     }
 
-    fn at(&self, t: f64) -> f64 {
+    fn source_parameter(&self, t: f64) -> f64 {
         let [t0, t1] = self.t;
         if t == 1.0 { t1 } else { t0 + (t1 - t0) * t }
     }
@@ -55,13 +55,13 @@ impl<'a, S> Part<'a, S> {
 impl<S: Source> Source for Part<'_, S> {
     fn eval(&self, t: f64) -> (Point, Vec2) {
         self.count(1);
-        let (p, d) = self.source.eval(self.at(t));
+        let (p, d) = self.source.eval(self.source_parameter(t));
         (p, d * (self.t[1] - self.t[0]))
     }
 
     fn points(&self, t: &Lane, out: &mut Lanes) {
         self.count(t.len());
-        self.source.points(&t.map(|t| self.at(t)), out);
+        self.source.points(&t.map(|t| self.source_parameter(t)), out);
     }
 
     fn is_simple(&self) -> bool {
@@ -69,7 +69,7 @@ impl<S: Source> Source for Part<'_, S> {
     }
 
     fn resolved(&self, between: [f64; 2], intervals: usize, tolerance: f64) -> Option<bool> {
-        self.source.resolved(between.map(|t| self.at(t)), intervals, tolerance)
+        self.source.resolved(between.map(|t| self.source_parameter(t)), intervals, tolerance)
     }
 
     fn quotient(&self) -> Option<Quotient> {
@@ -78,21 +78,21 @@ impl<S: Source> Source for Part<'_, S> {
     }
 
     fn denominators(&self, t: &Lane) -> Lane {
-        let t = t.map(|t| self.at(t));
+        let t = t.map(|t| self.source_parameter(t));
         // Use the weights of the source, if it has any, which the part's quotient lacks.
         self.source.quotient().map_or_else(|| self.source.denominators(&t), |q| q.denominators(self.source, &t))
     }
 
     fn place(&self, t: f64) -> Point {
-        self.source.place(self.at(t))
+        self.source.place(self.source_parameter(t))
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         if t == 0.0 || t == 1.0 {
             return Ok(self.ends[usize::from(t == 1.0)]);
         }
         self.count(2); // The source is also evaluated aside, to see if its derivative vanishes.
-        let end = self.source.end(self.at(t))?;
+        let end = self.source.end(self.source_parameter(t))?;
         Ok(BreakPoint { t, speed: end.speed * (self.t[1] - self.t[0]), ..end })
     }
 
@@ -100,29 +100,26 @@ impl<S: Source> Source for Part<'_, S> {
     where
         Self: 's,
     {
-        let mut points = points.map(|(part, t)| (part.source, t.map(|t| part.at(t))));
-        let mut ends = ends.filter(|(_, t)| *t != 0.0 && *t != 1.0).map(|(part, t)| (part.source, part.at(t)));
+        let mut points = points.map(|(part, t)| (part.source, t.map(|t| part.source_parameter(t))));
+        let mut ends =
+            ends.filter(|(_, t)| *t != 0.0 && *t != 1.0).map(|(part, t)| (part.source, part.source_parameter(t)));
         S::announce(&mut points, &mut ends);
     }
 }
 
-/// The parts between the breaks of a source. Their evaluations are counted.
-pub(crate) fn parts<'a, S: Source>(
-    source: &'a S,
-    tolerance: f64,
-    calls: &'a Cell<usize>,
-) -> Result<Vec<Part<'a, S>>, NotFinite> {
-    let mut places = source.breaks();
-    places.retain(|t| *t > 0.0 && *t < 1.0);
-    places.push(1.0);
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    let inner = places.len() > 1; // Then all tangents are taken inside the parts, at the outer ends, too.
-    let mut out: Vec<Part<'_, S>> = Vec::with_capacity(places.len());
+/// The parts between the breaks of a source. Each counts its evaluations in `calls`.
+pub(crate) fn parts<'a, S: Source>(source: &'a S, tolerance: f64, calls: &'a Cell<usize>) -> Result<Vec<Part<'a, S>>> {
+    let mut ends = source.breaks();
+    ends.retain(|t| *t > 0.0 && *t < 1.0);
+    ends.push(1.0);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let is_broken = ends.len() > 1; // Then all tangents are taken inside the parts, at the outer ends, too.
+    let mut out: Vec<Part<'_, S>> = Vec::with_capacity(ends.len());
     let mut t0 = 0.0;
-    for t1 in places {
-        let [mut from, to] = if inner {
-            [beside(source, t0, 1.0)?, beside(source, t1, -1.0)?]
+    for t1 in ends {
+        let [mut from, to] = if is_broken {
+            [one_sided_end(source, t0, 1.0)?, one_sided_end(source, t1, -1.0)?]
         } else {
             [source.end(t0)?, source.end(t1)?]
         };
@@ -140,7 +137,7 @@ pub(crate) fn parts<'a, S: Source>(
 }
 
 /// The end of a smooth part at `t`, with the tangent and the speed a little further inside: after `t` if `side` is 1, before it if −1.
-fn beside<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint, NotFinite> {
+fn one_sided_end<S: Source>(source: &S, t: f64, side: f64) -> Result<BreakPoint> {
     // Where the curve jumps, take the limit from the left.
     let (p, _) = source.eval(if side < 0.0 && t < 1.0 { t.next_down() } else { t });
     let near = source.end(t + side * ONE_SIDED_STEP)?;

@@ -1,6 +1,6 @@
 //! Fits of whole curves and paths, to a tolerance or with a given number of pieces, which takes a search for the tolerance.
 
-use crate::joined::{Covered, JoinSettings, fewest, joined};
+use crate::joined::{Covered, JoinSettings, fewest, join};
 use crate::limits::CUBICS_FIRST;
 use crate::merge::{OwnPieces, ReachMemory};
 use crate::nodes::{NodeSettings, Side, is_structure, placed};
@@ -10,8 +10,8 @@ use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
 use crate::sample::{Lane, Lanes, fma};
 use crate::scale::smooth_parts;
-use crate::source::{NotFinite, Quotient, SlowSpots, Source};
-use crate::spline::Run;
+use crate::source::{NotFinite, Quotient, Result, SlowSpots, Source};
+use crate::spline::CurveRun;
 use crate::stretch::StretchFitter;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point, Vec2};
 use std::cell::Cell;
@@ -40,10 +40,10 @@ const ONE_ROUND: usize = 200_000;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn fit(source: &dyn Source, options: &Options) -> Result<Fitted, Error> {
-    limited(options, &|options| Ok(fitted(&source, options)?))
+    limited(options, &|options| Ok(fit_source(&source, options)?))
 }
 
-fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted, NotFinite> {
+fn fit_source(source: &&dyn Source, options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let calls = Cell::new(0);
@@ -54,7 +54,7 @@ fn fitted(source: &&dyn Source, options: &Options) -> Result<Fitted, NotFinite> 
         let start = first.ends[0].p;
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
-            splines(&rest[..count], (options, &calls), &mut out)?;
+            append_splines(&rest[..count], (options, &calls), &mut out)?;
         } else {
             let pieces = merged_parts(&rest[..count], (options, &calls), &mut memory, &mut out.report)?;
             append(&mut out.path, start, &pieces, false);
@@ -70,7 +70,7 @@ fn merged_parts<S: Source>(
     (options, calls): (&Options, &Cell<usize>),
     memory: &mut ReachMemory,
     report: &mut Report,
-) -> Result<Vec<Piece>, NotFinite> {
+) -> Result<Vec<Piece>> {
     let slow = SlowSpots::default();
     let mut covered = Vec::with_capacity(parts.len());
     let mut out = Vec::new();
@@ -81,18 +81,13 @@ fn merged_parts<S: Source>(
         fitter.counted = Some((calls, options.evaluations.saturating_sub(ONE_ROUND)));
         fitter.cover(&part.ends[0], &part.ends[1], &mut pieces, &mut report)?;
         let own = Covered { part: *part, pieces, report };
-        own.add(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
+        own.append_to(if options.nodes.merges() { &fitter.joints } else { &[] }, &mut covered);
     }
     if options.nodes.merges() {
         let Options { tolerance, certify, .. } = *options;
-        let settings = JoinSettings {
-            tolerance,
-            corner: options.joint(),
-            certify,
-            finely: covered.len() > parts.len(),
-            evenly: false,
-        };
-        joined(&covered, settings, memory, &mut out, report)?;
+        let (corner, finely) = (options.joint(), covered.len() > parts.len());
+        let settings = JoinSettings { tolerance, corner, certify, finely, evenly: false };
+        join(&covered, settings, memory, &mut out, report)?;
     } else {
         for own in covered {
             out.extend(own.pieces);
@@ -103,11 +98,11 @@ fn merged_parts<S: Source>(
 }
 
 /// Appends quadratics for consecutive parts.
-fn splines<S: Source>(
+fn append_splines<S: Source>(
     parts: &[Part<'_, S>],
     (options, calls): (&Options, &Cell<usize>),
     out: &mut Fitted,
-) -> Result<(), NotFinite> {
+) -> Result<()> {
     let spent = || calls.get() >= options.evaluations;
     let mut rest = parts;
     while let Some(first) = rest.first() {
@@ -118,7 +113,7 @@ fn splines<S: Source>(
         let count = 1 + rest.windows(2).take_while(|w| smooth(w)).count();
         let ends = [first.ends[0], rest[count - 1].ends[1]];
         calls.set(0);
-        let run = Run { curves: &rest[..count], tolerance: options.tolerance, is_spent: &spent };
+        let run = CurveRun { curves: &rest[..count], tolerance: options.tolerance, is_spent: &spent };
         run.cover(ends, &mut out.path, &mut out.report)?;
         rest = &rest[count..];
     }
@@ -144,7 +139,7 @@ fn splines<S: Source>(
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn simplify(path: &BezPath, options: &Options) -> Result<Fitted, Error> {
-    limited(options, &|options| Ok(simplified(path, options)?))
+    limited(options, &|options| Ok(simplify_path(path, options)?))
 }
 
 /// Fits the curve on which points lie, in their order: applies [`simplify`] to the lines from one to the next, so that only corners of
@@ -173,16 +168,13 @@ pub fn fit_points(points: impl IntoIterator<Item = impl Into<Point>>, options: &
     simplify(&BezPath::from_vec(elements), options)
 }
 
-fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
+fn simplify_path(path: &BezPath, options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     for subpath in subpaths(path) {
         let elements = subpath.elements();
-        let (Some(PathEl::MoveTo(start)), closed) =
-            (elements.first().copied(), matches!(elements.last(), Some(PathEl::ClosePath)))
-        else {
-            continue;
-        };
+        let Some(PathEl::MoveTo(start)) = elements.first().copied() else { continue };
+        let closed = elements.last() == Some(&PathEl::ClosePath);
         if let Some(at) = subpath.segments().map(|s| s.end()).chain([start]).find(|p| !p.is_finite()) {
             return Err(NotFinite { t: 0.0, at });
         }
@@ -192,22 +184,20 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
         }
         let parts = smooth_parts(segments, closed, options);
         let start = parts.first().and_then(|p| p.segments.first()).map_or(start, |s| s.seg.start());
-        let (mut pieces, whole) = (Vec::new(), parts.len());
+        let (mut pieces, closes) = (Vec::new(), closed && parts.len() == 1);
         if options.degree == Degree::Quadratic {
             out.path.move_to(start);
         }
         for part in parts {
-            let options = Options { tolerance: options.tolerance - part.off, ..*options };
+            let options = Options { tolerance: options.tolerance - part.distance, ..*options };
             let (mut rest, first) = (&part.segments[..], out.report.pieces.len());
             while !rest.is_empty() {
                 rest = &rest[match options.degree {
-                    Degree::Quadratic => quadratics(rest, &options, &mut out)?,
-                    Degree::Cubic => {
-                        smooth_run((rest, closed && whole == 1), &options, &mut memory, &mut pieces, &mut out.report)?
-                    }
+                    Degree::Quadratic => append_quadratics(rest, &options, &mut out)?,
+                    Degree::Cubic => smooth_run((rest, closes), &options, &mut memory, &mut pieces, &mut out.report)?,
                 }..];
             }
-            out.report.widen(first, part.off);
+            out.report.widen(first, part.distance);
         }
         match options.degree {
             Degree::Cubic => append(&mut out.path, pieces.first().map_or(start, Piece::start), &pieces, closed),
@@ -218,15 +208,16 @@ fn simplified(path: &BezPath, options: &Options) -> Result<Fitted, NotFinite> {
     Ok(out)
 }
 
-/// A run of the first segments, as far as they join smoothly, and their number.
-fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize), NotFinite> {
+/// A run of the first segments, as far as they join smoothly, and their number; 0 if the first is a point or has slow spots.
+fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<Segment>, usize)> {
     let mut run = SegmentRun::new(true, segments.len().min(64));
     let most = if options.nodes.merges() { segments.len() } else { 1 };
     let count = run.extend(&segments[..most], options.path_joint(), |segment| {
         let form = if options.certify { segment.quotient() } else { None };
         let ends = [segment.end(0.0)?, segment.end(1.0)?];
         let is_line = matches!(segment.seg, PathSeg::Line(_));
-        Ok(segment.is_smooth().then(|| RunSegment::new(*segment, form, ends, is_line)))
+        let is_smooth = segment.slow_spots().all().is_empty() && segment.has_length();
+        Ok(is_smooth.then(|| RunSegment::new(*segment, form, ends, is_line)))
     })?;
     for i in 0..count {
         let before = &segments[if i == 0 { segments.len() } else { i } - 1];
@@ -235,8 +226,8 @@ fn smooth_start(segments: &[Segment], options: &Options) -> Result<(SegmentRun<S
     Ok((run, count))
 }
 
-/// Returns a function that appends one of the segments unchanged.
-fn unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<(), NotFinite> {
+/// Returns a function that appends the segment of a given index unchanged.
+fn append_unchanged(segments: &[Segment]) -> impl FnMut(usize, &mut Vec<Piece>, &mut Report) -> Result<()> {
     |i, pieces, report| {
         pieces.push(segments[i].piece());
         report.add_error(0.0, Assurance::Exact);
@@ -252,9 +243,9 @@ pub(crate) fn smooth_run(
     memory: &mut ReachMemory,
     pieces: &mut Vec<Piece>,
     report: &mut Report,
-) -> Result<usize, NotFinite> {
+) -> Result<usize> {
     let (run, count) = smooth_start(segments, options)?;
-    let mut itself = unchanged(segments);
+    let mut append_own = append_unchanged(segments);
     if options.nodes.are_placed() && count > usize::from(options.nodes == Nodes::Auto) {
         let closed = closed && count == segments.len() && run.closes(options.path_joint());
         let Options { nodes, tolerance, .. } = *options;
@@ -262,15 +253,15 @@ pub(crate) fn smooth_run(
         return Ok(count);
     }
     if count < 2 {
-        itself(0, pieces, report)?;
+        append_own(0, pieces, report)?;
         return Ok(1);
     }
-    fewest(&run, OwnPieces::new(count, itself), (options.tolerance, false), memory, pieces, report)?;
+    fewest(&run, OwnPieces::new(count, append_own), (options.tolerance, false), memory, pieces, report)?;
     Ok(count)
 }
 
 /// Appends quadratics for the first segments, as far as they join smoothly, and returns the number of those segments.
-fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize, NotFinite> {
+fn append_quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Result<usize> {
     let (mut run, mut count) = smooth_start(segments, options)?;
     if let (true, Some(to)) = (options.nodes.are_placed(), (1..count).find(|i| run.segments[*i].kept)) {
         (run, count) = smooth_start(&segments[..to], options)?;
@@ -281,29 +272,27 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
         PathSeg::Quad(q) if count < 2 => out.path.quad_to(q.p1, q.p2),
         _ if count == 0 => {
             // The segment has no length, or must be divided at slow spots.
-            let slow = |t: f64| one.eval(t);
-            let breaks = Broken { curve: slow, at: one.slow_spots() };
             if one.has_length() {
                 let calls = Cell::new(0);
-                splines(&parts(&breaks, options.tolerance, &calls)?, (options, &calls), out)?;
+                append_splines(&parts(&BrokenSegment(*one), options.tolerance, &calls)?, (options, &calls), out)?;
             }
             return Ok(1);
         }
         _ => {
             let ends = [run.segments[0].from, run.segments[count - 1].to];
-            let (mut curves, mut off) = (segments[..count].to_vec(), 0.0);
+            let (mut curves, mut error) = (segments[..count].to_vec(), 0.0);
             if count > 16 {
                 // Long runs become few cubics first, so that circles of 100,000 cubics take linear time.
-                let close = CUBICS_FIRST * options.tolerance;
+                let tolerance = CUBICS_FIRST * options.tolerance;
                 let (mut pieces, mut report, mut memory) = (Vec::new(), Report::default(), ReachMemory::default());
-                let own = OwnPieces::new(count, unchanged(segments));
-                fewest(&run, own, (close, false), &mut memory, &mut pieces, &mut report)?;
-                (curves, off) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
+                let own = OwnPieces::new(count, append_unchanged(segments));
+                fewest(&run, own, (tolerance, false), &mut memory, &mut pieces, &mut report)?;
+                (curves, error) = (pieces.into_iter().map(Segment::from).collect(), report.max_error);
             }
             let first = out.report.pieces.len();
-            let run = Run { curves: &curves, tolerance: options.tolerance - off, is_spent: &|| false };
+            let run = CurveRun { curves: &curves, tolerance: options.tolerance - error, is_spent: &|| false };
             run.cover(ends, &mut out.path, &mut out.report)?;
-            out.report.widen(first, off);
+            out.report.widen(first, error);
             return Ok(count);
         }
     }
@@ -311,19 +300,16 @@ fn quadratics(segments: &[Segment], options: &Options, out: &mut Fitted) -> Resu
     Ok(1)
 }
 
-/// A curve that is broken at slow spots.
-struct Broken<F> {
-    curve: F,
-    at: SlowSpots,
-}
+/// A segment that is broken at its slow spots.
+struct BrokenSegment(Segment);
 
-impl<F: Fn(f64) -> (Point, Vec2)> Source for Broken<F> {
+impl Source for BrokenSegment {
     fn eval(&self, t: f64) -> (Point, Vec2) {
-        (self.curve)(t)
+        self.0.eval(t)
     }
 
     fn breaks(&self) -> Vec<f64> {
-        self.at.all().to_vec()
+        self.0.slow_spots().all().to_vec()
     }
 }
 
@@ -417,7 +403,7 @@ impl Segment {
         }
     }
 
-    /// The side of a joint formed by the start (`t` = 0) or the end (1) of the segment.
+    /// The segment's start (`t` = 0) or end (1) as one side of a joint.
     fn side(&self, t: f64) -> Side {
         let [d1, d2] = self.derivatives(t);
         Side { tangent: d1, bend: d2, is_line: matches!(self.seg, PathSeg::Line(_)) }
@@ -446,11 +432,6 @@ impl Segment {
     /// Returns `true` if the segment is more than a point.
     fn has_length(&self) -> bool {
         self.c[1..].iter().any(|c| c.hypot2() > 0.0)
-    }
-
-    /// Returns `true` if the segment has a length and no cusps.
-    fn is_smooth(&self) -> bool {
-        self.slow_spots().all().is_empty() && self.has_length()
     }
 }
 
@@ -495,19 +476,18 @@ impl Source for Segment {
     }
 }
 
-/// Most fits in the bisection for the least error, which ends when it is known to about a hundredth.
-const TRIALS: usize = 40;
-/// Ratio of tolerances at which the bisection ends.
-const CLOSE: f64 = 1.01;
+/// Most fits in the bisection for the least error, and the ratio of tolerances at which it ends.
+const MAX_TRIALS: usize = 40;
+const CLOSE_ENOUGH: f64 = 1.01;
 /// After the bisection, most further fits, the ratio of their tolerances, and the number of fits in a row without improvement that ends
 /// them: a narrow range of tolerances, down to a seventieth, may find break points that suit the symmetry of a curve.
-const POLISHED: usize = 100;
-const CLOSER: f64 = 0.9;
-const MISSES: i32 = 40;
+const MAX_POLISHING: usize = 100;
+const POLISHING_RATIO: f64 = 0.9;
+const MAX_MISSES: i32 = 40;
 
 /// Fits with the tolerance of the options, or with a tolerance that leads to the wanted number of pieces.
 pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted, Error>) -> Result<Fitted, Error> {
-    options.checked()?;
+    options.check()?;
     let with = |tolerance: f64| fit(&Options { tolerance, pieces: Pieces::Fewest, ..*options });
     let first = with(options.tolerance)?;
     let (allowed, exactly) = match options.pieces {
@@ -518,7 +498,7 @@ pub(crate) fn limited(options: &Options, fit: &dyn Fn(&Options) -> Result<Fitted
         Pieces::AtMost(n) => (n, false),
         Pieces::Exactly(n) => (n, true),
     };
-    if count(&first) <= allowed && !exactly {
+    if piece_count(&first) <= allowed && !exactly {
         return Ok(first);
     }
     let (best, least) = closest(allowed, (options.tolerance, first), &with)?;
@@ -538,11 +518,11 @@ fn closest(
     (mut tolerance, mut fitted): (f64, Fitted),
     with: &dyn Fn(f64) -> Result<Fitted, Error>,
 ) -> Result<(Option<Fitted>, usize), Error> {
-    let (mut best, mut least) = (None::<Fitted>, count(&fitted));
+    let (mut best, mut least) = (None::<Fitted>, piece_count(&fitted));
     // The largest tolerance that needs too many pieces, and the smallest that does not.
     let (mut low, mut high) = (0.0, f64::INFINITY);
-    for _ in 0..TRIALS {
-        let found = count(&fitted);
+    for _ in 0..MAX_TRIALS {
+        let found = piece_count(&fitted);
         least = least.min(found);
         // The error goes with the sixth power of the length.
         let factor = (found as f64 / allowed.max(1) as f64).powi(6);
@@ -554,7 +534,7 @@ fn closest(
                 best = Some(fitted);
             }
         }
-        if low * CLOSE >= high {
+        if low * CLOSE_ENOUGH >= high {
             break;
         }
         tolerance = match (low > 0.0, high.is_finite()) {
@@ -569,22 +549,22 @@ fn closest(
     }
     // A fit may be closer than its tolerance, and smaller tolerances do not always need more pieces.
     let mut misses = 0;
-    for _ in 0..POLISHED {
-        let Some(b) = best.as_ref().filter(|_| misses < MISSES) else { break };
+    for _ in 0..MAX_POLISHING {
+        let Some(b) = best.as_ref().filter(|_| misses < MAX_MISSES) else { break };
         misses += 1;
-        let closer = CLOSER.powi(misses) * b.report.max_error;
+        let closer = POLISHING_RATIO.powi(misses) * b.report.max_error;
         if closer < f64::MIN_POSITIVE {
             break;
         }
         let fitted = with(closer)?;
-        if count(&fitted) <= allowed && fitted.report.max_error < b.report.max_error {
+        if piece_count(&fitted) <= allowed && fitted.report.max_error < b.report.max_error {
             (best, misses) = (Some(fitted), 0);
         }
     }
     Ok((best, least))
 }
 
-fn count(fitted: &Fitted) -> usize {
+fn piece_count(fitted: &Fitted) -> usize {
     fitted.report.pieces.len()
 }
 
@@ -593,7 +573,7 @@ fn divide(fitted: &mut Fitted, wanted: usize) {
     let segs: Vec<PathSeg> = fitted.path.segments().collect();
     let length = |s: &PathSeg| s.start().distance(s.eval(0.5)) + s.eval(0.5).distance(s.end());
     let total: f64 = segs.iter().map(length).sum();
-    if segs.len() != count(fitted) || segs.len() >= wanted || total <= 0.0 {
+    if segs.len() != piece_count(fitted) || segs.len() >= wanted || total <= 0.0 {
         return;
     }
     let extra = (wanted - segs.len()) as f64;
@@ -614,7 +594,7 @@ fn divide(fitted: &mut Fitted, wanted: usize) {
             let parts = 1 + ((extra * along / total).round() - before) as usize;
             for i in 0..parts {
                 let [t0, t1] = [i, i + 1].map(|k| k as f64 / parts as f64);
-                path.push(if parts == 1 { element(seg) } else { element(seg.subsegment(t0..t1)) });
+                path.push(if parts == 1 { seg.as_path_el() } else { seg.subsegment(t0..t1).as_path_el() });
             }
             each.resize(each.len() + parts, report);
             next += 1;
@@ -624,12 +604,4 @@ fn divide(fitted: &mut Fitted, wanted: usize) {
         }
     }
     (fitted.path, fitted.report.pieces) = (path, each);
-}
-
-fn element(seg: PathSeg) -> PathEl {
-    match seg {
-        PathSeg::Line(l) => PathEl::LineTo(l.p1),
-        PathSeg::Quad(q) => PathEl::QuadTo(q.p1, q.p2),
-        PathSeg::Cubic(c) => PathEl::CurveTo(c.p1, c.p2, c.p3),
-    }
 }

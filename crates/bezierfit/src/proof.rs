@@ -30,79 +30,61 @@
 //! **Rounding** of the samples (some 1e-14 of the coordinates) is added to the bound.
 
 use crate::fit::{Candidate, ChordFrame};
-use crate::sample::{CHECKED, FITTED, Lane, Lanes, fma, largest, sum};
+use crate::sample::{CHECKED, FITTED, Lane, Lanes, fma, larger, largest, sum};
 use crate::sampled::{MAX_VARIATION, ROUNDING, SampledProof, inverse};
-use crate::source::{BreakPoint, NotFinite, Quotient, Source, images};
+use crate::source::{BreakPoint, NotFinite, Quotient, Result, Source};
 use kurbo::{CubicBez, Point, Vec2};
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// Bound for the Hausdorff distance between candidate and image from Chebyshev nodes: few, or more if that bound is above the tolerance;
 /// infinite if none was found. `feet` approximate the foot points of the samples j/17.
-fn by_nodes(
-    source: &impl Source,
-    form: &Quotient,
-    c: &Candidate,
-    feet: &[f64; FEET],
-    tolerance: f64,
-) -> Result<f64, NotFinite> {
-    const V: usize = 4;
-    let quick = if form.total(4, V) < 24 { with_nodes::<24, 4, V>(source, form, c, feet)? } else { f64::INFINITY };
-    if quick <= tolerance { Ok(quick) } else { with_nodes::<NODES, PHI, CLEARING>(source, form, c, feet) }
+fn by_nodes(source: &impl Source, form: &Quotient, c: &Candidate, feet: &Feet, tolerance: f64) -> Result<f64> {
+    let is_low = form.total(4, 4) < 24;
+    let quick = if is_low { bound_from_nodes::<24, 4, 4>(&FEW, source, form, c, feet)? } else { f64::INFINITY };
+    let proven = quick <= tolerance;
+    if proven { Ok(quick) } else { bound_from_nodes::<_, _, V_COEFFICIENTS>(&MANY, source, form, c, feet) }
 }
 
 /// Bound for the Hausdorff distance between a cubic and the image of the stretch `t`, whose ends need not be those of the cubic.
 pub(crate) fn stretch(
     source: &impl Source,
     form: &Quotient,
-    t: [f64; 2],
+    [t0, t1]: [f64; 2],
     cubic: &CubicBez,
     tolerance: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let unit = |v: Vec2| if v == Vec2::ZERO { (v, 0.0) } else { (v / v.hypot(), v.hypot()) };
     let q = cubic.p3 - cubic.p0;
-    let ((t0, a), (t1, b)) = (unit(cubic.p1 - cubic.p0), unit(cubic.p3 - cubic.p2));
-    let frame = ChordFrame { q, t0, t1, floor: [0.0; 2], size: q.hypot() + a + b, home: [a, b], pull: 0.0 };
-    let c = Candidate { t0: t[0], t1: t[1], p0: cubic.p0, frame, a, b };
+    let ((u0, a), (u1, b)) = (unit(cubic.p1 - cubic.p0), unit(cubic.p3 - cubic.p2));
+    let (size, home) = (q.hypot() + a + b, [a, b]);
+    let frame = ChordFrame { q, t0: u0, t1: u1, floor: [0.0; 2], size, home, pull: 0.0 };
+    let c = Candidate { t0, t1, p0: cubic.p0, frame, a, b };
     // Foot points by four Newton steps; their distances, and the frame's bounds and pulls of handles, do not matter.
-    let mut feet = [0.0; FEET];
-    for half in feet.chunks_exact_mut(8).enumerate() {
-        let (first, out) = (8 * half.0, half.1);
-        let tau: Lane = std::array::from_fn(|i| SAMPLES[first + i]);
-        let mut g = images(source, &tau.map(|tau| t[0] + (t[1] - t[0]) * tau))?;
-        for i in 0..8 {
-            g.x[i] -= cubic.p0.x;
-            g.y[i] -= cubic.p0.y;
-        }
-        let mut s = tau;
-        frame.distances(&g, a, b, &mut s, 4);
-        out.copy_from_slice(&s);
+    let mut feet = SAMPLES;
+    for half in feet.as_chunks_mut::<8>().0 {
+        let g = c.images(source, half)?;
+        frame.distances(&g, a, b, half, 4);
     }
     by_nodes(source, form, &c, &feet, tolerance)
 }
 
 /// The bound from N nodes, with P coefficients in p and V in the polynomial V.
 #[inline(never)]
-fn with_nodes<const N: usize, const P: usize, const V: usize>(
+fn bound_from_nodes<const N: usize, const P: usize, const V: usize>(
+    tables: &ChebyshevTables<N, P>,
     source: &impl Source,
     form: &Quotient,
     c: &Candidate,
-    feet: &[f64; FEET],
-) -> Result<f64, NotFinite>
-where
-    ChebyshevTables<N, P>: SharedTables,
-{
-    let tables = ChebyshevTables::<N, P>::shared();
-    let Some(p) = through(tables, feet) else { return Ok(f64::INFINITY) };
+    feet: &Feet,
+) -> Result<f64> {
+    let Some(p) = fit_p(tables, feet) else { return Ok(f64::INFINITY) };
     let mut x = [0.0; N];
     let mut y = [0.0; N];
     let mut w = [1.0; N];
     let h = c.t1 - c.t0;
     for b in (0..N).step_by(8) {
-        let mut t: Lane = [0.0; 8];
-        for i in 0..8 {
-            t[i] = fma(h, tables.tau[b + i], c.t0);
-        }
+        let t: Lane = std::array::from_fn(|i| fma(h, tables.tau[b + i], c.t0));
         let mut g = Lanes::default();
         source.points(&t, &mut g);
         x[b..b + 8].copy_from_slice(&g.x);
@@ -113,16 +95,17 @@ where
     }
     let f = phi(tables, &p);
     let [c1, c2, c3] = c.frame.power(c.a, c.b);
-    subtract(&mut x, &f, [c.p0.x, c1.x, c2.x, c3.x]);
-    subtract(&mut y, &f, [c.p0.y, c1.y, c2.y, c3.y]);
+    subtract_cubic(&mut x, &f, [c.p0.x, c1.x, c2.x, c3.x]);
+    subtract_cubic(&mut y, &f, [c.p0.y, c1.y, c2.y, c3.y]);
     let mut share = 1.0;
     if form.below > 0 {
-        let Some(e) = cleared::<N, P, V>(tables, &mut w, form.below + V - 1) else { return Ok(f64::INFINITY) };
+        let variation = clear_denominator::<N, P, V>(tables, &mut w, form.below + V - 1);
+        let Some(variation) = variation else { return Ok(f64::INFINITY) };
         for k in 0..N {
             x[k] *= w[k];
             y[k] *= w[k];
         }
-        share = 1.0 - e;
+        share = 1.0 - variation;
     }
     // The loop over lanes is vectorised. NaN and infinity show in the sum.
     let (mut most, mut all) = ([0.0; 8], [0.0; 8]);
@@ -144,9 +127,9 @@ where
 
 /// The coefficients of p by least squares from the foot points. `None` if φ leaves [0, 1].
 #[inline(always)]
-fn through<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, feet: &[f64; FEET]) -> Option<[f64; P]> {
+fn fit_p<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, feet: &Feet) -> Option<[f64; P]> {
     let mut parts = [[0.0; 8]; 2];
-    for i in 0..FEET {
+    for i in 0..FOOT_POINTS {
         let lead = feet[i] - SAMPLES[i];
         for k in 0..8 {
             parts[i % 2][k] = fma(tables.feet[i][k], lead, parts[i % 2][k]);
@@ -156,6 +139,7 @@ fn through<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, feet:
     (p.iter().map(|v| v.abs()).sum::<f64>() <= 1.0 || in_range_by_bound(tables, &p)).then_some(p)
 }
 
+/// Returns `true` if the bound for the brackets shows that φ stays in [0, 1].
 #[cold]
 fn in_range_by_bound<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, p: &[f64; P]) -> bool {
     let (mut a, mut b) = ([0.0; N], [0.0; N]);
@@ -164,7 +148,7 @@ fn in_range_by_bound<const N: usize, const P: usize>(tables: &ChebyshevTables<N,
         a[k] = 1.0 + (1.0 - tables.tau[k]) * v;
         b[k] = 1.0 - tables.tau[k] * v;
     }
-    tables.least(&a, P) >= 0.0 && tables.least(&b, P) >= 0.0
+    tables.lower_bound(&a, P) >= 0.0 && tables.lower_bound(&b, P) >= 0.0
 }
 
 /// φ at the nodes. Not inlined, so that LLVM sees nothing but the loop.
@@ -185,7 +169,7 @@ fn phi<const N: usize, const P: usize>(tables: &ChebyshevTables<N, P>, p: &[f64;
 
 /// Subtracts one coordinate of the cubic, c₀ + (c₁ + (c₂ + c₃f)f)f, from that coordinate of the image.
 #[inline(never)]
-fn subtract<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f64; 4]) {
+fn subtract_cubic<const N: usize>(g: &mut [f64; N], f: &[f64; N], [c0, c1, c2, c3]: [f64; 4]) {
     for k in 0..N {
         g[k] = g[k] - c0 - fma(fma(c3, f[k], c2), f[k], c1) * f[k];
     }
@@ -197,7 +181,7 @@ fn rounding(p0: Point, size: f64) -> f64 {
 }
 
 /// Replaces W by VW and returns a bound for |VW − 1|, where VW has degree `degree`. `None` if W is not positive or varies too much.
-pub(crate) fn cleared<const N: usize, const P: usize, const V: usize>(
+pub(crate) fn clear_denominator<const N: usize, const P: usize, const V: usize>(
     tables: &ChebyshevTables<N, P>,
     w: &mut [f64; N],
     degree: usize,
@@ -205,32 +189,32 @@ pub(crate) fn cleared<const N: usize, const P: usize, const V: usize>(
     if w.iter().any(|v| v.is_nan() || *v <= 0.0) {
         return None;
     }
-    let v: [f64; V] = tables.first(&w.map(|w| 1.0 / w));
+    let v: [f64; V] = tables.leading_coefficients(&w.map(|w| 1.0 / w));
     let mut most = 0.0f64;
     for k in 0..N {
-        let mut at = 0.0;
+        let mut value = 0.0;
         for j in 0..V.min(P) {
-            at += v[j] * tables.t[j][k];
+            value += v[j] * tables.t[j][k];
         }
-        w[k] *= at;
-        let off = (w[k] - 1.0).abs();
-        most = if off > most { off } else { most };
+        w[k] *= value;
+        most = larger((w[k] - 1.0).abs(), most);
     }
-    let e = tables.between_nodes(most, degree);
-    (e < MAX_VARIATION).then_some(e)
+    let variation = most * tables.stretch[degree];
+    (variation < MAX_VARIATION).then_some(variation)
 }
 
 /// Chebyshev nodes of the longest proof: more than the degree of D for a bicubic map of a cubic (max(18, 3·9)) and for a
 /// rational map of degree 4 (12 + 27 + 5), enough for the bound to lose little.
-pub(crate) const NODES: usize = 48;
+pub(crate) const MAX_NODES: usize = 48;
 /// Numbers of coefficients of p and of V in the longest proof.
-pub(crate) const PHI: usize = 8;
-pub(crate) const CLEARING: usize = 6;
+pub(crate) const P_COEFFICIENTS: usize = 8;
+pub(crate) const V_COEFFICIENTS: usize = 6;
 
 impl Quotient {
     /// Returns the form if its degree is low enough for proofs.
     pub fn provable(self) -> Option<Self> {
-        (self.total(PHI, CLEARING) < NODES && self.below + CLEARING - 1 < NODES).then_some(self)
+        (self.total(P_COEFFICIENTS, V_COEFFICIENTS) < MAX_NODES && self.below + V_COEFFICIENTS - 1 < MAX_NODES)
+            .then_some(self)
     }
 
     /// Degree of D or, with denominators, of F, for `p` coefficients of φ's p and `v` of V.
@@ -249,7 +233,7 @@ pub(crate) fn piece(
     g: [&Lanes; 2],
     feet: [&Lane; 2],
     tolerance: f64,
-) -> Result<f64, NotFinite> {
+) -> Result<f64> {
     let sampled = SampledProof::new(source, form, c, g, tolerance);
     let identity = sampled.identity()?;
     if identity <= tolerance {
@@ -281,18 +265,12 @@ pub(crate) fn piece(
 /// Bound for the distance between the image and the line between two break points, if the image runs along the line in one direction.
 /// Then every point of the line has a partner on the image with the same component along the line, and their distance is the
 /// component across. `size` is the scale of the image for rounding.
-pub(crate) fn line(
-    source: &impl Source,
-    form: &Quotient,
-    from: &BreakPoint,
-    to: &BreakPoint,
-    size: f64,
-) -> Result<f64, NotFinite> {
+pub(crate) fn line(source: &impl Source, form: &Quotient, [from, to]: [&BreakPoint; 2], size: f64) -> Result<f64> {
     let q = to.p - from.p;
     let length = q.hypot();
     let unit = if length > 0.0 { q / length } else { Vec2::ZERO };
-    const N: usize = NODES;
-    let tables = ChebyshevTables::<N, PHI>::shared();
+    const N: usize = MAX_NODES;
+    let tables = &**MANY;
     let (mut across, mut pace, mut w) = ([0.0; N], [0.0; N], [1.0; N]);
     for b in (0..N).step_by(8) {
         let t: Lane = std::array::from_fn(|i| from.t + (to.t - from.t) * tables.tau[b + i]);
@@ -312,29 +290,31 @@ pub(crate) fn line(
     }
     let mut share = 1.0;
     if form.below > 0 {
-        let Some(e) = cleared::<N, PHI, CLEARING>(tables, &mut w, form.below + CLEARING - 1) else {
-            return Ok(f64::INFINITY);
-        };
+        let degree = form.below + V_COEFFICIENTS - 1;
+        let variation = clear_denominator::<_, _, V_COEFFICIENTS>(tables, &mut w, degree);
+        let Some(variation) = variation else { return Ok(f64::INFINITY) };
         for k in 0..N {
             across[k] *= w[k];
         }
-        share = 1.0 - e;
+        share = 1.0 - variation;
     }
     let degree = (form.degree + form.below).min(N);
-    if degree >= N || tables.least(&pace, degree) < 0.0 {
+    if degree >= N || tables.lower_bound(&pace, degree) < 0.0 {
         return Ok(f64::INFINITY);
     }
     let most = across.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    Ok(tables.supremum(&across, &[0.0; N], most, form.total(PHI, CLEARING)) / share + rounding(from.p, size))
+    Ok(tables.supremum(&across, &[0.0; N], most, form.total(P_COEFFICIENTS, V_COEFFICIENTS)) / share
+        + rounding(from.p, size))
 }
 
 /// Number of samples with foot points, at j/17.
-pub(crate) const FEET: usize = 16;
+pub(crate) const FOOT_POINTS: usize = 16;
+type Feet = [f64; FOOT_POINTS];
 
 /// Even and odd coefficients are computed apart, in groups of four. This is the largest number of groups of each, N/8 for N = 48.
 const MOST_QUARTERS: usize = 6;
 
-/// Constant tables of the proofs with N nodes and P coefficients of p.
+/// Constant tables of the proofs with N nodes and P coefficients of p, shared by all threads.
 pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
     /// The nodes on [0, 1].
     pub(crate) tau: [f64; N],
@@ -343,33 +323,16 @@ pub(crate) struct ChebyshevTables<const N: usize, const P: usize> {
     /// Row k: contributions of the value at node k to the coefficients 0, 2, 4… and 1, 3, 5…
     even: [[f64; N]; N],
     odd: [[f64; N]; N],
-    /// 1 / cos(πd/2N).
+    /// 1/cos(πd/2N), by which a polynomial of degree d can exceed its values at the nodes.
     stretch: [f64; N],
     /// Row i: contributions of the foot point of sample i to the coefficients of p, by least squares. P of the eight are used.
-    pub(crate) feet: [[f64; 8]; FEET],
+    pub(crate) feet: [[f64; 8]; FOOT_POINTS],
 }
 
-/// Tables that exist once per process.
-pub(crate) trait SharedTables: Sized + 'static {
-    /// Returns the tables, computing them on first use.
-    fn shared() -> &'static Self;
-}
-
-macro_rules! shared {
-    ($($n:literal, $p:literal;)*) => {$(
-        impl SharedTables for ChebyshevTables<$n, $p> {
-            fn shared() -> &'static Self {
-                static TABLES: OnceLock<Box<ChebyshevTables<$n, $p>>> = OnceLock::new();
-                TABLES.get_or_init(|| Box::new(ChebyshevTables::new()))
-            }
-        }
-    )*};
-}
-
-shared! {
-    24, 4;
-    48, 8;
-}
+/// Tables of the quick proof and of the longest.
+static FEW: LazyLock<Box<ChebyshevTables<24, 4>>> = LazyLock::new(|| Box::new(ChebyshevTables::new()));
+static MANY: LazyLock<Box<ChebyshevTables<MAX_NODES, P_COEFFICIENTS>>> =
+    LazyLock::new(|| Box::new(ChebyshevTables::new()));
 
 impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     fn new() -> Self {
@@ -386,7 +349,7 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     }
 
     /// The first V Chebyshev coefficients of the function with these values.
-    pub(crate) fn first<const V: usize>(&self, f: &[f64; N]) -> [f64; V] {
+    pub(crate) fn leading_coefficients<const V: usize>(&self, f: &[f64; N]) -> [f64; V] {
         let mut out = [0.0; V];
         for k in 0..N {
             for d in 0..V {
@@ -394,11 +357,6 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
             }
         }
         out
-    }
-
-    /// Bound for a polynomial of the given degree whose values at the nodes are at most `most` in size.
-    pub(crate) fn between_nodes(&self, most: f64, degree: usize) -> f64 {
-        most * self.stretch[degree]
     }
 
     /// Bound for the length of the vector polynomial with these values at the nodes, the longest of which is `most`: the least
@@ -437,10 +395,8 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
         let mut tail = 0.0;
         let mut best = f64::INFINITY;
         for d in (0..=degree).rev() {
-            let limit = (most + tail) * self.stretch[d] + tail;
-            if limit < best {
-                best = limit;
-            }
+            let bound = (most + tail) * self.stretch[d] + tail;
+            best = if bound < best { bound } else { best };
             // Coefficient d joins the tail. Once the tail alone exceeds the best bound, smaller d cannot help.
             tail += size[d];
             if tail > best {
@@ -451,7 +407,7 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
     }
 
     /// Lower bound for a polynomial of the given degree, by an upper bound for its distance from the midrange of its values at the nodes.
-    pub(crate) fn least(&self, f: &[f64; N], degree: usize) -> f64 {
+    pub(crate) fn lower_bound(&self, f: &[f64; N], degree: usize) -> f64 {
         let lo = f.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = f.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mid = 0.5 * (lo + hi);
@@ -461,8 +417,8 @@ impl<const N: usize, const P: usize> ChebyshevTables<N, P> {
 
 /// Rows of the pseudo-inverse of `A[i][j]` = τᵢ(1−τᵢ) times the j-th Chebyshev polynomial at 2τᵢ−1: normal
 /// equations, well conditioned for sixteen samples and degree seven.
-fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
-    let a: [[f64; P]; FEET] = std::array::from_fn(|i| {
+fn least_squares<const P: usize>() -> [[f64; P]; FOOT_POINTS] {
+    let a: [[f64; P]; FOOT_POINTS] = std::array::from_fn(|i| {
         let tau = SAMPLES[i];
         let u: f64 = 2.0 * tau - 1.0;
         std::array::from_fn(|j| tau * (1.0 - tau) * (j as f64 * u.acos()).cos())
@@ -474,11 +430,11 @@ fn least_squares<const P: usize>() -> [[f64; P]; FEET] {
 }
 
 /// Parameters τ of the samples with foot points.
-pub(crate) const SAMPLES: [f64; FEET] = {
-    let mut out = [0.0; FEET];
+pub(crate) const SAMPLES: [f64; FOOT_POINTS] = {
+    let mut out = [0.0; FOOT_POINTS];
     let mut i = 0;
-    while i < FEET {
-        out[i] = (i as f64 + 1.0) / (FEET as f64 + 1.0);
+    while i < FOOT_POINTS {
+        out[i] = (i as f64 + 1.0) / (FOOT_POINTS as f64 + 1.0);
         i += 1;
     }
     out
@@ -489,17 +445,13 @@ mod tests {
     use super::*;
     use kurbo::Vec2;
 
-    fn the_bound_holds_with<const N: usize, const P: usize>(worst: f64)
-    where
-        ChebyshevTables<N, P>: SharedTables,
-    {
+    fn the_bound_holds_with<const N: usize, const P: usize>(t: &ChebyshevTables<N, P>, worst: f64) {
         // A polynomial of degree 9, whose maximum is found by sampling.
         let f = |t: f64| {
             let u = 2.0 * t - 1.0;
             let v = (9.0 * u.acos()).cos() * 0.01 + (4.0 * u.acos()).cos() + 0.3 * u;
             Vec2::new(v, 0.5 * v)
         };
-        let t = ChebyshevTables::<N, P>::shared();
         let (x, y) = (t.tau.map(|t| f(t).x), t.tau.map(|t| f(t).y));
         let most = (0..N).map(|k| x[k].hypot(y[k])).fold(0.0, f64::max);
         let truth = (0..=10_000).map(|i| f(f64::from(i) / 10_000.0).hypot()).fold(0.0, f64::max);
@@ -509,15 +461,15 @@ mod tests {
 
     #[test]
     fn the_bound_holds_and_is_not_far_off() {
-        the_bound_holds_with::<48, 8>(1.06);
-        the_bound_holds_with::<24, 4>(1.13);
+        the_bound_holds_with(&MANY, 1.06);
+        the_bound_holds_with(&FEW, 1.13);
     }
 
     #[test]
     fn phi_goes_through_feet_it_can_represent() {
-        let rows: [[f64; 8]; FEET] = least_squares();
+        let rows: [[f64; 8]; FOOT_POINTS] = least_squares();
         let want = [0.1, -0.05, 0.02, 0.0, 0.003, 0.0, 0.0, -0.001];
-        let lead: Vec<f64> = (0..FEET)
+        let lead: Vec<f64> = (0..FOOT_POINTS)
             .map(|i| {
                 let tau = SAMPLES[i];
                 let u: f64 = 2.0 * tau - 1.0;

@@ -1,4 +1,9 @@
-//! Unions, intersections and differences of areas, and areas that grow or shrink. linesweeper finds the crossings of their edges.
+//! Unions, intersections and differences of areas, and areas that grow or shrink.
+//!
+//! linesweeper finds the crossings of edges and the winding numbers on both sides; results are simplified. To move the outlines of an area,
+//! the curves beside them are fitted, with joins at corners. What they enclose in the outlines' direction belongs to the grown area, and is
+//! all that is left of a shrunken one. Where outlines are so rough that most of these curves would cross, strips beside them (`strips`)
+//! are united instead.
 
 use crate::limits::{CROSSINGS, EDGES, SIMPLIFIED, SMOOTH_JOINT, SOURCE};
 use crate::options::{Error, Options};
@@ -17,7 +22,7 @@ use std::panic::{self, AssertUnwindSafe};
 
 /// Angles in radians by which paths are turned before the sweep, one after the other until it succeeds. linesweeper 0.5 rarely panics,
 /// and mostly where edges lie along the axes, as they do in drawings.
-const TURNS: [f64; 6] = [0.3, 1.1, 0.7, 2.0, 2.6, 1.4];
+const SWEEP_ANGLES: [f64; 6] = [0.3, 1.1, 0.7, 2.0, 2.6, 1.4];
 
 /// Largest mean number of neighbours of a node within the distance; beyond it, outlines are moved in strips.
 const MOST_NEIGHBORS: usize = 4;
@@ -25,9 +30,9 @@ const MOST_NEIGHBORS: usize = 4;
 const FEW_NODES: usize = 3000;
 
 /// Most pairs of segments of a result and its source that are compared.
-const COMPARED: usize = 2_000_000;
+const MAX_COMPARED: usize = 2_000_000;
 
-/// Share of the distance that bevels keep at corners that turn by less than 120°.
+/// Share of the distance that bevels keep at corners that turn by up to 120°: the cosine of half the turn.
 const BEVELS: f64 = 0.5;
 
 /// Limit of miters, the usual one in SVG.
@@ -49,7 +54,7 @@ const MITER_LIMIT: f64 = 4.0;
 /// # Ok::<(), bezierfit::Error>(())
 /// ```
 pub fn union(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
-    covered(path, &BezPath::new(), tolerance, |w| w.shape_a != 0)
+    area_where(path, &BezPath::new(), tolerance, |w| w.shape_a != 0)
 }
 
 /// The area that a path covers under the even-odd rule: that inside an odd number of outlines.
@@ -57,7 +62,7 @@ pub fn union(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
 /// # Errors
 /// [`Error::NotFinite`] if a coordinate is not finite, [`Error::Crossings`] if the crossings of edges are not found.
 pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
-    covered(path, &BezPath::new(), tolerance, |w| w.shape_a % 2 != 0)
+    area_where(path, &BezPath::new(), tolerance, |w| w.shape_a % 2 != 0)
 }
 
 /// The area that lies in both of two areas, each covered under the nonzero rule.
@@ -65,7 +70,7 @@ pub fn union_even_odd(path: &BezPath, tolerance: f64) -> Result<BezPath, Error> 
 /// # Errors
 /// [`Error::NotFinite`] if a coordinate is not finite, [`Error::Crossings`] if the crossings of edges are not found.
 pub fn intersection(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
-    covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b != 0)
+    area_where(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b != 0)
 }
 
 /// The area that lies in the first of two areas and not in the second.
@@ -73,7 +78,7 @@ pub fn intersection(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath,
 /// # Errors
 /// [`Error::NotFinite`] if a coordinate is not finite, [`Error::Crossings`] if the crossings of edges are not found.
 pub fn difference(a: &BezPath, b: &BezPath, tolerance: f64) -> Result<BezPath, Error> {
-    covered(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b == 0)
+    area_where(a, b, tolerance, |w| w.shape_a != 0 && w.shape_b == 0)
 }
 
 /// Moves outlines by a distance. Closed subpaths are outlines of an area under the nonzero rule, which grows, or shrinks if the distance
@@ -110,7 +115,7 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
     let starts: Vec<Point> = subpaths(path).filter_map(|s| s.segments().next().map(|s| s.start())).collect();
-    let path = &lighter(path, &Options { tolerance: SOURCE * options.tolerance, best: true, ..*options })?;
+    let path = &lighter_path(path, &Options { tolerance: SOURCE * options.tolerance, best: true, ..*options })?;
     let mut area = BezPath::new();
     for subpath in subpaths(path) {
         if matches!(subpath.elements().last(), Some(PathEl::ClosePath)) {
@@ -119,36 +124,34 @@ pub fn offset(path: &BezPath, distance: f64, join: Join, options: &Options) -> R
         }
         // The outline of the stroke's area has no loops. Its parts on the wanted side are kept.
         let edge = stroke(&subpath, &style, &fine)?;
-        let near = covered(&edge.path, &BezPath::new(), options.tolerance, |w| w.shape_a != 0)?;
+        let near = area_where(&edge.path, &BezPath::new(), options.tolerance, |w| w.shape_a != 0)?;
         let side = beside_path(&subpath, &style, distance, &fine)?;
-        for chain in along(&near, &side, options.tolerance) {
-            add(&mut out, &simplify(&chain, &rest)?, edge.report.clone(), (distance.abs(), options));
+        for chain in chains_along(&near, &side, options.tolerance) {
+            append_part(&mut out, &simplify(&chain, &rest)?, edge.report.clone(), (distance.abs(), options));
         }
     }
     // The union removes edges inside the area.
     let area = union(&area, options.tolerance)?;
     if !area.is_empty() {
-        let moved = moved(&area, distance, &style, &starts, options)?;
+        let moved = grow(&area, distance, &style, &starts, options)?;
         out.path.extend(&moved.path);
         out.report.add(&moved.report);
     }
     if !out.path.is_empty() {
-        out.report.add_error(
-            (SOURCE + EDGES + 2.0 * CROSSINGS) * options.tolerance + out.report.max_error,
-            Assurance::Checked,
-        );
+        let before = (SOURCE + EDGES + 2.0 * CROSSINGS) * options.tolerance;
+        out.report.add_error(before + out.report.max_error, Assurance::Checked);
     }
     Ok(out)
 }
 
 /// The path, or a simplified one if that has less than half as many segments.
-fn lighter(path: &BezPath, options: &Options) -> Result<BezPath, Error> {
+fn lighter_path(path: &BezPath, options: &Options) -> Result<BezPath, Error> {
     let simple = simplify(path, options)?.path;
     Ok(if 2 * simple.segments().count() < path.segments().count() { simple } else { path.clone() })
 }
 
 /// Moves the outlines of an area. The results begin near one of `starts`.
-fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], options: &Options) -> Result<Fitted, Error> {
+fn grow(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], options: &Options) -> Result<Fitted, Error> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let fine = Options { tolerance: EDGES * options.tolerance, ..*options };
     let rest = Options { tolerance: SIMPLIFIED * options.tolerance, best: true, ..*options };
@@ -161,13 +164,13 @@ fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], option
         let strips: Vec<Vec<Edge>> =
             edges.iter().flat_map(|e| strips(e, outside, fine.tolerance, &neighbors)).collect();
         let edge = fit_contours(&strips, &fine)?;
-        let around = covered(&BezPath::new(), &edge.path, options.tolerance, |w| w.shape_b != 0)?;
-        // Strips unite to a band, whose side on the source `at_least` drops. Outlines of a shrunken area are its holes: turn them round.
+        let around = area_where(&BezPath::new(), &edge.path, options.tolerance, |w| w.shape_b != 0)?;
+        // Strips unite to a band, whose side on the source `without_near_outlines` drops. Outlines of a shrunken area are its holes: turn them round.
         let around = if distance > 0.0 { around } else { around.reverse_subpaths() };
         (edge, around)
     } else {
         let edge = beside_area(area, style, outside, &fine)?;
-        let moved = covered(area, &edge.path, options.tolerance, |w| match distance > 0.0 {
+        let moved = area_where(area, &edge.path, options.tolerance, |w| match distance > 0.0 {
             true => w.shape_a != 0 || turns_with(w),
             false => w.shape_a != 0 && turns_with(w),
         })?;
@@ -176,12 +179,12 @@ fn moved(area: &BezPath, distance: f64, style: &Stroke, starts: &[Point], option
     let segs: Vec<PathSeg> = area.segments().collect();
     // Bevels are nearer than the distance; outlines to be removed are nearer still.
     let least = if style.join == Join::Bevel { BEVELS * distance.abs() } else { distance.abs() - options.tolerance };
-    let (moved, near) = at_least(least, &segs, &moved);
+    let (moved, near) = without_near_outlines(least, &segs, &moved);
     if style.join != Join::Bevel {
         out.report.unresolved.extend(near);
     }
-    let moved: BezPath = subpaths(&moved).flat_map(|s| begun(&s, starts)).collect();
-    add(&mut out, &simplify(&moved, &rest)?, edge.report, (distance.abs(), options));
+    let moved: BezPath = subpaths(&moved).flat_map(|s| start_near(&s, starts)).collect();
+    append_part(&mut out, &simplify(&moved, &rest)?, edge.report, (distance.abs(), options));
     Ok(out)
 }
 
@@ -196,7 +199,7 @@ fn is_crowded(area: &BezPath, distance: f64) -> bool {
 }
 
 /// The closed contour, made to begin at the corner nearest to one of `starts`, or at the nearest point if it has no corners.
-fn begun(contour: &BezPath, starts: &[Point]) -> BezPath {
+fn start_near(contour: &BezPath, starts: &[Point]) -> BezPath {
     let mut segs: Vec<PathSeg> = contour.segments().collect();
     let distance = |p: Point| starts.iter().map(|s| s.distance_squared(p)).fold(f64::INFINITY, f64::min);
     let joint = |i: usize| [segs[(i + segs.len() - 1) % segs.len()], segs[i]].map(Segment::new);
@@ -208,10 +211,10 @@ fn begun(contour: &BezPath, starts: &[Point]) -> BezPath {
     if let Some(corner) = nearest {
         segs.rotate_left(corner);
     } else {
-        let places = segs.iter().enumerate().flat_map(|(i, s)| {
+        let nearest = segs.iter().enumerate().flat_map(|(i, s)| {
             starts.iter().map(move |p| (s.nearest(*p, 1e-9 * s.bounding_box().size().max_side()), i))
         });
-        let Some((near, i)) = places.min_by(|a, b| a.0.distance_sq.total_cmp(&b.0.distance_sq)) else {
+        let Some((near, i)) = nearest.min_by(|a, b| a.0.distance_sq.total_cmp(&b.0.distance_sq)) else {
             return contour.clone();
         };
         segs.rotate_left(i);
@@ -232,17 +235,17 @@ fn begun(contour: &BezPath, starts: &[Point]) -> BezPath {
 }
 
 /// Appends a part, with the unresolved points of its `edges`.
-fn add(out: &mut Fitted, part: &Fitted, edges: Report, (distance, options): (f64, &Options)) {
+fn append_part(out: &mut Fitted, part: &Fitted, edges: Report, (distance, options): (f64, &Options)) {
     out.path.extend(&part.path);
     out.report.add(&part.report);
     // Points further from the result than the distance do not matter to it.
-    let reach = (distance + options.tolerance).powi(2);
-    let edge = |p: &Point| part.path.segments().any(|s| s.nearest(*p, options.tolerance).distance_sq <= reach);
-    out.report.unresolved.extend(edges.unresolved.into_iter().filter(edge));
+    let limit = (distance + options.tolerance).powi(2);
+    let is_near = |p: &Point| part.path.segments().any(|s| s.nearest(*p, options.tolerance).distance_sq <= limit);
+    out.report.unresolved.extend(edges.unresolved.into_iter().filter(is_near));
 }
 
 /// Outlines of the area that is `inside` by the winding numbers of two paths.
-fn covered(
+fn area_where(
     a: &BezPath,
     b: &BezPath,
     tolerance: f64,
@@ -251,9 +254,8 @@ fn covered(
     if let Some(at) = [a, b].into_iter().find(|p| !p.is_finite()) {
         return Err(NotFinite { t: 0.0, at: at.control_box().center() }.into());
     }
-    let box_of = |p: &BezPath| if p.is_empty() { 0.0 } else { extent(p) };
     // Differences below this are rounding of the coordinates.
-    let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * box_of(a).max(box_of(b)));
+    let fine = (CROSSINGS * tolerance).max(64.0 * f64::EPSILON * extent(a).max(extent(b)));
     let swept = |turn: &f64| {
         let turned = [a, b].map(|p| Affine::rotate(*turn) * closed(p));
         let sweep = || Some(Topology::from_paths_binary(&turned[0], &turned[1], fine).ok()?.contours(&inside));
@@ -271,11 +273,11 @@ fn covered(
         Some(out)
     };
     // Very rarely the sweep replaces a piece of a curve by its chord, which is not on an edge of the source.
-    let mut all = TURNS.iter().filter_map(swept);
+    let mut all = SWEEP_ANGLES.iter().filter_map(swept);
     let first = all.next().ok_or(Error::Crossings)?;
     let sources: Vec<PathSeg> = [a, b].into_iter().flat_map(|p| closed(p).segments().collect::<Vec<_>>()).collect();
     let follows =
-        |out: &BezPath| out.segments().count() * sources.len() > COMPARED || along_edges(out, &sources, tolerance);
+        |out: &BezPath| out.segments().count() * sources.len() > MAX_COMPARED || along_edges(out, &sources, tolerance);
     let out = if follows(&first) { first } else { all.find(|out| follows(out)).unwrap_or(first) };
     // Crossings leave tiny segments, and nodes on lines.
     Ok(simplify(&without_dust(&out, fine), &Options::new(fine).with_corner(SMOOTH_JOINT))?.path)
@@ -312,7 +314,7 @@ fn without_dust(path: &BezPath, length: f64) -> BezPath {
 
 /// Drops outlines that are mostly nearer to the source than `distance`: a stroke that is wider than the area it encloses leaves such ones
 /// inside. Returns the others, with points of theirs that are nearer.
-fn at_least(distance: f64, source: &[PathSeg], outlines: &BezPath) -> (BezPath, Vec<Point>) {
+fn without_near_outlines(distance: f64, source: &[PathSeg], outlines: &BezPath) -> (BezPath, Vec<Point>) {
     let boxes: Vec<_> = source.iter().map(Shape::bounding_box).collect();
     let is_near = |p: &Point| {
         let mut near = boxes.iter().zip(source).filter(|(b, _)| b.inflate(distance, distance).contains(*p));
@@ -349,10 +351,10 @@ fn closed(path: &BezPath) -> BezPath {
 }
 
 /// The parts of closed outlines that run along an open path, in its direction.
-fn along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
+fn chains_along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
     let side: Vec<PathSeg> = side.segments().collect();
-    // The squared distance of a point from the side, and its parameter along it.
-    let place = |p: Point| {
+    // The squared distance of a point from the side, and the parameter of the nearest point.
+    let nearest = |p: Point| {
         let each = side.iter().enumerate().map(|(i, s)| {
             let near = s.nearest(p, 1e-3 * tolerance);
             (near.distance_sq, i as f64 + near.t)
@@ -360,7 +362,7 @@ fn along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
         each.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a })
     };
     // Two fits of one edge, one of them with crossings, differ by at most 2·(EDGES + CROSSINGS) = 0.64 of the tolerance.
-    let is_along = |s: &PathSeg| [0.1, 0.5, 0.9].into_iter().all(|t| place(s.eval(t)).0.sqrt() <= 0.8 * tolerance);
+    let is_along = |s: &PathSeg| [0.1, 0.5, 0.9].into_iter().all(|t| nearest(s.eval(t)).0.sqrt() <= 0.8 * tolerance);
     let mut out = Vec::new();
     for contour in subpaths(outlines) {
         let mut segs: Vec<PathSeg> = contour.segments().collect();
@@ -378,11 +380,10 @@ fn along(outlines: &BezPath, side: &BezPath, tolerance: f64) -> Vec<BezPath> {
         }
         for mut run in runs.into_iter().filter(|r| !r.is_empty()) {
             let middle = run[run.len() / 2];
-            let from = place(middle.eval(0.25)).1;
-            if place(middle.eval(0.75)).1 < from {
+            if nearest(middle.eval(0.75)).1 < nearest(middle.eval(0.25)).1 {
                 run = run.iter().rev().map(PathSeg::reverse).collect();
             }
-            out.push((place(run[0].eval(0.5)).1, BezPath::from_path_segments(run.into_iter())));
+            out.push((nearest(run[0].eval(0.5)).1, BezPath::from_path_segments(run.into_iter())));
         }
     }
     out.sort_by(|a, b| a.0.total_cmp(&b.0));

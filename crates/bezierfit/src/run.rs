@@ -1,19 +1,25 @@
-//! Runs of segments in a row as one curve, known by samples at even parameters of each segment, and cubics over stretches of a run, fitted
-//! to sixteen of its samples.
+//! Runs of segments in a row as one curve, known by samples at even parameters of each segment, and cubics over stretches of a run.
+//!
+//! Samples are numbered from the start of the run, and so are *grid points* (`k`), at which pieces may end: some of the samples, among them
+//! both ends of every segment. The run's parameter is the length of the polygon through the samples. A cubic is fitted like one over a
+//! single segment, to the samples nearest to seventeenths of its stretch, or to points interpolated between samples that are too coarse.
 
-use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, fit, improved, settled, size};
+use crate::fit::{BestFit, ChordFrame, Fit, FitState, Fitting, THOROUGH, best_fit, fit, settled, size};
 use crate::limits::{COARSE, EVEN_CURVATURE, LONG_EDGE, MERGE_GRID, OPAQUE_SAMPLES, PEAK_NEAR, RATIONAL_SAMPLES};
 use crate::report::{Assurance, Piece};
-use crate::sample::{ALL, Evenly, Lane, Lanes, UNIT, extreme, interleaved, larger, largest};
-use crate::source::{BreakPoint, NotFinite, Quotient, SlowSpots, Source, images};
+use crate::sample::{
+    CHECKED, FITTED, IN_ORDER, InOrder, Lane, Lanes, UNIT, interleaved, larger, largest, parabola_extreme,
+};
+use crate::source::{BreakPoint, NotFinite, Quotient, Result, SlowSpots, Source, images};
 use crate::stretch::{STRAIGHT_TURN, straight};
 use kurbo::{CubicBez, Line, Point, Vec2};
 
 /// Kind of a segment, by its form in the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
+    /// A curve in the drawing.
     Curve,
-    /// A line that a map has bent.
+    /// A line in the drawing that a map has bent.
     Bent,
     /// A line that is still straight. No curve covers a part of it.
     Straight,
@@ -69,8 +75,13 @@ impl<S> RunSegment<S> {
         Self { kind: Kind::Bent, ..self }
     }
 
-    /// Replaces source, form and ends.
-    pub(crate) fn over<T>(&self, source: T, form: Option<Quotient>, [from, to]: [BreakPoint; 2]) -> RunSegment<T> {
+    /// The segment with another source, form and ends.
+    pub(crate) fn with_source<T>(
+        &self,
+        source: T,
+        form: Option<Quotient>,
+        [from, to]: [BreakPoint; 2],
+    ) -> RunSegment<T> {
         let Self { kind, curvature, kept, slow, .. } = *self;
         RunSegment { source, form, from, to, kind, curvature, kept, slow }
     }
@@ -82,7 +93,7 @@ impl<S> RunSegment<S> {
 
     /// Returns `true` if no piece runs from this segment into the next: at corners, and where a straight edge ends. Short chords in a row
     /// are a flattened curve, so lines go on into lines unless one of them is much longer.
-    fn parts(&self, next: &Self, corner: f64) -> bool {
+    fn is_parted_from(&self, next: &Self, corner: f64) -> bool {
         let turn = self.to.into.cross(next.from.away).atan2(self.to.into.dot(next.from.away)).abs();
         let edge = match (self.kind, next.kind) {
             (Kind::Straight, Kind::Curve) | (Kind::Curve, Kind::Straight) => true,
@@ -122,16 +133,12 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Samples a segment and appends it. Returns `false` if consecutive samples coincide: a stretch without length has no direction.
-    pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool, NotFinite> {
+    pub fn push(&mut self, segment: RunSegment<S>) -> Result<bool> {
         self.push_sampled(segment, None)
     }
 
     /// Appends a segment by [`push`](Self::push), or by its `samples` if they are known.
-    pub(crate) fn push_sampled(
-        &mut self,
-        mut segment: RunSegment<S>,
-        samples: Option<[&[f64]; 2]>,
-    ) -> Result<bool, NotFinite> {
+    pub(crate) fn push_sampled(&mut self, mut segment: RunSegment<S>, samples: Option<[&[f64]; 2]>) -> Result<bool> {
         let n = self.per_segment;
         if self.x.is_empty() {
             self.x.push(segment.from.p.x);
@@ -180,7 +187,7 @@ impl<S: Source> SegmentRun<S> {
     /// Returns `true` if the run ends at its start, and pieces may run on there.
     pub fn closes(&self, corner: f64) -> bool {
         let ends = [self.segments.last(), self.segments.first()];
-        matches!(ends, [Some(last), Some(first)] if last.to.p == first.from.p && !last.parts(first, corner))
+        matches!(ends, [Some(last), Some(first)] if last.to.p == first.from.p && !last.is_parted_from(first, corner))
     }
 
     /// Appends the first of `items` as long as `segment` makes segments of them that join with turns of at most `corner` radians.
@@ -192,11 +199,11 @@ impl<S: Source> SegmentRun<S> {
         &mut self,
         items: &'t [T],
         corner: f64,
-        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>, NotFinite>,
-    ) -> Result<usize, NotFinite> {
+        mut segment: impl FnMut(&'t T) -> Result<Option<RunSegment<S>>>,
+    ) -> Result<usize> {
         for (i, item) in items.iter().enumerate() {
             let Some(next) = segment(item)? else { return Ok(i) };
-            let parts = self.segments.last().is_some_and(|last| last.parts(&next, corner));
+            let parts = self.segments.last().is_some_and(|last| last.is_parted_from(&next, corner));
             if parts || !self.push(next)? {
                 return Ok(i);
             }
@@ -214,17 +221,14 @@ impl<S: Source> SegmentRun<S> {
         }
     }
 
-    /// The last grid point.
-    pub(crate) fn last_place(&self) -> usize {
+    /// Number of the last grid point.
+    pub(crate) fn last_grid_point(&self) -> usize {
         self.grid * self.segments.len()
     }
 
     /// A copy with `by` times as many samples and grid points. `None` if the curvature jumps, so that the run is not one curve with more
-    /// nodes than it needs.
-    ///
-    /// # Errors
-    /// [`NotFinite`] if a segment is not finite.
-    pub(crate) fn refined(&self, by: usize) -> Result<Option<Self>, NotFinite>
+    /// nodes than it needs, or if it has fewer than six segments.
+    pub(crate) fn finer(&self, by: usize) -> Result<Option<Self>>
     where
         S: Clone,
     {
@@ -247,17 +251,17 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Index of the sample at grid point `k`.
-    pub(crate) fn sample(&self, k: usize) -> usize {
+    pub(crate) fn sample_at(&self, k: usize) -> usize {
         k * (self.per_segment / self.grid)
     }
 
     /// Length up to grid point `k`.
-    pub(crate) fn place(&self, k: usize) -> f64 {
-        self.length[self.sample(k)]
+    pub(crate) fn length_at(&self, k: usize) -> f64 {
+        self.length[self.sample_at(k)]
     }
 
     /// The break point at grid point `k`, with the length as its parameter.
-    pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint, NotFinite> {
+    pub(crate) fn end_at(&self, k: usize) -> Result<BreakPoint> {
         let (i, part) = (k / self.grid, k % self.grid);
         let end = match (self.segments.get(i), i.checked_sub(1).and_then(|i| self.segments.get(i))) {
             (Some(segment), _) if part > 0 => segment.source.end(part as f64 / self.grid as f64)?,
@@ -267,14 +271,14 @@ impl<S: Source> SegmentRun<S> {
             (None, Some(before)) => before.to,
             (None, None) => return Err(NotFinite { t: 0.0, at: Point::ORIGIN }),
         };
-        Ok(BreakPoint { t: self.place(k), speed: 1.0, ..end })
+        Ok(BreakPoint { t: self.length_at(k), speed: 1.0, ..end })
     }
 
     /// The last grid point between two at which the length is at most `length`; the first of them if there is none.
-    pub(crate) fn place_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
+    pub(crate) fn grid_point_before(&self, length: f64, [first, last]: [usize; 2]) -> usize {
         let step = self.per_segment / self.grid;
         let (mut low, mut high) = (first, last.max(first) + 1);
-        // Gallop, as it is usually near the start.
+        // Search with doubled strides, as it is usually near the start.
         let mut stride = 1;
         while low + stride < high && self.length[(low + stride) * step] <= length {
             low += stride;
@@ -303,7 +307,7 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Interpolates points at shares of the length between two samples, by polynomials of degree five through six samples of one segment.
-    pub(crate) fn between(&self, [first, last]: [usize; 2], shares: &Evenly, [x, y]: [&mut Evenly; 2]) {
+    pub(crate) fn interpolate(&self, [first, last]: [usize; 2], shares: &InOrder, [x, y]: [&mut InOrder; 2]) {
         let (start, length) = (self.length[first], self.length[last] - self.length[first]);
         let n = self.per_segment;
         let mut k = first;
@@ -311,6 +315,7 @@ impl<S: Source> SegmentRun<S> {
             let wanted = start + length * shares[j];
             k += self.length[k + 1..last].partition_point(|l| *l <= wanted);
             let part = (wanted - self.length[k]) / (self.length[k + 1] - self.length[k]);
+            // First of the six samples: two before sample `k`, but all in its segment.
             let base = k - k % n + (k % n).saturating_sub(2).min(n - 5);
             let w = lagrange((k - base) as f64 + part);
             (x[j], y[j]) = (0.0, 0.0);
@@ -322,7 +327,7 @@ impl<S: Source> SegmentRun<S> {
     }
 
     /// Images at eight parameters of segment `i`.
-    pub(crate) fn images(&self, i: usize, t: &Lane) -> Result<Lanes, NotFinite> {
+    pub(crate) fn images(&self, i: usize, t: &Lane) -> Result<Lanes> {
         self.segments.get(i).map_or(Ok(Lanes::default()), |s| images(&s.source, t))
     }
 }
@@ -364,18 +369,18 @@ pub(crate) struct RunCubic {
     pub(crate) a: f64,
     pub(crate) b: f64,
     /// Set if the image is a line to rounding.
-    line: bool,
+    is_line: bool,
     /// Samples of the run at the ends.
     pub(crate) samples: [usize; 2],
     /// Lengths up to the sixteen samples and the ends, as shares of the whole, and their foot points.
-    pub(crate) shares: Evenly,
-    pub(crate) feet: Evenly,
+    pub(crate) shares: InOrder,
+    pub(crate) feet: InOrder,
 }
 
 impl RunCubic {
     pub(crate) fn piece(&self) -> Piece {
         let [p, q] = self.ends;
-        if self.line { Piece::Line(Line::new(p, q)) } else { Piece::Cubic(self.cubic()) }
+        if self.is_line { Piece::Line(Line::new(p, q)) } else { Piece::Cubic(self.cubic()) }
     }
 
     pub(crate) fn cubic(&self) -> CubicBez {
@@ -394,14 +399,14 @@ pub(crate) struct Trial {
 /// A stretch of a run with its sixteen samples, relative to its first point.
 pub(crate) struct Stretch {
     pub(crate) tolerance: f64,
-    /// Value of [`Fitting::evenly`].
+    /// Set if the fit must be the same from either end.
     evenly: bool,
     ends: [BreakPoint; 2],
     samples: [usize; 2],
     frame: ChordFrame,
     g: Lanes,
     check: Lanes,
-    shares: Evenly,
+    shares: InOrder,
 }
 
 impl Stretch {
@@ -414,13 +419,13 @@ impl Stretch {
     ) -> Self {
         let [from, to] = ends;
         let ([first, last], length) = (samples, to.t - from.t);
-        let mut shares = [0.0; ALL];
-        let (mut x, mut y) = ([0.0; ALL], [0.0; ALL]);
+        let mut shares = [0.0; IN_ORDER];
+        let (mut x, mut y) = ([0.0; IN_ORDER], [0.0; IN_ORDER]);
         let inner = first + 1..last;
         let (lengths, xs, ys) = (&run.length[inner.clone()], &run.x[inner.clone()], &run.y[inner]);
         let scale = 1.0 / length;
         let (mut i, mut furthest_off) = (0, 0.0);
-        for j in 1..ALL - 1 {
+        for j in 1..IN_ORDER - 1 {
             let share = UNIT * j as f64;
             let twice = 2.0 * (from.t + length * share);
             i = nearest(lengths, i, twice);
@@ -428,18 +433,18 @@ impl Stretch {
             (x[j], y[j]) = (xs[i] - from.p.x, ys[i] - from.p.y);
             furthest_off = larger(furthest_off, (shares[j] - share).abs());
         }
-        shares[ALL - 1] = 1.0;
+        shares[IN_ORDER - 1] = 1.0;
         if furthest_off > COARSE * UNIT {
-            for j in 1..ALL - 1 {
+            for j in 1..IN_ORDER - 1 {
                 shares[j] = UNIT * j as f64;
             }
-            run.between(samples, &shares, [&mut x, &mut y]);
-            for j in 1..ALL - 1 {
+            run.interpolate(samples, &shares, [&mut x, &mut y]);
+            for j in 1..IN_ORDER - 1 {
                 (x[j], y[j]) = (x[j] - from.p.x, y[j] - from.p.y);
             }
         }
-        let g = Lanes { x: picked(&x, &FITTED_AT), y: picked(&y, &FITTED_AT) };
-        let check = Lanes { x: picked(&x, &CHECKED_AT), y: picked(&y, &CHECKED_AT) };
+        let g = Lanes { x: picked(&x, &FITTED), y: picked(&y, &FITTED) };
+        let check = Lanes { x: picked(&x, &CHECKED), y: picked(&y, &CHECKED) };
         let q = to.p - from.p;
         let size = size(q, &g, evenly);
         let third = length * (1.0 / 3.0);
@@ -448,33 +453,33 @@ impl Stretch {
     }
 
     /// Fits a cubic: by least squares, and by further methods as long as the error is above the tolerance.
-    pub(crate) fn fitted(mut self) -> Result<Trial, NotFinite> {
+    pub(crate) fn fitted(mut self) -> Result<Trial> {
         let [from, to] = &self.ends;
-        if let Some((line, error)) = straight(&self.g, from, to, self.frame.size, self.tolerance) {
+        if let Some((line, error)) = straight(&self.g, [from, to], self.frame.size, self.tolerance) {
             let third = line.p0.distance(line.p1) / 3.0;
-            return Ok(Trial { error, cubic: Some(self.with([third; 2], self.shares, true)) });
+            return Ok(Trial { error, cubic: Some(self.run_cubic([third; 2], self.shares, true)) });
         }
         let [a, b] = self.frame.home;
-        let mut start = FitState { a, b, s: picked(&self.shares, &FITTED_AT) };
+        let mut start = FitState { a, b, s: picked(&self.shares, &FITTED) };
         self.frame.settle(&self.g, a, b, &mut start.s);
         let tolerance = self.tolerance;
-        let best = improved(&mut self, &THOROUGH, start, tolerance)?;
+        let best = best_fit(&mut self, &THOROUGH, start, tolerance)?;
         Ok(self.trial(&best))
     }
 
     /// Fits a cubic with the least error that can be reached, starting from `from`.
-    pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial, NotFinite> {
-        let (z, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED_AT) }, self.tolerance);
-        let fit = fit(&THOROUGH, &self.frame, &self.g, z, [0.0, tolerance]);
-        let mut best = BestFit::of(fit, &mut self, tolerance)?;
-        best.minimised(&mut self, [0.0, tolerance])?;
+    pub(crate) fn fitted_closely(mut self, from: &RunCubic) -> Result<Trial> {
+        let (state, tolerance) = (FitState { a: from.a, b: from.b, s: picked(&from.feet, &FITTED) }, self.tolerance);
+        let fit = fit(&THOROUGH, &self.frame, &self.g, state, [0.0, tolerance]);
+        let mut best = BestFit::judged(fit, &mut self, tolerance)?;
+        best.minimise(&mut self, [0.0, tolerance])?;
         Ok(self.trial(&best))
     }
 
-    fn trial(&self, best: &BestFit<Evenly>) -> Trial {
+    fn trial(&self, best: &BestFit<InOrder>) -> Trial {
         let BestFit { fit, error, mark } = best;
         let fits = *error <= self.tolerance;
-        Trial { error: *error, cubic: fits.then(|| self.with([fit.z.a, fit.z.b], *mark, false)) }
+        Trial { error: *error, cubic: fits.then(|| self.run_cubic([fit.state.a, fit.state.b], *mark, false)) }
     }
 
     /// Returns `true` if a handle of a curve that turns one way extends beyond the crossing of both handles.
@@ -486,21 +491,21 @@ impl Stretch {
         most_a > 0.0 && most_b > 0.0 && (a > CROSSING * most_a || b > CROSSING * most_b)
     }
 
-    fn with(&self, [a, b]: [f64; 2], feet: Evenly, line: bool) -> RunCubic {
+    fn run_cubic(&self, [a, b]: [f64; 2], feet: InOrder, is_line: bool) -> RunCubic {
         let ends = [self.ends[0].p, self.ends[1].p];
-        RunCubic { frame: self.frame, ends, a, b, line, samples: self.samples, shares: self.shares, feet }
+        RunCubic { frame: self.frame, ends, a, b, is_line, samples: self.samples, shares: self.shares, feet }
     }
 }
 
 impl Fitting for Stretch {
     /// Foot points of all samples.
-    type Mark = Evenly;
+    type Mark = InOrder;
 
     fn samples(&self) -> (&ChordFrame, &Lanes) {
         (&self.frame, &self.g)
     }
 
-    fn checked(&mut self) -> Result<Lanes, NotFinite> {
+    fn checked(&mut self) -> Result<Lanes> {
         Ok(self.check)
     }
 
@@ -509,28 +514,28 @@ impl Fitting for Stretch {
     }
 
     /// Foot points of the checked samples between those of the fitted ones.
-    fn between(&self, s: &Lane) -> Lane {
-        let (at, want) = (picked(&self.shares, &FITTED_AT), picked(&self.shares, &CHECKED_AT));
+    fn feet_between(&self, s: &Lane) -> Lane {
+        let (fitted, checked) = (picked(&self.shares, &FITTED), picked(&self.shares, &CHECKED));
         let mut out = [0.0; 8];
         for i in 0..8 {
             let before = [0, 1, 2, 3, 3, 4, 5, 6][i];
-            let (step, rest) = (at[before + 1] - at[before], want[i] - at[before]);
+            let (step, rest) = (fitted[before + 1] - fitted[before], checked[i] - fitted[before]);
             out[i] = s[before] + if step > 0.0 { (s[before + 1] - s[before]) * (rest / step) } else { 0.0 };
         }
         out
     }
 
-    fn judge(&mut self, fit: &Fit) -> Result<(f64, Evenly), NotFinite> {
-        let (z, fitted) = (&fit.z, settled(&self.frame, &self.g, fit, self.tolerance));
-        let mut s = self.between(&fitted.s);
-        let squares = self.frame.distances(&self.check, z.a, z.b, &mut s, 1);
+    fn judge(&mut self, fit: &Fit) -> Result<(f64, InOrder)> {
+        let (state, fitted) = (&fit.state, settled(&self.frame, &self.g, fit, self.tolerance));
+        let mut s = self.feet_between(&fitted.s);
+        let squares = self.frame.distances(&self.check, state.a, state.b, &mut s, 1);
         let mut error = larger(fitted.error, largest(&squares).sqrt());
         if error <= self.tolerance {
-            let e0 = self.frame.signed_distances(&self.g, z.a, z.b, &fitted.s, &fitted.squares);
-            let e1 = self.frame.signed_distances(&self.check, z.a, z.b, &s, &squares);
+            let e0 = self.frame.signed_distances(&self.g, state.a, state.b, &fitted.s, &fitted.squares);
+            let e1 = self.frame.signed_distances(&self.check, state.a, state.b, &s, &squares);
             error = highest_parabola(&interleaved(&e0, &e1, 0.0), error);
         }
-        if self.evenly && self.crosses(z.a, z.b) {
+        if self.evenly && self.crosses(state.a, state.b) {
             error = larger(error, MISSED * self.tolerance);
         }
         Ok((error, interleaved(&fitted.s, &s, 1.0)))
@@ -560,31 +565,28 @@ fn nearest(lengths: &[f64], from: usize, twice: f64) -> usize {
 }
 
 /// Height of the highest parabola through three neighbours whose middle one is an extreme, and nearly as far from zero as `most`.
-fn highest_parabola(errors: &Evenly, most: f64) -> f64 {
+fn highest_parabola(errors: &InOrder, most: f64) -> f64 {
     let is_top = |w: &[f64]| {
         let side = 1.0f64.copysign(w[1]);
         w[1].abs() >= PEAK_NEAR * most && w[1] * side >= w[0] * side && w[1] * side >= w[2] * side
     };
-    errors.windows(3).filter(|w| is_top(w)).map(|w| extreme([w[0], w[1], w[2]])).fold(most, larger)
+    errors.windows(3).filter(|w| is_top(w)).map(|w| parabola_extreme([w[0], w[1], w[2]])).fold(most, larger)
 }
 
-/// Values at eight of the samples.
+/// Values at the fitted or the checked samples.
 #[inline(always)]
-fn picked(v: &Evenly, set: &[usize; 8]) -> Lane {
+fn picked(v: &InOrder, set: &Lane) -> Lane {
     let mut out = [0.0; 8];
     for i in 0..8 {
-        out[i] = v[set[i]];
+        out[i] = v[set[i] as usize];
     }
     out
 }
 
-/// Factor by which a handle may extend beyond the crossing: rounding.
+/// Factor by which a handle may extend beyond the crossing of both, so that rounding does not reject a cubic.
 const CROSSING: f64 = 1.01;
-/// Error that is recorded for a cubic whose handles cross.
+/// Error ÷ tolerance that is recorded for a cubic whose handles cross: a near miss.
 const MISSED: f64 = 1.05;
-
-const FITTED_AT: [usize; 8] = [1, 3, 5, 7, 10, 12, 14, 16];
-const CHECKED_AT: [usize; 8] = [2, 4, 6, 8, 9, 11, 13, 15];
 
 #[cfg(test)]
 mod tests {

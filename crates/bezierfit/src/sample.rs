@@ -118,15 +118,15 @@ pub fn spaced(t0: f64, h: f64, set: &Lane) -> Lane {
     t
 }
 
-/// Number of [`Evenly`] spaced values.
-pub(crate) const ALL: usize = 18;
+/// Number of a piece's samples and ends.
+pub(crate) const IN_ORDER: usize = 18;
 /// One value for each sample and either end, in their order along the piece.
-pub(crate) type Evenly = [f64; ALL];
+pub(crate) type InOrder = [f64; IN_ORDER];
 
 /// Merges values of the fitted and the checked samples. The ends get the values 0 and `last`.
-pub(crate) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Evenly {
-    let mut v = [0.0; ALL];
-    v[ALL - 1] = last;
+pub(crate) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> InOrder {
+    let mut v = [0.0; IN_ORDER];
+    v[IN_ORDER - 1] = last;
     for i in 0..8 {
         v[FITTED[i] as usize] = fitted[i];
         v[CHECKED[i] as usize] = checked[i];
@@ -134,9 +134,9 @@ pub(crate) fn interleaved(fitted: &Lane, checked: &Lane, last: f64) -> Evenly {
     v
 }
 
-/// Interpolates the checked samples' parameters on the cubic, those of their foot points, linearly from the fitted samples'.
+/// Foot points of the checked samples, interpolated linearly from those of the fitted samples.
 #[inline(always)]
-pub(crate) fn between(s: &Lane) -> Lane {
+pub(crate) fn feet_between(s: &Lane) -> Lane {
     let third = (s[4] - s[3]) / 3.0;
     [
         0.5 * (s[0] + s[1]),
@@ -175,7 +175,8 @@ pub(crate) fn predicted_peak([before, top, after]: [f64; 3], factor: f64) -> f64
     if (b >= a) & (b >= c) { peak } else { 0.0 }
 }
 
-/// Height to which errors may rise between a sample at the end of a smooth part and the next, by as much as in [`predicted_peak`].
+/// Height to which errors may rise between a sample at the end of a smooth part, if it is a local maximum, and the next: by `factor`
+/// times an eighth of their second difference.
 pub(crate) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f64 {
     let side = 1.0f64.copysign(end);
     let (a, b, c) = (end * side, next * side, after * side);
@@ -184,7 +185,7 @@ pub(crate) fn predicted_end_peak([end, next, after]: [f64; 3], factor: f64) -> f
 
 /// Highest [`predicted_peak`] of sixteen samples.
 #[inline(always)]
-pub(crate) fn highest_peak(errors: &Evenly) -> f64 {
+pub(crate) fn highest_peak(errors: &InOrder) -> f64 {
     let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
     for i in 0..8 {
         first[i] = predicted_peak([errors[i], errors[i + 1], errors[i + 2]], PEAK_FACTOR);
@@ -194,10 +195,10 @@ pub(crate) fn highest_peak(errors: &Evenly) -> f64 {
 }
 
 /// Height of the extreme of the parabola through three neighbouring signed errors, if it lies between them; else 0.
-pub(crate) fn extreme([a, b, c]: [f64; 3]) -> f64 {
+pub(crate) fn parabola_extreme([a, b, c]: [f64; 3]) -> f64 {
     let (slope, bend) = (c - a, a + c - 2.0 * b);
-    let inside = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
-    if inside { (b - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
+    let is_between = slope.abs() <= 2.0 * bend.abs() && bend != 0.0;
+    if is_between { (b - slope * slope / (8.0 * bend)).abs() } else { 0.0 }
 }
 
 /// Height of the parabola through three neighbours of which the middle one is the largest.

@@ -31,10 +31,10 @@
 mod tests;
 
 use crate::fit::Candidate;
-use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, fma, largest, sum};
-use crate::source::{NotFinite, Quotient, Source, images_into};
+use crate::sample::{CHECKED, FITTED, Lane, Lanes, UNIT, fma, larger, largest, sum};
+use crate::source::{Quotient, Result, Source, images_into};
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// Largest |VW − 1| allowed for a cleared denominator; the bound is divided by one minus |VW − 1|.
 pub(crate) const MAX_VARIATION: f64 = 0.5;
@@ -44,10 +44,10 @@ pub(crate) const ROUNDING: f64 = 1e-14;
 
 /// Degrees of D that sixteen and thirty-two samples determine.
 const DETERMINED: [usize; 2] = [19, 35];
-/// Factor by which a polynomial of degree [`BELOW`] can exceed its largest value at the first twenty-four samples.
-const BELOW_GROWTH: f64 = 12.0;
+/// Factor by which a polynomial of degree [`MAX_VW_DEGREE`] can exceed its largest value at the first twenty-four samples.
+const VW_GROWTH: f64 = 12.0;
 /// Highest degree of VW.
-const BELOW: usize = 16;
+const MAX_VW_DEGREE: usize = 16;
 /// Rounding of basis functions and of sums of them.
 const ARITHMETIC: f64 = 1.0 + 1e-9;
 
@@ -72,49 +72,49 @@ impl<'a, S: Source> SampledProof<'a, S> {
     #[inline(always)]
     fn degree(&self, p: usize) -> usize {
         let below = self.form.below;
-        self.form.degree.max(below + 3 * p) + if below > 0 { CLEARING } else { 0 }
+        self.form.degree.max(below + 3 * p) + if below > 0 { V_DEGREE } else { 0 }
     }
 
     /// The bound for the Hermite cubic with φ = τ, from sixteen samples.
-    pub(crate) fn identity(&self) -> Result<f64, NotFinite> {
+    pub(crate) fn identity(&self) -> Result<f64> {
         let hermite = [self.c.a, self.c.b] == self.c.frame.home;
-        if hermite { self.with(&([0.0; 2], []), 1, DETERMINED[0]) } else { Ok(f64::INFINITY) }
+        if hermite { self.bound(&([0.0; 2], []), 1, DETERMINED[0]) } else { Ok(f64::INFINITY) }
     }
 
     /// The bound from sixteen samples, with approximate foot points.
-    pub(crate) fn sixteen(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
-        self.through::<3>(feet, DETERMINED[0])
+    pub(crate) fn sixteen(&self, feet: [&Lane; 2]) -> Result<f64> {
+        self.bound_through::<3>(feet, DETERMINED[0])
     }
 
     /// The bound from thirty-two samples; the foot points should be accurate.
-    pub(crate) fn thirty_two(&self, feet: [&Lane; 2]) -> Result<f64, NotFinite> {
-        self.through::<FREE>(feet, DETERMINED[1])
+    pub(crate) fn thirty_two(&self, feet: [&Lane; 2]) -> Result<f64> {
+        self.bound_through::<FREE>(feet, DETERMINED[1])
     }
 
     #[inline(always)]
-    fn through<const F: usize>(&self, feet: [&Lane; 2], most: usize) -> Result<f64, NotFinite> {
-        // The highest degree of φ that so many samples allow.
+    fn bound_through<const F: usize>(&self, feet: [&Lane; 2], most: usize) -> Result<f64> {
+        // The highest degree of φ that so many samples allow: with F coefficients it is at most F + 3, and 5 is the least that helps.
         let Some(p) = (5..=F + 3).rev().find(|p| self.degree(*p) <= most) else { return Ok(f64::INFINITY) };
         let [h0, h1] = self.c.frame.home;
         let slopes = [h0 / self.c.a, h1 / self.c.b];
-        match through::<F>(SampleTables::shared(), feet, slopes, p) {
-            Some(phi) => self.with(&phi, p, most),
+        match fit_phi::<F>(SampleTables::shared(), feet, slopes, p) {
+            Some(phi) => self.bound(&phi, p, most),
             None => Ok(f64::INFINITY),
         }
     }
 
     /// The bound with φ of degree `p` from samples that determine D up to degree `limit`.
     #[inline(always)]
-    fn with<const F: usize>(&self, phi: &Phi<F>, p: usize, limit: usize) -> Result<f64, NotFinite> {
+    fn bound<const F: usize>(&self, phi: &Phi<F>, p: usize, limit: usize) -> Result<f64> {
         let tables = SampleTables::shared();
         let c = self.c;
         let n = self.degree(p);
-        if n > limit || self.form.below > BELOW - CLEARING {
+        if n > limit || self.form.below > MAX_VW_DEGREE - V_DEGREE {
             return Ok(f64::INFINITY);
         }
         let mut d = [Lanes::default(); 2];
         let [m0, m1] = [0, 1].map(|b| difference(tables, b, c, phi, self.g[b], &mut d[b]));
-        let most = (if m0 > m1 { m0 } else { m1 }).sqrt();
+        let most = larger(m0, m1).sqrt();
         // No bound is lower than the largest sample.
         if most.is_nan() || most > self.enough {
             return Ok(most);
@@ -126,7 +126,7 @@ impl<'a, S: Source> SampledProof<'a, S> {
     }
 }
 
-/// Degree, rounding and goal of a bound.
+/// A proof with the degree, rounding and goal of its bound.
 struct ProofData<'a, S> {
     proof: &'a SampledProof<'a, S>,
     /// Rounding of one sample of D.
@@ -149,16 +149,16 @@ impl<S: Source> ProofData<'_, S> {
                 return limit;
             }
         }
-        let mut k = [[0.0; 8]; 4];
+        let mut c = [[0.0; 8]; 4];
         let tables = SampleTables::shared();
-        coefficients(&tables.few, d, &mut k);
-        let least = supremum(tables, &k, most, self.enough);
-        least * ARITHMETIC + self.noise * amplification(tables.few.noise[top / 2][top % 2])
+        coefficients(&tables.few, d, &mut c);
+        let bound = supremum(tables, &c, most, self.enough);
+        bound * ARITHMETIC + self.noise * amplification(tables.few.noise[top / 2][top % 2])
     }
 
     /// The bound with denominators, or from thirty-two samples.
     #[inline(never)]
-    fn by_more<const F: usize>(&self, phi: &Phi<F>, d: [Lanes; 2]) -> Result<f64, NotFinite> {
+    fn by_more<const F: usize>(&self, phi: &Phi<F>, d: [Lanes; 2]) -> Result<f64> {
         let tables = SampleTables::shared();
         let SampledProof { source, form, c, .. } = *self.proof;
         let few = self.few;
@@ -176,7 +176,7 @@ impl<S: Source> ProofData<'_, S> {
                 difference(tables, b, c, phi, &g, &mut d[b]);
             }
         }
-        let mut off = 0.0;
+        let mut variation = 0.0;
         if form.below > 0 {
             let mut w = [[1.0; 8]; 4];
             for b in 0..if few { 3 } else { 4 } {
@@ -185,8 +185,8 @@ impl<S: Source> ProofData<'_, S> {
             if w.iter().flatten().any(|v| v.is_nan() || *v <= 0.0) {
                 return Ok(f64::INFINITY);
             }
-            off = BELOW_GROWTH * clear(tables, &mut w);
-            if off.is_nan() || off >= MAX_VARIATION {
+            variation = VW_GROWTH * clear(tables, &mut w);
+            if variation.is_nan() || variation >= MAX_VARIATION {
                 return Ok(f64::INFINITY);
             }
             for (d, w) in d.iter_mut().zip(&w) {
@@ -199,22 +199,21 @@ impl<S: Source> ProofData<'_, S> {
         let mut squares = [0.0; 8];
         for d in &d {
             for i in 0..8 {
-                let v = fma(d.x[i], d.x[i], d.y[i] * d.y[i]);
-                squares[i] = if v > squares[i] { v } else { squares[i] };
+                squares[i] = larger(fma(d.x[i], d.x[i], d.y[i] * d.y[i]), squares[i]);
             }
         }
         let most = largest(&squares).sqrt();
-        let share = 1.0 - off;
-        let data = ProofData { enough: self.enough * share, noise: self.noise * (1.0 + off), ..*self };
-        let limit = if few {
+        let share = 1.0 - variation;
+        let data = ProofData { enough: self.enough * share, noise: self.noise * (1.0 + variation), ..*self };
+        let bound = if few {
             data.by_sixteen(&[d[0], d[1]], most)
         } else {
-            let mut k = [[0.0; 16]; 4];
-            coefficients(&tables.many, &d, &mut k);
-            let least = supremum(tables, &k, most, data.enough);
-            least * ARITHMETIC + data.noise * amplification(tables.many.noise[self.top / 2][self.top % 2])
+            let mut c = [[0.0; 16]; 4];
+            coefficients(&tables.many, &d, &mut c);
+            let bound = supremum(tables, &c, most, data.enough);
+            bound * ARITHMETIC + data.noise * amplification(tables.many.noise[self.top / 2][self.top % 2])
         };
-        Ok(limit / share)
+        Ok(bound / share)
     }
 }
 
@@ -242,7 +241,7 @@ pub(crate) type Phi<const F: usize> = ([f64; 2], [f64; F]);
 /// φ of degree at most `p` with the given slopes at the ends, by least squares from the foot points. `None` if it leaves
 /// [0, 1].
 #[inline(always)]
-pub(crate) fn through<const F: usize>(
+pub(crate) fn fit_phi<const F: usize>(
     tables: &SampleTables,
     feet: [&Lane; 2],
     slopes: [f64; 2],
@@ -271,13 +270,13 @@ pub(crate) fn through<const F: usize>(
         }
     }
     // The first and the last Bernstein coefficients are 0 and 1; those beside them, an eleventh of the slopes.
-    let mut outside = 0.0;
+    let mut furthest = 0.0;
     for j in 2..10 {
-        let off = (b[j] - 0.5).abs();
-        outside = if off > outside { off } else { outside };
+        furthest = larger((b[j] - 0.5).abs(), furthest);
     }
     let slopes_inside = slopes.iter().all(|s| (0.0..11.0).contains(s));
-    (slopes_inside && outside < 0.5 - 1e-9 && sum(&parts[0]).is_finite()).then_some((ends, c))
+    // The margin is for rounding.
+    (slopes_inside && furthest < 0.5 - 1e-9 && sum(&parts[0]).is_finite()).then_some((ends, c))
 }
 
 /// Degrees d of L that are tried.
@@ -324,11 +323,11 @@ pub(crate) fn difference<const F: usize>(
 /// Replaces the values of W by those of VW, and returns the largest |VW − 1| of the first twenty-four.
 #[inline(never)]
 pub(crate) fn clear(tables: &SampleTables, w: &mut [Lane; 4]) -> f64 {
-    let mut parts = [[0.0; 8]; CLEARING + 1];
+    let mut parts = [[0.0; 8]; V_DEGREE + 1];
     for b in 0..2 {
         for i in 0..8 {
             let v = 1.0 / w[b][i];
-            for k in 0..=CLEARING {
+            for k in 0..=V_DEGREE {
                 parts[k][i] = fma(tables.inverse[k][b][i], v, parts[k][i]);
             }
         }
@@ -339,8 +338,8 @@ pub(crate) fn clear(tables: &SampleTables, w: &mut [Lane; 4]) -> f64 {
         for i in 0..8 {
             let u = tables.places[b][2][i];
             w[b][i] *= fma(fma(fma(fma(v[4], u, v[3]), u, v[2]), u, v[1]), u, v[0]);
-            let off = (w[b][i] - 1.0).abs();
-            most[i] = if b < 3 && off > most[i] { off } else { most[i] };
+            let variation = (w[b][i] - 1.0).abs();
+            most[i] = if b < 3 && variation > most[i] { variation } else { most[i] };
         }
     }
     largest(&most)
@@ -389,8 +388,7 @@ fn on_fine_grid<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4]) -> f64
             let square = |x: f64, y: f64| fma(x, x, y * y);
             // The larger of the two mirror images.
             let (l, r) = (square(ex + ox, ey + oy), square(ex - ox, ey - oy));
-            let m = if l > r { l } else { r };
-            all[i] = if m > all[i] { m } else { all[i] };
+            all[i] = larger(larger(l, r), all[i]);
         }
     }
     largest(&all).sqrt()
@@ -416,16 +414,15 @@ pub(crate) fn supremum<const H: usize>(tables: &SampleTables, c: &[[f64; H]; 4],
         // The even coefficient of degree d is not in the tail; the odd one after it is.
         let d = TRIED[j];
         tail += odd[d / 2];
-        let limit = fma(GROWTH[d], most + tail, tail);
-        best = if limit < best { limit } else { best };
+        let bound = fma(GROWTH[d], most + tail, tail);
+        best = if bound < best { bound } else { best };
         tail += even[d / 2];
         fine = if d / 2 == FINE { tail } else { fine };
     }
     if best > enough && most + fine <= enough {
-        let at = on_fine_grid(tables, c);
-        let largest = if at > most + fine { at } else { most + fine };
-        let limit = fma(FINE_GROWTH, largest, fine);
-        best = if limit < best { limit } else { best };
+        let largest = larger(on_fine_grid(tables, c), most + fine);
+        let bound = fma(FINE_GROWTH, largest, fine);
+        best = if bound < best { bound } else { best };
     }
     best
 }
@@ -436,10 +433,10 @@ const EXTRA: [[f64; 4]; 2] = [[0.15, 0.35, 0.62, 1.4], [2.4, 3.44, 4.54, 7.47]];
 /// Coefficients of either parity of L on the fine grid.
 pub(crate) const FINE: usize = 3;
 /// Degree of V.
-pub(crate) const CLEARING: usize = 4;
-/// Largest number of free coefficients of φ. With p₀ and p₁ there are [`PHI`].
+pub(crate) const V_DEGREE: usize = 4;
+/// Largest number of free coefficients of φ. With p₀ and p₁ there are [`PHI_BASIS`].
 pub(crate) const FREE: usize = 8;
-const PHI: usize = FREE + 2;
+const PHI_BASIS: usize = FREE + 2;
 
 /// Constant tables of the proofs from samples.
 pub(crate) struct SampleTables {
@@ -450,20 +447,20 @@ pub(crate) struct SampleTables {
     /// Basis functions 0, 2, 4 and 1, 3, 5 in the left half of the fine grid.
     pub(crate) fine: [[[f64; 16]; FINE]; 2],
     /// Basis of φ − τ at the samples, by batches: v(1−τ), vτ, and v² times the polynomials orthonormal under v⁴ at the sixteen samples.
-    pub(crate) phi: [[Lane; 4]; PHI],
+    pub(crate) phi: [[Lane; 4]; PHI_BASIS],
     /// Inner products of the orthonormal functions with τ, v(1−τ) and vτ over the sixteen samples.
     pub(crate) products: [[f64; 3]; FREE],
     /// Bernstein coefficients of degree eleven of the basis and, in `line`, of τ.
-    pub(crate) bernstein: [[f64; 12]; PHI],
+    pub(crate) bernstein: [[f64; 12]; PHI_BASIS],
     pub(crate) line: [f64; 12],
     /// Row k computes the k-th power coefficient of V from the values of 1/W at the sixteen samples.
-    pub(crate) inverse: [[Lane; 2]; CLEARING + 1],
+    pub(crate) inverse: [[Lane; 2]; V_DEGREE + 1],
 }
 
 impl SampleTables {
     pub(crate) fn shared() -> &'static Self {
-        static TABLES: OnceLock<Box<SampleTables>> = OnceLock::new();
-        TABLES.get_or_init(|| Box::new(Self::new()))
+        static TABLES: LazyLock<Box<SampleTables>> = LazyLock::new(|| Box::new(SampleTables::new()));
+        &TABLES
     }
 
     fn new() -> Self {
@@ -475,15 +472,16 @@ impl SampleTables {
         });
         let basis = GegenbauerBasis::new();
         let half = std::array::from_fn(|i| basis.at(places[i / 4][0][i % 4]));
+        // The left half of the points j/51 that are not samples, which are those with j = 3i.
         let mut grid = (2..26).filter(|j| j % 3 != 0).map(|j| f64::from(j) / 51.0);
         let grid: [_; 16] = std::array::from_fn(|_| basis.at(grid.next().unwrap_or(0.5)));
         let (phi, products, bernstein) = phi_tables(&places);
-        let power = |u: f64| -> [f64; CLEARING + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
-        let rows: [[f64; CLEARING + 1]; 16] = std::array::from_fn(|i| power(places[i / 8][2][i % 8]));
-        let gram = inverse(std::array::from_fn::<[f64; CLEARING + 1], { CLEARING + 1 }, _>(|r| {
+        let power = |u: f64| -> [f64; V_DEGREE + 1] { std::array::from_fn(|k| u.powi(k as i32)) };
+        let rows: [[f64; V_DEGREE + 1]; 16] = std::array::from_fn(|i| power(places[i / 8][2][i % 8]));
+        let gram = inverse(std::array::from_fn::<[f64; V_DEGREE + 1], { V_DEGREE + 1 }, _>(|r| {
             std::array::from_fn(|c| rows.iter().map(|p| p[r] * p[c]).sum())
         }));
-        let at = |k: usize, i: usize| -> f64 { (0..=CLEARING).map(|c| gram[k][c] * rows[i][c]).sum() };
+        let at = |k: usize, i: usize| -> f64 { (0..=V_DEGREE).map(|c| gram[k][c] * rows[i][c]).sum() };
         let inverse = std::array::from_fn(|k| std::array::from_fn(|b| std::array::from_fn(|i| at(k, 8 * b + i))));
         Self {
             places,
@@ -500,7 +498,7 @@ impl SampleTables {
 }
 
 /// The tables `phi`, `products` and `bernstein` of [`SampleTables`].
-type PhiTables = ([[Lane; 4]; PHI], [[f64; 3]; FREE], [[f64; 12]; PHI]);
+type PhiTables = ([[Lane; 4]; PHI_BASIS], [[f64; 3]; FREE], [[f64; 12]; PHI_BASIS]);
 
 fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
     let tau = |i: usize| places[i / 8][0][i % 8];
@@ -509,10 +507,10 @@ fn phi_tables(places: &[[Lane; 3]; 4]) -> PhiTables {
     const AT: usize = 32 + 12;
     let at: [f64; AT] = std::array::from_fn(|i| if i < 32 { tau(i) } else { (i - 32) as f64 / 11.0 });
     let dot = |a: &[f64; AT], b: &[f64; AT]| -> f64 { (0..16).map(|i| a[i] * b[i]).sum() };
-    let mut q = [[0.0; AT]; PHI];
+    let mut q = [[0.0; AT]; PHI_BASIS];
     q[0] = at.map(|t| v(t) * (1.0 - t));
     q[1] = at.map(|t| v(t) * t);
-    for k in 2..PHI {
+    for k in 2..PHI_BASIS {
         let last = q[k - 1];
         let mut next =
             if k == 2 { at.map(|t| v(t) * v(t)) } else { std::array::from_fn(|i| (2.0 * at[i] - 1.0) * last[i]) };

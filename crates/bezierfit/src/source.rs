@@ -7,7 +7,7 @@ use kurbo::{CubicBez, Point, QuadBez, Vec2, common::solve_cubic};
 /// Below this share of its usual size a derivative is rounding and gives no direction.
 pub const VANISHING_DERIVATIVE: f64 = 1e-9;
 
-/// Distance, as a share of the segment, at which a one-sided tangent is taken where all derivatives vanish. Far above rounding;
+/// Distance, as a share of the segment, at which a one-sided tangent is taken where the derivative vanishes. Far above rounding;
 /// the direction is off by about the same number of radians, a five-hundredth of the 0.01° to which joints are kept smooth.
 pub(crate) const ONE_SIDED_STEP: f64 = 3e-7;
 
@@ -73,6 +73,7 @@ pub trait Source {
         if !(p.is_finite() && d.is_finite()) {
             return Err(NotFinite { t, at: self.place(t) });
         }
+        // A thousandth of the curve away, the derivative has its usual size.
         let aside = if t < 0.5 { t + 1e-3 } else { t - 1e-3 };
         let speed = d.hypot();
         if speed > VANISHING_DERIVATIVE * self.eval(aside).1.hypot() {
@@ -154,6 +155,9 @@ impl std::fmt::Display for NotFinite {
 
 impl std::error::Error for NotFinite {}
 
+/// A value that needs a curve to be finite.
+pub(crate) type Result<T, E = NotFinite> = std::result::Result<T, E>;
+
 /// A point between two pieces, with the tangents on both sides.
 #[derive(Debug, Clone, Copy)]
 pub struct BreakPoint {
@@ -200,17 +204,17 @@ fn bernstein(b: &[f64], t: &Lane) -> Lane {
     let n = b.len() - 1;
     let mut out = [0.0; 8];
     for i in 0..8 {
-        // Horner's scheme in s/(1−s) or its inverse, whichever is at most one.
+        // Each term is the one before times t/(1−t), or in the second half in reverse order with the inverse: at most one.
         let flip = t[i] > 0.5;
         let (s, u) = if flip { (1.0 - t[i], t[i]) } else { (t[i], 1.0 - t[i]) };
-        let r = s / u;
-        let (mut sum, mut choose) = (0.0, 1.0);
+        let ratio = s / u;
+        let (mut sum, mut binomial) = (0.0, 1.0);
         let mut power = u.powi(n as i32);
         for k in 0..=n {
             let c = if flip { b[n - k] } else { b[k] };
-            sum += choose * power * c;
-            power *= r;
-            choose *= (n - k) as f64 / (k + 1) as f64;
+            sum += binomial * power * c;
+            power *= ratio;
+            binomial *= (n - k) as f64 / (k + 1) as f64;
         }
         out[i] = sum;
     }
@@ -219,7 +223,7 @@ fn bernstein(b: &[f64], t: &Lane) -> Lane {
 
 /// Writes the points at eight parameters. An error unless all are finite.
 #[inline(always)]
-pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Result<(), NotFinite> {
+pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Result<()> {
     source.points(t, g);
     // One test for all: the sum is finite only if every term is. Terms whose sum overflows are too large to fit.
     let mut all = [0.0; 8];
@@ -231,7 +235,7 @@ pub(crate) fn images_into(source: &impl Source, t: &Lane, g: &mut Lanes) -> Resu
 
 /// The points at eight parameters. An error unless all are finite.
 #[inline(always)]
-pub(crate) fn images(source: &impl Source, t: &Lane) -> Result<Lanes, NotFinite> {
+pub(crate) fn images(source: &impl Source, t: &Lane) -> Result<Lanes> {
     let mut out = Lanes::default();
     images_into(source, t, &mut out)?;
     Ok(out)
@@ -247,18 +251,19 @@ fn not_finite(source: &impl Source, t: &Lane, g: &Lanes) -> NotFinite {
 #[doc(hidden)]
 #[cold]
 pub fn tangent_beside<S: Source + ?Sized>(source: &S, t: f64, side: f64) -> Vec2 {
-    let mut h = ONE_SIDED_STEP;
-    while h < 1.0 {
-        let s = t + side * h;
-        let s = if (0.0..=1.0).contains(&s) { s } else { t - side * h };
-        let flip = if (s - t) * side < 0.0 { -1.0 } else { 1.0 };
-        let (_, d) = source.eval(s);
-        let n = d.hypot();
-        if n > 0.0 && n.is_finite() {
+    let mut step = ONE_SIDED_STEP;
+    while step < 1.0 {
+        let aside = t + side * step;
+        let aside = if (0.0..=1.0).contains(&aside) { aside } else { t - side * step };
+        let flip = if (aside - t) * side < 0.0 { -1.0 } else { 1.0 };
+        let (_, d) = source.eval(aside);
+        let speed = d.hypot();
+        if speed > 0.0 && speed.is_finite() {
             // No piece uses the tangent beyond an end of the curve, so its sign does not matter.
-            return d * (flip / n);
+            return d * (flip / speed);
         }
-        h *= 30.0;
+        // Five steps reach a quarter of the curve.
+        step *= 30.0;
     }
     Vec2::ZERO
 }
@@ -298,11 +303,12 @@ impl SlowSpots {
         self
     }
 
-    /// The spot nearest to the middle of (t0, t1) that is well inside.
-    pub(crate) fn inside(&self, t0: f64, t1: f64) -> Option<f64> {
-        let m = 1e-6 * (t1 - t0);
-        let off = |t: f64| (t - 0.5 * (t0 + t1)).abs();
-        self.all().iter().copied().filter(|t| *t > t0 + m && *t < t1 - m).min_by(|a, b| off(*a).total_cmp(&off(*b)))
+    /// The spot nearest to the middle of (t0, t1), of those that are further from its ends than rounding.
+    pub(crate) fn middlemost(&self, t0: f64, t1: f64) -> Option<f64> {
+        let margin = 1e-6 * (t1 - t0);
+        let from_middle = |t: &f64| (t - 0.5 * (t0 + t1)).abs();
+        let inside = self.all().iter().copied().filter(|t| *t > t0 + margin && *t < t1 - margin);
+        inside.min_by(|a, b| from_middle(a).total_cmp(&from_middle(b)))
     }
 
     /// Slow spots of a quadratic segment.
@@ -318,7 +324,7 @@ impl SlowSpots {
     pub fn of_cubic(s: &CubicBez) -> Self {
         let (d0, d1, d2) = (s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2);
         // With the chord q, |c'| ≥ 3(u²d₀ + 2us·d₁ + s²d₂)·q̂ ≥ 3/2·min(d₀·q̂, d₂·q̂) if no leg of the control polygon runs
-        // against q. Most curves end here.
+        // against q. Most curves end here. The mean of |c'|² is at most 3·size2, so 0.02 keeps |c'| above an eighth of its root.
         let q = s.p3 - s.p0;
         let least = d0.dot(q).min(d2.dot(q));
         let size2 = d0.hypot2() + d1.hypot2() + d2.hypot2();
@@ -333,12 +339,13 @@ impl SlowSpots {
     pub fn of_arc([a, b]: [Vec2; 2], start: f64, sweep: f64) -> Self {
         // |P'|² = A + B cos 2θ + C sin 2θ is smallest opposite to the phase (B, C).
         let (aa, bb, ab) = (a.hypot2(), b.hypot2(), a.dot(b));
-        let (mean, b, c) = (0.5 * (aa + bb), 0.5 * (bb - aa), -ab);
+        let (mean, cosine, sine) = (0.5 * (aa + bb), 0.5 * (bb - aa), -ab);
         let mut out = Self::default();
-        if (mean - b.hypot(c)).max(0.0).sqrt() >= SLOW_SPEED * mean.sqrt() || sweep == 0.0 {
+        if (mean - cosine.hypot(sine)).max(0.0).sqrt() >= SLOW_SPEED * mean.sqrt() || sweep == 0.0 {
             return out;
         }
-        let first = 0.5 * (-c).atan2(-b);
+        let first = 0.5 * (-sine).atan2(-cosine);
+        // Four turns to either side of angle zero, beyond every arc.
         for k in -8..=8 {
             let t = (first + f64::from(k) * std::f64::consts::PI - start) / sweep;
             if t > 0.0 && t < 1.0 {

@@ -12,24 +12,24 @@
 use crate::banded::solve_banded;
 use crate::limits::{ACCEPTED, SPLINE_SAMPLES, STRAIGHT};
 use crate::report::{Assurance, REPORT_MARGIN, Report};
-use crate::source::{BreakPoint, NotFinite, Source};
+use crate::source::{BreakPoint, NotFinite, Result, Source};
 use kurbo::{BezPath, Point, Vec2};
 
 /// Most rounds of a fit. The first is plain least squares.
 const ROUNDS: usize = 16;
 /// Most control points of a spline; a longer run is divided.
-const MOST: usize = 48;
+const MAX_PIECES: usize = 48;
 /// Shortest stretch that is divided, as a share of a curve, and the number of stretches in vain after which none is divided.
 const SHORTEST: f64 = 1e-6;
-const MOST_FUTILE: usize = 100;
+const MAX_FUTILE: usize = 100;
 /// Least number of samples for each piece that measure an error, which has corners where the curvature of curve or spline jumps.
-const CLOSELY: f64 = 64.0;
+const CHECK_SAMPLES: f64 = 64.0;
 /// Largest factor by which samples are refined for that.
-const MOST_CLOSELY: f64 = 32.0;
-/// Error that is recorded for a spline that fails a check, in tolerances.
+const MAX_REFINEMENT: f64 = 32.0;
+/// Error that is recorded for a spline that fails a check, in tolerances: a near miss.
 const MISSED: f64 = 1.001;
 /// Share of the residual along the tangent that is counted, to keep the system regular.
-const ALONG: f64 = 0.005;
+const TANGENTIAL: f64 = 0.005;
 /// Factor by which the error of quadratics that touch the curve exceeds that of least squares.
 const BALANCED: f64 = 1.3;
 /// A fit ends if the bound of its error exceeds the tolerance by this factor.
@@ -41,7 +41,7 @@ const PATIENCE: i32 = 8;
 /// Largest difference of layouts, in pieces, that lead to the same spline.
 const ALIKE: f64 = 0.25;
 /// Most curves that are covered together, so that the time is linear.
-const MOST_CURVES: usize = 32;
+const MAX_CURVES: usize = 32;
 /// A spline with more pieces than this multiple of the estimate may do better on parts of its curves.
 const UNSUITED: f64 = 1.5;
 
@@ -53,16 +53,17 @@ struct Span {
 }
 
 /// Consecutive curves that join smoothly, and the tolerance.
-pub(crate) struct Run<'a, S> {
+pub(crate) struct CurveRun<'a, S> {
     pub(crate) curves: &'a [S],
     pub(crate) tolerance: f64,
     /// Returns `true` when no more evaluations are allowed.
     pub(crate) is_spent: &'a dyn Fn() -> bool,
 }
 
-/// Samples of a stretch: points, the length up to each, and the number of pieces expected up to each.
+/// Samples of a stretch: points, the length of the polygon up to each, and the number of pieces expected up to each.
 struct Samples {
-    p: Vec<Point>,
+    points: Vec<Point>,
+    ends: [BreakPoint; 2],
     /// Intervals between samples of each curve.
     each: usize,
     length: Vec<f64>,
@@ -81,6 +82,7 @@ struct Covered {
     /// The spline; a line if `None`.
     spline: Option<Spline>,
     error: f64,
+    /// Set if the error is within the tolerance.
     resolved: bool,
 }
 
@@ -88,28 +90,36 @@ impl Covered {
     fn pieces(&self) -> usize {
         self.spline.as_ref().map_or(1, |s| s.c.len())
     }
+
+    /// Appends the line or the quadratics.
+    fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
+        let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
+        match &self.spline {
+            None => path.line_to(self.ends[1].p),
+            Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
+        }
+        (0..self.pieces()).for_each(|_| report.add_error(error, assurance));
+        if !self.resolved {
+            report.unresolved.push(self.ends[0].p);
+        }
+    }
 }
 
-impl<S: Source> Run<'_, S> {
+impl<S: Source> CurveRun<'_, S> {
     /// Appends few quadratics from the current point of `path`.
-    pub(crate) fn cover(
-        &self,
-        ends: [BreakPoint; 2],
-        path: &mut BezPath,
-        report: &mut Report,
-    ) -> Result<(), NotFinite> {
+    pub(crate) fn cover(&self, ends: [BreakPoint; 2], path: &mut BezPath, report: &mut Report) -> Result<()> {
         let unknown = |s: &S| s.resolved([0.0, 1.0], SPLINE_SAMPLES, self.tolerance).is_none();
         let assurance = if self.curves.iter().any(unknown) { Assurance::Sampled } else { Assurance::Checked };
         let mut futile = 0;
         for stretch in self.stretches(ends)? {
-            let covered = self.covered(stretch, &mut futile)?;
+            let covered = self.cover_stretch(stretch, &mut futile)?;
             covered.iter().for_each(|c| c.append((self.tolerance, assurance), path, report));
         }
         Ok(())
     }
 
     /// Groups the curves of the run: straight ones alone, and between them as many together as a spline may cover.
-    fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>, NotFinite> {
+    fn stretches(&self, ends: [BreakPoint; 2]) -> Result<Vec<Stretch>> {
         let mut all: Vec<(Stretch, f64)> = Vec::new();
         let (mut from, last) = (ends[0], self.curves.len() - 1);
         for (curve, source) in self.curves.iter().enumerate() {
@@ -120,7 +130,7 @@ impl<S: Source> Run<'_, S> {
             // A line joins no group.
             let expected = if straight { f64::INFINITY } else { samples.pieces() };
             match all.last_mut() {
-                Some((s, sum)) if *sum + expected <= 0.5 * MOST as f64 && s.spans.len() < MOST_CURVES => {
+                Some((s, sum)) if *sum + expected <= 0.5 * MAX_PIECES as f64 && s.spans.len() < MAX_CURVES => {
                     s.spans.push(span);
                     s.ends[1] = to;
                     *sum += expected;
@@ -133,28 +143,24 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Covers a stretch, divided if it needs too many pieces, or fewer when divided.
-    fn covered(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>, NotFinite> {
-        let (found, expected) = self.least(&stretch)?;
+    fn cover_stretch(&self, stretch: Stretch, futile: &mut usize) -> Result<Vec<Covered>> {
+        let (found, expected) = self.fewest(&stretch)?;
         let [t0, t1] = stretch.spans[0].t;
         let unsuited = |c: &Covered| c.pieces() as f64 > (UNSUITED * expected).max(2.0);
         let whole = match found {
             Some(c) if stretch.spans.len() == 1 || !unsuited(&c) => return Ok(vec![c]),
-            None if stretch.spans.len() == 1 && (t1 - t0 < SHORTEST || *futile > MOST_FUTILE || (self.is_spent)()) => {
+            None if stretch.spans.len() == 1 && (t1 - t0 < SHORTEST || *futile > MAX_FUTILE || (self.is_spent)()) => {
                 let samples = self.samples(&stretch.spans, SPLINE_SAMPLES, &stretch.ends)?;
                 let error = samples.straight(f64::INFINITY).unwrap_or(self.tolerance);
-                return Ok(vec![Covered {
-                    ends: stretch.ends,
-                    spline: None,
-                    error,
-                    resolved: error <= self.tolerance,
-                }]);
+                let resolved = error <= self.tolerance;
+                return Ok(vec![Covered { ends: stretch.ends, spline: None, error, resolved }]);
             }
             found => found,
         };
         *futile += usize::from(whole.is_none());
         let mut halves = Vec::new();
         for half in self.halves(stretch)? {
-            halves.extend(self.covered(half, futile)?);
+            halves.extend(self.cover_stretch(half, futile)?);
         }
         *futile = if halves.iter().all(|c| c.resolved) { 0 } else { *futile };
         // Count the stored points: a control point for each piece, and one between splines.
@@ -166,7 +172,7 @@ impl<S: Source> Run<'_, S> {
     }
 
     /// Divides a stretch between curves, or a curve in its middle.
-    fn halves(&self, stretch: Stretch) -> Result<[Stretch; 2], NotFinite> {
+    fn halves(&self, stretch: Stretch) -> Result<[Stretch; 2]> {
         let Stretch { spans, ends } = stretch;
         let (mut first, mut second) = (spans.clone(), spans);
         if let [span] = first[..] {
@@ -183,8 +189,8 @@ impl<S: Source> Run<'_, S> {
         Ok([Stretch { spans: first, ends: [ends[0], to] }, Stretch { spans: second, ends: [from, ends[1]] }])
     }
 
-    /// Covers a stretch with the fewest pieces, if [`MOST`] suffice. Also returns the expected number.
-    fn least(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64), NotFinite> {
+    /// Covers a stretch with the fewest pieces, if [`MAX_PIECES`] suffice. Also returns the expected number.
+    fn fewest(&self, stretch: &Stretch) -> Result<(Option<Covered>, f64)> {
         let Stretch { spans, ends } = stretch;
         let sampled = |n: usize| {
             let each = (SPLINE_SAMPLES * (n + 1)).div_ceil(spans.len());
@@ -196,14 +202,14 @@ impl<S: Source> Run<'_, S> {
             return Ok((covered(None, error), 1.0));
         }
         let expected = samples.pieces();
-        let mut n = ((0.5 * expected) as usize).clamp(1, MOST / 2);
+        let mut n = ((0.5 * expected) as usize).clamp(1, MAX_PIECES / 2);
         let (mut too_few, mut found) = (0, None);
         // Go up by the error, which goes with the third to fourth power of the length, then down to the least that fits.
-        while n <= MOST && too_few < n {
-            if samples.p.len() <= SPLINE_SAMPLES * n {
+        while n <= MAX_PIECES && too_few < n {
+            if samples.points.len() <= SPLINE_SAMPLES * n {
                 samples = sampled(n)?;
             }
-            match self.best(spans, n, &samples, ends)? {
+            match self.best(spans, n, &samples)? {
                 Ok((spline, error, bound)) => {
                     found = Some((spline, error));
                     // One piece fewer raises the bound with the third to fourth power of the length; the square is cautious.
@@ -215,6 +221,7 @@ impl<S: Source> Run<'_, S> {
                 Err(_) if found.is_some() => break,
                 Err(error) => {
                     too_few = n;
+                    // The fourth root of the error, a little less of it, so that the least number is not passed.
                     let more = n as f64 * (error / self.tolerance).min(1e6).powf(0.25) * 0.85;
                     n = (more as usize).clamp(n + 1, 2 * n + 2);
                 }
@@ -225,106 +232,85 @@ impl<S: Source> Run<'_, S> {
 
     /// The best spline of `n` pieces with its error, measured at samples that are close enough, and a lower bound for any error. `Err` is
     /// the least error found if none fits.
-    fn best(
-        &self,
-        spans: &[Span],
-        n: usize,
-        samples: &Samples,
-        ends: &[BreakPoint; 2],
-    ) -> Result<Result<(Spline, f64, f64), f64>, NotFinite> {
-        let (spline, [error, bound], u) = match Spline::best(n, samples, ends, self.tolerance) {
+    fn best(&self, spans: &[Span], n: usize, samples: &Samples) -> Result<Result<(Spline, f64, f64), f64>> {
+        let (spline, [error, bound], u) = match Spline::best(n, samples, self.tolerance) {
             Ok(found) => found,
             Err(error) => return Ok(Err(error)),
         };
         let step = u.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
-        let by = (step * CLOSELY).ceil().min(MOST_CLOSELY) as usize;
+        let by = (step * CHECK_SAMPLES).ceil().min(MAX_REFINEMENT) as usize;
         if by < 2 {
             return Ok(Ok((spline, error, bound)));
         }
-        let closer = self.samples(spans, by * (samples.p.len() - 1) / spans.len(), ends)?;
-        let mut feet: Vec<f64> = (0..closer.p.len())
-            .map(|i| {
-                let (k, part) = (i / by, (i % by) as f64 / by as f64);
-                u[k] + (u[(k + 1).min(u.len() - 1)] - u[k]) * part
-            })
-            .collect();
+        let closer = self.samples(spans, by * (samples.points.len() - 1) / spans.len(), &samples.ends)?;
+        let foot = |i: usize| {
+            let (k, part) = (i / by, (i % by) as f64 / by as f64);
+            u[k] + (u[(k + 1).min(u.len() - 1)] - u[k]) * part
+        };
+        let mut feet: Vec<f64> = (0..closer.points.len()).map(foot).collect();
         let error = spline.checked(&closer, &mut feet).filter(|e| *e <= ACCEPTED * self.tolerance);
         Ok(error.map(|e| (spline, e, bound)).ok_or(MISSED * self.tolerance))
     }
 
     /// Samples `each` intervals of every span.
-    fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples, NotFinite> {
-        let all = each * spans.len() + 1;
-        let mut p = vec![ends[0].p];
+    fn samples(&self, spans: &[Span], each: usize, ends: &[BreakPoint; 2]) -> Result<Samples> {
+        let mut points = vec![ends[0].p];
         for span in spans {
             let [t0, t1] = span.t;
             for i in 1..=each {
                 let t = t0 + (t1 - t0) * i as f64 / each as f64;
-                let q = self.curves[span.curve].eval(t).0;
-                if !q.is_finite() {
+                let p = self.curves[span.curve].eval(t).0;
+                if !p.is_finite() {
                     return Err(NotFinite { t, at: self.curves[span.curve].place(t) });
                 }
-                p.push(q);
+                points.push(p);
             }
         }
-        p[all - 1] = ends[1].p;
-        Ok(Samples::new((p, each), ends, self.tolerance))
-    }
-}
-
-impl Covered {
-    /// Appends the line or the quadratics.
-    fn append(&self, (tolerance, assurance): (f64, Assurance), path: &mut BezPath, report: &mut Report) {
-        let error = if self.resolved { (self.error * REPORT_MARGIN).min(tolerance) } else { self.error };
-        match &self.spline {
-            None => path.line_to(self.ends[1].p),
-            Some(s) => (0..s.c.len()).for_each(|k| path.quad_to(s.c[k], s.joint(k + 1))),
-        }
-        (0..self.pieces()).for_each(|_| report.add_error(error, assurance));
-        if !self.resolved {
-            report.unresolved.push(self.ends[0].p);
-        }
+        points[each * spans.len()] = ends[1].p;
+        Ok(Samples::new((points, each), ends, self.tolerance))
     }
 }
 
 impl Samples {
-    fn new((p, each): (Vec<Point>, usize), ends: &[BreakPoint; 2], tolerance: f64) -> Self {
+    fn new((points, each): (Vec<Point>, usize), ends: &[BreakPoint; 2], tolerance: f64) -> Self {
         let (mut length, mut expected) = (vec![0.0], vec![0.0]);
-        let pieces = (128.0 * BALANCED * tolerance).powf(-0.25);
+        let last = points.len() - 1;
+        let scale = (128.0 * BALANCED * tolerance).powf(-0.25);
         let turn = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
         let mut before = ends[0].away;
-        for i in 1..p.len() {
-            let chord = p[i] - p[i - 1];
-            let along = chord.hypot();
+        for i in 1..=last {
+            let chord = points[i] - points[i - 1];
+            let step = chord.hypot();
             // The turns at both ends of the chord, of which inner samples share half with the next chord.
-            let after = if i + 1 < p.len() { p[i + 1] - p[i] } else { ends[1].into };
+            let after = if i < last { points[i + 1] - points[i] } else { ends[1].into };
             let half = |inner: bool, turn: f64| if inner { 0.5 * turn } else { turn };
-            let angle = half(i > 1, turn(before, chord)) + half(i + 1 < p.len(), turn(chord, after));
-            length.push(length[i - 1] + along);
-            expected.push(expected[i - 1] + pieces * angle.powf(0.75) * along.powf(0.25));
+            let angle = half(i > 1, turn(before, chord)) + half(i < last, turn(chord, after));
+            length.push(length[i - 1] + step);
+            // With R = step/θ, the fourth root of R·θ⁴/128 over the tolerance.
+            expected.push(expected[i - 1] + scale * angle.powf(0.75) * step.powf(0.25));
             before = chord;
         }
-        Self { p, each, length, expected }
+        Self { points, ends: *ends, each, length, expected }
     }
 
     /// Number of pieces that are expected.
     fn pieces(&self) -> f64 {
-        self.expected[self.p.len() - 1]
+        self.expected[self.points.len() - 1]
     }
 
     /// Largest distance from the chord, if that is at most `limit` and the samples advance along the chord.
     fn straight(&self, limit: f64) -> Option<f64> {
-        let (a, b) = (self.p[0], self.p[self.p.len() - 1]);
+        let (a, b) = (self.points[0], self.points[self.points.len() - 1]);
         let (q, length) = (b - a, a.distance(b));
-        let advances = self.p.windows(2).all(|w| (w[1] - w[0]).dot(q) >= 0.0);
+        let advances = self.points.windows(2).all(|w| (w[1] - w[0]).dot(q) >= 0.0);
         let off = |p: &Point| if length > 0.0 { (*p - a).cross(q).abs() / length } else { a.distance(*p) };
-        let worst = self.p.iter().map(off).fold(0.0, f64::max);
+        let worst = self.points.iter().map(off).fold(0.0, f64::max);
         ((advances || limit == f64::INFINITY) && worst <= limit).then_some(worst)
     }
 
     /// Shares of the whole up to each sample, by which pieces are laid out at first: by the pieces expected of each curve, and by length.
     fn layouts(&self) -> [Vec<f64>; 2] {
-        let all = self.p.len() - 1;
+        let all = self.points.len() - 1;
         let even: Vec<f64> = (0..=all)
             .map(|i| {
                 let k = i / self.each * self.each;
@@ -358,7 +344,7 @@ impl Spline {
     }
 
     /// Point, first and second derivative at `u`, which runs from 0 to the number of pieces.
-    fn at(&self, u: f64) -> (Point, Vec2, Vec2) {
+    fn jet(&self, u: f64) -> (Point, Vec2, Vec2) {
         let k = (u as usize).min(self.c.len() - 1);
         let (p, c, q, s) = (self.joint(k), self.c[k], self.joint(k + 1), u - k as f64);
         let (d0, d1) = (c - p, q - c);
@@ -369,14 +355,15 @@ impl Spline {
     fn settle(&self, p: Point, u: &mut f64, steps: usize) -> f64 {
         let n = self.c.len() as f64;
         let (mut r, mut d) = (Vec2::ZERO, Vec2::ZERO);
-        for step in 0..=steps {
-            let (q, d1, d2) = self.at(*u);
+        for taken in 0..=steps {
+            let (q, d1, d2) = self.jet(*u);
             (r, d) = (q - p, d1);
-            if step < steps {
+            if taken < steps {
                 let slope = d1.hypot2();
                 let full = slope + r.dot(d2);
-                let by = r.dot(d1) / if full > 0.3 * slope { full } else { slope + f64::MIN_POSITIVE };
-                *u = (*u - by.clamp(-0.5, 0.5)).clamp(0.0, n);
+                // Newton's step; where the second derivative is small or negative, Gauss–Newton's; at most half a piece.
+                let step = r.dot(d1) / if full > 0.3 * slope { full } else { slope + f64::MIN_POSITIVE };
+                *u = (*u - step.clamp(-0.5, 0.5)).clamp(0.0, n);
             }
         }
         r.hypot().copysign(d.cross(r))
@@ -384,18 +371,13 @@ impl Spline {
 
     /// The best spline of `n` pieces with its error, the bound, and the foot points of the samples. `Err` is the least error found if none
     /// fits.
-    fn best(
-        n: usize,
-        samples: &Samples,
-        ends: &[BreakPoint; 2],
-        tolerance: f64,
-    ) -> Result<(Self, [f64; 2], Vec<f64>), f64> {
+    fn best(n: usize, samples: &Samples, tolerance: f64) -> Result<(Self, [f64; 2], Vec<f64>), f64> {
         let mut least = f64::INFINITY;
         let layouts = samples.layouts();
         let alike = layouts[0].iter().zip(&layouts[1]).all(|(a, b)| (a - b).abs() * n as f64 <= ALIKE);
         for layout in &layouts[..if alike || n == 1 { 1 } else { 2 }] {
             let mut u: Vec<f64> = layout.iter().map(|s| s * n as f64).collect();
-            let Some((spline, [error, bound])) = Self::fitted(n, samples, ends, &mut u, tolerance) else { continue };
+            let Some((spline, [error, bound])) = Self::fitted(n, samples, &mut u, tolerance) else { continue };
             least = least.min(error);
             if error <= ACCEPTED * tolerance
                 && let Some(checked) = spline.checked(samples, &mut u)
@@ -408,40 +390,33 @@ impl Spline {
     }
 
     /// Fits in rounds from the foot points `u`. Returns the spline with the largest error at the samples and the bound.
-    fn fitted(
-        n: usize,
-        samples: &Samples,
-        ends: &[BreakPoint; 2],
-        u: &mut [f64],
-        tolerance: f64,
-    ) -> Option<(Self, [f64; 2])> {
-        let [from, to] = ends;
+    fn fitted(n: usize, samples: &Samples, u: &mut [f64], tolerance: f64) -> Option<(Self, [f64; 2])> {
         if n == 1 {
+            let [from, to] = &samples.ends;
             let (q, turn) = (to.p - from.p, from.away.cross(to.into));
             let [a, b] = [q.cross(to.into) / turn, from.away.cross(q) / turn];
             let spline = Self { ends: [from.p, to.p], c: vec![from.p + from.away * a] };
-            let worst = |spline: &Self, u: &mut [f64]| {
-                u.iter_mut().zip(&samples.p).map(|(u, p)| spline.settle(*p, u, 6).abs()).fold(0.0, f64::max)
-            };
-            return (a > 0.0 && b > 0.0 && spline.c[0].is_finite()).then(|| {
-                let error = worst(&spline, u);
-                (spline, [error; 2])
-            });
+            if !(a > 0.0 && b > 0.0 && spline.c[0].is_finite()) {
+                return None;
+            }
+            let errors = u.iter_mut().zip(&samples.points).map(|(u, p)| spline.settle(*p, u, 6).abs());
+            let error = errors.fold(0.0, f64::max);
+            return Some((spline, [error; 2]));
         }
         let mut weights = vec![1.0; u.len()];
-        let mut normals = tangents(samples);
+        let mut tangents = tangents(samples);
         let mut best: Option<(Self, f64, Vec<f64>)> = None;
         let (mut errors, mut bound) = (vec![0.0; u.len()], f64::INFINITY);
         for _ in 0..ROUNDS {
-            let Some(spline) = solve(n, samples, ends, u, &weights, &normals) else { break };
+            let Some(spline) = solve(n, samples, u, &weights, &tangents) else { break };
             let (mut worst, mut squares) = (0.0f64, 0.0);
-            for (i, p) in samples.p.iter().enumerate() {
+            for (i, p) in samples.points.iter().enumerate() {
                 errors[i] = spline.settle(*p, &mut u[i], 2).abs();
                 worst = worst.max(errors[i]);
                 squares += weights[i] * errors[i] * errors[i];
-                normals[i] = spline.at(u[i]).1.normalize();
+                tangents[i] = spline.jet(u[i]).1.normalize();
             }
-            (u[0], u[samples.p.len() - 1]) = (0.0, n as f64);
+            (u[0], u[samples.points.len() - 1]) = (0.0, n as f64);
             if !worst.is_finite() {
                 break;
             }
@@ -451,6 +426,7 @@ impl Spline {
             let least = best.as_ref().map_or(f64::INFINITY, |b| b.1);
             // No spline has a largest error below the weighted mean of the least squares.
             let before = std::mem::replace(&mut bound, (squares / weights.iter().sum::<f64>()).sqrt());
+            // Leaves room for errors between the samples, which are checked in the end.
             if least <= ACCEPTED * 0.98 * tolerance {
                 break;
             }
@@ -460,6 +436,7 @@ impl Spline {
                 break;
             }
             if falls > SETTLED {
+                // Samples without error keep a fiftieth of their weight, and no weight becomes rounding.
                 weights.iter_mut().zip(&errors).for_each(|(w, e)| *w *= 0.02 + e / worst);
                 let most = weights.iter().copied().fold(0.0, f64::max);
                 weights.iter_mut().for_each(|w| *w = (*w / most).max(1e-6));
@@ -472,19 +449,19 @@ impl Spline {
 
     /// Largest error at and between the samples; `None` if they may miss something.
     fn checked(&self, samples: &Samples, u: &mut [f64]) -> Option<f64> {
-        let errors: Vec<f64> = samples.p.iter().zip(u.iter_mut()).map(|(p, u)| self.settle(*p, u, 4)).collect();
-        let slopes: Vec<Vec2> = u.iter().map(|u| self.at(*u).1).collect();
+        let errors: Vec<f64> = samples.points.iter().zip(u.iter_mut()).map(|(p, u)| self.settle(*p, u, 4)).collect();
+        let slopes: Vec<Vec2> = u.iter().map(|u| self.jet(*u).1).collect();
         let steady = u.windows(2).all(|w| w[1] >= w[0] - 1e-9 && w[1] - w[0] < 1.0)
             && slopes.windows(2).all(|w| w[0].dot(w[1]) > 0.5 * w[0].hypot() * w[1].hypot());
-        let top = errors.windows(3).map(|w| crate::sample::extreme([w[0], w[1], w[2]])).fold(0.0, f64::max);
+        let top = errors.windows(3).map(|w| crate::sample::parabola_extreme([w[0], w[1], w[2]])).fold(0.0, f64::max);
         (steady && errors.iter().all(|e| e.is_finite())).then(|| errors.iter().map(|e| e.abs()).fold(top, f64::max))
     }
 }
 
 /// Unit tangents at the samples.
 fn tangents(samples: &Samples) -> Vec<Vec2> {
-    let n = samples.p.len();
-    let along = |i: usize| samples.p[(i + 1).min(n - 1)] - samples.p[i.saturating_sub(1)];
+    let n = samples.points.len();
+    let along = |i: usize| samples.points[(i + 1).min(n - 1)] - samples.points[i.saturating_sub(1)];
     (0..n).map(|i| along(i) / along(i).hypot().max(f64::MIN_POSITIVE)).collect()
 }
 
@@ -492,18 +469,12 @@ fn tangents(samples: &Samples) -> Vec<Vec2> {
 const BAND: usize = 6;
 
 /// The spline of `n` ≥ 2 pieces with the least weighted sum of squared residuals.
-fn solve(
-    n: usize,
-    samples: &Samples,
-    [from, to]: &[BreakPoint; 2],
-    u: &[f64],
-    weights: &[f64],
-    tangents: &[Vec2],
-) -> Option<Spline> {
+fn solve(n: usize, samples: &Samples, u: &[f64], weights: &[f64], tangents: &[Vec2]) -> Option<Spline> {
+    let [from, to] = &samples.ends;
     let size = 2 * n - 2;
     let mut band = vec![[0.0; BAND]; size];
     let mut right = vec![0.0; size];
-    for (j, p) in samples.p.iter().enumerate() {
+    for (j, p) in samples.points.iter().enumerate() {
         let k = (u[j] as usize).min(n - 1);
         let s = u[j] - k as f64;
         let (w0, w1, w2) = ((1.0 - s) * (1.0 - s), 2.0 * s * (1.0 - s), s * s);
@@ -519,13 +490,13 @@ fn solve(
             known -= to.p.to_vec2() * w2;
         }
         let t = tangents[j];
-        for (direction, weight) in [(Vec2::new(-t.y, t.x), weights[j]), (t, weights[j] * ALONG * ALONG)] {
+        for (direction, weight) in [(Vec2::new(-t.y, t.x), weights[j]), (t, weights[j] * TANGENTIAL * TANGENTIAL)] {
             let mut row = [(0, 0.0); BAND];
             let (mut count, mut rest) = (0, known.dot(direction));
             for (i, share) in share.into_iter().enumerate().filter(|(_, s)| *s != 0.0) {
                 let c = k + i - 1;
-                let mut put = |at: usize, v: f64| {
-                    row[count] = (at, v * share);
+                let mut put = |unknown: usize, v: f64| {
+                    row[count] = (unknown, v * share);
                     count += 1;
                 };
                 if c == 0 {
@@ -548,7 +519,8 @@ fn solve(
         }
     }
     let x = solve_banded(band, right)?;
-    let floor = 1e-4 * samples.length[samples.p.len() - 1] / n as f64;
+    // Handles must not turn round.
+    let floor = 1e-4 * samples.length[samples.points.len() - 1] / n as f64;
     let c = (0..n).map(|k| match k {
         0 => from.p + from.away * x[0].max(floor),
         _ if k + 1 == n => to.p - to.into * x[size - 1].max(floor),

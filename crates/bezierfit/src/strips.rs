@@ -7,7 +7,7 @@ use kurbo::{BezPath, ParamCurve, ParamCurveArclen, Point, Vec2};
 use std::cell::Cell;
 use std::collections::HashMap;
 
-/// Number of cells along the distance.
+/// Number of cells along the distance. More make the search for near points finer, and slower.
 const CELLS: f64 = 6.0;
 /// Longest step between the points that stand for the source, and between the points of a strip's way back, as a share of the distance.
 const STEP: f64 = 0.25;
@@ -36,26 +36,28 @@ impl Neighbors {
                 points.entry(cell_of(p, cell)).or_default().push(p);
             }
         }
-        let reach = CELLS.ceil() as i64 + 1;
-        let cells = (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| [x, y]));
-        let apart = |c: [i64; 2]| c.map(|v| (v.abs() - 1).max(0) as f64 * cell);
-        let mut around: Vec<_> =
-            cells.map(|c| (c, apart(c)[0].hypot(apart(c)[1]))).filter(|(_, near)| *near < distance).collect();
+        let furthest = CELLS.ceil() as i64 + 1;
+        let cells = (-furthest..=furthest).flat_map(|x| (-furthest..=furthest).map(move |y| [x, y]));
+        let gap = |c: [i64; 2]| {
+            let [x, y] = c.map(|v| (v.abs() - 1).max(0) as f64 * cell);
+            (c, x.hypot(y))
+        };
+        let mut around: Vec<_> = cells.map(gap).filter(|(_, gap)| *gap < distance).collect();
         around.sort_by_key(|(c, _)| (c[0] * c[0] + c[1] * c[1], *c));
         Self { cell, points, around, last: Cell::new(Point::new(f64::NAN, f64::NAN)) }
     }
 
-    /// Returns `true` if a point of the outlines is known to be nearer than `reach`, which is at most the distance.
-    fn is_near(&self, p: Point, reach: f64) -> bool {
-        if reach <= 0.0 {
+    /// Returns `true` if a point of the outlines is known to be nearer than `radius`, which is at most the distance.
+    fn is_near(&self, p: Point, radius: f64) -> bool {
+        if radius <= 0.0 {
             return false;
         }
-        let is_near = |q: &&Point| q.distance_squared(p) < reach * reach;
+        let is_near = |q: &&Point| q.distance_squared(p) < radius * radius;
         if is_near(&&self.last.get()) {
             return true;
         }
         let [x, y] = cell_of(p, self.cell);
-        let cells = self.around.iter().filter(|(_, near)| *near < reach);
+        let cells = self.around.iter().filter(|(_, gap)| *gap < radius);
         let mut near = cells.filter_map(|([i, j], _)| self.points.get(&[x + i, y + j])?.iter().find(is_near));
         near.next().inspect(|q| self.last.set(**q)).is_some()
     }
@@ -70,20 +72,20 @@ pub(crate) fn cell_of(p: Point, cell: f64) -> [i64; 2] {
 /// Closed contours, each along parts of the edges at `distance` that are not known to be nearer to the outlines by more than
 /// `slack`, and back along the outline.
 pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neighbors) -> Vec<Vec<Edge>> {
-    let reach = distance.abs();
-    let step = STEP * reach;
-    let least = (0.5 * slack).max(FINEST * reach);
-    let left = |edge: &Edge, whole: [f64; 2], slack: f64| {
+    let radius = distance.abs();
+    let step = STEP * radius;
+    let least = (0.5 * slack).max(FINEST * radius);
+    let remaining_parts = |edge: &Edge, slack: f64| {
         let mut out = Vec::new();
-        let is_near = |p, half| neighbors.is_near(p, reach - slack - half);
-        remaining(edge, whole, &is_near, least, &mut out);
+        let is_near = |p, half| neighbors.is_near(p, radius - slack - half);
+        append_remaining(edge, [0.0, 1.0], &is_near, least, &mut out);
         out
     };
     // Consecutive parts are one strip where the line between them is near the outlines.
     let follows = |a: &Strip, b: &Strip| {
         let (from, to) = (a.end(), b.edges[0].p0);
         let is_short = from.distance(to) <= step && a.feet[a.feet.len() - 1].distance(b.feet[0]) <= step;
-        from == to || is_short && left(&Edge::line(from, to), [0.0, 1.0], 0.0).is_empty()
+        from == to || (is_short && remaining_parts(&Edge::line(from, to), 0.0).is_empty())
     };
     let mut out: Vec<Strip> = Vec::new();
     for kept in edges {
@@ -92,13 +94,13 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
         if kept.is_link || is_backwards {
             continue;
         }
-        for [t0, t1] in left(&kept.edge, [0.0, 1.0], slack) {
+        for [t0, t1] in remaining_parts(&kept.edge, slack) {
             let part = kept.edge.part(t0, t1);
             let steps = (length(&part, [0.0, 1.0]) / step).ceil().max(1.0);
             let feet = (0..=steps as usize).map(|i| foot(&kept.edge, t0 + (t1 - t0) * (i as f64 / steps), distance));
             let next = Strip { edges: vec![part], feet: feet.collect() };
             match out.last_mut() {
-                Some(last) if follows(last, &next) => last.add(next),
+                Some(last) if follows(last, &next) => last.append(next),
                 _ => out.push(next),
             }
         }
@@ -107,7 +109,7 @@ pub(crate) fn strips(edges: &[Kept], distance: f64, slack: f64, neighbors: &Neig
         && follows(last, first)
     {
         let first = out.swap_remove(0);
-        out[0].add(first);
+        out[0].append(first);
     }
     match &out[..] {
         [ring] if follows(ring, ring) => ring.rings(step),
@@ -127,7 +129,7 @@ impl Strip {
     }
 
     /// Appends another strip, with a line across a gap.
-    fn add(&mut self, next: Self) {
+    fn append(&mut self, next: Self) {
         let (from, to) = (self.end(), next.edges[0].p0);
         if from != to {
             self.edges.push(Edge::line(from, to));
@@ -178,8 +180,9 @@ fn add_lines(edges: &mut Vec<Edge>, points: impl IntoIterator<Item = Point>) {
     }
 }
 
-/// Appends the parts of an edge that are not known to be near. `is_near` takes the middle of a part and half of its length.
-fn remaining(
+/// Appends the parts of an edge that are not known to be near. `is_near` takes the middle of a part and half of its length. Parts are
+/// halved until their halves are no longer than `least`.
+fn append_remaining(
     edge: &Edge,
     [t0, t1]: [f64; 2],
     is_near: &dyn Fn(Point, f64) -> bool,
@@ -192,8 +195,8 @@ fn remaining(
         return;
     }
     if half > least {
-        remaining(edge, [t0, middle], is_near, least, out);
-        remaining(edge, [middle, t1], is_near, least, out);
+        append_remaining(edge, [t0, middle], is_near, least, out);
+        append_remaining(edge, [middle, t1], is_near, least, out);
     } else if let Some(last) = out.last_mut().filter(|last| last[1] == t0) {
         last[1] = t1;
     } else {
@@ -215,7 +218,8 @@ fn foot(edge: &Edge, t: f64, distance: f64) -> Point {
 
 /// Approximate length of a part of an edge, by the largest of a few speeds.
 fn length(edge: &Edge, [t0, t1]: [f64; 2]) -> f64 {
-    let places = if matches!(edge.curve, EdgeCurve::Side(_)) { 8 } else { 0 };
-    let speeds = (0..=places).map(|i| edge.eval(t0 + (t1 - t0) * f64::from(i) / f64::from(places.max(1))).1.hypot());
+    // Lines and arcs have one speed.
+    let last = if matches!(edge.curve, EdgeCurve::Side(_)) { 8 } else { 0 };
+    let speeds = (0..=last).map(|i| edge.eval(t0 + (t1 - t0) * f64::from(i) / 8.0).1.hypot());
     speeds.fold(0.0, f64::max) * (t1 - t0)
 }

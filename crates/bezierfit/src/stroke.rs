@@ -12,7 +12,7 @@ use crate::options::{Error, Options};
 use crate::path::{append, subpaths};
 use crate::report::{Assurance, Fitted, Piece, Report};
 use crate::run::{RunSegment, SegmentRun};
-use crate::source::{BreakPoint, NotFinite, SlowSpots, Source};
+use crate::source::{BreakPoint, NotFinite, Result, SlowSpots, Source};
 use crate::stretch::StretchFitter;
 use kurbo::{
     Arc, BezPath, Cap, CubicBez, Join, Line, ParamCurve, PathEl, PathSeg, Point, Stroke, Vec2, common::solve_quadratic,
@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 /// Length of a dash that stands for a dot, as a fraction of the width.
 const DOT: f64 = 1e-5;
 
-/// Most dashes of a path.
+/// Most dashes of a path; with more, it is drawn as a line.
 const MOST_DASHES: f64 = 20_000.0;
 
 /// The outline of a path's stroke, to be filled by the nonzero rule, within `options.tolerance`.
@@ -44,12 +44,13 @@ pub fn stroke(path: &BezPath, style: &Stroke, options: &Options) -> Result<Fitte
     Ok(fit_contours(&contours, options)?)
 }
 
-pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted, NotFinite> {
+/// Fits closed contours within the tolerance, less what gaps and points have used of it.
+pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<Fitted> {
     let mut out = Fitted { path: BezPath::new(), report: Report::default() };
     let mut memory = ReachMemory::default();
     let inner = Options { tolerance: STROKED * options.tolerance, ..*options };
     for contour in contours.iter().filter(|c| !c.is_empty()) {
-        let pieces = fitted(contour, &inner, &mut memory, &mut out.report)?;
+        let pieces = fit_contour(contour, &inner, &mut memory, &mut out.report)?;
         append(&mut out.path, contour[0].p0, &pieces, true);
     }
     if out.report.max_error > 0.0 {
@@ -60,13 +61,8 @@ pub(crate) fn fit_contours(contours: &[Vec<Edge>], options: &Options) -> Result<
 
 /// One side of the strokes of closed subpaths, at a distance from them, with joins. Miters are cut off at the limit.
 #[cfg(feature = "area")]
-pub(crate) fn beside_area(
-    path: &BezPath,
-    style: &Stroke,
-    distance: f64,
-    options: &Options,
-) -> Result<Fitted, NotFinite> {
-    let whole = |edges: Vec<Kept>| whole(&edges, true);
+pub(crate) fn beside_area(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Result<Fitted> {
+    let whole = |edges: Vec<Kept>| contour_of(&edges, true);
     fit_contours(&edges_beside_area(path, style, distance, options).into_iter().map(whole).collect::<Vec<_>>(), options)
 }
 
@@ -84,12 +80,7 @@ pub(crate) fn edges_beside_area(path: &BezPath, style: &Stroke, distance: f64, o
 
 /// One side of an open path's stroke, at a distance from it, with joins.
 #[cfg(feature = "area")]
-pub(crate) fn beside_path(
-    path: &BezPath,
-    style: &Stroke,
-    distance: f64,
-    options: &Options,
-) -> Result<BezPath, NotFinite> {
+pub(crate) fn beside_path(path: &BezPath, style: &Stroke, distance: f64, options: &Options) -> Result<BezPath> {
     let gap = GAPS * options.tolerance;
     let pen = Pen { style, clipped: false, half: distance.abs(), gap, point: POINTS * gap };
     let mut out = BezPath::new();
@@ -97,7 +88,7 @@ pub(crate) fn beside_path(
     if stretches.is_empty() {
         return Ok(out);
     }
-    let edges = whole(&pen.side(&stretches, &corners, false, distance), false);
+    let edges = contour_of(&pen.side(&stretches, &corners, false, distance), false);
     let mut pieces = Vec::new();
     for edge in &edges {
         edge.fit(options.tolerance, &mut pieces, &mut Report::default())?;
@@ -183,13 +174,13 @@ impl Edge {
     ///
     /// # Errors
     /// [`NotFinite`] if the edge is not finite.
-    pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<(), NotFinite> {
+    pub fn draft(&self, tolerance: f64, pieces: &mut Vec<Piece>) -> Result<()> {
         if let EdgeCurve::Side(_) = self.curve {
-            // The Hermite cubic is usually near enough.
+            // The Hermite cubic is usually near enough. The rest of the tolerance is for errors between samples.
             let (v0, v1) = (self.eval(0.0).1 / 3.0, self.eval(1.0).1 / 3.0);
             let cubic = CubicBez::new(self.p0, self.p0 + v0, self.p1 - v1, self.p1);
-            let off = |t: f64| cubic.eval(t).distance(self.eval(t).0);
-            if [0.2, 0.35, 0.5, 0.65, 0.8].into_iter().all(|t| off(t) <= 0.7 * tolerance) {
+            let error = |t: f64| cubic.eval(t).distance(self.eval(t).0);
+            if [0.2, 0.35, 0.5, 0.65, 0.8].into_iter().all(|t| error(t) <= 0.7 * tolerance) {
                 pieces.push(Piece::Cubic(cubic));
                 return Ok(());
             }
@@ -201,7 +192,7 @@ impl Edge {
     ///
     /// # Errors
     /// [`NotFinite`] if the edge is not finite.
-    pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<(), NotFinite> {
+    pub fn fit(&self, tolerance: f64, pieces: &mut Vec<Piece>, report: &mut Report) -> Result<()> {
         if self.is_line() {
             pieces.push(Piece::Line(Line::new(self.p0, self.p1)));
             report.add_error(0.0, Assurance::Exact);
@@ -223,23 +214,19 @@ impl Source for Edge {
             }
             EdgeCurve::Side(s) => s.eval(t),
         };
-        (
-            if t == 0.0 {
-                self.p0
-            } else if t == 1.0 {
-                self.p1
-            } else {
-                p
-            },
-            d,
-        )
+        let p = match t {
+            0.0 => self.p0,
+            1.0 => self.p1,
+            _ => p,
+        };
+        (p, d)
     }
 
     fn resolved(&self, _: [f64; 2], _: usize, _: f64) -> Option<bool> {
         Some(true)
     }
 
-    fn end(&self, t: f64) -> Result<BreakPoint, NotFinite> {
+    fn end(&self, t: f64) -> Result<BreakPoint> {
         let (p, d) = self.eval(t);
         match self.curve {
             EdgeCurve::Side(s) => Ok(BreakPoint { p, ..s.end(t)? }),
@@ -257,7 +244,7 @@ impl Source for Edge {
 ///
 /// # Errors
 /// [`NotFinite`] if a coordinate is not finite.
-pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>, NotFinite> {
+pub fn contours(path: &BezPath, style: &Stroke, clipped: bool, gap: f64) -> Result<Vec<Vec<Edge>>> {
     let control = |e: &PathEl| match *e {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
         PathEl::QuadTo(p, q) => vec![p, q],
@@ -325,7 +312,7 @@ struct Stretch {
 
 /// A corner, or the end of a path.
 struct Corner {
-    at: Point,
+    point: Point,
     /// Directions of the path before and after.
     into: Vec2,
     away: Vec2,
@@ -343,8 +330,9 @@ impl Corner {
 /// Settings with which strokes are drawn.
 struct Pen<'a> {
     style: &'a Stroke,
-    /// Cut miters off at their limit.
+    /// Cut miters off at their limit, instead of beveling the corner.
     clipped: bool,
+    /// Half of the width.
     half: f64,
     /// Longest gap between sides that is closed without a join.
     gap: f64,
@@ -363,7 +351,8 @@ impl Pen<'_> {
             }
             return;
         };
-        let [left, right] = [self.half, -self.half].map(|d| whole(&self.side(&stretches, &corners, closed, d), closed));
+        let [left, right] =
+            [self.half, -self.half].map(|d| contour_of(&self.side(&stretches, &corners, closed, d), closed));
         let back = right.iter().rev().map(Edge::reversed);
         if closed {
             out.extend([left, back.collect()]);
@@ -373,7 +362,7 @@ impl Pen<'_> {
         self.cap(self.style.end_cap, last.seg.end(), direction(&last.seg, 1.0), &mut contour);
         contour.extend(back);
         self.cap(self.style.start_cap, first.seg.start(), -direction(&first.seg, 0.0), &mut contour);
-        out.push(joined(contour));
+        out.push(unite_lines(contour));
     }
 
     /// The stretches of a path, and the corner after each.
@@ -382,7 +371,7 @@ impl Pen<'_> {
         let corner = |i: usize| {
             let (before, after) = (&stretches[i], &stretches[(i + 1) % stretches.len()]);
             let (into, away) = (direction(&before.seg, 1.0), direction(&after.seg, 0.0));
-            Corner { at: before.seg.end(), into, away, meeting: before.meeting }
+            Corner { point: before.seg.end(), into, away, meeting: before.meeting }
         };
         let corners = (0..stretches.len()).map(corner).collect();
         (stretches, corners)
@@ -428,21 +417,21 @@ impl Pen<'_> {
             if [c.p1, c.p2, c.p3].iter().all(|p| p.distance(at) <= self.point) {
                 continue;
             }
-            segments.push(moved(seg, at, seg.end()));
+            segments.push(with_moved_ends(seg, at, seg.end()));
             at = seg.end();
         }
         if let (true, Some(last)) = (closed, segments.last_mut()) {
-            *last = moved(*last, last.start(), start);
+            *last = with_moved_ends(*last, last.start(), start);
         }
         let mut out = Vec::new();
         for seg in segments {
-            self.cut(seg, &mut out);
+            self.append_stretches(seg, &mut out);
         }
         out
     }
 
     /// Appends the stretches of a segment.
-    fn cut(&self, seg: PathSeg, out: &mut Vec<Stretch>) {
+    fn append_stretches(&self, seg: PathSeg, out: &mut Vec<Stretch>) {
         let c = match seg {
             PathSeg::Line(_) => return out.push(Stretch { seg, meeting: Meeting::Node }),
             other => self.without_short_handles(other.to_cubic()),
@@ -452,9 +441,9 @@ impl Pen<'_> {
         let line = longest / longest.hypot();
         // The cubic is straight to rounding, or neither it nor its sides are off by more than a share of a point.
         let rounding = 1e-12 * longest.hypot().max(c.p0.to_vec2().hypot());
-        let off = rounding.max(0.05 * self.point * (longest.hypot() / self.half).min(1.0));
-        if legs.iter().all(|v| v.cross(line).abs() <= off) {
-            return self.straight(&c, line, out);
+        let limit = rounding.max(0.05 * self.point * (longest.hypot() / self.half).min(1.0));
+        if legs.iter().all(|v| v.cross(line).abs() <= limit) {
+            return self.append_straight(&c, line, out);
         }
         let mut slow = SlowSpots::of_cubic(&c).all().to_vec();
         slow.retain(|t| *t > 1e-6 && *t < 1.0 - 1e-6);
@@ -462,18 +451,18 @@ impl Pen<'_> {
         let mut t0 = 0.0;
         for t in slow.into_iter().chain([1.0]) {
             let part = if (t0, t) == (0.0, 1.0) { c } else { c.subsegment(t0..t) };
-            // A turn too tight to be seen is a cusp.
-            let (speed, change) = slowness(&c, t);
+            // Where the speed is least, the radius of curvature is speed²/|c″|. A turn too tight to be seen is a cusp.
+            let (speed, change) = derivative_lengths(&c, t);
             let meeting = match t {
                 1.0 => Meeting::Node,
                 _ if speed * speed <= self.point * change => Meeting::Cusp,
                 _ => Meeting::Inside,
             };
             let mut from = 0.0;
-            for at in swift_turns(&part) {
-                let seg = PathSeg::Cubic(part.subsegment(from..at));
+            for to in swift_turns(&part) {
+                let seg = PathSeg::Cubic(part.subsegment(from..to));
                 out.push(Stretch { seg, meeting: Meeting::Inside });
-                from = at;
+                from = to;
             }
             let rest = if from == 0.0 { part } else { part.subsegment(from..1.0) };
             out.push(Stretch { seg: PathSeg::Cubic(rest), meeting });
@@ -482,29 +471,29 @@ impl Pen<'_> {
     }
 
     /// Appends a cubic on a straight line, as lines between the points at which it turns back.
-    fn straight(&self, c: &CubicBez, line: Vec2, out: &mut Vec<Stretch>) {
+    fn append_straight(&self, c: &CubicBez, line: Vec2, out: &mut Vec<Stretch>) {
         let x = [c.p0, c.p1, c.p2, c.p3].map(|p| (p - c.p0).dot(line));
         let d = [x[1] - x[0], x[2] - x[1], x[3] - x[2]];
         let roots = solve_quadratic(d[0], 2.0 * (d[1] - d[0]), d[0] - 2.0 * d[1] + d[2]);
         let mut turns: Vec<f64> = roots.into_iter().filter(|t| *t > 0.0 && *t < 1.0).collect();
         turns.push(1.0);
-        let mut at = c.p0;
+        let mut from = c.p0;
         for t in turns {
             let to = if t == 1.0 { c.p3 } else { c.eval(t) };
-            if to.distance(at) > self.point {
-                if let Some(before) = out.last_mut().filter(|_| at != c.p0) {
+            if to.distance(from) > self.point {
+                if let Some(before) = out.last_mut().filter(|_| from != c.p0) {
                     before.meeting = Meeting::Cusp;
                 }
-                out.push(Stretch { seg: PathSeg::Line(Line::new(at, to)), meeting: Meeting::Node });
-                at = to;
+                out.push(Stretch { seg: PathSeg::Line(Line::new(from, to)), meeting: Meeting::Node });
+                from = to;
             }
         }
-        if let Some(last) = out.last_mut().filter(|_| at != c.p0) {
-            last.seg = moved(last.seg, last.seg.start(), c.p3);
+        if let Some(last) = out.last_mut().filter(|_| from != c.p0) {
+            last.seg = with_moved_ends(last.seg, last.seg.start(), c.p3);
         }
     }
 
-    /// Sets handles that are too short for a direction to zero.
+    /// Sets handles to zero that are too short for their direction to be seen: a tenth of a point, or a ten-thousandth of the chord.
     fn without_short_handles(&self, mut c: CubicBez) -> CubicBez {
         let least = (0.1 * self.point).min(1e-4 * (c.p3 - c.p0).hypot());
         if c.p1.distance(c.p0) <= least {
@@ -521,7 +510,7 @@ impl Pen<'_> {
         let mut side = Side { pen: self, distance, edges: Vec::with_capacity(2 * stretches.len()) };
         for (i, stretch) in stretches.iter().enumerate() {
             let first = side.edges.len();
-            side.edges.extend(beside(&stretch.seg, distance).into_iter().map(|edge| Kept::new(edge, false)));
+            side.edges.extend(edges_beside(&stretch.seg, distance).into_iter().map(|edge| Kept::new(edge, false)));
             if i > 0 {
                 side.join(first - 1, first, &corners[i - 1]);
             }
@@ -535,7 +524,7 @@ impl Pen<'_> {
 }
 
 /// Joins the kept parts of edges into one contour.
-fn whole(kept: &[Kept], closed: bool) -> Vec<Edge> {
+fn contour_of(kept: &[Kept], closed: bool) -> Vec<Edge> {
     let mut edges: Vec<Edge> = kept.iter().map(|k| k.edge.part(k.from, k.to)).collect();
     // Consecutive parts meet exactly.
     for i in 0..edges.len() {
@@ -544,7 +533,7 @@ fn whole(kept: &[Kept], closed: bool) -> Vec<Edge> {
             edges[next].p0 = edges[i].p1;
         }
     }
-    if closed { joined_round(edges) } else { edges }
+    if closed { unite_lines_around(edges) } else { edges }
 }
 
 /// An edge, and the parameters between which it is kept.
@@ -578,11 +567,9 @@ impl Side<'_> {
         let turn = corner.turn();
         let small = p.distance(q) <= self.pen.gap && corner.into.dot(corner.away) > 0.0;
         if corner.meeting == Meeting::Inside || small {
-            let at = p.midpoint(q);
-            let from = self.edges[a].edge;
-            self.edges[a].edge = from.with_ends(from.p0, at);
-            let to = self.edges[b].edge;
-            self.edges[b].edge = to.with_ends(at, to.p1);
+            let (mid, before, after) = (p.midpoint(q), self.edges[a].edge, self.edges[b].edge);
+            self.edges[a].edge = before.with_ends(before.p0, mid);
+            self.edges[b].edge = after.with_ends(mid, after.p1);
             return;
         }
         let is_inner = self.distance * turn > 0.0;
@@ -592,21 +579,21 @@ impl Side<'_> {
                 self.edges[b].from = t;
                 return;
             }
-            vec![Edge::line(p, corner.at), Edge::line(corner.at, q)]
+            vec![Edge::line(p, corner.point), Edge::line(corner.point, q)]
         } else {
-            self.outer([p, q], turn, corner)
+            self.outer_join([p, q], turn, corner)
         };
         let links = links.into_iter().map(|edge| Kept::new(edge, is_inner));
-        let place = if b > a { b } else { self.edges.len() };
-        self.edges.splice(place..place, links);
+        let index = if b > a { b } else { self.edges.len() };
+        self.edges.splice(index..index, links);
     }
 
     /// Edges of the join on the outer side of a corner.
-    fn outer(&self, [p, q]: [Point; 2], turn: f64, corner: &Corner) -> Vec<Edge> {
+    fn outer_join(&self, [p, q]: [Point; 2], turn: f64, corner: &Corner) -> Vec<Edge> {
         let style = self.pen.style;
         match style.join {
-            _ if corner.meeting == Meeting::Cusp => vec![Edge::arc([p, q], corner.at, turn)],
-            Join::Round => vec![Edge::arc([p, q], corner.at, turn)],
+            _ if corner.meeting == Meeting::Cusp => vec![Edge::arc([p, q], corner.point, turn)],
+            Join::Round => vec![Edge::arc([p, q], corner.point, turn)],
             // A miter's length is the width over the cosine of half the turn.
             Join::Miter if (0.5 * turn).cos() * style.miter_limit >= 1.0 => {
                 // The tangent of half the turn.
@@ -615,8 +602,8 @@ impl Side<'_> {
                 vec![Edge::line(p, tip), Edge::line(tip, q)]
             }
             Join::Miter if self.pen.clipped && corner.into != -corner.away => {
-                let reach = self.pen.half * (style.miter_limit - (0.5 * turn).cos()) / (0.5 * turn.abs()).sin();
-                let cut = [p, p + corner.into * reach.max(0.0), q - corner.away * reach.max(0.0), q];
+                let length = self.pen.half * (style.miter_limit - (0.5 * turn).cos()) / (0.5 * turn.abs()).sin();
+                let cut = [p, p + corner.into * length.max(0.0), q - corner.away * length.max(0.0), q];
                 cut.windows(2).map(|w| Edge::line(w[0], w[1])).collect()
             }
             Join::Miter | Join::Bevel => vec![Edge::line(p, q)],
@@ -625,7 +612,7 @@ impl Side<'_> {
 }
 
 /// The curve beside a segment, cut at its cusps.
-fn beside(seg: &PathSeg, distance: f64) -> Vec<Edge> {
+fn edges_beside(seg: &PathSeg, distance: f64) -> Vec<Edge> {
     if let PathSeg::Line(l) = seg {
         let along = (l.p1 - l.p0) / l.length();
         let off = Vec2::new(-along.y, along.x) * distance;
@@ -654,7 +641,7 @@ fn direction(seg: &PathSeg, t: f64) -> Vec2 {
 }
 
 /// Moves the ends of a segment, with their handles.
-fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
+fn with_moved_ends(seg: PathSeg, start: Point, end: Point) -> PathSeg {
     if (seg.start(), seg.end()) == (start, end) {
         return seg;
     }
@@ -667,7 +654,8 @@ fn moved(seg: PathSeg, start: Point, end: Point) -> PathSeg {
     }
 }
 
-/// Parameters at which the swift turns of a cubic beside its short handles end and begin.
+/// Parameters at which the swift turns of a cubic beside its short handles end and begin. Beside a short handle, the derivative takes the
+/// direction of the next leg after about short/2d₁ or, if that is short too, √(short/other); four times as far, it has nearly turned.
 fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
     let [d0, d1, d2] = [c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2].map(Vec2::hypot);
     let turn = |short: f64, other: f64| 4.0 * (0.5 * short / d1).min((short / other).sqrt());
@@ -677,7 +665,7 @@ fn swift_turns(c: &CubicBez) -> impl Iterator<Item = f64> {
 }
 
 /// Lengths of a cubic's first and second derivative.
-fn slowness(c: &CubicBez, t: f64) -> (f64, f64) {
+fn derivative_lengths(c: &CubicBez, t: f64) -> (f64, f64) {
     let (d0, d1, d2) = (c.p1 - c.p0, c.p2 - c.p1, c.p3 - c.p2);
     let u = 1.0 - t;
     let first = (d0 * (u * u) + d1 * (2.0 * u * t) + d2 * (t * t)) * 3.0;
@@ -712,16 +700,15 @@ fn crossing(a: &Edge, b: &Edge, distance: f64) -> Option<(f64, f64)> {
             return None;
         }
     }
-    let (at, u) = a.eval(s);
-    let (to, v) = b.eval(t);
-    let met = to.distance(at) <= 1e-9 * size;
+    let ((p, u), (q, v)) = (a.eval(s), b.eval(t));
+    let meets = q.distance(p) <= 1e-9 * size;
     // At the crossing, the sides turn in the direction of the path.
-    let inner = u.cross(v) * distance > 0.0;
-    (met && inner && (0.5..1.0).contains(&s) && t > 0.0 && t <= 0.5).then_some((s, t))
+    let is_inner = u.cross(v) * distance > 0.0;
+    (meets && is_inner && (0.5..1.0).contains(&s) && t > 0.0 && t <= 0.5).then_some((s, t))
 }
 
 /// Unites lines of a contour that go on in one direction.
-fn joined(contour: Vec<Edge>) -> Vec<Edge> {
+fn unite_lines(contour: Vec<Edge>) -> Vec<Edge> {
     let mut out: Vec<Edge> = Vec::with_capacity(contour.len());
     for e in contour {
         match out.last_mut() {
@@ -734,8 +721,8 @@ fn joined(contour: Vec<Edge>) -> Vec<Edge> {
 }
 
 /// Unites lines of a closed contour that go on in one direction, also across its start.
-fn joined_round(contour: Vec<Edge>) -> Vec<Edge> {
-    let mut out = joined(contour);
+fn unite_lines_around(contour: Vec<Edge>) -> Vec<Edge> {
+    let mut out = unite_lines(contour);
     if let [first, .., last] = &out[..]
         && goes_on(last, first)
     {
@@ -748,35 +735,30 @@ fn joined_round(contour: Vec<Edge>) -> Vec<Edge> {
 /// Returns `true` if both edges are lines in the same direction.
 fn goes_on(a: &Edge, b: &Edge) -> bool {
     let (u, v) = (a.p1 - a.p0, b.p1 - b.p0);
-    let same = u.dot(v) > 0.0 && u.cross(v).abs() <= 1e-10 * u.hypot() * v.hypot();
-    a.is_line() && b.is_line() && (same || u == Vec2::ZERO || v == Vec2::ZERO)
+    let is_same = u.dot(v) > 0.0 && u.cross(v).abs() <= 1e-10 * u.hypot() * v.hypot();
+    a.is_line() && b.is_line() && (is_same || u == Vec2::ZERO || v == Vec2::ZERO)
 }
 
 /// Fits a contour, with few pieces across smooth joints.
-fn fitted(
-    contour: &[Edge],
-    options: &Options,
-    memory: &mut ReachMemory,
-    report: &mut Report,
-) -> Result<Vec<Piece>, NotFinite> {
-    let mut pieces = Vec::with_capacity(contour.len());
+fn fit_contour(edges: &[Edge], options: &Options, memory: &mut ReachMemory, report: &mut Report) -> Result<Vec<Piece>> {
+    let mut pieces = Vec::with_capacity(edges.len());
     let mut i = 0;
-    while i < contour.len() {
-        let mut run = SegmentRun::new(false, contour.len() - i);
-        let joined = run.extend(&contour[i..], options.joint(), |edge| {
+    while i < edges.len() {
+        let mut run = SegmentRun::new(false, edges.len() - i);
+        let count = run.extend(&edges[i..], options.joint(), |edge| {
             let ends = [edge.end(0.0)?, edge.end(1.0)?];
             Ok(Some(RunSegment::new(*edge, None, ends, edge.is_line())))
         })?;
-        if joined < 2 {
-            contour[i].fit(options.tolerance, &mut pieces, report)?;
-            i += 1;
-            continue;
+        let append_own = |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
+            edges[i + k].fit(options.tolerance, pieces, report)
+        };
+        if count < 2 {
+            append_own(0, &mut pieces, report)?;
+        } else {
+            let own = OwnPieces::new(count, append_own);
+            fewest(&run, own, (options.tolerance, false), memory, &mut pieces, report)?;
         }
-        let own = OwnPieces::new(joined, |k: usize, pieces: &mut Vec<Piece>, report: &mut Report| {
-            contour[i + k].fit(options.tolerance, pieces, report)
-        });
-        fewest(&run, own, (options.tolerance, false), memory, &mut pieces, report)?;
-        i += joined;
+        i += count.max(1);
     }
     Ok(pieces)
 }

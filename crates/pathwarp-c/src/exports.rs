@@ -1,11 +1,12 @@
-//! The functions of `pathwarp.h`.
+//! The functions of `pathwarp.h`. Each is safe if every pointer is null or as the header says.
 
 #![expect(unsafe_code, reason = "C calls these functions, and they take its pointers")]
+#![expect(clippy::missing_safety_doc, reason = "the module's text says it for all functions")]
 
 use crate::function::{Function, PathwarpFunction, on_all_threads, on_calling_thread};
 use crate::raw::{
-    Failed, array, array_mut, drop_bytes, drop_text, drop_texts, hand_over, owned_bytes, owned_text, owned_texts,
-    place, put, status, take_back, text, value, value_mut, wrong,
+    Failed, array, array_mut, check_not_null, drop_text, owned_array, owned_text, put, status, take_back_array, text,
+    value, value_mut,
 };
 use pathwarp::deform::{Deformation as _, Registry};
 use pathwarp::kurbo::{Point, Rect};
@@ -19,17 +20,22 @@ use std::sync::Arc;
 /// Points mapped by one call of the map.
 const BLOCK: usize = 256;
 
-/// `pathwarp_warper`: deformations, and whether all of their functions may be called by any thread.
-pub struct PathwarpWarper(Warper, bool);
+/// `pathwarp_warper` of the header.
+pub struct PathwarpWarper {
+    warper: Warper,
+    /// `true` if any thread may call the functions of C among its deformations.
+    any_thread: bool,
+}
 
 impl PathwarpWarper {
     /// Calls `work` with the warper on all cores, or on the calling thread alone if its functions need that.
     fn run<T: Send>(&self, work: impl FnOnce(&Warper) -> T + Send) -> T {
-        if self.1 { on_all_threads(|| work(&self.0)) } else { on_calling_thread(|| work(&self.0)) }
+        let work = || work(&self.warper);
+        if self.any_thread { on_all_threads(work) } else { on_calling_thread(work) }
     }
 }
 
-/// The version of the library.
+/// Returns the version of the library.
 #[unsafe(no_mangle)]
 pub extern "C" fn pathwarp_version() -> *const c_char {
     const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
@@ -40,9 +46,6 @@ pub extern "C" fn pathwarp_version() -> *const c_char {
 }
 
 /// Makes a deformation.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new(
     name: *const c_char,
@@ -58,16 +61,13 @@ pub unsafe extern "C" fn pathwarp_new(
         let registry = Registry::builtin();
         let is_edit = pathwarp_engine::edits::info(name).is_some();
         let made = if is_edit { Warper::edit(&registry, name, &pairs) } else { Warper::new(&registry, name, &pairs) };
-        Ok((made?, true))
+        Ok(PathwarpWarper { warper: made?, any_thread: true })
     };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
 /// Makes the deformation of a plug-in.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new_plugin(
     file: *const c_char,
@@ -87,16 +87,13 @@ pub unsafe extern "C" fn pathwarp_new_plugin(
         let started = pathwarp_plugin::by_file(Path::new(file), reserved);
         let plugin = started.map_err(|fault| Failed::input(fault.of(Path::new(file)).to_string()))?;
         let name = plugin.info().name;
-        Ok((Warper::new(&built_in.with(plugin), name, &pairs)?, true))
+        Ok(PathwarpWarper { warper: Warper::new(&built_in.with(plugin), name, &pairs)?, any_thread: true })
     };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
 /// Makes a deformation of a function.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_new_function(
     function: *const PathwarpFunction,
@@ -106,13 +103,14 @@ pub unsafe extern "C" fn pathwarp_new_function(
     let made = || {
         // SAFETY: the header requires a description of functions.
         let (function, abilities, any_thread) = unsafe { Function::read(function)? };
-        Ok((Warper::from_function(&Registry::builtin(), Arc::new(function), abilities), any_thread))
+        let warper = Warper::from_function(&Registry::builtin(), Arc::new(function), abilities);
+        Ok(PathwarpWarper { warper, any_thread })
     };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
-/// Reads pairs of texts.
+/// Reads the names and values of parameters.
 ///
 /// # Safety
 /// The arrays are null, or hold `count` texts that stay as they are while the result is used.
@@ -130,10 +128,7 @@ unsafe fn pairs<'a>(
     names.iter().zip(values).map(pair).collect()
 }
 
-/// Makes what a recipe says.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
+/// Makes the steps of a recipe. `folder` is where its relative paths begin.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_from_recipe(
     text: *const c_char,
@@ -144,16 +139,14 @@ pub unsafe extern "C" fn pathwarp_from_recipe(
     let made = || {
         // SAFETY: the header requires texts.
         let (text, folder) = unsafe { (crate::raw::text(text, "text")?, crate::raw::text(folder, "folder")?) };
-        Ok((Warper::from_recipe(&Registry::builtin(), text, Path::new(folder), false)?, true))
+        let warper = Warper::from_recipe(&Registry::builtin(), text, Path::new(folder), false)?;
+        Ok(PathwarpWarper { warper, any_thread: true })
     };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
 /// Makes one warper followed by another.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_then(
     first: *const PathwarpWarper,
@@ -164,24 +157,25 @@ pub unsafe extern "C" fn pathwarp_then(
     let made = || {
         // SAFETY: the header requires warpers that were not released.
         let (first, second) = unsafe { (value(first, "first")?, value(second, "second")?) };
-        Ok((first.0.then(&second.0), first.1 && second.1))
+        let warper = first.warper.then(&second.warper);
+        Ok(PathwarpWarper { warper, any_thread: first.any_thread && second.any_thread })
     };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
 
-/// Makes the inverse.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
+/// Makes the inverse of a warper.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_inverse(
     of: *const PathwarpWarper,
     warper: *mut *mut PathwarpWarper,
     error: *mut *mut c_char,
 ) -> i32 {
-    // SAFETY: the header requires a warper that was not released.
-    let made = || unsafe { value(of, "of").map(|of| (of.0.inverted(), of.1)) };
+    let made = || {
+        // SAFETY: the header requires a warper that was not released.
+        let of = unsafe { value(of, "of")? };
+        Ok(PathwarpWarper { warper: of.warper.inverted(), any_thread: of.any_thread })
+    };
     // SAFETY: the header requires that both may be written to.
     unsafe { status(error, || new_warper(warper, made)) }
 }
@@ -192,20 +186,16 @@ pub unsafe extern "C" fn pathwarp_inverse(
 /// `warper` is null, or may be written to.
 unsafe fn new_warper(
     warper: *mut *mut PathwarpWarper,
-    made: impl FnOnce() -> Result<(Warper, bool), Failed>,
+    made: impl FnOnce() -> Result<PathwarpWarper, Failed>,
 ) -> Result<(), Failed> {
-    place(warper, "warper")?;
-    let (made, any_thread) = made()?;
-    let made = hand_over(PathwarpWarper(made, any_thread));
+    check_not_null(warper, "warper")?;
+    let made = made()?;
     // SAFETY: the caller guarantees it.
-    unsafe { put(warper, made) };
+    unsafe { put(warper, Box::into_raw(Box::new(made))) };
     Ok(())
 }
 
 /// Sets an option.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_set_option(
     warper: *mut PathwarpWarper,
@@ -217,16 +207,13 @@ pub unsafe extern "C" fn pathwarp_set_option(
         // SAFETY: the header requires a warper that no other thread uses now, and texts.
         let (warper, name, value) =
             unsafe { (value_mut(warper, "warper")?, text(name, "name")?, text(value, "value")?) };
-        Ok(warper.0.set_option(name, value)?)
+        Ok(warper.warper.set_option(name, value)?)
     };
     // SAFETY: the header requires that `error` may be written to.
     unsafe { status(error, set) }
 }
 
 /// Maps points.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_map_points(
     warper: *const PathwarpWarper,
@@ -236,13 +223,14 @@ pub unsafe extern "C" fn pathwarp_map_points(
     error: *mut *mut c_char,
 ) -> i32 {
     let map = || {
-        let numbers = count.checked_mul(2).ok_or_else(|| wrong(format!("the count {count} is larger than memory")))?;
+        let too_large = || Failed::usage(format!("the count {count} is larger than memory"));
+        let numbers = count.checked_mul(2).ok_or_else(too_large)?;
         // The points are copied, since `from` may be `to`.
         // SAFETY: the header requires a warper and these numbers; both are done with before `to` is written.
         let (warper, from) = unsafe { (value(warper, "warper")?, array(from, numbers, "from")?) };
         let points: Vec<Point> = from.as_chunks().0.iter().map(|[x, y]| Point::new(*x, *y)).collect();
-        let finite = || points.iter().filter(|p| p.is_finite());
-        let bounds = || finite().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
+        let finite = points.iter().filter(|p| p.is_finite());
+        let bounds = || finite.map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
         let map = warper.run(|warper| warper.point_map(bounds, hatching))?;
         let block = if map.prefers_batches() { points.len().max(1) } else { BLOCK };
         let mut images = vec![Point::ORIGIN; points.len()];
@@ -262,9 +250,6 @@ pub unsafe extern "C" fn pathwarp_map_points(
 }
 
 /// Bends path data.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_warp_path(
     warper: *const PathwarpWarper,
@@ -274,7 +259,7 @@ pub unsafe extern "C" fn pathwarp_warp_path(
     error: *mut *mut c_char,
 ) -> i32 {
     let warp = || {
-        place(result, "result")?;
+        check_not_null(result, "result")?;
         // SAFETY: the header requires a warper and a text.
         let (warper, data) = unsafe { (value(warper, "warper")?, text(data, "data")?) };
         let warped = warper.run(|warper| warper.warp_path(data))?.path;
@@ -290,9 +275,6 @@ pub unsafe extern "C" fn pathwarp_warp_path(
 }
 
 /// Warps a drawing.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_warp_drawing(
     warper: *const PathwarpWarper,
@@ -307,17 +289,17 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
     error: *mut *mut c_char,
 ) -> i32 {
     let warp = || {
-        place(result, "result")?;
-        place(result_length, "result_length")?;
+        check_not_null(result, "result")?;
+        check_not_null(result_length, "result_length")?;
         if !warnings.is_null() {
-            place(warning_count, "warning_count")?;
+            check_not_null(warning_count, "warning_count")?;
         }
         // SAFETY: the header requires a warper and these bytes.
         let (warper, bytes) = unsafe { (value(warper, "warper")?, array(bytes, length, "bytes")?) };
         // SAFETY: the header requires NULL or a text.
         let name = if name.is_null() { None } else { Some(Path::new(unsafe { text(name, "name")? })) };
         let warped = warper.run(|warper| warper.warp_drawing(bytes, name))?;
-        let (first, count) = owned_bytes(warped.bytes);
+        let (first, count) = owned_array(warped.bytes.into_boxed_slice());
         // SAFETY: the header requires that all may be written to; `report` and `warnings` may be null.
         unsafe {
             put(result, first);
@@ -326,7 +308,7 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
                 put(report, owned_text(&warped.report));
             }
             if !warnings.is_null() {
-                let (texts, count) = owned_texts(&warped.warnings);
+                let (texts, count) = owned_array(warped.warnings.iter().map(|w| owned_text(w)).collect());
                 put(warnings, texts);
                 put(warning_count, count);
             }
@@ -338,9 +320,6 @@ pub unsafe extern "C" fn pathwarp_warp_drawing(
 }
 
 /// Sets words as a drawing.
-///
-/// # Safety
-/// Every pointer is null or as `pathwarp.h` says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_text(
     words: *const c_char,
@@ -351,12 +330,13 @@ pub unsafe extern "C" fn pathwarp_text(
     error: *mut *mut c_char,
 ) -> i32 {
     let set = || {
-        place(result, "result")?;
-        place(result_length, "result_length")?;
+        check_not_null(result, "result")?;
+        check_not_null(result_length, "result_length")?;
         // SAFETY: the header requires texts; `font` may be null.
         let (words, font) =
             unsafe { (text(words, "words")?, if font.is_null() { None } else { Some(text(font, "font")?) }) };
-        let (first, count) = owned_bytes(pathwarp_engine::lettering_drawing(words, font, size)?.into_bytes());
+        let drawing = pathwarp_engine::lettering_drawing(words, font, size)?;
+        let (first, count) = owned_array(drawing.into_bytes().into_boxed_slice());
         // SAFETY: the header requires that both may be written to.
         unsafe {
             put(result, first);
@@ -374,8 +354,10 @@ pub unsafe extern "C" fn pathwarp_text(
 /// It is null, or a warper that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_free(warper: *mut PathwarpWarper) {
-    // SAFETY: the caller guarantees it.
-    unsafe { take_back(warper) };
+    if !warper.is_null() {
+        // SAFETY: it came from `Box::into_raw`, and the caller gives it up.
+        drop(unsafe { Box::from_raw(warper) });
+    }
 }
 
 /// Releases a text.
@@ -394,8 +376,8 @@ pub unsafe extern "C" fn pathwarp_string_free(text: *mut c_char) {
 /// It is null, or a list of this library with this count that was not released.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_strings_free(texts: *mut *mut c_char, count: usize) {
-    // SAFETY: the caller guarantees it.
-    unsafe { drop_texts(texts, count) };
+    // SAFETY: the caller guarantees it, and each text came from `owned_text`.
+    unsafe { take_back_array(texts, count).into_iter().for_each(|text| drop_text(text)) };
 }
 
 /// Releases bytes.
@@ -405,5 +387,5 @@ pub unsafe extern "C" fn pathwarp_strings_free(texts: *mut *mut c_char, count: u
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pathwarp_bytes_free(bytes: *mut u8, length: usize) {
     // SAFETY: the caller guarantees it.
-    unsafe { drop_bytes(bytes, length) };
+    drop(unsafe { take_back_array(bytes, length) });
 }

@@ -2,17 +2,17 @@
 
 #![expect(unsafe_code, reason = "C's functions can only be called so")]
 
-use crate::raw::{Failed, text, value, wrong};
+use crate::raw::{Failed, text, value};
 use pathwarp::Error;
 use pathwarp::engine::{Abilities, Ask, Callee};
 use pathwarp::kurbo::Point;
 use std::cell::OnceCell;
 use std::ffi::{c_char, c_void};
 
-/// `pathwarp_map_fn`.
+/// `pathwarp_map_fn` of the header.
 pub type MapFn = unsafe extern "C" fn(data: *mut c_void, from: *const f64, to: *mut f64, count: usize) -> i32;
 
-/// `pathwarp_function`.
+/// `pathwarp_function` of the header, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct PathwarpFunction {
@@ -47,11 +47,11 @@ impl Function {
     pub(crate) unsafe fn read(function: *const PathwarpFunction) -> Result<(Self, Abilities, bool), Failed> {
         // SAFETY: the caller guarantees it.
         let f = unsafe { value(function, "function")? };
-        let points = f.points.ok_or_else(|| wrong("function.points is NULL".into()))?;
+        let points = f.points.ok_or_else(|| Failed::usage("function.points is NULL".into()))?;
         // SAFETY: the header requires NULL or a text.
         let creases = if f.creases.is_null() { "" } else { unsafe { text(f.creases, "function.creases")? } };
         let creases = pathwarp_plugin::creases(creases.lines().filter(|l| !l.trim().is_empty()));
-        let creases = creases.map_err(|fault| wrong(format!("function.creases: {fault}")))?;
+        let creases = creases.map_err(|fault| Failed::usage(format!("function.creases: {fault}")))?;
         let detail = Some(f.detail).filter(|d| *d > 0.0 && d.is_finite());
         let abilities =
             Abilities { jacobian: f.jets.is_some(), inverse: f.inverse.is_some(), partial: true, creases, detail };

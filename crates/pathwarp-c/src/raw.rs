@@ -7,14 +7,14 @@ use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The statuses of `pathwarp.h`: the command line's exit statuses, of which 1 and 5 do not occur here.
-pub(crate) const OK: i32 = 0;
+const OK: i32 = 0;
 const USAGE: i32 = 2;
 const INPUT: i32 = 3;
 const GEOMETRY: i32 = 4;
 const LIMIT: i32 = 6;
 const INTERNAL: i32 = 7;
 
-/// A failed call: its status and message.
+/// The status and the message of a failed call.
 pub(crate) struct Failed(i32, String);
 
 impl From<Error> for Failed {
@@ -35,11 +35,11 @@ impl Failed {
     pub(crate) fn input(message: String) -> Self {
         Self(INPUT, message)
     }
-}
 
-/// Makes the error for a wrong argument.
-pub(crate) fn wrong(message: String) -> Failed {
-    Failed(USAGE, message)
+    /// Makes the error for a wrong argument.
+    pub(crate) fn usage(message: String) -> Self {
+        Self(USAGE, message)
+    }
 }
 
 /// Calls `work`, and hands its status and message to C. Panics become [`INTERNAL`].
@@ -47,8 +47,7 @@ pub(crate) fn wrong(message: String) -> Failed {
 /// # Safety
 /// `error` is null, or may be written to.
 pub(crate) unsafe fn status(error: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failed>) -> i32 {
-    let done = catch_unwind(AssertUnwindSafe(work));
-    let (status, message) = match done {
+    let (status, message) = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => (OK, std::ptr::null_mut()),
         Ok(Err(Failed(status, message))) => (status, owned_text(&message)),
         Err(_) => (INTERNAL, owned_text("pathwarp failed; please report it")),
@@ -68,12 +67,10 @@ pub(crate) unsafe fn status(error: *mut *mut c_char, work: impl FnOnce() -> Resu
 /// # Safety
 /// `text` is null, or points to bytes that end with a zero and stay as they are while the result is used.
 pub(crate) unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str, Failed> {
-    if text.is_null() {
-        return Err(wrong(format!("{name} is NULL")));
-    }
+    check_not_null(text, name)?;
     // SAFETY: not null, and the caller guarantees that the bytes end with a zero.
     let text = unsafe { CStr::from_ptr(text) };
-    text.to_str().map_err(|e| wrong(format!("{name} is not UTF-8 (byte {})", e.valid_up_to())))
+    text.to_str().map_err(|e| Failed::usage(format!("{name} is not UTF-8 (byte {})", e.valid_up_to())))
 }
 
 /// Returns an array from C. The pointer may be null if the array is empty.
@@ -84,7 +81,7 @@ pub(crate) unsafe fn array<'a, T>(first: *const T, count: usize, name: &str) -> 
     if count == 0 {
         return Ok(&[]);
     }
-    check(first, count, name)?;
+    check_array(first, count, name)?;
     // SAFETY: neither null, nor misaligned, nor too large, and the caller guarantees that the values are there.
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
 }
@@ -97,71 +94,53 @@ pub(crate) unsafe fn array_mut<'a, T>(first: *mut T, count: usize, name: &str) -
     if count == 0 {
         return Ok(&mut []);
     }
-    check(first, count, name)?;
+    check_array(first, count, name)?;
     // SAFETY: neither null, nor misaligned, nor too large, and the caller guarantees that nobody else uses the values.
     Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
 }
 
-fn check<T>(first: *const T, count: usize, name: &str) -> Result<(), Failed> {
-    if first.is_null() {
-        return Err(wrong(format!("{name} is NULL")));
-    }
+fn check_array<T>(first: *const T, count: usize, name: &str) -> Result<(), Failed> {
+    check_not_null(first, name)?;
     if !first.is_aligned() {
-        return Err(wrong(format!("{name} is not aligned")));
+        return Err(Failed::usage(format!("{name} is not aligned")));
     }
     if count.checked_mul(size_of::<T>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
-        return Err(wrong(format!("{name}: the count {count} is larger than memory")));
+        return Err(Failed::usage(format!("{name}: the count {count} is larger than memory")));
     }
     Ok(())
 }
 
-/// Returns the value behind a handle.
-///
-/// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released.
-pub(crate) unsafe fn value<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failed> {
-    // SAFETY: the caller guarantees it.
-    unsafe { handle.as_ref() }.ok_or_else(|| wrong(format!("{name} is NULL")))
+/// Checks that an argument, or the pointer to a result, is not null.
+pub(crate) fn check_not_null<T>(pointer: *const T, name: &str) -> Result<(), Failed> {
+    if pointer.is_null() { Err(Failed::usage(format!("{name} is NULL"))) } else { Ok(()) }
 }
 
-/// Returns the value behind a handle, to be changed.
+/// Returns the value behind a pointer.
 ///
 /// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released, and nobody else uses it.
-pub(crate) unsafe fn value_mut<'a, T>(handle: *mut T, name: &str) -> Result<&'a mut T, Failed> {
+/// `pointer` is null, or points to a value that stays as it is while the result is used.
+pub(crate) unsafe fn value<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Failed> {
     // SAFETY: the caller guarantees it.
-    unsafe { handle.as_mut() }.ok_or_else(|| wrong(format!("{name} is NULL")))
+    unsafe { pointer.as_ref() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
 }
 
-/// Checks that the pointer to a result is not null.
-pub(crate) fn place<T>(result: *mut T, name: &str) -> Result<(), Failed> {
-    if result.is_null() { Err(wrong(format!("{name} is NULL"))) } else { Ok(()) }
+/// Returns the value behind a pointer, to be changed.
+///
+/// # Safety
+/// `pointer` is null, or points to a value that nobody else uses while the result is used.
+pub(crate) unsafe fn value_mut<'a, T>(pointer: *mut T, name: &str) -> Result<&'a mut T, Failed> {
+    // SAFETY: the caller guarantees it.
+    unsafe { pointer.as_mut() }.ok_or_else(|| Failed::usage(format!("{name} is NULL")))
 }
 
 /// Writes a result, if its pointer is not null.
 ///
 /// # Safety
-/// `place` is null, or may be written to.
-pub(crate) unsafe fn put<T>(place: *mut T, value: T) {
-    if !place.is_null() {
+/// `result` is null, or may be written to.
+pub(crate) unsafe fn put<T>(result: *mut T, value: T) {
+    if !result.is_null() {
         // SAFETY: not null, and the caller guarantees that it may be written to.
-        unsafe { place.write(value) };
-    }
-}
-
-/// Hands a value over to C.
-pub(crate) fn hand_over<T>(value: T) -> *mut T {
-    Box::into_raw(Box::new(value))
-}
-
-/// Takes a value back and drops it.
-///
-/// # Safety
-/// `handle` is null, or came from [`hand_over`] and was not released.
-pub(crate) unsafe fn take_back<T>(handle: *mut T) {
-    if !handle.is_null() {
-        // SAFETY: it came from `Box::into_raw`, and the caller gives it up.
-        drop(unsafe { Box::from_raw(handle) });
+        unsafe { result.write(value) };
     }
 }
 
@@ -182,42 +161,20 @@ pub(crate) unsafe fn drop_text(text: *mut c_char) {
     }
 }
 
-/// Hands a list of texts over to C.
-pub(crate) fn owned_texts(texts: &[String]) -> (*mut *mut c_char, usize) {
-    let texts: Box<[*mut c_char]> = texts.iter().map(|t| owned_text(t)).collect();
-    let count = texts.len();
-    (Box::into_raw(texts).cast(), count)
+/// Hands an array over to C: its first value and their count.
+pub(crate) fn owned_array<T>(values: Box<[T]>) -> (*mut T, usize) {
+    let count = values.len();
+    (Box::into_raw(values).cast(), count)
 }
 
-/// Takes a list of texts back and drops it.
+/// Takes an array back; it is empty if the pointer is null.
 ///
 /// # Safety
-/// `texts` is null, or came from [`owned_texts`] with this count and was not released.
-pub(crate) unsafe fn drop_texts(texts: *mut *mut c_char, count: usize) {
-    if !texts.is_null() {
-        // SAFETY: they came from a boxed slice of this length, and the caller gives them up.
-        let texts = unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(texts, count)) };
-        for text in texts {
-            // SAFETY: each came from `owned_text`.
-            unsafe { drop_text(text) };
-        }
+/// `first` is null, or came from [`owned_array`] with this count and was not released.
+pub(crate) unsafe fn take_back_array<T>(first: *mut T, count: usize) -> Box<[T]> {
+    if first.is_null() {
+        return Box::default();
     }
-}
-
-/// Hands bytes over to C.
-pub(crate) fn owned_bytes(bytes: Vec<u8>) -> (*mut u8, usize) {
-    let bytes = bytes.into_boxed_slice();
-    let length = bytes.len();
-    (Box::into_raw(bytes).cast(), length)
-}
-
-/// Takes bytes back and drops them.
-///
-/// # Safety
-/// `bytes` is null, or came from [`owned_bytes`] with this length and was not released.
-pub(crate) unsafe fn drop_bytes(bytes: *mut u8, length: usize) {
-    if !bytes.is_null() {
-        // SAFETY: they came from a boxed slice of this length, and the caller gives them up.
-        drop(unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(bytes, length)) });
-    }
+    // SAFETY: it came from a boxed slice of this length, and the caller gives it up.
+    unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(first, count)) }
 }

@@ -23,26 +23,23 @@ pub(crate) fn reading(m: &ArgMatches) -> Result<Reading, Failure> {
     Ok(Given::new(Vec::new(), values(OPTIONS.iter().filter(|o| o.reading), m)).read()?.reading)
 }
 
+/// Returns those of the options that are typed, with their values.
 fn values(
     options: impl Iterator<Item = &'static CommonOption>,
     m: &ArgMatches,
 ) -> Vec<(&'static CommonOption, Vec<OsString>)> {
-    let mut values = Vec::new();
-    for option in options {
-        let is_declared = m.try_contains_id(option.name).is_ok();
-        if !is_declared || m.value_source(option.name) != Some(ValueSource::CommandLine) {
-            continue;
-        }
-        let typed = match option.value {
+    let is_declared = |o: &CommonOption| m.try_contains_id(o.name).is_ok();
+    let is_typed = |o: &CommonOption| is_declared(o) && m.value_source(o.name) == Some(ValueSource::CommandLine);
+    let typed = |option: &'static CommonOption| {
+        let words = m.get_raw(option.name).into_iter().flatten();
+        let values = match option.value {
             OptionValue::Switch(_) => vec!["true".into()],
-            OptionValue::Choice(_) => {
-                m.get_raw(option.name).into_iter().flatten().map(OsStr::to_ascii_lowercase).collect()
-            }
-            _ => m.get_raw(option.name).into_iter().flatten().map(OsStr::to_owned).collect(),
+            OptionValue::Choice(_) => words.map(OsStr::to_ascii_lowercase).collect(),
+            _ => words.map(OsStr::to_owned).collect(),
         };
-        values.push((option, typed));
-    }
-    values
+        (option, values)
+    };
+    options.filter(|o| is_typed(o)).map(typed).collect()
 }
 
 /// The id of the positional argument for the inputs.
@@ -64,15 +61,11 @@ pub(crate) fn inputs_arg() -> Arg {
 
 /// Returns the common options, without the inputs.
 pub(crate) fn options_without_inputs() -> impl Iterator<Item = Arg> {
-    let is_there = |name: &&str| OPTIONS.iter().any(|o| o.name == *name);
-    OPTIONS.iter().map(move |o| {
-        let conflicts = o.conflicts.iter().copied().filter(is_there);
-        arg(o).help_heading("Common options").conflicts_with_all(conflicts)
-    })
+    OPTIONS.iter().map(|o| arg(o).help_heading("Common options").conflicts_with_all(o.conflicts.iter().copied()))
 }
 
 /// The common options of commands that write a drawing without bending it.
-pub(crate) const OF_OUTPUT: [&str; 8] =
+pub(crate) const OUTPUT_OPTIONS: [&str; 8] =
     ["format", "dxf-curves", "kerf", "engrave", "duplicates", "page-width", "page-height", "tolerance"];
 
 /// Returns the common options with these names, for a command that has only some of them.
@@ -86,10 +79,8 @@ pub(crate) fn reading_args() -> impl Iterator<Item = Arg> {
 }
 
 fn arg(option: &CommonOption) -> Arg {
-    let mut arg = Arg::new(option.name).long(option.name).visible_aliases(option.alias).help(option.help());
-    if let Some(c) = option.short {
-        arg = arg.short(c);
-    }
+    let arg = Arg::new(option.name).long(option.name).short(option.short).visible_aliases(option.alias);
+    let arg = arg.help(option.help());
     match &option.value {
         OptionValue::Switch(_) => arg.action(ArgAction::SetTrue),
         OptionValue::Choice(all) => {

@@ -41,7 +41,7 @@ pub(crate) struct Row<'a> {
 impl Row<'_> {
     /// Replaces each `{column}` in a text by its cell.
     pub(crate) fn filled(&self, text: &str) -> String {
-        let cell = |name| self.names.iter().position(|n| same(n, name)).and_then(|i| self.cells.get(i));
+        let cell = |name| self.names.iter().position(|n| are_same(n, name)).and_then(|i| self.cells.get(i));
         let filled = pieces(text).map(|piece| match piece {
             Piece::Column(name) => cell(name).map_or("", String::as_str),
             Piece::Plain(text) => text,
@@ -51,28 +51,27 @@ impl Row<'_> {
 
     /// Replaces each `{column}` in lines of text by its cell, trims the lines, and drops those that cells make empty.
     pub(crate) fn filled_lines(&self, text: &str) -> String {
-        let has_columns = |line: &str| columns(line).next().is_some();
-        let lines = text.split('\n').map(|line| match has_columns(line) {
-            true => Some(self.filled(line).trim().to_owned()).filter(|filled| !filled.is_empty()),
-            false => Some(line.to_owned()),
+        let lines = text.split('\n').filter_map(|line| match columns(line).next() {
+            Some(_) => Some(self.filled(line).trim().to_owned()).filter(|filled| !filled.is_empty()),
+            None => Some(line.to_owned()),
         });
-        lines.flatten().collect::<Vec<_>>().join("\n")
+        lines.collect::<Vec<_>>().join("\n")
     }
 }
 
-/// Executes a command for each row of the table that `--data` names. All rows, which may fill `texts` and the name of the output, are
-/// checked first. A row that fails is reported, and the others continue. `reads` lists other files that the command reads.
+/// Calls `draw` with each row of the table that `--data` names, and the row's output. All rows, which may fill `texts` and the name of the
+/// output, are checked first. A row that fails is reported, and the others continue. `reads` lists other files that the command reads.
 pub(crate) fn for_each_row(
     registry: &Registry,
     m: &ArgMatches,
     texts: &[&str],
     reads: &[&Path],
-    one: impl Fn(&Row<'_>, &Path) -> Result<Status, Failure>,
+    draw: impl Fn(&Row<'_>, &Path) -> Result<Status, Failure>,
 ) -> Result<Status, Failure> {
     let [file, out] = [DATA, "out"].map(|name| m.get_one::<PathBuf>(name).map_or(Path::new("-"), PathBuf::as_path));
     let name = input::display(file);
-    let table =
-        Table::read(&decoded(&input::bytes(file)?, &name)?).map_err(|e| Failure::Input(format!("{name}{e}")))?;
+    let table = Table::read(&decoded(&input::bytes(file)?, &name)?);
+    let table = table.map_err(|e| Failure::Input(format!("{name}{e}")))?;
     table.check_columns(texts, out).map_err(|e| Failure::usage(format!("{name} {e}")))?;
     let targets = table.targets(out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
     let mut files = Files::default();
@@ -82,7 +81,7 @@ pub(crate) fn for_each_row(
     let (mut failures, mut partial) = (Vec::new(), false);
     for ((number, cells), target) in table.rows.iter().zip(&targets) {
         let _watched = watch::InBatch::begin();
-        match one(&Row { names: &table.names, cells }, target) {
+        match draw(&Row { names: &table.names, cells }, target) {
             Ok(status) => {
                 partial |= status == Status::Partial;
                 interruption::count_finished();
@@ -113,7 +112,9 @@ pub(crate) fn decoded(bytes: &[u8], name: &str) -> Result<String, Failure> {
     })
 }
 
+/// A table.
 struct Table {
+    /// The columns' names.
     names: Vec<String>,
     /// The rows below the names, numbered as in a spreadsheet.
     rows: Vec<(usize, Vec<String>)>,
@@ -123,20 +124,20 @@ impl Table {
     /// Parses a table. Cells are trimmed, and rows without content are dropped.
     fn read(text: &str) -> Result<Self, String> {
         // Excel can write the separator in a line before the names.
-        let named =
+        let declared =
             text.strip_prefix("sep=").and_then(|rest| Some((*rest.as_bytes().first()?, rest.split_once('\n')?.1)));
-        let (separator, text) = named.unwrap_or_else(|| (separator(text), text));
+        let (separator, text) = declared.unwrap_or_else(|| (separator(text), text));
         let text = text.trim_end_matches(['\r', '\n']).to_owned() + "\n";
         let mut reader = csv::ReaderBuilder::new();
         let mut reader = reader.delimiter(separator).has_headers(false).flexible(true).from_reader(text.as_bytes());
         let (mut record, mut all) = (csv::StringRecord::new(), Vec::new());
-        let (mut line, mut number) = (1, usize::from(named.is_some()));
+        let (mut line, mut number) = (1, usize::from(declared.is_some()));
         while reader.read_record(&mut record).map_err(|e| format!(": {e}"))? {
-            // Count the empty rows that the reader skips, and the lines within cells.
-            let within: usize = record.iter().map(|cell| cell.matches('\n').count()).sum();
-            let after = reader.position().line() as usize;
-            number += (after - line).saturating_sub(within).max(1);
-            line = after;
+            // Empty rows, which the reader skips, count; line ends within cells do not.
+            let line_ends_in_cells: usize = record.iter().map(|cell| cell.matches('\n').count()).sum();
+            let next = reader.position().line() as usize;
+            number += (next - line).saturating_sub(line_ends_in_cells).max(1);
+            line = next;
             let cells: Vec<String> = record.iter().map(|cell| cell.trim().to_owned()).collect();
             all.extend(cells.iter().any(|cell| !cell.is_empty()).then_some((number, cells)));
         }
@@ -153,7 +154,7 @@ impl Table {
     /// Checks that every column in use exists, and exists only once.
     fn check_columns(&self, texts: &[&str], out: &Path) -> Result<(), String> {
         for wanted in texts.iter().copied().chain([&*out.to_string_lossy()]).flat_map(columns) {
-            match self.names.iter().filter(|name| same(name, wanted)).count() {
+            match self.names.iter().filter(|name| are_same(name, wanted)).count() {
                 0 => return Err(format!("has no column {wanted}; it has {}", listed(&self.names, SHOWN))),
                 1 => {}
                 n => return Err(format!("has {n} columns {wanted}; rename all but one")),
@@ -198,7 +199,7 @@ impl Table {
 /// Explains why cells do not form a name of a file or folder, with their columns.
 fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     /// Characters and names that Windows reserves, the names also before a dot (Win32, Naming Files, Paths, and Namespaces).
-    const KEPT: &str = "/\\<>:\"|?*";
+    const RESERVED: &str = "/\\<>:\"|?*";
     const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
     const PORTS: [&str; 2] = ["COM", "LPT"];
     /// Most bytes in a name (ext4; others take as many characters).
@@ -208,7 +209,7 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
         if cell.is_empty() {
             return Some(format!("column {column}: is empty, and names a file"));
         }
-        if let Some(c) = cell.chars().find(|c| KEPT.contains(*c) || c.is_control()) {
+        if let Some(c) = cell.chars().find(|c| RESERVED.contains(*c) || c.is_control()) {
             let c = if c.is_control() { format!("U+{:04X}, a control character", u32::from(c)) } else { c.to_string() };
             return Some(format!("column {column}: “{cell}” has {c}, which no name of a file may have"));
         }
@@ -216,10 +217,11 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     let columns: Vec<&str> = columns(pattern).collect();
     let name = row.filled(pattern);
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_uppercase();
-    let port = PORTS.iter().find_map(|port| stem.strip_prefix(port)).unwrap_or_default();
+    let port_number = PORTS.iter().find_map(|port| stem.strip_prefix(port)).unwrap_or_default();
+    let is_port = port_number.chars().count() == 1 && port_number.contains(char::is_numeric);
     let problem = if name.ends_with(['.', ' ']) || name.starts_with(' ') {
         "begins or ends in a way that file systems drop"
-    } else if DEVICES.contains(&stem.as_str()) || port.chars().count() == 1 && port.contains(char::is_numeric) {
+    } else if DEVICES.contains(&stem.as_str()) || is_port {
         "is the name of a device on Windows"
     } else if name.len() > LONGEST {
         "is longer than file systems take"
@@ -229,8 +231,8 @@ fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
     (!columns.is_empty()).then(|| format!("column {}: “{name}” {problem}", columns.join(", ")))
 }
 
-/// Returns `true` if two names of columns are equal.
-fn same(a: &str, b: &str) -> bool {
+/// Returns `true` if two names of columns are equal but for capitals and spaces around them.
+fn are_same(a: &str, b: &str) -> bool {
     a.trim().to_lowercase() == b.trim().to_lowercase()
 }
 
@@ -245,14 +247,15 @@ fn columns(text: &str) -> impl Iterator<Item = &str> {
     pieces(text).filter_map(|p| if let Piece::Column(name) = p { Some(name) } else { None })
 }
 
+/// Splits a text at the names of columns.
 fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
     let mut rest = text;
     std::iter::from_fn(move || {
         if rest.is_empty() {
             return None;
         }
-        let named = rest.strip_prefix('{').and_then(|inner| inner.split_once('}'));
-        if let Some((name, after)) = named.filter(|(name, _)| !name.contains(['{', '\n'])) {
+        let column = rest.strip_prefix('{').and_then(|inner| inner.split_once('}'));
+        if let Some((name, after)) = column.filter(|(name, _)| !name.contains(['{', '\n'])) {
             rest = after;
             return Some(Piece::Column(name.trim()));
         }

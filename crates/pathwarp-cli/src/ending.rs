@@ -28,7 +28,7 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
-    /// The exit code.
+    /// Returns the exit code.
     pub(crate) fn code(&self) -> u8 {
         match self {
             Self::Clap(e) => u8::try_from(e.exit_code()).unwrap_or(2),

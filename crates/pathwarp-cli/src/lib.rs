@@ -57,7 +57,7 @@ pub fn command(registry: &Registry) -> clap::Command {
 fn keep_sweeps_quiet() {
     let print = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
-        if !panic.location().is_some_and(|at| at.file().contains("linesweeper")) {
+        if !panic.location().is_some_and(|location| location.file().contains("linesweeper")) {
             print(panic);
         }
     }));

@@ -64,8 +64,8 @@ pub(crate) fn single_dashed(words: &[OsString], known: impl FnOnce() -> Vec<Stri
 
 /// Suggests a replacement for an unknown option: known ones that begin with it, a synonym, or a similar one.
 pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
-    /// The least similarity of a mistyped option.
-    const NEAR: f64 = 0.6;
+    /// The least similarity of a mistyped option, from 0 to 1.
+    const LEAST: f64 = 0.6;
     let name = unknown.trim_start_matches('-').to_lowercase();
     let longer = |k: &&&str| k.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('-'));
     let longer: Vec<&str> = known.iter().filter(longer).copied().collect();
@@ -73,8 +73,8 @@ pub(crate) fn option(unknown: &str, known: &[&str]) -> String {
     let synonym = synonyms.find(|text| text.split(' ').next().is_some_and(|option| known.contains(&option)));
     let meant = match &longer[..] {
         [] => {
-            let near = |k: &&str| strsim::normalized_damerau_levenshtein(&name, k) > NEAR;
-            synonym.or_else(|| likely(&name, known.iter().copied()).filter(near)).map(str::to_owned)
+            let is_similar = |k: &&str| strsim::normalized_damerau_levenshtein(&name, k) > LEAST;
+            synonym.or_else(|| likely(&name, known.iter().copied()).filter(is_similar)).map(str::to_owned)
         }
         longer => Some(longer.join(" or --")),
     };
@@ -105,11 +105,10 @@ fn is_number(word: &str) -> bool {
 
 /// Returns `true` for a number, with a unit or not, or a point.
 fn is_measure(word: &str) -> bool {
-    let one = |part: &str| {
+    word.split([',', ':']).all(|part| {
         let number = part.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%' || c == '°');
         is_number(number) && (number.len() == part.len() || is_unit(&part[number.len()..]))
-    };
-    word.split([',', ':']).all(one)
+    })
 }
 
 /// Returns `true` for a letter of path data, alone or followed by numbers.
@@ -132,10 +131,10 @@ fn torn(words: &[String]) -> Option<Torn> {
             return Some(Torn { word: next.clone(), whole: format!("{option} {first}{next}"), why });
         }
         // A list of points, or path data: M 0,0 C 1,2 …
-        let is_begun = is_data(first) || first.contains(',') && is_measure(first);
+        let begins_list = is_data(first) || (first.contains(',') && is_measure(first));
         let more = rest.iter().take_while(|w| (is_measure(w) || is_data(w)) && !Path::new(w).exists());
         let more: Vec<&str> = more.map(String::as_str).collect();
-        if is_begun && !more.is_empty() {
+        if begins_list && !more.is_empty() {
             let (whole, why) = match option {
                 "--pair" if !first.contains(':') => (format!("{option} {first}:{next}"), "a pair has a colon"),
                 "--pair" | "--pin" | "--move" => {
@@ -168,14 +167,12 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
     if inputs.len() < 2 {
         return None;
     }
-    // For `my logo.svg`, the words around it form an existing name.
-    for (from, to) in
-        (0..=missing).flat_map(|from| (missing..inputs.len()).map(move |to| (from, to))).filter(|(a, b)| a < b)
-    {
-        let parts = inputs[from..=to].iter().map(|p| p.display().to_string());
-        let joined = parts.collect::<Vec<_>>().join(" ");
-        if Path::new(&joined).exists() {
-            return Some(format!("{name}: there is no such file; a name with spaces needs quotes: '{joined}'"));
+    // For `my logo.svg`, the words around the missing one form an existing name.
+    let runs = (0..=missing).flat_map(|from| (missing..inputs.len()).map(move |to| &inputs[from..=to]));
+    for words in runs.filter(|words| words.len() > 1) {
+        let whole = words.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" ");
+        if Path::new(&whole).exists() {
+            return Some(format!("{name}: there is no such file; a name with spaces needs quotes: '{whole}'"));
         }
     }
     if ["to", "into", "as", "->", "=>"].contains(&name.as_str()) {
@@ -189,10 +186,10 @@ pub(crate) fn inputs(words: &[OsString], inputs: &[PathBuf], has_out: bool) -> O
 
 /// Advises on a word beyond those that a command takes.
 pub(crate) fn surplus(word: &str, words: &[OsString], known: &[&str]) -> String {
-    let last = words.iter().position(|w| w == word).and_then(|i| words.get(i.checked_sub(1)?));
-    let joined = format!("{} {word}", last.map_or_else(String::new, |w| w.to_string_lossy().into_owned()));
-    if Path::new(&joined).exists() {
-        return format!("a name with spaces needs quotes: '{joined}'");
+    let before = words.iter().position(|w| w == word).and_then(|i| words.get(i.checked_sub(1)?));
+    let whole = format!("{} {word}", before.map_or_else(String::new, |w| w.to_string_lossy().into_owned()));
+    if Path::new(&whole).exists() {
+        return format!("a name with spaces needs quotes: '{whole}'");
     }
     if known.contains(&"out") && Path::new(word).extension().is_some() {
         return format!("to write to it: -o {word}; a name with spaces needs quotes");

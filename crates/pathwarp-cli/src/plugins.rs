@@ -1,7 +1,6 @@
 //! Plug-ins that are programs: from the user's folder and from `--plugin`, added to the registry.
 
-use crate::interruption;
-use crate::terminal;
+use crate::{interruption, terminal};
 use clap::Arg;
 use pathwarp::deform::{Deformation, Registry};
 use pathwarp_engine::failure::Failure;
@@ -20,7 +19,8 @@ pub(crate) fn option() -> Arg {
 }
 
 /// Commands that need no plug-ins of the folder.
-const WITHOUT: [&str; 8] = ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
+const WITHOUT_INSTALLED: [&str; 8] =
+    ["unwarp", "text", "paths", "convert", "render", "gallery", "compare", "new-plugin"];
 
 /// The plug-ins of a run.
 #[derive(Default)]
@@ -37,12 +37,19 @@ impl Plugins {
         self.plugins.iter().fold(registry.clone(), |all, p| all.with(p.clone()))
     }
 
+    /// Adds the plug-in in `file`, which replaces one with the same name.
+    fn add(&mut self, file: &Path, reserved: Reserved<'_>) -> Result<(), Failure> {
+        let plugin = pathwarp_plugin::by_file(file, reserved).map_err(|fault| Failure::from(fault.of(file)))?;
+        self.plugins.retain(|p| p.info().name != plugin.info().name);
+        self.broken.retain(|b| b.name != plugin.info().name);
+        self.plugins.push(plugin);
+        Ok(())
+    }
+
     /// Shows the messages that the programs have written to standard error.
-    pub(crate) fn tell(&self) {
-        for p in &self.plugins {
-            if let Some(said) = p.said() {
-                terminal::note(&format!("plug-in {} said: {said}", p.path().display()));
-            }
+    pub(crate) fn show_messages(&self) {
+        for (plugin, message) in self.plugins.iter().filter_map(|p| Some((p, p.said()?))) {
+            terminal::note(&format!("plug-in {} said: {message}", plugin.path().display()));
         }
     }
 
@@ -95,18 +102,17 @@ pub(crate) fn load(
         // Programs run from here on, and an interruption must end them.
         interruption::handle();
     }
+    // `check NAME` starts a plug-in anew, and `check FILE` needs no `--plugin`.
+    let checked = args.get(2).filter(|_| args.get(1).is_some_and(|a| a == "check"));
     if wanted {
-        let afresh = args.get(2).filter(|_| args.get(1).is_some_and(|a| a == "check")).and_then(|n| n.to_str());
-        let found = pathwarp_plugin::installed(reserved, afresh);
+        let found = pathwarp_plugin::installed(reserved, checked.and_then(|name| name.to_str()));
         (plugins.plugins, plugins.broken) = (found.plugins, found.broken);
     }
     for file in &files {
         plugins.add(file, reserved)?;
     }
     plugins.given = files;
-    // `check FILE` needs no `--plugin`.
-    let checked = args.get(2).map(Path::new).filter(|_| args.get(1).is_some_and(|a| a == "check"));
-    if let Some(file) = checked.filter(|f| is_file_name(f) && Format::of(f).is_none()) {
+    if let Some(file) = checked.map(Path::new).filter(|f| is_file_name(f) && Format::of(f).is_none()) {
         plugins.add(file, reserved)?;
     }
     Ok((args, plugins))
@@ -115,17 +121,6 @@ pub(crate) fn load(
 /// Returns `true` if a word names a file rather than a deformation.
 pub(crate) fn is_file_name(word: &Path) -> bool {
     word.components().count() > 1 || word.extension().is_some() || word.is_absolute()
-}
-
-impl Plugins {
-    /// Adds the plug-in in `file`, which replaces one with the same name.
-    fn add(&mut self, file: &Path, reserved: Reserved<'_>) -> Result<(), Failure> {
-        let plugin = pathwarp_plugin::by_file(file, reserved).map_err(|fault| Failure::from(fault.of(file)))?;
-        self.plugins.retain(|p| p.info().name != plugin.info().name);
-        self.broken.retain(|b| b.name != plugin.info().name);
-        self.plugins.push(plugin);
-        Ok(())
-    }
 }
 
 /// Returns the arguments without `--plugin FILE`, and the files.
@@ -150,14 +145,14 @@ fn split(args: &[OsString]) -> Result<(Vec<OsString>, Vec<PathBuf>), Failure> {
 
 /// Returns `true` if the arguments may name a deformation that is not built in, or list all.
 fn need_installed(registry: &Registry, args: &[OsString]) -> bool {
-    let known = |word: &OsStr| word.to_str().is_some_and(|w| registry.get(w).is_some());
+    let is_built_in = |word: &OsStr| word.to_str().is_some_and(|w| registry.get(w).is_some());
     match args.get(1) {
         None => false,
         // Every deformation gets a dialog.
         Some(word) if word == "install" => args.get(2).is_some_and(|what| what == "inkscape"),
-        Some(word) if WITHOUT.iter().any(|w| *w == word.as_os_str()) => false,
+        Some(word) if WITHOUT_INSTALLED.iter().any(|w| *w == word.as_os_str()) => false,
         // Skip plug-ins if the whole chain is built in.
-        Some(word) if known(word) => args.windows(2).any(|w| w[0] == "+" && !known(&w[1])),
+        Some(word) if is_built_in(word) => args.windows(2).any(|w| w[0] == "+" && !is_built_in(&w[1])),
         Some(word) => !word.to_string_lossy().starts_with('-') || word == "--help" || word == "-h",
     }
 }

@@ -29,8 +29,8 @@ impl Totals {
         self.inputs += 1;
         self.failed += usize::from(input.error.is_some());
         self.skipped += input.skipped.len();
+        self.shapes += input.shapes.len();
         for s in &input.shapes {
-            self.shapes += 1;
             self.segments_in += s.shape.path.segments_in;
             self.segments_out += s.shape.path.segments_out;
             self.max_error = self.max_error.max(s.shape.path.max_error);

@@ -2,17 +2,17 @@
 
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::input::{display, split_reference};
-use pathwarp_engine::output::{behind, is_device, is_stdout};
+use pathwarp_engine::output::{is_device, is_stdout, link_target};
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
 /// The files that a command reads and those that it will write, by identity.
 #[derive(Default)]
 pub(crate) struct Files {
     read: HashMap<PathBuf, Source>,
+    /// The outputs with their names in messages.
     written: HashMap<PathBuf, String>,
-    folders: Folders,
+    folders: RealFolders,
 }
 
 /// A file that is read.
@@ -63,31 +63,26 @@ impl Files {
         };
         let id = if is_stdout(to) { to.to_owned() } else { self.folders.identity(to) };
         if let Some(source) = self.read.get(&id) {
-            let same =
-                if Path::new(&source.name) == to { String::new() } else { format!(" is {}, which", source.name) };
+            let is_same_name = Path::new(&source.name) == to;
+            let source_name = if is_same_name { String::new() } else { format!(" is {}, which", source.name) };
             let advice = if source.replaceable { ", or allow it with --in-place" } else { "" };
             let problem = "is read by this command and would be overwritten; name another file";
-            return Err(Failure::usage(format!("{shown}{same} {problem}{advice}")));
+            return Err(Failure::usage(format!("{shown}{source_name} {problem}{advice}")));
         }
-        match self.written.entry(id) {
-            Entry::Occupied(other) => {
-                let other = other.get();
-                let places = if is_stdout(to) { "would both be standard output" } else { "would be the same file" };
-                Err(Failure::usage(format!("{other} and {shown} {places}; give each output its own")))
-            }
-            Entry::Vacant(free) => {
-                free.insert(shown);
-                Ok(())
-            }
+        if let Some(other) = self.written.get(&id) {
+            let problem = if is_stdout(to) { "would both be standard output" } else { "would be the same file" };
+            return Err(Failure::usage(format!("{other} and {shown} {problem}; give each output its own")));
         }
+        self.written.insert(id, shown);
+        Ok(())
     }
 }
 
 /// A cache of the real paths of folders, since most files of a batch share one.
 #[derive(Default)]
-struct Folders(HashMap<PathBuf, PathBuf>);
+struct RealFolders(HashMap<PathBuf, PathBuf>);
 
-impl Folders {
+impl RealFolders {
     /// Returns a path that does not depend on how a file is named: links are resolved, and case is ignored where the system ignores it.
     fn identity(&mut self, file: &Path) -> PathBuf {
         let whole = self.real(file).unwrap_or_else(|| real(file));
@@ -98,7 +93,7 @@ impl Folders {
     fn real(&mut self, file: &Path) -> Option<PathBuf> {
         if !cfg!(unix) || file.symlink_metadata().is_ok_and(|m| m.is_symlink()) {
             // The target may not exist yet.
-            return (!file.exists()).then(|| real(&behind(file)));
+            return (!file.exists()).then(|| real(&link_target(file)));
         }
         let (folder, name) = (file.parent()?, file.file_name()?);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

@@ -10,7 +10,7 @@ use pathwarp_engine::catalogue::Catalogue;
 use pathwarp_engine::edits::{self, EDITS};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Given;
-use pathwarp_engine::steps::{INVERSE, assign, in_lower_case};
+use pathwarp_engine::steps::{INVERSE, as_known_name, assign};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
@@ -45,18 +45,17 @@ pub(crate) fn parts(
 }
 
 fn part(catalogue: &dyn Catalogue, words: &[OsString], options: &[Arg]) -> Result<ChainPart, Ending> {
-    let mut c = Command::new("pathwarp … +")
+    let edits = EDITS.iter().filter(|_| !catalogue.is_solid());
+    let deformation = |info: &Info| {
+        Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options)
+    };
+    let command = Command::new("pathwarp … +")
         .no_binary_name(true)
         .disable_help_flag(true)
         .disable_help_subcommand(true)
-        .subcommand_required(true);
-    let edits = EDITS.iter().filter(|_| !catalogue.is_solid());
-    for info in catalogue.infos().into_iter().chain(edits) {
-        c = c.subcommand(
-            Command::new(info.name).aliases(aliases(info.name)).about(info.title).args(args(info)).args(options),
-        );
-    }
-    let mut m = c.try_get_matches_from(words)?;
+        .subcommand_required(true)
+        .subcommands(catalogue.infos().into_iter().chain(edits).map(deformation));
+    let mut m = command.try_get_matches_from(words)?;
     let (name, sub) = m.remove_subcommand().ok_or_else(|| Failure::usage("a deformation must follow `+`"))?;
     Ok(ChainPart { step: step(catalogue, &name, &sub), options: arguments::given(&sub) })
 }
@@ -85,14 +84,12 @@ pub(crate) fn param_arg(p: &Param) -> Arg {
         return arg.action(ArgAction::SetTrue);
     }
     // Coordinates may begin with a minus, but the next option is not a value.
-    arg.value_name(p.value_name())
-        .allow_hyphen_values(true)
-        .value_parser(
-            |t: &str| {
-                if t.starts_with("--") { Err("a value is missing before this option") } else { Ok(t.to_owned()) }
-            },
-        )
-        .action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
+    let parse = |t: &str| match t.starts_with("--") {
+        true => Err("a value is missing before this option"),
+        false => Ok(t.to_owned()),
+    };
+    let arg = arg.value_name(p.value_name()).allow_hyphen_values(true).value_parser(parse);
+    arg.action(if p.repeat { ArgAction::Append } else { ArgAction::Set })
 }
 
 /// Returns the step that the parsed subcommand of the deformation `name` requests.
@@ -106,14 +103,11 @@ pub(crate) fn step(catalogue: &dyn Catalogue, name: &str, m: &ArgMatches) -> Ste
 pub(crate) fn param_values(params: &[Param], m: &ArgMatches) -> Args {
     let mut args = Args::new();
     for p in params {
-        if p.kind == Kind::Flag {
-            if m.get_flag(p.name) {
-                args.push(p.name, "true");
-            }
-        } else {
-            for v in m.get_many::<String>(p.name).into_iter().flatten() {
-                args.push(p.name, in_lower_case(p, v));
-            }
+        if p.kind != Kind::Flag {
+            let values = m.get_many::<String>(p.name).into_iter().flatten();
+            values.for_each(|v| args.push(p.name, as_known_name(p, v)));
+        } else if m.get_flag(p.name) {
+            args.push(p.name, "true");
         }
     }
     args

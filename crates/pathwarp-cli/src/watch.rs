@@ -5,11 +5,10 @@
 //! and no output is half written.
 
 use crate::{interruption, terminal};
-use pathwarp_engine::meter;
-
 use cpu_time::ProcessTime;
 use memory_stats::memory_stats;
 use pathwarp::budget::{Exceeded, Limit, Limits};
+use pathwarp_engine::meter;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -26,11 +25,11 @@ struct Watched {
     /// Bytes and pixels counted before the inputs under way. Those counted during a rest only raise the limits.
     before: [u64; 2],
     /// Number of inputs of a batch under way; 0 outside a batch.
-    more: usize,
+    in_batch: usize,
     /// Processor time at the end of the last input.
     since: Duration,
     /// `true` while nothing is watched.
-    rests: bool,
+    is_resting: bool,
 }
 
 static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
@@ -38,6 +37,7 @@ static WATCHED: Mutex<Option<Watched>> = Mutex::new(None);
 /// `true` if the watchdog may end the process. Only `main_with` allows it: a program that uses this library must not be ended.
 static ALLOWED: AtomicBool = AtomicBool::new(false);
 
+/// Allows the watchdog to end the process.
 pub(crate) fn allow() {
     ALLOWED.store(true, Ordering::Relaxed);
 }
@@ -50,12 +50,13 @@ pub(crate) fn begin(limits: Limits) {
     let mut watched = lock();
     if let Some(watched) = watched.as_mut() {
         watched.limits = limits;
-        if std::mem::take(&mut watched.rests) {
-            watched.since = used();
+        if std::mem::take(&mut watched.is_resting) {
+            watched.since = processor_time();
         }
         return;
     }
-    *watched = Some(Watched { limits, before: meter::counted(), more: 0, since: Duration::ZERO, rests: false });
+    let (before, since) = (meter::counted(), Duration::ZERO);
+    *watched = Some(Watched { limits, before, in_batch: 0, since, is_resting: false });
     drop(watched);
     // Without the thread, work is still counted.
     let _ = std::thread::Builder::new().stack_size(1 << 17).spawn(watch);
@@ -64,7 +65,7 @@ pub(crate) fn begin(limits: Limits) {
 /// Stops watching until [`begin`]: an editor may stay open for hours, and limits the work of every picture itself.
 pub(crate) fn rest() {
     if let Some(watched) = lock().as_mut() {
-        watched.rests = true;
+        watched.is_resting = true;
     }
 }
 
@@ -74,7 +75,7 @@ pub(crate) struct InBatch(());
 impl InBatch {
     pub(crate) fn begin() -> Self {
         if let Some(watched) = lock().as_mut() {
-            watched.more += 1;
+            watched.in_batch += 1;
         }
         Self(())
     }
@@ -83,9 +84,9 @@ impl InBatch {
 impl Drop for InBatch {
     fn drop(&mut self) {
         if let Some(watched) = lock().as_mut() {
-            watched.more = watched.more.saturating_sub(1);
-            watched.since = used();
-            if watched.more == 0 {
+            watched.in_batch = watched.in_batch.saturating_sub(1);
+            watched.since = processor_time();
+            if watched.in_batch == 0 {
                 watched.before = meter::counted();
             }
         }
@@ -96,8 +97,8 @@ fn lock() -> MutexGuard<'static, Option<Watched>> {
     WATCHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns the processor time of all threads.
-fn used() -> Duration {
+/// Returns the processor time that all threads have taken.
+fn processor_time() -> Duration {
     ProcessTime::now().as_duration()
 }
 
@@ -116,16 +117,16 @@ fn watch() {
 impl Watched {
     /// Returns the exceeded limit, if any. Inputs under way share seconds and memory equally; their whole need is not known yet.
     fn exceeded(&self) -> Option<Exceeded> {
-        if self.rests {
+        if self.is_resting {
             return None;
         }
-        let inputs = self.more.max(1);
+        let inputs = self.in_batch.max(1);
         let now = meter::counted();
         let [bytes, pixels] = [0, 1].map(|i| now[i].saturating_sub(self.before[i]) as f64 / inputs as f64);
         let limits = self.limits.for_input(bytes as usize).for_pixels(pixels);
         let check = |limit, amount: f64| limits.check(limit, amount / inputs as f64).err().map(Exceeded::cut_short);
         let memory = || memory_stats().map_or(0, |m| m.physical_mem);
-        check(Limit::Seconds, used().saturating_sub(self.since).as_secs_f64())
+        check(Limit::Seconds, processor_time().saturating_sub(self.since).as_secs_f64())
             .or_else(|| check(Limit::Memory, memory() as f64))
     }
 }

@@ -1,6 +1,6 @@
 //! Writes each subpath as one entity, exact or flattened.
 
-use crate::file::{Codes, MODEL_SPACE, nearest};
+use crate::file::{Codes, MODEL_SPACE, nearest_color};
 use crate::model::Spline;
 use pathwarp::kurbo::{CubicBez, ParamCurve as _, Point, Vec2};
 use pathwarp::outline::EllipticArc;
@@ -16,11 +16,11 @@ pub(crate) struct Pen<'a> {
 /// Writes a subpath as one entity. It is exact if it consists of lines and circular arcs, of one ellipse, or of Bézier curves; arcs
 /// among curves become cubics within a hundredth of the tolerance.
 pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
-    let near = OF_TOLERANCE * tolerance;
-    let segs = merged(subpath, near);
-    let straight = |s: &Seg| match s {
+    let slack = ARC_SHARE * tolerance;
+    let segs = merge_arcs(subpath, slack);
+    let fits_polyline = |s: &Seg| match s {
         Seg::Line(_) => true,
-        Seg::Arc(a) => is_circular(a, near),
+        Seg::Arc(a) => is_circular(a, slack),
         Seg::Quad(_) | Seg::Cubic(_) => false,
     };
     match segs.as_slice() {
@@ -28,20 +28,20 @@ pub(crate) fn exact(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance
         [Seg::Line(l)] => {
             entity(out, pen, "LINE", "AcDbLine").point(10, l.p0).point(11, l.p1);
         }
-        [Seg::Arc(a)] if is_circular(a, near) => arc(out, pen, a),
+        [Seg::Arc(a)] if is_circular(a, slack) => arc(out, pen, a),
         [Seg::Arc(a)] => ellipse(out, pen, a),
-        all if all.iter().all(straight) => polyline_of(out, pen, &vertices(all, subpath.closed), subpath.closed),
-        all => spline(out, pen, all, subpath.closed, OF_TOLERANCE * near),
+        all if all.iter().all(fits_polyline) => write_polyline(out, pen, all, subpath.closed),
+        all => spline(out, pen, all, subpath.closed, ARC_SHARE * slack),
     }
 }
 
 /// Writes a subpath as one polyline. Circular arcs stay exact, as bulges.
 pub(crate) fn polyline(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolerance: f64) {
-    let near = OF_TOLERANCE * tolerance;
+    let slack = ARC_SHARE * tolerance;
     let mut segs = Vec::new();
-    for seg in merged(subpath, near) {
+    for seg in merge_arcs(subpath, slack) {
         match seg {
-            Seg::Arc(a) if is_circular(&a, near) => segs.push(seg),
+            Seg::Arc(a) if is_circular(&a, slack) => segs.push(seg),
             Seg::Line(_) => segs.push(seg),
             _ => {
                 let mut points = vec![seg.start()];
@@ -54,7 +54,7 @@ pub(crate) fn polyline(out: &mut Codes, pen: &Pen<'_>, subpath: &Subpath, tolera
     match segs.as_slice() {
         [] => {}
         [Seg::Arc(a)] if is_whole(a) => arc(out, pen, a),
-        all => polyline_of(out, pen, &vertices(all, subpath.closed), subpath.closed),
+        all => write_polyline(out, pen, all, subpath.closed),
     }
 }
 
@@ -63,7 +63,7 @@ fn entity<'c>(out: &'c mut Codes, pen: &Pen<'_>, name: &str, class: &str) -> &'c
     let handle = out.new_handle();
     out.text(0, name).handle(5, handle).handle(330, MODEL_SPACE).text(100, "AcDbEntity").text(8, pen.layer);
     if let Some(color) = pen.color {
-        let (index, is_exact) = nearest(color);
+        let (index, is_exact) = nearest_color(color);
         out.whole(62, index.into());
         if !is_exact {
             let [r, g, b] = color.map(i64::from);
@@ -99,13 +99,15 @@ fn bulge(arc: &EllipticArc) -> f64 {
     (arc.sweep * arc.a.cross(arc.b).signum() / 4.0).tan()
 }
 
-fn polyline_of(out: &mut Codes, pen: &Pen<'_>, vertices: &[Vertex], closed: bool) {
+/// Writes lines and circular arcs as a polyline of width 0.
+fn write_polyline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool) {
+    let vertices = vertices(segs, closed);
     entity(out, pen, "LWPOLYLINE", "AcDbPolyline").whole(90, vertices.len() as i64).whole(70, closed.into());
     out.length(43, 0.0);
     for (p, bulge) in vertices {
         out.length(10, p.x).length(20, p.y);
-        if *bulge != 0.0 {
-            out.fine(42, *bulge);
+        if bulge != 0.0 {
+            out.ratio(42, bulge);
         }
     }
 }
@@ -119,7 +121,7 @@ fn arc(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
         // DXF's arcs run counter-clockwise.
         let (from, to) = if runs_counter_clockwise(a) { (a.p0, a.p1) } else { (a.p1, a.p0) };
         let degrees = |p: Point| (p - a.center).angle().to_degrees().rem_euclid(360.0);
-        out.text(100, "AcDbArc").fine(50, degrees(from)).fine(51, degrees(to));
+        out.text(100, "AcDbArc").ratio(50, degrees(from)).ratio(51, degrees(to));
     }
 }
 
@@ -129,10 +131,11 @@ fn runs_counter_clockwise(a: &EllipticArc) -> bool {
 
 /// Writes an ellipse or an arc of one.
 fn ellipse(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
-    let (major, minor, shift) = axes(a.a, a.b);
+    let (major, minor, shift) = principal_axes(a.a, a.b);
     entity(out, pen, "ELLIPSE", "AcDbEllipse").point(10, a.center).point(11, major.to_point());
+    // The normal of the plane.
     out.length(210, 0.0).length(220, 0.0).length(230, 1.0);
-    out.fine(40, (minor.hypot() / major.hypot()).clamp(1e-6, 1.0));
+    out.ratio(40, (minor.hypot() / major.hypot()).clamp(1e-6, 1.0));
     // DXF's parameter of an ellipse runs counter-clockwise from its major axis.
     let turns = major.cross(minor).signum();
     let (from, to) = if is_whole(a) {
@@ -141,11 +144,11 @@ fn ellipse(out: &mut Codes, pen: &Pen<'_>, a: &EllipticArc) {
         let [start, end] = [a.start, a.start + a.sweep].map(|t| ((t - shift) * turns).rem_euclid(TAU));
         if a.sweep * turns > 0.0 { (start, end) } else { (end, start) }
     };
-    out.fine(41, from).fine(42, if to > from { to } else { to + TAU });
+    out.ratio(41, from).ratio(42, if to > from { to } else { to + TAU });
 }
 
 /// Returns the principal semi-axes of the ellipse c + cos θ·a + sin θ·b, the longer first, and the angle θ of the longer one.
-fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
+fn principal_axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
     // |cos θ·a + sin θ·b|² is largest where tan 2θ = 2a·b / (a² − b²).
     let shift = 0.5 * (2.0 * a.dot(b)).atan2(a.hypot2() - b.hypot2());
     let (sin, cos) = shift.sin_cos();
@@ -154,12 +157,12 @@ fn axes(a: Vec2, b: Vec2) -> (Vec2, Vec2, f64) {
 
 /// Writes segments as one spline in which every joint is a triple knot, so that corners stay. A closed spline ends at the very point where
 /// it starts. Its flag for closed splines stays off: LibreCAD up to 2.2 would draw a periodic spline of these control points instead.
-fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64) {
+fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, arc_tolerance: f64) {
     const DEGREE: usize = 3;
     let mut cubics: Vec<CubicBez> = Vec::with_capacity(segs.len());
     for seg in segs {
         match seg {
-            Seg::Arc(a) => cubics.extend(a.to_cubics(near)),
+            Seg::Arc(a) => cubics.extend(a.to_cubics(arc_tolerance)),
             other => cubics.push(other.to_cubic()),
         }
     }
@@ -167,14 +170,14 @@ fn spline(out: &mut Codes, pen: &Pen<'_>, segs: &[Seg], closed: bool, near: f64)
     if closed {
         last.p3 = first;
     }
-    let knots: Vec<f64> = joints(DEGREE, cubics.len()).collect();
+    let knots: Vec<f64> = bezier_knots(DEGREE, cubics.len()).collect();
     let points = std::iter::once(first).chain(cubics.iter().flat_map(|c| [c.p1, c.p2, c.p3]));
     let points: Vec<[f64; 3]> = points.map(|p| [p.x, p.y, 0.0]).collect();
     nurbs(out, pen, &Spline { layer: pen.layer, degree: DEGREE, knots: &knots, points: &points, weights: &[] });
 }
 
 /// Returns the knots of Bézier curves of one degree in a row, at parameters 0, 1, 2 and so on.
-fn joints(degree: usize, count: usize) -> impl Iterator<Item = f64> {
+fn bezier_knots(degree: usize, count: usize) -> impl Iterator<Item = f64> {
     (0..=count).flat_map(move |joint| {
         let ends = usize::from(joint == 0 || joint == count);
         std::iter::repeat_n(joint as f64, degree + ends)
@@ -194,7 +197,8 @@ pub(crate) fn nurbs(out: &mut Codes, pen: &Pen<'_>, s: &Spline<'_>) {
     out.whole(70, if is_rational { RATIONAL } else { 0 } + if is_planar { PLANAR } else { 0 });
     out.whole(71, s.degree as i64);
     out.whole(72, s.knots.len() as i64).whole(73, s.points.len() as i64).whole(74, 0);
-    out.fine(42, 1e-10).fine(43, 1e-10);
+    // Programs may take knots and points for equal that are this close, in millimetres.
+    out.ratio(42, 1e-10).ratio(43, 1e-10);
     for knot in s.knots {
         out.shortest(40, *knot);
     }
@@ -207,20 +211,20 @@ pub(crate) fn nurbs(out: &mut Codes, pen: &Pen<'_>, s: &Spline<'_>) {
 }
 
 /// Fraction of the tolerance by which an arc may miss a circle and still be written as one.
-const OF_TOLERANCE: f64 = 0.1;
+const ARC_SHARE: f64 = 0.1;
 
-/// Returns the segments that have a length. Cubics within `near` of a circle become arcs, and consecutive arcs of one ellipse one arc.
-fn merged(subpath: &Subpath, near: f64) -> Vec<Seg> {
+/// Returns the segments that have a length. Cubics within `slack` of a circle become arcs, and consecutive arcs of one ellipse one arc.
+fn merge_arcs(subpath: &Subpath, slack: f64) -> Vec<Seg> {
     let mut out: Vec<Seg> = Vec::with_capacity(subpath.segs.len());
     for seg in &subpath.segs {
         let seg = match seg {
             Seg::Line(l) if l.p0 == l.p1 => continue,
-            Seg::Cubic(c) => EllipticArc::of_cubic(c, near).map_or(*seg, Seg::Arc),
+            Seg::Cubic(c) => EllipticArc::of_cubic(c, slack).map_or(*seg, Seg::Arc),
             other => *other,
         };
         match (out.last_mut(), seg) {
-            (Some(Seg::Arc(last)), Seg::Arc(next)) if is_continued(last, &next, near) => {
-                let closes = next.p1 == subpath.start && (last.sweep + next.sweep).abs() > TAU - ROUNDING;
+            (Some(Seg::Arc(last)), Seg::Arc(next)) if is_continued(last, &next, slack) => {
+                let closes = next.p1 == subpath.start && (last.sweep + next.sweep).abs() > TAU - ANGLE_SLACK;
                 let sweep = if closes { TAU.copysign(last.sweep) } else { last.sweep + next.sweep };
                 *last = EllipticArc { p1: next.p1, sweep, ..*last };
             }
@@ -231,43 +235,46 @@ fn merged(subpath: &Subpath, near: f64) -> Vec<Seg> {
 }
 
 /// Allowance for the angles of arcs that stand for cubics, in radians.
-const ROUNDING: f64 = 1e-2;
+const ANGLE_SLACK: f64 = 1e-2;
 
-/// Returns `true` if an arc continues along the ellipse of another, within `near`, up to a full turn.
-fn is_continued(last: &EllipticArc, next: &EllipticArc, near: f64) -> bool {
-    let slack = near.max(1e-9 * last.major());
-    let same = last.center.distance(next.center) <= slack
+/// Rounding errors of arcs, as a fraction of their radius and in radians.
+const ROUNDING: f64 = 1e-9;
+
+/// Returns `true` if an arc continues along the ellipse of another, within `slack`, up to a full turn.
+fn is_continued(last: &EllipticArc, next: &EllipticArc, slack: f64) -> bool {
+    let slack = slack.max(ROUNDING * last.major());
+    let is_same_ellipse = last.center.distance(next.center) <= slack
         && (last.a - next.a).hypot() <= slack
         && (last.b - next.b).hypot() <= slack;
     let turn = (last.start + last.sweep - next.start).rem_euclid(TAU);
     let follows = turn.min(TAU - turn) * last.major() <= slack;
-    same && follows && last.sweep * next.sweep > 0.0 && (last.sweep + next.sweep).abs() <= TAU + ROUNDING
+    is_same_ellipse && follows && last.sweep * next.sweep > 0.0 && (last.sweep + next.sweep).abs() <= TAU + ANGLE_SLACK
 }
 
-/// Returns `true` if an arc is within `near` of a circular one.
-fn is_circular(arc: &EllipticArc, near: f64) -> bool {
+/// Returns `true` if an arc is within `slack` of a circular one.
+fn is_circular(arc: &EllipticArc, slack: f64) -> bool {
     let (a, b) = (arc.a.hypot(), arc.b.hypot());
     let skew = arc.a.dot(arc.b).abs() / a.max(b);
-    skew.is_finite() && (a - b).abs() + skew <= near.max(1e-9 * a)
+    skew.is_finite() && (a - b).abs() + skew <= slack.max(ROUNDING * a)
 }
 
 /// Returns `true` if an arc is a whole ellipse.
 fn is_whole(arc: &EllipticArc) -> bool {
-    (arc.sweep.abs() - TAU).abs() < 1e-9
+    (arc.sweep.abs() - TAU).abs() < ROUNDING
 }
 
 /// Limit on successive halvings: a curve becomes at most 65536 lines.
-const DEEPEST: u32 = 16;
+const MAX_DEPTH: u32 = 16;
 
 /// Appends the points of a polyline within `tolerance` of a segment, without its first point.
 fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
     match seg {
         Seg::Line(l) => out.push(l.p1),
-        Seg::Quad(_) | Seg::Cubic(_) => halve(seg.to_cubic(), tolerance, 0, out),
+        Seg::Quad(_) | Seg::Cubic(_) => flatten_cubic(seg.to_cubic(), tolerance, 0, out),
         Seg::Arc(arc) => {
             // Cubics are an intermediate step, which gets a small part of the tolerance.
-            let (cubics, lines) = (0.05 * tolerance, 0.95 * tolerance);
-            arc.to_cubics(cubics).for_each(|c| halve(c, lines, 0, out));
+            let (for_cubics, for_lines) = (0.05 * tolerance, 0.95 * tolerance);
+            arc.to_cubics(for_cubics).for_each(|c| flatten_cubic(c, for_lines, 0, out));
         }
     }
     if let Some(last) = out.last_mut() {
@@ -276,10 +283,14 @@ fn flatten(seg: &Seg, tolerance: f64, out: &mut Vec<Point>) {
 }
 
 /// Returns an upper bound for the number of lines that [`flatten`] makes of a segment.
-pub(crate) fn most_lines(seg: &Seg, tolerance: f64) -> f64 {
+pub(crate) fn max_lines(seg: &Seg, tolerance: f64) -> f64 {
     match seg {
         Seg::Line(_) => 1.0,
-        Seg::Quad(_) | Seg::Cubic(_) => of_cubic(&seg.to_cubic(), tolerance),
+        // Every halving divides the second differences by four.
+        Seg::Quad(_) | Seg::Cubic(_) => {
+            let halvings = 0.5 * (chord_error(&seg.to_cubic()) / tolerance).log2();
+            2.0_f64.powf(halvings.ceil().clamp(0.0, f64::from(MAX_DEPTH)))
+        }
         // A chord of the angle θ is r·θ²/8 away from its arc.
         Seg::Arc(a) => {
             let radius = a.a.hypot().max(a.b.hypot());
@@ -288,27 +299,22 @@ pub(crate) fn most_lines(seg: &Seg, tolerance: f64) -> f64 {
     }
 }
 
-/// Returns an upper bound for the lines of a cubic: every halving divides the second differences by four.
-fn of_cubic(c: &CubicBez, tolerance: f64) -> f64 {
-    let halvings = 0.5 * (6.0 / 8.0 * second_difference(c) / tolerance).log2();
-    2.0_f64.powf(halvings.ceil().clamp(0.0, f64::from(DEEPEST)))
+/// Returns an upper bound for the distance of a cubic from its chord: an eighth of the largest second derivative (the error of linear
+/// interpolation), which is six times a second difference of the control points.
+fn chord_error(c: &CubicBez) -> f64 {
+    let second_difference = |p: Point, q: Point, r: Point| ((p - q) + (r - q)).hypot();
+    6.0 / 8.0 * second_difference(c.p0, c.p1, c.p2).max(second_difference(c.p1, c.p2, c.p3))
 }
 
-fn second_difference(c: &CubicBez) -> f64 {
-    let second = |p: Point, q: Point, r: Point| ((p - q) + (r - q)).hypot();
-    second(c.p0, c.p1, c.p2).max(second(c.p1, c.p2, c.p3))
-}
-
-/// Appends lines for a cubic. A chord is at most an eighth of the largest second derivative away from its curve (the error of linear
-/// interpolation), and that derivative is six times a second difference of the control points.
-fn halve(c: CubicBez, tolerance: f64, depth: u32, out: &mut Vec<Point>) {
-    if 6.0 / 8.0 * second_difference(&c) <= tolerance || depth == DEEPEST {
+/// Appends lines for a cubic.
+fn flatten_cubic(c: CubicBez, tolerance: f64, depth: u32, out: &mut Vec<Point>) {
+    if chord_error(&c) <= tolerance || depth == MAX_DEPTH {
         out.push(c.p3);
         return;
     }
     let (a, b) = c.subdivide();
-    halve(a, tolerance, depth + 1, out);
-    halve(b, tolerance, depth + 1, out);
+    flatten_cubic(a, tolerance, depth + 1, out);
+    flatten_cubic(b, tolerance, depth + 1, out);
 }
 
 #[cfg(test)]
@@ -331,28 +337,28 @@ mod tests {
         text.split("  0\n").skip(1).map(entity).collect()
     }
 
-    fn named(name: &str, points: usize) -> (String, usize) {
+    fn entity(name: &str, points: usize) -> (String, usize) {
         (name.to_owned(), points)
     }
 
     #[test]
     fn contours_of_lines_and_arcs_are_polylines() {
-        assert_eq!(entities("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z"), [named("LWPOLYLINE", 5)]);
-        assert_eq!(entities("M0,0 H50 V20"), [named("LWPOLYLINE", 3)]);
-        assert_eq!(entities("M0,0 H50"), [named("LINE", 1)]);
+        assert_eq!(entities("M0,0 H50 V20 A10,10 0 0 1 40,30 H0 Z"), [entity("LWPOLYLINE", 5)]);
+        assert_eq!(entities("M0,0 H50 V20"), [entity("LWPOLYLINE", 3)]);
+        assert_eq!(entities("M0,0 H50"), [entity("LINE", 1)]);
     }
 
     #[test]
     fn a_circle_in_quarters_is_one_circle() {
         let d = "M10,0 A10,10 0 0 1 0,10 A10,10 0 0 1 -10,0 A10,10 0 0 1 0,-10 A10,10 0 0 1 10,0 Z";
-        assert_eq!(entities(d), [named("CIRCLE", 1)]);
+        assert_eq!(entities(d), [entity("CIRCLE", 1)]);
     }
 
     #[test]
     fn a_mixed_contour_is_one_spline() {
-        assert_eq!(entities("M0,0 H50 C60,0 60,20 50,20 H0 Z"), [named("SPLINE", 13)]);
-        assert_eq!(entities("M0,0 C10,0 20,10 20,20 C20,30 30,40 40,40 C40,50 0,50 0,0 Z"), [named("SPLINE", 10)]);
-        assert_eq!(entities("M0,0 A20,10 0 0 1 40,0"), [named("ELLIPSE", 1)]);
+        assert_eq!(entities("M0,0 H50 C60,0 60,20 50,20 H0 Z"), [entity("SPLINE", 13)]);
+        assert_eq!(entities("M0,0 C10,0 20,10 20,20 C20,30 30,40 40,40 C40,50 0,50 0,0 Z"), [entity("SPLINE", 10)]);
+        assert_eq!(entities("M0,0 A20,10 0 0 1 40,0"), [entity("ELLIPSE", 1)]);
         assert_eq!(entities("M0,0 A20,10 0 0 1 40,0 A20,10 0 0 0 80,0")[0].0, "SPLINE");
     }
 }

@@ -1,10 +1,14 @@
 //! The text of a DXF file: group codes, colours, layers, and the parts of a file around its entities.
+//!
+//! A file is a list of pairs of lines: a group code, which gives the meaning of the value, and the value. 0 begins a part or an object,
+//! 2 is a name, 5 a handle, 330 the owner's handle, 100 the class of what follows, 8 a layer, 62 and 420 are colours, 10 to 39
+//! coordinates, and 70 to 79 flags or numbers.
 
 use crate::model::{Options, Shape};
 use pathwarp::engine::decimal::push_trimmed;
 use pathwarp::kurbo::Point;
 use std::collections::HashMap;
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 /// Handles of the objects that every file has. Each is unique.
 mod handle {
@@ -32,28 +36,25 @@ const MILLIMETRES: i64 = 4;
 pub(crate) fn start(out: &mut Codes, layers: &Layers, options: &Options) {
     header(out, options);
     section(out, "TABLES");
-    table(out, "VPORT", handle::VIEWPORTS, 0);
-    end_table(out);
+    table(out, "VPORT", handle::VIEWPORTS, 0, |_| {});
     line_types(out);
     layer_table(out, layers);
     styles(out);
-    table(out, "VIEW", handle::VIEWS, 0);
-    end_table(out);
-    table(out, "UCS", handle::COORDINATES, 0);
-    end_table(out);
-    table(out, "APPID", handle::PROGRAMS, 1);
-    record(out, "APPID", 5, handle::PROGRAMS, "AcDbRegAppTableRecord").text(2, "ACAD").whole(70, 0);
-    end_table(out);
-    table(out, "DIMSTYLE", handle::DIMENSIONS, 1);
-    out.text(100, "AcDbDimStyleTable");
-    record(out, "DIMSTYLE", 105, handle::DIMENSIONS, "AcDbDimStyleTableRecord").text(2, "Standard").whole(70, 0);
-    end_table(out);
-    table(out, "BLOCK_RECORD", handle::BLOCKS, 2);
-    for (name, handle) in SPACES {
-        out.text(0, "BLOCK_RECORD").handle(5, handle).handle(330, handle::BLOCKS);
-        out.text(100, "AcDbSymbolTableRecord").text(100, "AcDbBlockTableRecord").text(2, name);
-    }
-    end_table(out);
+    table(out, "VIEW", handle::VIEWS, 0, |_| {});
+    table(out, "UCS", handle::COORDINATES, 0, |_| {});
+    table(out, "APPID", handle::PROGRAMS, 1, |out| {
+        entry(out, "APPID", 5, handle::PROGRAMS, "AcDbRegAppTableRecord").text(2, "ACAD").whole(70, 0);
+    });
+    table(out, "DIMSTYLE", handle::DIMENSIONS, 1, |out| {
+        out.text(100, "AcDbDimStyleTable");
+        entry(out, "DIMSTYLE", 105, handle::DIMENSIONS, "AcDbDimStyleTableRecord").text(2, "Standard").whole(70, 0);
+    });
+    table(out, "BLOCK_RECORD", handle::BLOCKS, SPACES.len(), |out| {
+        for (name, handle) in SPACES {
+            out.text(0, "BLOCK_RECORD").handle(5, handle).handle(330, handle::BLOCKS);
+            out.text(100, "AcDbSymbolTableRecord").text(100, "AcDbBlockTableRecord").text(2, name);
+        }
+    });
     end_section(out);
     blocks(out);
     section(out, "ENTITIES");
@@ -100,45 +101,44 @@ fn end_section(out: &mut Codes) {
     out.text(0, "ENDSEC");
 }
 
-fn table(out: &mut Codes, name: &str, handle: u64, entries: usize) {
+/// Writes a table with `count` entries, which `entries` writes.
+fn table(out: &mut Codes, name: &str, handle: u64, count: usize, entries: impl FnOnce(&mut Codes)) {
     out.text(0, "TABLE").text(2, name).handle(5, handle).handle(330, 0);
-    out.text(100, "AcDbSymbolTable").whole(70, entries as i64);
-}
-
-fn end_table(out: &mut Codes) {
+    out.text(100, "AcDbSymbolTable").whole(70, count as i64);
+    entries(out);
     out.text(0, "ENDTAB");
 }
 
 /// Starts an entry of a table. `code` is the group code of its handle.
-fn record<'c>(out: &'c mut Codes, name: &str, code: u16, table: u64, class: &str) -> &'c mut Codes {
+fn entry<'c>(out: &'c mut Codes, name: &str, code: u16, table: u64, class: &str) -> &'c mut Codes {
     let handle = out.new_handle();
     out.text(0, name).handle(code, handle).handle(330, table).text(100, "AcDbSymbolTableRecord").text(100, class)
 }
 
 fn line_types(out: &mut Codes) {
     let types = [("ByBlock", ""), ("ByLayer", ""), ("Continuous", "Solid line")];
-    table(out, "LTYPE", handle::LINE_TYPES, types.len());
-    for (name, meaning) in types {
-        record(out, "LTYPE", 5, handle::LINE_TYPES, "AcDbLinetypeTableRecord").text(2, name).whole(70, 0);
-        out.text(3, meaning).whole(72, 65).whole(73, 0).length(40, 0.0);
-    }
-    end_table(out);
+    table(out, "LTYPE", handle::LINE_TYPES, types.len(), |out| {
+        for (name, meaning) in types {
+            entry(out, "LTYPE", 5, handle::LINE_TYPES, "AcDbLinetypeTableRecord").text(2, name).whole(70, 0);
+            out.text(3, meaning).whole(72, 65).whole(73, 0).length(40, 0.0);
+        }
+    });
 }
 
 fn layer_table(out: &mut Codes, layers: &Layers) {
-    table(out, "LAYER", handle::LAYERS, layers.all.len());
-    for (name, color) in &layers.all {
-        record(out, "LAYER", 5, handle::LAYERS, "AcDbLayerTableRecord").text(2, name).whole(70, 0);
-        out.whole(62, (*color).into()).text(6, "Continuous");
-    }
-    end_table(out);
+    table(out, "LAYER", handle::LAYERS, layers.all.len(), |out| {
+        for (name, color) in &layers.all {
+            entry(out, "LAYER", 5, handle::LAYERS, "AcDbLayerTableRecord").text(2, name).whole(70, 0);
+            out.whole(62, (*color).into()).text(6, "Continuous");
+        }
+    });
 }
 
 fn styles(out: &mut Codes) {
-    table(out, "STYLE", handle::STYLES, 1);
-    record(out, "STYLE", 5, handle::STYLES, "AcDbTextStyleTableRecord").text(2, "Standard").whole(70, 0);
-    out.length(40, 0.0).length(41, 1.0).length(50, 0.0).whole(71, 0).length(42, 2.5).text(3, "txt").text(4, "");
-    end_table(out);
+    table(out, "STYLE", handle::STYLES, 1, |out| {
+        entry(out, "STYLE", 5, handle::STYLES, "AcDbTextStyleTableRecord").text(2, "Standard").whole(70, 0);
+        out.length(40, 0.0).length(41, 1.0).length(50, 0.0).whole(71, 0).length(42, 2.5).text(3, "txt").text(4, "");
+    });
 }
 
 fn blocks(out: &mut Codes) {
@@ -154,47 +154,48 @@ fn blocks(out: &mut Codes) {
 }
 
 /// The layer that every file has.
-pub(crate) const ZERO: &str = "0";
+const LAYER_0: &str = "0";
 
 /// Largest number of characters in a name.
-const LONGEST: usize = 255;
+const MAX_NAME: usize = 255;
 
 /// The layers, in the order of their first shapes.
 pub(crate) struct Layers {
     /// Name as written, and index of the colour of the first shape.
-    pub(crate) all: Vec<(String, u8)>,
+    all: Vec<(String, u8)>,
     /// Index in `all` by the name of a layer as given.
-    places: HashMap<String, usize>,
+    indices: HashMap<String, usize>,
 }
 
 impl Layers {
-    pub(crate) fn of(shapes: &[Shape<'_>]) -> Self {
-        let mut out = Self { all: vec![(ZERO.to_owned(), FOREGROUND)], places: HashMap::new() };
-        let mut known: HashMap<String, usize> = HashMap::from([(ZERO.to_owned(), 0)]);
+    pub(crate) fn from_shapes(shapes: &[Shape<'_>]) -> Self {
+        let mut out = Self { all: vec![(LAYER_0.to_owned(), FOREGROUND)], indices: HashMap::new() };
+        // Names that differ only in case are one layer.
+        let mut by_lowercase: HashMap<String, usize> = HashMap::from([(LAYER_0.to_owned(), 0)]);
         for shape in shapes {
-            if out.places.contains_key(shape.layer) {
+            if out.indices.contains_key(shape.layer) {
                 continue;
             }
-            let name = written(shape.layer);
-            let place = *known.entry(name.to_lowercase()).or_insert_with(|| {
-                out.all.push((name, shape.color.map_or(FOREGROUND, |c| nearest(c).0)));
+            let name = escape_name(shape.layer);
+            let index = *by_lowercase.entry(name.to_lowercase()).or_insert_with(|| {
+                out.all.push((name, shape.color.map_or(FOREGROUND, |c| nearest_color(c).0)));
                 out.all.len() - 1
             });
-            out.places.insert(shape.layer.to_owned(), place);
+            out.indices.insert(shape.layer.to_owned(), index);
         }
         out
     }
 
     /// Returns the name of a shape's layer as written.
     pub(crate) fn name(&self, layer: &str) -> &str {
-        self.places.get(layer).and_then(|i| self.all.get(*i)).map_or(ZERO, |(name, _)| name)
+        self.indices.get(layer).map_or(LAYER_0, |i| &self.all[*i].0)
     }
 }
 
 /// Converts a name to the characters that DXF allows.
-fn written(name: &str) -> String {
+fn escape_name(name: &str) -> String {
     let mut out = String::new();
-    for c in name.trim().chars().take(LONGEST) {
+    for c in name.trim().chars().take(MAX_NAME) {
         match c {
             '<' | '>' | '/' | '\\' | '"' | ':' | ';' | '?' | '*' | '|' | ',' | '=' | '`' => out.push('_'),
             c if c.is_control() => out.push('_'),
@@ -206,60 +207,60 @@ fn written(name: &str) -> String {
             }
         }
     }
-    if out.is_empty() { ZERO.to_owned() } else { out }
+    if out.is_empty() { LAYER_0.to_owned() } else { out }
 }
 
 /// Index of the colour that is black on a light and white on a dark background.
-pub(crate) const FOREGROUND: u8 = 7;
+const FOREGROUND: u8 = 7;
 
 /// The named colours 1 to 6.
-const PURE: [[u8; 3]; 6] = [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
+const NAMED: [[u8; 3]; 6] = [[255, 0, 0], [255, 255, 0], [0, 255, 0], [0, 255, 255], [0, 0, 255], [255, 0, 255]];
 
-/// The greys 8 and 9, and 250 to 254.
+/// The greys 8 and 9, and 250 to 254, as index and brightness.
 const GREYS: [(u8, u8); 7] = [(8, 128), (9, 192), (250, 51), (251, 91), (252, 132), (253, 173), (254, 214)];
 
 /// Brightest channel of the shades of a hue, from the first pair of ten to the last.
 const LEVELS: [f64; 5] = [255.0, 165.0, 127.0, 76.0, 38.0];
 
-/// Returns the index of the nearest colour, and `true` if it is this very colour.
-pub(crate) fn nearest(color: [u8; 3]) -> (u8, bool) {
+/// Returns the index of the nearest of AutoCAD's colours, and `true` if it is this very colour by its definition, in every program.
+pub(crate) fn nearest_color(color: [u8; 3]) -> (u8, bool) {
     if color == [0; 3] || color == [255; 3] {
         return (FOREGROUND, true);
     }
-    if let Some(i) = (1..).zip(PURE).find(|(_, c)| *c == color) {
-        return (i.0, true);
+    if let Some((index, _)) = (1..).zip(NAMED).find(|(_, c)| *c == color) {
+        return (index, true);
     }
     let distance =
         |c: [u8; 3]| -> i32 { c.iter().zip(color).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum() };
     let greys = GREYS.iter().map(|(i, v)| (*i, [*v; 3]));
     let shades = (10..250).map(|i| (i, shade(i)));
     let foreground = [(FOREGROUND, [0; 3]), (FOREGROUND, [255; 3])];
-    let all = (1..).zip(PURE).chain(foreground).chain(greys).chain(shades);
+    let all = (1..).zip(NAMED).chain(foreground).chain(greys).chain(shades);
     (all.min_by_key(|(_, c)| distance(*c)).map_or(FOREGROUND, |(i, _)| i), false)
 }
 
 /// Returns one of the colours 10 to 249: 24 hues of ten shades, of which every second is half saturated.
 fn shade(index: u8) -> [u8; 3] {
-    /// Hues between two pure colours.
+    /// Hues from one named colour to the next, a sixth of the colour circle.
     const PER_SIXTH: f64 = 4.0;
-    let (hue, place) = ((index - 10) / 10, (index - 10) % 10);
-    let level = LEVELS[usize::from(place / 2)];
-    let floor = if place % 2 == 0 { 0.0 } else { 0.5 };
+    let (hue, shade) = ((index - 10) / 10, (index - 10) % 10);
+    let level = LEVELS[usize::from(shade / 2)];
+    let floor = if shade % 2 == 0 { 0.0 } else { 0.5 };
     let sixth = f64::from(hue) / PER_SIXTH;
+    // Red is brightest at 0 sixths, green at 2, blue at 4; a channel vanishes two sixths away.
     [0.0, 4.0, 2.0].map(|turn| {
-        // The distance from the hue at which the channel is brightest, in sixths of a turn.
-        let away = (sixth + turn).rem_euclid(6.0);
-        let away = away.min(6.0 - away);
-        let strength = (2.0 - away).clamp(0.0, 1.0);
+        let distance = (sixth + turn).rem_euclid(6.0);
+        let distance = distance.min(6.0 - distance);
+        let strength = (2.0 - distance).clamp(0.0, 1.0);
         (level * (floor + (1.0 - floor) * strength)) as u8
     })
 }
 
-/// Decimals of coordinates: a millionth of a micrometre.
-const DECIMALS: usize = 9;
+/// Decimals of lengths in millimetres: a millionth of a micrometre.
+const LENGTH_DECIMALS: usize = 9;
 
 /// Decimals of angles, parameters and ratios, so that a point at a hundred metres is off by less than a millionth of a micrometre.
-const FINE: usize = 14;
+const RATIO_DECIMALS: usize = 14;
 
 /// The first handle that tables do not use.
 const FIRST_HANDLE: u64 = 0x100;
@@ -267,6 +268,7 @@ const FIRST_HANDLE: u64 = 0x100;
 /// The text of a file under construction.
 pub(crate) struct Codes {
     text: String,
+    /// Handle of the next new object.
     next: u64,
 }
 
@@ -275,26 +277,21 @@ impl Codes {
         Self { text: String::new(), next: FIRST_HANDLE }
     }
 
-    /// Writes a text.
     pub(crate) fn text(&mut self, code: u16, value: &str) -> &mut Self {
-        let _ = write!(self.text, "{code:>3}\n{value}\n");
-        self
+        self.value(code, value)
     }
 
-    /// Writes a whole number.
     pub(crate) fn whole(&mut self, code: u16, value: i64) -> &mut Self {
-        let _ = write!(self.text, "{code:>3}\n{value}\n");
-        self
+        self.value(code, value)
     }
 
-    /// Writes a length.
     pub(crate) fn length(&mut self, code: u16, value: f64) -> &mut Self {
-        self.number(code, value, DECIMALS)
+        self.number(code, value, LENGTH_DECIMALS)
     }
 
     /// Writes an angle, parameter or ratio.
-    pub(crate) fn fine(&mut self, code: u16, value: f64) -> &mut Self {
-        self.number(code, value, FINE)
+    pub(crate) fn ratio(&mut self, code: u16, value: f64) -> &mut Self {
+        self.number(code, value, RATIO_DECIMALS)
     }
 
     /// Writes a number with the fewest digits that determine it.
@@ -307,10 +304,8 @@ impl Codes {
         self.length(code, p.x).length(code + 10, p.y).length(code + 20, 0.0)
     }
 
-    /// Writes a handle.
     pub(crate) fn handle(&mut self, code: u16, handle: u64) -> &mut Self {
-        let _ = write!(self.text, "{code:>3}\n{handle:X}\n");
-        self
+        self.value(code, format_args!("{handle:X}"))
     }
 
     /// Returns the handle of a new object.
@@ -319,25 +314,24 @@ impl Codes {
         self.next - 1
     }
 
-    fn number(&mut self, code: u16, value: f64, decimals: usize) -> &mut Self {
-        let _ = writeln!(self.text, "{code:>3}");
-        let from = self.text.len();
-        push_trimmed(&mut self.text, value, decimals);
-        // Some readers tell a real number from a whole one by its point.
-        if !self.text[from..].contains('.') {
-            self.text.push_str(".0");
-        }
-        self.text.push('\n');
+    fn value(&mut self, code: u16, value: impl Display) -> &mut Self {
+        let _ = write!(self.text, "{code:>3}\n{value}\n");
         self
     }
 
-    /// Returns the text, in which `$HANDSEED` gets the first free handle.
-    pub(crate) fn finish(mut self) -> String {
-        let (seed, next) = (Self::SEED, self.next);
-        if let Some(at) = self.text.find(seed) {
-            self.text.replace_range(at..at + seed.len(), &format!("{next:X}"));
+    fn number(&mut self, code: u16, value: f64, decimals: usize) -> &mut Self {
+        let mut text = String::new();
+        push_trimmed(&mut text, value, decimals);
+        // Some readers tell a real number from a whole one by its point.
+        if !text.contains('.') {
+            text += ".0";
         }
-        self.text
+        self.value(code, text)
+    }
+
+    /// Returns the text, in which `$HANDSEED` gets the first free handle.
+    pub(crate) fn finish(self) -> String {
+        self.text.replacen(Self::SEED, &format!("{:X}", self.next), 1)
     }
 
     /// Placeholder for the first free handle until all handles are known.
@@ -355,7 +349,7 @@ mod tests {
         let names = ["Cut", "cut", "a/b:c", " ", "Schön", ""];
         let shapes: Vec<Shape<'_>> =
             names.iter().map(|layer| Shape { layer, color: Some([0, 255, 0]), outline: &outline }).collect();
-        let layers = Layers::of(&shapes);
+        let layers = Layers::from_shapes(&shapes);
         let written: Vec<&str> = names.iter().map(|n| layers.name(n)).collect();
         assert_eq!(written, ["Cut", "Cut", "a_b_c", "0", "Sch\\U+00F6n", "0"]);
         assert_eq!(layers.all.len(), 4);
@@ -389,10 +383,10 @@ mod tests {
 
     #[test]
     fn the_nearest_is_found() {
-        assert_eq!(nearest([0, 0, 0]), (7, true));
-        assert_eq!(nearest([0, 0, 255]), (5, true));
-        assert_eq!(nearest([254, 1, 0]).0, 1);
-        assert_eq!(nearest([255, 127, 1]), (30, false));
-        assert_eq!(nearest([130, 130, 130]).0, 8);
+        assert_eq!(nearest_color([0, 0, 0]), (7, true));
+        assert_eq!(nearest_color([0, 0, 255]), (5, true));
+        assert_eq!(nearest_color([254, 1, 0]).0, 1);
+        assert_eq!(nearest_color([255, 127, 1]), (30, false));
+        assert_eq!(nearest_color([130, 130, 130]).0, 8);
     }
 }

@@ -36,11 +36,11 @@ use pathwarp::budget::{Budget, Exceeded, cost};
 /// # Errors
 /// [`Exceeded`] when polylines within the tolerance have more segments than the limits allow.
 pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded> {
-    let layers = Layers::of(shapes);
+    let layers = Layers::from_shapes(shapes);
     if options.curves == Curves::Polylines {
         let subpaths = shapes.iter().flat_map(|s| &s.outline.subpaths);
-        let segs = subpaths.flat_map(|s| s.segs.iter().map(|seg| (seg, options.of_contour(s))));
-        let lines: f64 = segs.map(|(seg, tolerance)| entities::most_lines(seg, tolerance)).sum();
+        let segs = subpaths.flat_map(|s| s.segs.iter().map(|seg| (seg, options.tolerance_for(s))));
+        let lines: f64 = segs.map(|(seg, tolerance)| entities::max_lines(seg, tolerance)).sum();
         Budget::new(options.limits).spend(cost::SEGMENT * lines)?;
     }
     let mut out = Codes::new();
@@ -52,7 +52,7 @@ pub fn write(shapes: &[Shape<'_>], options: &Options) -> Result<String, Exceeded
                 Curves::Splines => entities::exact,
                 Curves::Polylines => entities::polyline,
             };
-            write(&mut out, &pen, subpath, options.of_contour(subpath));
+            write(&mut out, &pen, subpath, options.tolerance_for(subpath));
         }
     }
     Ok(file::finish(out))
@@ -64,7 +64,7 @@ pub fn write_splines(splines: &[Spline<'_>]) -> String {
     let none = Outline::default();
     let shapes: Vec<Shape<'_>> =
         splines.iter().map(|s| Shape { layer: s.layer, color: None, outline: &none }).collect();
-    let layers = Layers::of(&shapes);
+    let layers = Layers::from_shapes(&shapes);
     let mut out = Codes::new();
     file::start(&mut out, &layers, &Options::default());
     for s in splines {

@@ -70,7 +70,7 @@ impl Default for Options {
 
 impl Options {
     /// Returns the tolerance for a contour.
-    pub(crate) fn of_contour(&self, contour: &Subpath) -> f64 {
+    pub(crate) fn tolerance_for(&self, contour: &Subpath) -> f64 {
         if self.suited { suited(self.tolerance, contour.diagonal()) } else { self.tolerance }
     }
 }

@@ -101,15 +101,11 @@ pub(crate) fn stretched(uncut: Rect, stretch: f64) -> String {
     )
 }
 
-/// Warns of fonts that are missing.
-fn missing_fonts(families: &[String]) -> Option<String> {
-    (!families.is_empty()).then(|| Warning::MissingFonts(families.to_vec()).to_string())
-}
-
 /// Lists what a picture of a drawing lacks (fonts, images, and other content, the first of it by name), and how browsers differ.
 pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], notes: &[String]) -> Vec<String> {
     const NAMED: usize = 10;
-    let mut out: Vec<String> = missing_fonts(fonts).into_iter().chain(unread(images)).collect();
+    let missing_fonts = (!fonts.is_empty()).then(|| Warning::MissingFonts(fonts.to_vec()).to_string());
+    let mut out: Vec<String> = missing_fonts.into_iter().chain(unread(images)).collect();
     out.extend(undrawn.iter().take(NAMED).cloned());
     let more = undrawn.len().saturating_sub(NAMED);
     out.extend((more > 0).then(|| format!("and {more} more")));
@@ -117,8 +113,8 @@ pub fn lacking(fonts: &[String], images: &UnreadImages, undrawn: &[String], note
     out
 }
 
-/// Describes images that were not read because they lie outside the drawing's folder.
-fn outside(unread: &UnreadImages) -> Option<String> {
+/// Counts the images that were not read because they lie outside the drawing's folder.
+fn outside_of_folder(unread: &UnreadImages) -> Option<String> {
     let n = unread.outside.len();
     let what = if n == 1 { "1 linked image lies".to_owned() } else { format!("{n} linked images lie") };
     (n > 0).then(|| format!("{what} outside of the drawing's folder; --allow-external reads images from anywhere"))
@@ -128,14 +124,14 @@ fn outside(unread: &UnreadImages) -> Option<String> {
 pub(crate) fn unread_besides(images: &UnreadImages, skipped: &[Skipped]) -> Vec<String> {
     let besides = |link: &&String| !skipped.iter().any(|s| s.why.contains(link.as_str()));
     let named = images.unreadable.iter().chain(&images.outside).filter(besides);
-    named.map(|link| format!("the image {link} was not read")).chain(outside(images)).collect()
+    named.map(|link| format!("the image {link} was not read")).chain(outside_of_folder(images)).collect()
 }
 
 /// Lists the images that were not read.
 pub(crate) fn unread(unread: &UnreadImages) -> Vec<String> {
     let unreadable = unread.unreadable.iter().map(|link| format!("the image {link} cannot be read"));
     let outside_links = unread.outside.iter().map(|link| format!("the image {link} was not read"));
-    unreadable.chain(outside_links).chain(outside(unread)).collect()
+    unreadable.chain(outside_links).chain(outside_of_folder(unread)).collect()
 }
 
 /// Describes why no frame around lettering exists, and the options that help.
@@ -197,42 +193,30 @@ impl Flags {
             known && words.count() < 2 && !span.ends_with(' ')
         };
         let parts: Vec<&str> = message.split('`').collect();
-        let mut out = String::with_capacity(message.len() + 2);
-        for (i, part) in parts.iter().enumerate() {
-            // Every second part is quoted, except behind an unpaired last quote.
-            let quoted = i % 2 == 1;
-            let closed = i + 1 < parts.len();
-            if quoted && closed && is_param(part) {
-                out.push_str("--");
-                out.push_str(part);
-                continue;
-            }
-            if quoted {
-                out.push('`');
-            }
-            out.push_str(part);
-            if quoted && closed {
-                out.push('`');
-            }
-        }
-        out
+        // Every second part is quoted, except behind an unpaired last quote.
+        let (is_quoted, is_closed) = (|i: usize| i % 2 == 1, |i: usize| i + 1 < parts.len());
+        let restored = |(i, part): (usize, &&str)| match (is_quoted(i), is_closed(i)) {
+            (true, true) if is_param(part) => format!("--{part}"),
+            (true, true) => format!("`{part}`"),
+            (true, false) => format!("`{part}"),
+            (false, _) => (*part).to_owned(),
+        };
+        parts.iter().enumerate().map(restored).collect()
     }
 }
 
 /// Returns the message that no `what` is called `name`, with the known name that is most like it.
 pub fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
-    match likely(name, known) {
-        Some(likely) => format!("there is no {what} `{name}`; did you mean `{likely}`?"),
-        None => format!("there is no {what} `{name}`"),
-    }
+    let advice = likely(name, known).map(|likely| format!("; did you mean `{likely}`?")).unwrap_or_default();
+    format!("there is no {what} `{name}`{advice}")
 }
 
 /// Returns the known name that is most like `name`, if any is similar.
 pub fn likely<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    /// Least similarity of a suggestion.
-    const LIKELY: f64 = 0.8;
-    let likeness = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(l, _)| *l >= LIKELY);
-    likeness.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, likely)| likely)
+    /// Least similarity of a suggestion, from 0 to 1.
+    const LEAST: f64 = 0.8;
+    let similar = known.map(|k| (strsim::jaro_winkler(name, k), k)).filter(|(similarity, _)| *similarity >= LEAST);
+    similar.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, likely)| likely)
 }
 
 #[cfg(test)]

@@ -17,11 +17,11 @@ use std::str::FromStr as _;
 use std::sync::{Arc, OnceLock};
 
 /// Pixels per inch of a drawing shown at 100 %.
-const PX_PER_INCH: f64 = 96.0;
+pub(crate) const PX_PER_INCH: f64 = 96.0;
 
-/// Evaluations of the map for one picture in addition to those for its pixels: to find its box, or the resolution of a gradient.
-const PICTURE: f64 = 40e3;
-const GRADIENT: f64 = 24e3;
+/// Evaluations of the map for one picture besides those for its pixels, which find its box; and for the resolution of one gradient.
+const PICTURE_EVALUATIONS: f64 = 40e3;
+const GRADIENT_EVALUATIONS: f64 = 24e3;
 
 /// Pictures with at most this many pixels (QR codes, pixel art, swatches) are enlarged to the size of the result if their pixels are larger
 /// than [`LARGE_PIXEL`], in px. Otherwise, their bent edges would be as coarse as their pixels.
@@ -30,18 +30,18 @@ const LARGE_PIXEL: f64 = 2.0;
 /// Most pixels of an enlarged picture.
 const MOST_ENLARGED: f64 = 4e6;
 
-/// Work to find the resolution of a gradient, in pixels of it; the second holds where no difference may be visible.
-const SEARCHED: f64 = 500.0;
-const SEARCHED_STRICTLY: f64 = 2000.0;
+/// Pixels of a gradient that are painted to find its resolution; the second number holds where no difference may be visible.
+const SEARCH_PIXELS: f64 = 500.0;
+const STRICT_SEARCH_PIXELS: f64 = 2000.0;
 
 /// Bends the bitmaps and gradients of drawings by one map.
 #[derive(Debug)]
 pub struct Bender {
     pub(crate) map: Arc<dyn Map>,
     /// Pixels per inch; `None` keeps every detail.
-    dpi: Option<f64>,
+    pub(crate) dpi: Option<f64>,
     pub(crate) budget: Arc<Budget>,
-    /// The work left by the pictures of filters, once there are any.
+    /// The work that filters leave to everything else; set before the first of them is painted.
     pub(crate) filters_leave: OnceLock<f64>,
 }
 
@@ -58,20 +58,15 @@ impl Bender {
         self.with_budget(Arc::new(Budget::new(limits)))
     }
 
-    /// The pixels per inch, if given.
-    pub(crate) fn dpi(&self) -> Option<f64> {
-        self.dpi
-    }
-
-    /// Returns the pixels per unit of a result of this size, beyond which nobody sees a difference. `unit` is the size of a unit in px.
-    pub(crate) fn seen_density(&self, unit: f64, (width, height): (f64, f64)) -> f64 {
+    /// Returns the pixels per unit of a result of this size, in units, beyond which nobody sees a difference.
+    pub(crate) fn seen_density(&self, px_per_unit: f64, (width, height): (f64, f64)) -> f64 {
         /// Pixels per px of the drawing in each direction: the resolution of a screen of twice the density.
         const DENSITY: f64 = 2.0;
         /// Pixels along the longer side of a small drawing, which is often shown enlarged.
         const LEAST: f64 = 256.0;
         match self.dpi {
-            Some(dpi) => dpi / PX_PER_INCH * unit,
-            None => (DENSITY * unit).max(LEAST / width.max(height)),
+            Some(dpi) => dpi / PX_PER_INCH * px_per_unit,
+            None => (DENSITY * px_per_unit).max(LEAST / width.max(height)),
         }
     }
 
@@ -95,7 +90,7 @@ impl ImageWarper for Bender {
         const GROWTH: f64 = 4.0;
         /// Largest pixel count: the file holds the pixels as text.
         const MOST: f64 = 16e6;
-        count_evaluations(&self.budget, &*self.map, PICTURE).map_err(too_much)?;
+        count_evaluations(&self.budget, &*self.map, PICTURE_EVALUATIONS).map_err(too_much)?;
         let (width, height) = header_size(r.data).map_err(|e| e.to_string())?;
         count_pixels(&self.budget, Pixel::Decoded, f64::from(width) * f64::from(height)).map_err(too_much)?;
         let picture = Picture::read_sized_within(r.data, &self.budget.limits()).map_err(|e| e.to_string())?;
@@ -104,28 +99,29 @@ impl ImageWarper for Bender {
         let is_whole = (part.width(), part.height()) == size;
         let [x0, y0, x1, y1] = [part.left(), part.top(), part.right(), part.bottom()].map(f64::from);
         let area = Rect::new(x0, y0, x1, y1);
-        let nowhere = "the map is undefined on part of it";
-        let e = extent(area, r.placed, r.map, r.after).filter(|e| e.undefined.is_none()).ok_or(nowhere)?;
-        let (width, height) = (e.bounds.width(), e.bounds.height());
+        let image = extent(area, r.placed, r.map, r.after).filter(|image| image.undefined.is_none());
+        let image = image.ok_or("the map is undefined on part of it")?;
+        let (width, height) = (image.bounds.width(), image.bounds.height());
         if !(width > 0.0 && height > 0.0) {
             return Err("its image has no area".into());
         }
         let most = (GROWTH * area.area()).clamp(1.0, MOST);
         let finest = |most: f64| (most / (width * height)).sqrt();
-        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
-        let large = e.stretch * unit > if r.pixelated { 1.0 } else { LARGE_PIXEL };
-        let factor = if large && (r.pixelated || area.area() <= FEW_PIXELS) {
+        let px_per_unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let has_large_pixels = image.stretch * px_per_unit > if r.pixelated { 1.0 } else { LARGE_PIXEL };
+        // Each pixel of the source becomes `factor` by `factor` pixels before it is bent.
+        let factor = if has_large_pixels && (r.pixelated || area.area() <= FEW_PIXELS) {
             let most = (MOST_ENLARGED / area.area()).sqrt();
-            (e.stretch * self.seen_density(unit, (width, height))).min(most).ceil().max(1.0)
+            (image.stretch * self.seen_density(px_per_unit, (width, height))).min(most).ceil().max(1.0)
         } else {
             1.0
         };
-        let wanted = match self.dpi {
-            Some(dpi) => (dpi / PX_PER_INCH * unit).min(finest(MOST)),
-            None if factor > 1.0 => (factor / e.stretch).min(finest(MOST)),
-            None => (1.0 / e.squeeze).min(finest(most)),
+        let density = match self.dpi {
+            Some(dpi) => (dpi / PX_PER_INCH * px_per_unit).min(finest(MOST)),
+            None if factor > 1.0 => (factor / image.stretch).min(finest(MOST)),
+            None => (1.0 / image.squeeze).min(finest(most)),
         };
-        let pixels = |length: f64| (length * wanted - ROUNDING).ceil().clamp(1.0, MOST);
+        let pixels = |length: f64| (length * density - ROUNDING).ceil().clamp(1.0, MOST);
         let size = (pixels(width), pixels(height));
         count_picture(&self.budget, Pixel::Warped, size).map_err(too_much)?;
         let size = (size.0 as u32, size.1 as u32);
@@ -142,15 +138,15 @@ impl ImageWarper for Bender {
             placed,
             map: r.map,
             inverse: &inverse,
-            shown: r.after.inverse() * shown(e.bounds, size),
+            shown: r.after.inverse() * shown(image.bounds, size),
             size,
         };
         let mut pixmap = warp_image(&warp).map_err(|e| e.to_string())?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
         if r.clipped {
             // The clip path follows the picture's edge, where pixels are partly transparent.
-            let whole: Vec<bool> = pixmap.pixels().iter().map(|p| p.alpha() == u8::MAX).collect();
-            edges::continue_colors(&mut pixmap, &whole);
+            let are_opaque: Vec<bool> = pixmap.pixels().iter().map(|p| p.alpha() == u8::MAX).collect();
+            edges::continue_colors(&mut pixmap, &are_opaque);
         }
         let bent = picture.remade(pixmap, false);
         let lost = if Picture::is_of_inks(r.data) {
@@ -160,7 +156,7 @@ impl ImageWarper for Bender {
                 .then_some("pictures lose a colour profile that is not one for RGB")
         };
         let like = if r.clipped { r.data } else { &[] };
-        Ok(BentImage { file: bent.write_like(like).map_err(|e| e.to_string())?, area: e.bounds, lost })
+        Ok(BentImage { file: bent.write_like(like).map_err(|e| e.to_string())?, area: image.bounds, lost })
     }
 }
 
@@ -179,8 +175,8 @@ impl GradientPainter for Bender {
         if !(width > 0.0 && height > 0.0 && (width + height).is_finite()) {
             return Err("the image of the shape has no area".into());
         }
-        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
-        let finest = self.seen_density(unit, (width, height));
+        let px_per_unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let finest = self.seen_density(px_per_unit, (width, height));
         let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64);
         let finest = finest.min((most / (width * height)).sqrt()).min(most / width.max(height));
         let seen: Vec<_> = r.seen.iter().map(|s| SeenColor { at: s.at, color: s.color }).collect();
@@ -194,12 +190,12 @@ impl GradientPainter for Bender {
             shape: Some(r.shape),
             seen: if r.sharp { &[] } else { &seen },
             tolerance: if r.strict { ShadeTolerance::INVISIBLE } else { ShadeTolerance::UNNOTICED },
-            coarsest: coarsest((width * unit, height * unit), r.among),
+            coarsest: coarsest((width * px_per_unit, height * px_per_unit), r.among),
             finest,
         };
-        count_evaluations(&self.budget, &*self.map, GRADIENT).map_err(too_much)?;
+        count_evaluations(&self.budget, &*self.map, GRADIENT_EVALUATIONS).map_err(too_much)?;
         // The number of pixels is known only after painting. Nothing is painted once the limit is reached.
-        let search = if r.strict { SEARCHED_STRICTLY } else { SEARCHED };
+        let search = if r.strict { STRICT_SEARCH_PIXELS } else { SEARCH_PIXELS };
         count_pixels(&self.budget, Pixel::Shaded, search).map_err(too_much)?;
         let (pixmap, area) = shade.paint().map_err(|e| e.to_string())?;
         let pixels = f64::from(pixmap.width()) * f64::from(pixmap.height());
@@ -225,26 +221,28 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// Returns the map's own inverse if it holds on all of `area`, or leads to a part of it that lies in front; else Newton's method over it.
 /// Both count their evaluations.
-pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> Inverse {
+pub(crate) fn inverse(map: &Arc<dyn Map>, area: Rect, budget: &Arc<Budget>) -> CountedInverse {
     /// Reach beyond the area, as a fraction of its diagonal: the footprint of the pixels along its edge.
     const REACH: f64 = 0.02;
-    /// Number of test points per side.
+    /// Number of test points per side, and the distance, as a fraction of the diagonal, within which they have to return.
     const TRIED: usize = 9;
-    let diagonal = area.width().hypot(area.height());
-    let returns = |inverse: &Arc<dyn Map>| {
-        let at = |i: usize| (i as f64 + 0.5) / TRIED as f64;
-        let places = (0..TRIED * TRIED).map(|k| (at(k % TRIED), at(k / TRIED)));
-        let places = places.map(|(u, v)| area.origin() + Vec2::new(u * area.width(), v * area.height()));
-        let leads_back = |p: Point| {
-            let (image, near) = (map.point(p), 1e-3 * diagonal);
-            let q = inverse.point(image);
-            q.distance(p) < near || (area.inflate(near, near).contains(q) && map.point(q).distance(image) < near)
-        };
-        places.filter(|p| map.point(*p).is_finite()).all(leads_back)
+    const RETURNED: f64 = 1e-3;
+    let near = RETURNED * area.width().hypot(area.height());
+    let leads_back = |inverse: &Arc<dyn Map>, p: Point| {
+        let image = map.point(p);
+        let q = inverse.point(image);
+        q.distance(p) < near || (area.inflate(near, near).contains(q) && map.point(q).distance(image) < near)
     };
-    let own = map.inverse().filter(returns);
+    let is_inverse = |inverse: &Arc<dyn Map>| {
+        let share = |i: usize| (i as f64 + 0.5) / TRIED as f64;
+        let samples = (0..TRIED * TRIED).map(|i| (share(i % TRIED), share(i / TRIED)));
+        let samples = samples.map(|(u, v)| area.origin() + Vec2::new(u * area.width(), v * area.height()));
+        samples.filter(|p| map.point(*p).is_finite()).all(|p| leads_back(inverse, p))
+    };
+    let analytic = map.inverse().filter(is_inverse);
     let newton = || Arc::new(NewtonInverse::over(Arc::clone(map), area, REACH)) as Arc<dyn Map>;
-    Inverse::new(own.unwrap_or_else(newton), Arc::clone(budget))
+    let inverse = analytic.unwrap_or_else(newton);
+    CountedInverse { map: inverse.within(budget).unwrap_or(inverse), budget: Arc::clone(budget) }
 }
 
 /// The work on one pixel, in units of painting one.
@@ -265,7 +263,7 @@ pub fn count_pixels(budget: &Budget, pixel: Pixel, pixels: f64) -> Result<(), Ex
     budget.spend(cost::PIXEL * f64::from(pixel as u8) * pixels)
 }
 
-/// Counts a picture that is read or made; the limits on time and memory allow for it.
+/// Counts a picture that is read or made in the budget, and for the limits on the program's time and memory.
 pub(crate) fn count_picture(budget: &Budget, pixel: Pixel, (width, height): (f64, f64)) -> Result<(), Exceeded> {
     budget.take(Limit::Pixels, width * height)?;
     meter::count_pixels(width * height);
@@ -278,22 +276,19 @@ pub(crate) fn count_evaluations(budget: &Budget, map: &dyn Map, n: f64) -> Resul
 }
 
 /// An inverse that counts its evaluations and is undefined everywhere once the budget is spent.
-pub(crate) struct Inverse {
+pub(crate) struct CountedInverse {
     map: Arc<dyn Map>,
     budget: Arc<Budget>,
 }
 
-impl Inverse {
-    fn new(map: Arc<dyn Map>, budget: Arc<Budget>) -> Self {
-        Self { map: map.within(&budget).unwrap_or(map), budget }
-    }
-
+impl CountedInverse {
+    /// Counts evaluations. Returns `true` if the budget allows them.
     fn count(&self, n: usize) -> bool {
         count_evaluations(&self.budget, &*self.map, n as f64).is_ok()
     }
 }
 
-impl Map for Inverse {
+impl Map for CountedInverse {
     fn jet(&self, p: Point) -> Jet {
         if self.count(1) { self.map.jet(p) } else { Jet::UNDEFINED }
     }
@@ -316,7 +311,7 @@ impl Map for Inverse {
     }
 }
 
-impl Batches for Inverse {
+impl Batches for CountedInverse {
     fn differentiates(&self) -> bool {
         self.map.cost().batches.is_some_and(Batches::differentiates)
     }
@@ -331,8 +326,8 @@ pub fn background(text: &str) -> Result<Background, String> {
     if matches!(text, "none" | "transparent") {
         return Ok(Background(None));
     }
-    let c =
-        svgtypes::Color::from_str(text).map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
+    let color = svgtypes::Color::from_str(text);
+    let c = color.map_err(|_| "is no colour; write white, #fff8e0, rgb(0 0 0 / 50%) or none")?;
     Ok(Background(Some(Color::from_rgba8(c.red, c.green, c.blue, c.alpha))))
 }
 

@@ -26,7 +26,7 @@ pub fn frame(document: &Document) -> Frame {
 }
 
 /// Returns the drawing with captions, read by the options `read`, and warnings about letters that no font has. The group of the k-th is
-/// called `caption-k`, and its letters `caption-k-1` and so on, with hyphens before the numbers if the drawing has such names.
+/// called `caption-k`, and its letters `caption-k-1` and so on, with more hyphens before the numbers if the drawing has such names.
 ///
 /// # Errors
 /// [`Failure::Usage`] without words, [`Failure::Library`] for a wrong value or unknown family, and [`Failure::Input`] for too many words.
@@ -45,7 +45,7 @@ pub fn captioned(
     for (step, k) in steps.iter().zip(1..) {
         let settings = Settings::new(CAPTION.params, &step.args, &frame)?;
         settings.check_values()?;
-        let (text, origin) = set(&settings, read, options)?;
+        let (text, origin) = lay_out(&settings, read, options)?;
         let fill = settings.texts("fill").last().copied().unwrap_or("black");
         groups += &lettering_group(&text, &format!("{name}-{k}"), fill, settings.point("at")? - origin)?;
         warnings.extend((!text.missing.is_empty()).then(|| advice::missing_letters(&text.missing)));
@@ -53,8 +53,8 @@ pub fn captioned(
     Ok((Document::read(document.with_appended(&groups).as_bytes(), document.name(), read)?, warnings))
 }
 
-/// Sets a caption. Returns its outlines, and their point that is placed at the given position.
-fn set(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<(OutlinedText, Point), Failure> {
+/// Sets a caption. Returns its outlines, and the point of them that goes to the position `at`.
+fn lay_out(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<(OutlinedText, Point), Failure> {
     let lines = s.texts("words").join("\n");
     if lines.trim().is_empty() {
         return Err(Failure::usage("--words: a caption needs words"));
@@ -63,10 +63,11 @@ fn set(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<
     let weight = WEIGHTS.iter().find(|(name, _)| *name == weight).map_or(REGULAR, |(_, w)| *w);
     let family = s.texts("font").last().copied();
     let file = family.map(|name| find_font(name, weight, italic, read)).transpose()?;
-    let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
+    let chosen = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
     let wanted = Wanted { weight: Some(weight), italic, synthesize: true };
-    let fonts: Vec<Font<'_>> = with_variations(own.into_iter().chain([bundled()?]).collect(), &[], &wanted)?;
+    let fonts: Vec<Font<'_>> = with_variations(chosen.into_iter().chain([bundled()?]).collect(), &[], &wanted)?;
     let size = s.number("size")?;
+    // The share of the baseline's length at which the point lies.
     let (align, share) = match s.choice("align")? {
         "center" => (Align::Center, 0.5),
         "right" => (Align::Right, 1.0),
@@ -81,7 +82,7 @@ fn set(s: &Settings<'_>, read: &ReadOptions, options: &CommonOptions) -> Result<
     };
     let limits = options.reading.limits.for_input(lines.len());
     let text = laid_out_with_installed(&lines, &fonts, &style, (weight, italic), read, &limits)?;
-    let ends = text.lines.iter().map(|l| Rect::from_points(l.start, l.end)).reduce(|a, b| a.union(b));
-    let ends = ends.unwrap_or_default();
-    Ok((text, Point::new(ends.x0 + share * ends.width(), ends.y0)))
+    let baselines = text.lines.iter().map(|l| Rect::from_points(l.start, l.end)).reduce(|a, b| a.union(b));
+    let baselines = baselines.unwrap_or_default();
+    Ok((text, Point::new(baselines.x0 + share * baselines.width(), baselines.y0)))
 }

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 const TABLE: &str = include_str!("coming_from.txt");
 /// Separates the parts of a menu path.
-const STEP: char = '›';
+const MENU_SEPARATOR: char = '›';
 
 /// A word for a task.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl ForeignWord {
 
     /// Returns `true` if `wanted`, which is [`plain`], is one of the names or a part of its menu path.
     fn is_called(&self, wanted: &str) -> bool {
-        self.words.iter().any(|w| plain(w) == wanted || w.split(STEP).any(|part| plain(part) == wanted))
+        self.words.iter().any(|w| plain(w) == wanted || w.split(MENU_SEPARATOR).any(|part| plain(part) == wanted))
     }
 
     /// Returns `true` if all words of `wanted` are in one of the names, or in the name of the program.
@@ -46,14 +46,14 @@ impl ForeignWord {
         })
     }
 
-    /// Returns the command line with a drawing of the reader's.
-    fn line(&self) -> Option<String> {
+    /// Returns the command line with `IN` and `OUT` instead of the sample and its result.
+    fn command_line(&self) -> Option<String> {
         let words = self.command?.split(' ').enumerate();
-        let own = words.map(|(i, w)| match w.strip_prefix("samples/").and_then(|file| file.rsplit('.').next()) {
+        let general = words.map(|(i, w)| match w.strip_prefix("samples/").and_then(|file| file.rsplit('.').next()) {
             Some(extension) if i == 1 => format!("IN.{extension}"),
             _ => w.to_owned(),
         });
-        Some(format!("pathwarp {}", own.collect::<Vec<_>>().join(" ").replace(" -o out.", " -o OUT.")))
+        Some(format!("pathwarp {}", general.collect::<Vec<_>>().join(" ").replace(" -o out.", " -o OUT.")))
     }
 }
 
@@ -72,18 +72,18 @@ pub fn all() -> impl Iterator<Item = ForeignWord> {
     })
 }
 
-/// Returns the entries that are called `word`, plain ones first.
-fn named(word: &str) -> Vec<ForeignWord> {
+/// Returns the entries that are called `word`, plain words first.
+fn entries_called(word: &str) -> Vec<ForeignWord> {
     let wanted = plain(word);
-    let mut named: Vec<ForeignWord> = all().filter(|w| !wanted.is_empty() && w.is_called(&wanted)).collect();
-    named.sort_by_key(|w| w.program.is_some());
-    named
+    let mut called: Vec<ForeignWord> = all().filter(|w| !wanted.is_empty() && w.is_called(&wanted)).collect();
+    called.sort_by_key(|w| w.program.is_some());
+    called
 }
 
 /// Returns the entries that are called `word`, or else those that mention it.
-fn found(word: &str) -> Vec<ForeignWord> {
-    let (named, wanted) = (named(word), plain(word));
-    if named.is_empty() && !wanted.is_empty() { all().filter(|w| w.mentions(&wanted)).collect() } else { named }
+fn entries_for(word: &str) -> Vec<ForeignWord> {
+    let (called, wanted) = (entries_called(word), plain(word));
+    if called.is_empty() && !wanted.is_empty() { all().filter(|w| w.mentions(&wanted)).collect() } else { called }
 }
 
 /// Lists the styles and presets called `word`, with their command lines.
@@ -91,11 +91,11 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let name = plain(word).replace(' ', "-");
     let params = catalogue.infos().into_iter().flat_map(|info| info.params.iter().map(move |p| (info, p)));
     let is_preset = |info: &Info, p: &Param| info.gallery.is_some_and(|g| g.presets == p.name);
-    let is_word = |(info, p): &(&Info, &Param)| matches!(p.kind, Kind::NameOrFile(_)) || is_preset(info, p);
-    let has = params.filter(is_word).filter(|(_, p)| p.names().contains(&name.as_str()));
-    let mut has: Vec<_> = has.collect();
-    has.sort_by_key(|(_, p)| p.kind == Kind::Path);
-    let lines = has.into_iter().map(|(info, p)| {
+    let takes_names = |(info, p): &(&Info, &Param)| matches!(p.kind, Kind::NameOrFile(_)) || is_preset(info, p);
+    let mut known: Vec<_> = params.filter(takes_names).filter(|(_, p)| p.names().contains(&&*name)).collect();
+    // Shapes come last.
+    known.sort_by_key(|(_, p)| p.kind == Kind::Path);
+    let lines = known.into_iter().map(|(info, p)| {
         let line = format!("pathwarp {} IN.svg --{} {name} -o OUT.svg", info.name, p.name);
         match p.kind {
             Kind::Path => format!("a shape: pathwarp text WORDS --in {name} -o OUT.svg; or {line}"),
@@ -109,10 +109,10 @@ fn presets(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
 /// Explains a word that was typed as a command but is none.
 pub fn meant(catalogue: &dyn Catalogue, word: &str) -> Option<String> {
     let preset = presets(catalogue, word);
-    // Programs call by a preset's name the deformation itself.
-    let is_meant = |w: &ForeignWord| w.program.is_none() || preset.is_none() && w.command.is_some();
-    let entry = named(word).into_iter().find(is_meant);
-    let line = entry.as_ref().and_then(ForeignWord::line);
+    // A program's word that is also a preset's name means the same deformation, which the preset's line shows.
+    let is_meant = |w: &ForeignWord| w.program.is_none() || (preset.is_none() && w.command.is_some());
+    let entry = entries_called(word).into_iter().find(is_meant);
+    let line = entry.as_ref().and_then(ForeignWord::command_line);
     match (preset, line, entry) {
         (Some(preset), Some(line), _) => Some(format!("{preset}; or use {line}")),
         (Some(preset), None, _) => Some(preset),
@@ -129,6 +129,7 @@ fn has_in_help(info: &Info, word: &str) -> bool {
     let wanted = format!(" {} ", plain(word));
     let params = info.params.iter().map(|p| p.help);
     let mut texts = [info.about, info.source].into_iter().chain(params);
+    // A single letter between the two spaces is no word to look for.
     wanted.len() > 3 && texts.any(|text| format!(" {} ", plain(text)).contains(&wanted))
 }
 
@@ -154,14 +155,14 @@ fn without_accent(c: char) -> Option<char> {
 /// Returns the text of `pathwarp help WORD`; `title` describes a subcommand. `None` if the word is unknown.
 pub fn help(catalogue: &dyn Catalogue, word: &str, title: impl Fn(&str) -> Option<String>) -> Option<String> {
     let mut out = presets(catalogue, word).map(|p| p + "\n\n").unwrap_or_default();
-    for entry in found(word) {
+    for entry in entries_for(word) {
         let program = entry.program.map(|p| format!("{p}, ")).unwrap_or_default();
         let _ = write!(out, "{program}{}:", entry.words[0]);
         if let Some((name, title)) = entry.subcommand().and_then(|name| Some((name, title(name)?))) {
             let _ = write!(out, " {name} — {title}");
         }
         let text = Some(entry.text).filter(|t| !t.is_empty()).map(|t| format!("\n  {t}")).unwrap_or_default();
-        let line = entry.line().map(|line| format!("\n    {line}")).unwrap_or_default();
+        let line = entry.command_line().map(|line| format!("\n    {line}")).unwrap_or_default();
         let _ = write!(out, "{text}{line}\n\n");
     }
     if out.is_empty() {
@@ -183,7 +184,7 @@ mod tests {
 
     #[test]
     fn words_are_found_as_people_type_them() {
-        let commands = |word: &str| found(word).iter().map(ForeignWord::subcommand).collect::<Vec<_>>();
+        let commands = |word: &str| entries_for(word).iter().map(ForeignWord::subcommand).collect::<Vec<_>>();
         assert_eq!(commands("puppet-warp tool"), [Some("mls"); 2]);
         assert_eq!(commands("Rotate"), [Some("affine")]);
         assert_eq!(commands("Free Distort"), [Some("projective")]);
@@ -206,7 +207,7 @@ mod tests {
             assert!(w.words.iter().all(|w| !w.is_empty()), "{w:?}");
             assert!(w.command.is_some() || w.text.starts_with("Not there"), "{w:?}");
             for name in &w.words {
-                assert!(found(name).contains(&w), "{name}");
+                assert!(entries_for(name).contains(&w), "{name}");
             }
         }
     }

@@ -57,7 +57,7 @@ pub static EDITS: [Info; 6] = [
         .by_hand(ByHand { labels: &[("by", "One shape of")], ..ByHand::NONE }),
     Info::new("contour", "draw one line around all that is visible")
         .group("Before bending")
-        .params(&CONTOUR)
+        .params(&CONTOUR_PARAMS)
         .by_hand(ByHand {
             labels: &[("by", "Distance"), ("holes", "Holes"), ("join", "Join"), ("only", "Only the line")],
             neutral: &[("by", "1%")],
@@ -69,7 +69,7 @@ pub static EDITS: [Info; 6] = [
 
 /// The edit that sets a caption.
 pub const CAPTION: Info =
-    Info::new("caption", "set words on the drawing").group("Before bending").params(&OF_CAPTION).by_hand(ByHand {
+    Info::new("caption", "set words on the drawing").group("Before bending").params(&CAPTION_PARAMS).by_hand(ByHand {
         label: Some("Words"),
         labels: &[("at", "Place"), ("letter-spacing", "Spacing"), ("line-height", "Line spacing"), ("fill", "Colour")],
         neutral: &[("words", "Words")],
@@ -77,7 +77,7 @@ pub const CAPTION: Info =
         ..ByHand::NONE
     });
 
-const OF_CAPTION: [Param; 10] = [
+const CAPTION_PARAMS: [Param; 10] = [
     Param::new("words", Kind::Text("WORDS"), "The words. Given several times, each is a line.").needed().repeated(),
     Param::new(
         "at",
@@ -106,7 +106,7 @@ const OF_CAPTION: [Param; 10] = [
         .default("120%"),
 ];
 
-const CONTOUR: [Param; 8] = [
+const CONTOUR_PARAMS: [Param; 8] = [
     Param::length(
         "by",
         Axis::Diagonal,
@@ -146,11 +146,9 @@ pub fn info(name: &str) -> Option<&'static Info> {
 pub fn divided(recipe: &Recipe) -> Result<(Vec<Step>, Recipe), Failure> {
     let is_edit = |s: &&Step| info(&s.deformation).is_some();
     let (edits, steps) = recipe.steps.split_at(recipe.steps.iter().take_while(is_edit).count());
-    let inverse = edits.iter().find(|s| s.inverse);
-    match inverse.or_else(|| steps.iter().find(is_edit)) {
-        Some(s) => {
-            let name = &s.deformation;
-            Err(Failure::usage(format!("{name} comes before all steps that bend, and has no inverse")))
+    match edits.iter().find(|s| s.inverse).or_else(|| steps.iter().find(is_edit)) {
+        Some(Step { deformation, .. }) => {
+            Err(Failure::usage(format!("{deformation} comes before all steps that bend, and has no inverse")))
         }
         None => Ok((edits.to_vec(), Recipe { steps: steps.to_vec() })),
     }

@@ -55,24 +55,19 @@ impl Failure {
 
     /// Returns `true` if the recipe is at fault, so that every input fails alike.
     pub fn is_of_recipe(&self) -> bool {
-        match self {
-            Self::Library { error, of_recipe, .. } => *of_recipe && !matches!(**error, pathwarp::Error::Geometry(_)),
-            _ => false,
-        }
+        matches!(self, Self::Library { error, of_recipe: true, .. } if !matches!(**error, pathwarp::Error::Geometry(_)))
     }
 
     /// Returns the shape and the point at which the map is infinite or undefined, if that is the failure.
     pub(crate) fn infinity(&self) -> Option<(&str, Point)> {
-        match self {
-            Self::Library { error, .. } => match &**error {
-                pathwarp::Error::Geometry(GeometryError::Infinity { shape, at }) => Some((shape, *at)),
-                _ => None,
-            },
+        let Self::Library { error, .. } = self else { return None };
+        match &**error {
+            pathwarp::Error::Geometry(GeometryError::Infinity { shape, at }) => Some((shape, *at)),
             _ => None,
         }
     }
 
-    /// The exit code.
+    /// Returns the exit code.
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
@@ -88,7 +83,7 @@ impl Failure {
         }
     }
 
-    /// The message, in which parameters appear as `flags`.
+    /// Returns the message, in which parameters appear as `flags`.
     pub fn message(&self, flags: &Flags) -> String {
         match self {
             Self::Usage(m) | Self::Input(m) | Self::Limited(m, ..) | Self::Output(m) | Self::Geometry(m) => m.clone(),
@@ -99,7 +94,7 @@ impl Failure {
         }
     }
 
-    /// The failure of looking up references or building a recipe.
+    /// A failure to look up references or to build a recipe.
     pub fn of_recipe(error: pathwarp::Error) -> Self {
         Self::Library { error: Box::new(error), input: None, of_recipe: true }
     }

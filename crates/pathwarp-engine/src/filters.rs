@@ -28,9 +28,9 @@ impl Bender {
         const MOST: f64 = 2e6;
         const MOST_TOGETHER: f64 = 8e6;
         /// Evaluations of the map for each filter and for each pixel.
-        const FILTER: f64 = 12e3;
-        const EVALUATED: f64 = 0.5;
-        /// Pixels per px of a picture with little detail, and where the fit is compared.
+        const FILTER_EVALUATIONS: f64 = 12e3;
+        const PIXEL_EVALUATIONS: f64 = 0.5;
+        /// Pixels per px of a picture with little detail, and where the affine fit is compared with the exact result.
         const COARSEST: f64 = 0.25;
         const COMPARED: f64 = 2.0;
         /// Share of the page on which the differences of all filters together stay unseen.
@@ -39,34 +39,29 @@ impl Bender {
         const FINEST: f64 = 0.75;
         let reason = |e: Error| PictureError::from(e.to_string());
         let count = |width: f64, height: f64| {
-            count_evaluations(budget, &*self.map, EVALUATED * width * height)?;
+            count_evaluations(budget, &*self.map, PIXEL_EVALUATIONS * width * height)?;
             count_pixels(budget, Pixel::Warped, width * height)
         };
-        count_evaluations(budget, &*self.map, FILTER).map_err(too_much)?;
+        count_evaluations(budget, &*self.map, FILTER_EVALUATIONS).map_err(too_much)?;
         let [inner, outer] = [r.graphic, r.area].map(|area| r.placed.transform_rect_bbox(area));
         let map = Continued::new(r.map, inner.intersect(outer), outer);
         let warp = DrawingWarp::new((r.area, r.placed), &map, r.after, &count, budget);
         let warp = warp.ok_or("the map is undefined on part of it, or makes nothing of it")?;
-        let unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
+        let px_per_unit = (r.to_px * r.after.inverse()).determinant().abs().sqrt();
         if let Some([drawing, fitted]) = r.compared {
             let [drawing, fitted] = [tree(&drawing(r.area), budget)?, tree(&fitted(warp.bounds()), budget)?];
-            if warp
-                .resembles(&drawing.tree, &fitted.tree, COMPARED * unit, UNSEEN * r.page / r.among.max(1) as f64)
-                .map_err(reason)?
-            {
+            let unseen = UNSEEN * r.page / r.among.max(1) as f64;
+            if warp.resembles(&drawing.tree, &fitted.tree, COMPARED * px_per_unit, unseen).map_err(reason)? {
                 return Ok(None);
             }
         }
         let most = MOST.min(MOST_TOGETHER / r.among.max(1) as f64) / warp.bounds().area();
         let size = (warp.bounds().width(), warp.bounds().height());
-        let finest = (FINEST * self.seen_density(unit, size)).min(most.sqrt());
+        let finest = (FINEST * self.seen_density(px_per_unit, size)).min(most.sqrt());
         let picture = |svg: Option<String>| {
             let Some(svg) = svg else { return Ok(None) };
-            let Some((picture, area)) =
-                warp.paint(&tree(&svg, budget)?.tree, COARSEST * unit, finest).map_err(reason)?
-            else {
-                return Ok(None);
-            };
+            let painted = warp.paint(&tree(&svg, budget)?.tree, COARSEST * px_per_unit, finest).map_err(reason)?;
+            let Some((picture, area)) = painted else { return Ok(None) };
             Ok(Some(BentImage::new(encode_smooth_png(&picture).map_err(reason)?, area)))
         };
         let pictures = (r.layers)().into_iter().map(picture).collect::<Result<_, PictureError>>()?;

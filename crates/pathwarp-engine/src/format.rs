@@ -49,10 +49,8 @@ impl Format {
 
     /// Returns the format's name and its extensions.
     fn entry(self) -> (&'static str, &'static [&'static str]) {
-        TABLE
-            .iter()
-            .find(|(format, ..)| *format == self)
-            .map_or(("", &[]), |(_, name, extensions)| (*name, *extensions))
+        let entry = TABLE.iter().find(|(format, ..)| *format == self);
+        entry.map_or(("", &[]), |(_, name, extensions)| (*name, *extensions))
     }
 
     /// Returns the usual extension, which is also the word for `--format`.
@@ -154,11 +152,11 @@ mod tests {
     fn the_extension_or_the_option_decides() {
         let drawing = Choice { what: "a drawing is", among: DRAWINGS };
         let format = |target: Option<&str>, given| drawing.format(target.map(Path::new), given);
-        let of = |target, given| format(target, given).unwrap();
-        assert_eq!(of(None, None), Format::Svg);
-        assert_eq!(of(Some("a.PDF"), None), Format::Pdf);
-        assert_eq!(of(Some("plain"), None), Format::Svg);
-        assert_eq!(of(Some("plain.tmp"), Some(Format::Dxf)), Format::Dxf);
+        let chosen = |target, given| format(target, given).unwrap();
+        assert_eq!(chosen(None, None), Format::Svg);
+        assert_eq!(chosen(Some("a.PDF"), None), Format::Pdf);
+        assert_eq!(chosen(Some("plain"), None), Format::Svg);
+        assert_eq!(chosen(Some("plain.tmp"), Some(Format::Dxf)), Format::Dxf);
         for (target, given, part) in [
             (
                 "a.eps",

@@ -44,8 +44,8 @@ pub fn set_plainly(
 ) -> Result<(String, Vec<char>), Failure> {
     let read = reading.read_options();
     let file = family.map(|name| find_font(name, REGULAR, false, &read)).transpose()?;
-    let own = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
-    let fonts: Vec<Font<'_>> = own.into_iter().chain([bundled()?]).collect();
+    let chosen = file.as_ref().zip(family).map(|(file, name)| read_font(name, file)).transpose()?;
+    let fonts: Vec<Font<'_>> = chosen.into_iter().chain([bundled()?]).collect();
     let limits = reading.limits.for_input(words.len());
     let text = laid_out_with_installed(words, &fonts, style, (REGULAR, false), &read, &limits)?;
     let options = LetteringOptions { unit: Some(LengthUnit::Mm), ..LetteringOptions::default() };
@@ -62,7 +62,8 @@ pub fn bundled() -> Result<Font<'static>, Failure> {
     Font::new(bundled_font(), 0).map_err(|e| Failure::Input(e.to_string()))
 }
 
-/// Lays out words within the limits. Installed fonts of the given weight and slope supply letters that the fonts lack.
+/// Lays out words within the limits. Installed fonts, of the weight and slope (`true` for italic) in `look`, supply letters that the fonts
+/// lack.
 pub fn laid_out_with_installed(
     words: &str,
     fonts: &[Font<'_>],
@@ -71,21 +72,21 @@ pub fn laid_out_with_installed(
     read: &ReadOptions,
     limits: &Limits,
 ) -> Result<OutlinedText, Failure> {
-    let own = laid_out(words, fonts, style, limits)?;
-    if own.missing.is_empty() {
-        return Ok(own);
+    let text = laid_out(words, fonts, style, limits)?;
+    if text.missing.is_empty() {
+        return Ok(text);
     }
-    let found = fallback_fonts(&own.text, fonts, look, style.language.as_deref().unwrap_or_default(), read);
+    let found = fallback_fonts(&text.text, fonts, look, style.language.as_deref().unwrap_or_default(), read);
     let found = found.iter().filter_map(|(file, w)| Some(Font::new(&file.bytes, file.index).ok()?.only_for(*w)));
     let all: Vec<Font<'_>> = fonts.iter().cloned().chain(found).collect();
-    if all.len() == fonts.len() { Ok(own) } else { laid_out(words, &all, style, limits) }
+    if all.len() == fonts.len() { Ok(text) } else { laid_out(words, &all, style, limits) }
 }
 
 /// Lays out words within the limits.
 pub fn laid_out(words: &str, fonts: &[Font<'_>], style: &TextStyle, limits: &Limits) -> Result<OutlinedText, Failure> {
-    let max = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
-    let max = TextLimits { letters: max(cost::LETTER), segments: max(cost::SEGMENT) };
-    layout_within(words, fonts, style, &max).map_err(|e| failure(&e, limits))
+    let most = |cost: f64| (limits.of(Limit::Work) / cost) as usize;
+    let text_limits = TextLimits { letters: most(cost::LETTER), segments: most(cost::SEGMENT) };
+    layout_within(words, fonts, style, &text_limits).map_err(|e| failure(&e, limits))
 }
 
 /// Turns an error of the layout into a failure: a bad option is wrong usage, anything else a problem of the font or the text.

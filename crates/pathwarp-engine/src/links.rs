@@ -42,28 +42,31 @@ impl Destination {
     }
 
     fn relinking(&self, read: &ReadOptions) -> Relinking {
-        let inside = Relinking { embed: true, ..Relinking::default() };
+        let embedding = Relinking { embed: true, ..Relinking::default() };
         match (self, &read.base_dir) {
             (Self::Back, _) | (_, None) => Relinking::default(),
-            (Self::File(to), Some(from)) => way(from, to).map_or(inside, |way| Relinking { way, embed: false }),
-            (Self::Anywhere, _) => inside,
+            (Self::File(to), Some(folder)) => {
+                link_to_folder(folder, to).map_or(embedding, |way| Relinking { way, embed: false })
+            }
+            (Self::Anywhere, _) => embedding,
         }
     }
 }
 
-/// Returns the relative path from a file to a folder, as the beginning of a link, if there is one.
-fn way(from: &Path, file: &Path) -> Option<String> {
-    let full = |folder: &Path| {
+/// Returns the relative path to a folder from a file, as the beginning of a link, if there is one.
+fn link_to_folder(folder: &Path, file: &Path) -> Option<String> {
+    let absolute = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).ok()
     };
-    let (from, to): (PathBuf, PathBuf) = (full(from)?, full(file.parent()?)?);
-    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let (to, from): (PathBuf, PathBuf) = (absolute(folder)?, absolute(file.parent()?)?);
+    let shared = to.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    // On Windows, folders on different drives share nothing.
     if shared == 0 {
         return None;
     }
-    let mut out = "../".repeat(to.components().count() - shared);
-    for part in from.components().skip(shared) {
+    let mut out = "../".repeat(from.components().count() - shared);
+    for part in to.components().skip(shared) {
         let Component::Normal(name) = part else { return None };
         for b in name.to_str()?.bytes() {
             // Other characters may end a link, or begin its query or fragment.
@@ -83,15 +86,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ways_lead_from_folder_to_folder() {
+    fn links_lead_from_a_file_to_a_folder() {
         let dir = tempfile::tempdir().unwrap();
-        let at = |name: &str| dir.path().join(name);
+        let path = |name: &str| dir.path().join(name);
         for name in ["in put", "out/deep"] {
-            fs::create_dir_all(at(name)).unwrap();
+            fs::create_dir_all(path(name)).unwrap();
         }
-        let found = |from: &str, to: &str| way(&at(from), &at(to)).unwrap();
-        assert_eq!(found("in put", "out/deep/b.svg"), "../../in%20put/");
-        assert_eq!(found("in put", "in put/b.svg"), "");
-        assert_eq!(found("out/deep", "b.svg"), "out/deep/");
+        let link = |folder: &str, file: &str| link_to_folder(&path(folder), &path(file)).unwrap();
+        assert_eq!(link("in put", "out/deep/b.svg"), "../../in%20put/");
+        assert_eq!(link("in put", "in put/b.svg"), "");
+        assert_eq!(link("out/deep", "b.svg"), "out/deep/");
     }
 }

@@ -23,10 +23,10 @@ enum Content {
 impl PendingFile {
     /// Writes `bytes` to a temporary file beside `to`; `-` is standard output.
     pub fn new(to: &Path, bytes: &[u8]) -> Result<Self, Failure> {
-        match Place::of(to) {
-            Place::Stdout => Ok(Self::stdout(bytes.to_vec())),
-            Place::Device => Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() }),
-            place => Self::in_place(place, to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e))),
+        match Target::named(to) {
+            Target::Stdout => Ok(Self::stdout(bytes.to_vec())),
+            Target::Device => Ok(Self { content: Content::Device(bytes.to_vec()), to: to.to_owned() }),
+            target => target.pending(to, |file| file.write_all(bytes).map_err(|e| cannot_be_written(&e))),
         }
     }
 
@@ -37,23 +37,15 @@ impl PendingFile {
 
     /// Calls `write` with a temporary file beside `to`. Fails for standard output and devices.
     pub(crate) fn with_writer(to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
-        Self::in_place(Place::of(to), to, write)
-    }
-
-    fn in_place(place: Place, to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<Self, Failure> {
-        let (to, temporary, mut file) = place.temporary(to)?;
-        write(&mut file).map_err(|e| Failure::output(&to, e))?;
-        Ok(Self { content: Content::File(temporary), to })
+        Target::named(to).pending(to, write)
     }
 
     /// Puts all outputs in place. If one fails, those before it are restored to what they were.
     pub fn commit_all(all: Vec<Self>) -> Result<(), Failure> {
         // Print first: printing cannot be undone, and if it fails, no file has been replaced yet.
-        let (files, streams): (Vec<Self>, Vec<Self>) =
-            all.into_iter().partition(|p| matches!(p.content, Content::File(_)));
-        for stream in streams {
-            stream.print()?;
-        }
+        let is_file = |p: &Self| matches!(p.content, Content::File(_));
+        let (files, streams): (Vec<Self>, Vec<Self>) = all.into_iter().partition(is_file);
+        streams.into_iter().try_for_each(Self::print)?;
         let _gate = temporaries::hold(); // An interruption waits until all files are in place.
         let alone = files.len() == 1;
         let mut placed = Vec::with_capacity(files.len());
@@ -84,8 +76,8 @@ impl PendingFile {
 
     /// Renames a file to its final name. Unless it is `alone`, the file that it replaces is kept, so that it can be restored.
     fn put_in_place(self, alone: bool) -> io::Result<Placed> {
-        let backup =
-            if !alone && self.to.exists() { Some(Temporary::backup(&self.to, folder(&self.to))?) } else { None };
+        let replaces = !alone && self.to.exists();
+        let backup = replaces.then(|| Temporary::backup(&self.to, folder(&self.to))).transpose()?;
         if let Content::File(temporary) = self.content {
             temporary.rename(&self.to)?;
         }
@@ -108,10 +100,10 @@ enum Sink {
 impl Draft {
     /// Creates a temporary file beside `to`; `-` is standard output.
     pub fn new(to: &Path) -> Result<Self, Failure> {
-        match Place::of(to) {
-            Place::Stdout | Place::Device => Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() }),
-            place => {
-                let (to, temporary, file) = place.temporary(to)?;
+        match Target::named(to) {
+            Target::Stdout | Target::Device => Ok(Self { sink: Sink::Bytes(Vec::new()), to: to.to_owned() }),
+            target => {
+                let (to, temporary, file) = target.temporary(to)?;
                 Ok(Self { sink: Sink::File(temporary, BufWriter::new(file)), to })
             }
         }
@@ -138,8 +130,8 @@ impl Draft {
     }
 }
 
-/// The kinds of destinations that an output's name may stand for.
-enum Place {
+/// The destination that an output's name stands for.
+enum Target {
     Stdout,
     Device,
     Folder,
@@ -147,9 +139,9 @@ enum Place {
     File(PathBuf),
 }
 
-impl Place {
+impl Target {
     /// Classifies the name `to`. Asks the system once, unless it is a symbolic link.
-    fn of(to: &Path) -> Self {
+    fn named(to: &Path) -> Self {
         if is_stdout(to) {
             return Self::Stdout;
         }
@@ -158,14 +150,14 @@ impl Place {
         match if is_link { to.metadata() } else { found } {
             Ok(m) if m.is_dir() => Self::Folder,
             Ok(m) if !m.is_file() => Self::Device,
-            _ if is_link => Self::of_link(to),
+            _ if is_link => Self::behind_link(to),
             _ => Self::File(to.to_owned()),
         }
     }
 
     /// Classifies a symbolic link, whose target may not exist yet.
-    fn of_link(link: &Path) -> Self {
-        let file = behind(link);
+    fn behind_link(link: &Path) -> Self {
+        let file = link_target(link);
         if is_descriptor(&file) {
             // Write to the open file instead of replacing it: it may have lost its name.
             return if file.ends_with("1") { Self::Stdout } else { Self::Device };
@@ -173,19 +165,24 @@ impl Place {
         Self::File(link.canonicalize().unwrap_or(file))
     }
 
+    /// Calls `write` with a temporary file beside the destination.
+    fn pending(self, to: &Path, write: impl FnOnce(&mut File) -> Result<(), String>) -> Result<PendingFile, Failure> {
+        let (to, temporary, mut file) = self.temporary(to)?;
+        write(&mut file).map_err(|e| Failure::output(&to, e))?;
+        Ok(PendingFile { content: Content::File(temporary), to })
+    }
+
     /// Creates a temporary file in the destination's folder. Returns the destination and the temporary file.
     fn temporary(self, to: &Path) -> Result<(PathBuf, Temporary, File), Failure> {
         let file = match self {
             Self::File(file) => file,
             Self::Folder => return Err(Failure::output(to, "is a folder; name a file, or use --out-dir")),
-            Self::Device | Self::Stdout => {
-                return Err(Failure::output(to, "is a device, not a file; name a file"));
-            }
+            Self::Device | Self::Stdout => return Err(Failure::output(to, "is a device, not a file; name a file")),
         };
         let folder = folder(&file);
         match Temporary::create_in(folder) {
             Ok((temporary, content)) => {
-                like_the_old(&file, &content).map_err(|e| Failure::output(&file, cannot_be_written(&e)))?;
+                copy_permissions(&file, &content).map_err(|e| Failure::output(&file, cannot_be_written(&e)))?;
                 Ok((file, temporary, content))
             }
             Err(_) if !folder.is_dir() => Err(Failure::output(folder, "does not exist; create the folder first")),
@@ -196,13 +193,13 @@ impl Place {
 
 /// Gives a new file the permissions of the file that it will replace, which may be private.
 #[cfg(unix)]
-fn like_the_old(old: &Path, new: &File) -> io::Result<()> {
+fn copy_permissions(old: &Path, new: &File) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
     /// Excludes the bits that let a program run as its owner.
     const PERMISSIONS: u32 = 0o777;
     let Ok(old) = old.metadata() else { return Ok(()) };
-    let own = new.metadata()?;
-    if (old.uid(), old.gid()) != (own.uid(), own.gid()) {
+    let created = new.metadata()?;
+    if (old.uid(), old.gid()) != (created.uid(), created.gid()) {
         // Only some users may give files away; the others stay owners of what they write.
         let _ = fchown(new, Some(old.uid()), Some(old.gid()));
     }
@@ -210,21 +207,21 @@ fn like_the_old(old: &Path, new: &File) -> io::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn like_the_old(_: &Path, _: &File) -> io::Result<()> {
+fn copy_permissions(_: &Path, _: &File) -> io::Result<()> {
     Ok(())
 }
 
 /// Follows a chain of symbolic links to its last file, which may not exist.
-pub fn behind(link: &Path) -> PathBuf {
+pub fn link_target(link: &Path) -> PathBuf {
     /// Length of the longest chain that systems follow.
     const MOST_LINKS: usize = 40;
-    let mut at = link.to_owned();
+    let mut file = link.to_owned();
     for _ in 0..MOST_LINKS {
         // A descriptor links to a name that its file may have lost.
-        let Some(next) = at.read_link().ok().filter(|_| !is_descriptor(&at)) else { break };
-        at = folder(&at).join(next);
+        let Some(next) = file.read_link().ok().filter(|_| !is_descriptor(&file)) else { break };
+        file = folder(&file).join(next);
     }
-    at
+    file
 }
 
 /// Returns `true` for the name of an open file, such as the target of `/dev/stdout`.
@@ -249,7 +246,8 @@ impl Placed {
     }
 }
 
-fn folder(file: &Path) -> &Path {
+/// Returns the folder that a file lies in.
+pub(crate) fn folder(file: &Path) -> &Path {
     match file.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => Path::new("."),
@@ -267,7 +265,7 @@ pub fn is_stdout(to: &Path) -> bool {
 
 /// Returns `true` if `to` stands for no file in a folder, but for standard output, a pipe or a terminal.
 pub(crate) fn is_stream(to: &Path) -> bool {
-    matches!(Place::of(to), Place::Stdout | Place::Device)
+    matches!(Target::named(to), Target::Stdout | Target::Device)
 }
 
 /// Returns `true` if `to` exists and is neither a file nor a folder: a pipe, a terminal.

@@ -12,12 +12,12 @@ use pathwarp_svg::{Document, PageFit, Warning};
 /// Side in px of the largest square page that counts as an icon's.
 const ICON: f64 = 64.0;
 /// Largest relative difference of a page's sides from those of a square, or of a sheet of paper.
-const SAME: f64 = 0.005;
+const TOLERANCE: f64 = 0.005;
 
 /// The largest sheets of the series A and B of ISO 216 and the series B of JIS P 0138, in mm. Each next sheet of a series is half as large.
 const SERIES: [[f64; 2]; 3] = [[841.0, 1189.0], [1000.0, 1414.0], [1030.0, 1456.0]];
-/// The last number of a series.
-const LAST: usize = 10;
+/// The number of the smallest sheet of a series, such as A10.
+const SMALLEST: usize = 10;
 /// Letter, Legal, and business cards (Europe, ISO 7810 ID-1, North America, China, Australia, Japan), in mm.
 const SHEETS: [[f64; 2]; 8] = [
     [215.9, 279.4],
@@ -41,24 +41,25 @@ pub(crate) fn stays(doc: &Document, options: &CommonOptions, recipe: &Recipe) ->
     if !doc.is_measured() && is_near(px[0], px[1]) && px[0] <= ICON && is_near(units[0], units[1]) {
         return Some("it is an icon's");
     }
-    // Some programs write mm, inches or points as plain numbers.
-    let plain = [MM_PER_PX, 1.0, 25.4, 25.4 / 72.0].map(|unit| units.map(|v| v * unit));
-    let is_paper = plain.into_iter().filter(|_| !doc.is_measured()).chain([px.map(|v| v * MM_PER_PX)]).any(is_paper);
-    is_paper.then_some("it is a sheet of paper")
+    // Some programs write px, mm, inches or points as plain numbers.
+    let plain = [MM_PER_PX, 1.0, 25.4, 25.4 / 72.0].map(|mm| units.map(|v| v * mm));
+    let sizes = plain.into_iter().filter(|_| !doc.is_measured()).chain([px.map(|v| v * MM_PER_PX)]);
+    sizes.into_iter().any(is_paper).then_some("it is a sheet of paper")
 }
 
 fn is_near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * b
+    (a - b).abs() <= TOLERANCE * b
 }
 
 /// Returns `true` for the size of a sheet of paper in mm, upright or lying.
 fn is_paper([w, h]: [f64; 2]) -> bool {
-    let is = |[a, b]: [f64; 2]| is_near(w.min(h), a) && is_near(w.max(h), b);
+    let has_size = |[a, b]: [f64; 2]| is_near(w.min(h), a) && is_near(w.max(h), b);
     let in_series = |largest: [f64; 2]| {
+        // ISO 216 rounds down to whole millimetres.
         let half = |[a, b]: &[f64; 2]| Some([(0.5 * b).floor(), *a]);
-        std::iter::successors(Some(largest), half).take(LAST + 1).any(is)
+        std::iter::successors(Some(largest), half).take(SMALLEST + 1).any(has_size)
     };
-    SHEETS.into_iter().any(is) || SERIES.into_iter().any(in_series)
+    SHEETS.into_iter().any(has_size) || SERIES.into_iter().any(in_series)
 }
 
 /// The changes of a page.
@@ -68,8 +69,8 @@ pub struct PageNews {
     pub change: Option<[Rect; 2]>,
     /// The scale of the result, as a share of its size, that keeps it on its page.
     pub(crate) shrunk: Option<f64>,
-    /// `true` if the program decided on the change.
-    pub(crate) by_itself: bool,
+    /// `true` if the program decided on the change, under `--fit auto`.
+    pub(crate) is_automatic: bool,
     /// The artwork that extends past the page and did not before.
     pub(crate) overhang: Option<Overhang>,
     /// The reason why the page stays although it could have grown.
@@ -81,44 +82,43 @@ pub struct PageNews {
 }
 
 impl PageNews {
-    /// Takes the news about the page from the result of a warp.
-    pub(crate) fn of(warped: &mut pathwarp_svg::WarpedDocument, fit: PageFit, stays: Option<&'static str>) -> Self {
-        let at = warped.warnings.iter().position(|w| matches!(w, Warning::Arrivals(_)));
+    /// Takes the news about the page, and the warning of arrivals, from the result of a warp.
+    pub(crate) fn take(warped: &mut pathwarp_svg::WarpedDocument, fit: PageFit, stays: Option<&'static str>) -> Self {
+        let arrivals = warped.warnings.iter().position(|w| matches!(w, Warning::Arrivals(_)));
         Self {
             change: warped.page,
             shrunk: warped.back.map(|to| to.determinant().sqrt()),
-            by_itself: fit == PageFit::Auto,
+            is_automatic: fit == PageFit::Auto,
             overhang: warped.overhang,
             stays,
             is_blank: warped.blank,
-            arrivals: at.map(|at| warped.warnings.remove(at)),
+            arrivals: arrivals.map(|i| warped.warnings.remove(i)),
         }
     }
 
     /// Reports that `--fit auto` has changed the page, or that `--fit shrink` keeps the result on it.
     pub fn note(&self) -> Option<String> {
-        if let Some(by) = self.shrunk {
-            return Some(match three_figures(100.0 * by).as_str() {
+        if let Some(scale) = self.shrunk {
+            return Some(match three_figures(100.0 * scale).as_str() {
                 "100" => "the result is moved back onto its page".to_owned(),
-                by => format!("the result is scaled to {by} % and moved back onto its page"),
+                percent => format!("the result is scaled to {percent} % and moved back onto its page"),
             });
         }
-        let [before, after] = self.change.filter(|_| self.by_itself)?;
+        let [before, after] = self.change.filter(|_| self.is_automatic)?;
         let size = |r: Rect| format!("{} × {}", trimmed(r.width(), 2), trimmed(r.height(), 2));
         let (old, new) = (size(before), size(after));
         Some(if before.union(after) == after {
             format!("the page grew from {old} to {new}; --fit none keeps it")
         } else {
-            let at = |r: Rect| format!("{},{}", trimmed(r.x0, 2), trimmed(r.y0, 2));
+            let corner = |r: Rect| format!("{},{}", trimmed(r.x0, 2), trimmed(r.y0, 2));
+            let (old_corner, new_corner) = (corner(before), corner(after));
             format!(
-                "nothing is left on the page, {old} at {}, so it moved to the artwork, {new} at {}; --fit none keeps it",
-                at(before),
-                at(after)
+                "nothing is left on the page, {old} at {old_corner}, so it moved to the artwork, {new} at {new_corner}; --fit none keeps it"
             )
         })
     }
 
-    /// The warnings about the page.
+    /// Returns the warnings about the page.
     pub fn warnings(&self) -> Vec<String> {
         let arrivals = self.arrivals.as_ref().map(ToString::to_string);
         let overhang = self.overhang.filter(|_| !self.is_blank).map(|o| overhang(o, self.stays));
@@ -148,11 +148,13 @@ fn overhang(o: Overhang, stays: Option<&str>) -> String {
 /// The changes of the pages of a batch: one warning of each kind for all.
 #[derive(Debug, Default)]
 pub struct PageCounts {
-    past: usize,
+    /// The number of inputs whose artwork extends past the page.
+    overhangs: usize,
     /// The largest share of the page's size by which artwork extends past it, with the input concerned.
     most: Option<(f64, String)>,
     /// The number of inputs without anything on their page, and the first of them.
     blank: (usize, Option<String>),
+    /// The number of inputs where artwork has come onto the page, and the first of them.
     arrivals: (usize, Option<String>),
 }
 
@@ -160,7 +162,7 @@ impl PageCounts {
     /// Adds the input `file` to the counts.
     pub fn add(&mut self, news: &PageNews, file: &str) {
         if let Some(o) = news.overhang {
-            self.past += 1;
+            self.overhangs += 1;
             if self.most.as_ref().is_none_or(|(most, _)| o.share > *most) {
                 self.most = Some((o.share, file.to_owned()));
             }
@@ -178,30 +180,27 @@ impl PageCounts {
         self.blank.0 > 0
     }
 
-    /// The warnings about a batch of `inputs` files.
+    /// Returns the warnings about a batch of `inputs` files.
     pub fn warnings(&self, inputs: usize) -> Vec<String> {
-        let past = self.most.as_ref().map(|(share, file)| {
+        let overhangs = self.most.as_ref().map(|(share, file)| {
             format!(
                 "the artwork of {} of {inputs} inputs extends past the page, most that of {file} ({} %); --fit grow enlarges the pages, \
                  --fit page fits them to the artwork, --fit shrink scales the results back into them",
-                self.past,
+                self.overhangs,
                 three_figures(100.0 * share)
             )
         });
-        let (blank, arrivals) = (&self.blank, &self.arrivals);
-        let blank = blank.1.as_ref().map(|file| {
+        let (count, first) = &self.blank;
+        let blank = first.as_ref().map(|file| {
             format!(
-                "nothing is on the page of {} of {inputs} results, such as that of {file}; --fit page sets the pages to the artwork",
-                blank.0
+                "nothing is on the page of {count} of {inputs} results, such as that of {file}; --fit page sets the pages to the artwork"
             )
         });
-        let arrivals = arrivals.1.as_ref().map(|file| {
-            format!(
-                "in {} of {inputs} inputs, such as {file}, shapes that lay off the page have moved onto it",
-                arrivals.0
-            )
+        let (count, first) = &self.arrivals;
+        let arrivals = first.as_ref().map(|file| {
+            format!("in {count} of {inputs} inputs, such as {file}, shapes that lay off the page have moved onto it")
         });
-        [past, blank, arrivals].into_iter().flatten().collect()
+        [overhangs, blank, arrivals].into_iter().flatten().collect()
     }
 }
 

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 /// Most characters of a message that are shown; an id or name in it can be as long as its file.
 const LONGEST: usize = 2000;
-/// Number of these characters before the gap. The end of a message is kept, since it tells what to do.
+/// Number of these characters before the gap. The others are from the end of the message, which tells what to do.
 const HEAD: usize = 1400;
 
 /// Prepares a name for a table: control characters become escapes.
@@ -60,9 +60,8 @@ fn escaped(text: &str, is_escaped: fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Formats a positive number with three significant figures.
+/// Formats a positive number with three significant figures, or with twelve decimals if it is tiny.
 pub(crate) fn three_figures(v: f64) -> String {
-    /// Enough for the smallest page.
     const MOST_DECIMALS: f64 = 12.0;
     trimmed(v, (2.0 - v.log10().floor()).clamp(0.0, MOST_DECIMALS) as usize)
 }

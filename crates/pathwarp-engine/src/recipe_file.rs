@@ -22,6 +22,7 @@ use crate::failure::Failure;
 use crate::input::{split_reference, unreadable};
 use crate::options::Given;
 use crate::references;
+use crate::steps::INVERSE;
 use pathwarp::param::{Args, Kind, Param};
 use pathwarp::recipe::{Recipe, Step};
 use serde::{Deserialize, Serialize};
@@ -31,9 +32,8 @@ use toml::Value;
 /// The version of the format.
 const VERSION: i64 = 1;
 
-/// Keys of a step that are not parameters of its deformation.
+/// Keys of a step that, like [`INVERSE`], are not parameters of its deformation.
 const DEFORMATION: &str = "deformation";
-const INVERSE: &str = "inverse";
 const SELECT: &str = "select";
 const EXCLUDE: &str = "exclude";
 
@@ -66,8 +66,7 @@ pub fn read(catalogue: &dyn Catalogue, file: &Path, external: bool) -> Result<Sa
         return Err(Failure::Input(format!("{name} is a drawing, not a recipe; write: run RECIPE.toml {name}")));
     }
     let text = String::from_utf8(bytes).map_err(|_| Failure::file(file, "is no recipe: it is not text"))?;
-    let place = Folder { path: file.parent().unwrap_or(Path::new("")), external };
-    parse(catalogue, &text, &place).map_err(|e| Failure::file(file, e))
+    from_text(catalogue, &text, file.parent().unwrap_or(Path::new("")), external).map_err(|e| Failure::file(file, e))
 }
 
 /// Reads a recipe embedded in a drawing's file. Relative paths refer to `folder`; absolute ones are allowed only if `external`.
@@ -99,19 +98,19 @@ fn parse(catalogue: &dyn Catalogue, text: &str, folder: &Folder<'_>) -> Result<S
     }
     let mut options = Given::default();
     for (name, value) in &file.options {
-        let texts =
-            texts(value).ok_or_else(|| format!("[options] {name}: must be a text, number, switch or list of them"))?;
+        let words = as_typed(value).ok_or_else(|| format!("[options] {name}: {MUST_BE_TYPED}"))?;
         // `false` leaves an option at its default.
-        for text in texts.iter().filter(|t| *t != "false") {
-            options.push(name, text).map_err(|e| format!("[options] {e}"))?;
+        for word in words.iter().filter(|word| *word != "false") {
+            options.push(name, word).map_err(|e| format!("[options] {e}"))?;
         }
     }
-    let step = |(i, t): (usize, &toml::Table)| step(catalogue, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
+    let step =
+        |(i, t): (usize, &toml::Table)| parse_step(catalogue, t, folder).map_err(|e| format!("step {}: {e}", i + 1));
     let steps: Result<Vec<Step>, String> = file.step.iter().enumerate().map(step).collect();
     Ok(SavedRecipe { recipe: Recipe { steps: steps? }, options })
 }
 
-fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
+fn parse_step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> Result<Step, String> {
     let name = table.get(DEFORMATION).and_then(Value::as_str).ok_or("has no `deformation = \"NAME\"`")?;
     let infos = catalogue.infos();
     let known = infos.iter().map(|i| i.name);
@@ -133,8 +132,8 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
                 return Err(format!("{key} is for drawings; a step holds for the whole of a solid"));
             }
             SELECT | EXCLUDE => {
-                let list = if key == SELECT { &mut step.select } else { &mut step.exclude };
-                *list = texts(value).ok_or_else(|| format!("{key}: must be a text or a list of them"))?;
+                let selectors = if key == SELECT { &mut step.select } else { &mut step.exclude };
+                *selectors = as_typed(value).ok_or_else(|| format!("{key}: must be a text or a list of them"))?;
             }
             key => {
                 let params = info.params;
@@ -142,16 +141,15 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
                     let known: Vec<_> = params.iter().map(|p| p.name).collect();
                     format!("{name} has no parameter `{key}`; its parameters are {}", known.join(", "))
                 })?;
-                for v in texts(value).ok_or_else(|| format!("{key}: must be a text, number, switch or list of them"))? {
+                for v in as_typed(value).ok_or_else(|| format!("{key}: {MUST_BE_TYPED}"))? {
                     if param.kind == Kind::Flag && v == "false" {
                         continue;
                     }
                     if param.kind == Kind::Save {
-                        return Err(format!(
-                            "{key} is not for recipes, which write no files; give it on the command line"
-                        ));
+                        let advice = "give it on the command line";
+                        return Err(format!("{key} is not for recipes, which write no files; {advice}"));
                     }
-                    step.args.push(key, from_folder(param, v, folder).map_err(|e| format!("{key}: {e}"))?);
+                    step.args.push(key, found_from(folder, param, v).map_err(|e| format!("{key}: {e}"))?);
                 }
             }
         }
@@ -159,9 +157,12 @@ fn step(catalogue: &dyn Catalogue, table: &toml::Table, folder: &Folder<'_>) -> 
     Ok(step)
 }
 
-/// Converts the values of a key to words as typed on a command line.
-fn texts(value: &Value) -> Option<Vec<String>> {
-    let text = |v: &Value| match v {
+/// The problem of a value for which [`as_typed`] returns `None`.
+const MUST_BE_TYPED: &str = "must be a text, number, switch or list of them";
+
+/// Converts the values of a key to words as typed on a command line; `None` if that is impossible.
+fn as_typed(value: &Value) -> Option<Vec<String>> {
+    let word = |v: &Value| match v {
         Value::String(s) => Some(s.clone()),
         Value::Integer(i) => Some(i.to_string()),
         Value::Float(f) => Some(f.to_string()),
@@ -169,8 +170,8 @@ fn texts(value: &Value) -> Option<Vec<String>> {
         _ => None,
     };
     match value {
-        Value::Array(list) => list.iter().map(text).collect(),
-        v => text(v).map(|v| vec![v]),
+        Value::Array(list) => list.iter().map(word).collect(),
+        v => word(v).map(|v| vec![v]),
     }
 }
 
@@ -185,23 +186,22 @@ fn names_file(param: &Param, value: &str, folder: &Path) -> bool {
 }
 
 /// Makes the path in a value relative to the current folder. The file must be a regular one, and the path relative unless `external`.
-fn from_folder(param: &Param, value: String, folder: &Folder<'_>) -> Result<String, String> {
+fn found_from(folder: &Folder<'_>, param: &Param, value: String) -> Result<String, String> {
     if !names_file(param, &value, folder.path) {
         return Ok(value);
     }
     let path = Path::new(&value);
     if (path.is_absolute() || path.has_root()) && !folder.external {
-        return Err(format!(
-            "`{value}` is absolute; name it relative to the recipe, or allow it with --allow-external"
-        ));
+        let advice = "name it relative to the recipe, or allow it with --allow-external";
+        return Err(format!("`{value}` is absolute; {advice}"));
     }
-    let placed = folder.path.join(path);
-    let file = if placed.exists() { placed.clone() } else { split_reference(&placed.to_string_lossy()).0 };
+    let from_here = folder.path.join(path);
+    let file = if from_here.exists() { from_here.clone() } else { split_reference(&from_here.to_string_lossy()).0 };
     // A missing file is reported where it is read.
     if file.exists() && !file.is_file() {
         return Err(format!("`{value}` is not a regular file"));
     }
-    Ok(placed.display().to_string())
+    Ok(from_here.display().to_string())
 }
 
 /// Returns the text of a recipe file in `folder` with these steps and the options that recipes store.
@@ -212,21 +212,21 @@ pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: 
     let mut file =
         RecipeFile { pathwarp: VERSION, solid: catalogue.is_solid(), options: toml::Table::new(), step: Vec::new() };
     for (name, values) in given.stored() {
-        file.options.insert(name.to_owned(), value(values));
+        file.options.insert(name.to_owned(), toml_value(values));
     }
-    for s in &recipe.steps {
-        let mut t = toml::Table::new();
-        t.insert(DEFORMATION.into(), Value::String(s.deformation.clone()));
-        if s.inverse {
-            t.insert(INVERSE.into(), Value::Boolean(true));
+    for step in &recipe.steps {
+        let mut table = toml::Table::new();
+        table.insert(DEFORMATION.into(), Value::String(step.deformation.clone()));
+        if step.inverse {
+            table.insert(INVERSE.into(), Value::Boolean(true));
         }
-        for (key, selectors) in [(SELECT, &s.select), (EXCLUDE, &s.exclude)] {
+        for (key, selectors) in [(SELECT, &step.select), (EXCLUDE, &step.exclude)] {
             if !selectors.is_empty() {
-                t.insert(key.into(), Value::Array(selectors.iter().cloned().map(Value::String).collect()));
+                table.insert(key.into(), Value::Array(selectors.iter().cloned().map(Value::String).collect()));
             }
         }
-        let params = catalogue.info(&s.deformation).map_or(&[][..], |i| i.params);
-        for (name, values) in s.args.iter() {
+        let params = catalogue.info(&step.deformation).map_or(&[][..], |i| i.params);
+        for (name, values) in step.args.iter() {
             let param = params.iter().find(|p| p.name == name);
             if param.is_some_and(|p| p.kind == Kind::Save) {
                 continue;
@@ -237,9 +237,9 @@ pub fn write(catalogue: &dyn Catalogue, recipe: &Recipe, given: &Given, folder: 
                 }
                 _ => v.clone(),
             });
-            t.insert(name.to_owned(), value(placed.collect()));
+            table.insert(name.to_owned(), toml_value(placed.collect()));
         }
-        file.step.push(t);
+        file.step.push(table);
     }
     toml::to_string(&file).map_err(|e| Failure::Input(e.to_string()))
 }
@@ -268,15 +268,10 @@ fn relative(file: &Path, folder: &Path) -> String {
 }
 
 /// Converts typed values to TOML: a single one to a string or `true`, several to a list.
-fn value(mut values: Vec<String>) -> Value {
-    match values.pop() {
-        Some(only) if values.is_empty() => {
-            if only == "true" {
-                Value::Boolean(true)
-            } else {
-                Value::String(only)
-            }
-        }
-        last => Value::Array(values.into_iter().chain(last).map(Value::String).collect()),
+fn toml_value(values: Vec<String>) -> Value {
+    match &values[..] {
+        [only] if only == "true" => Value::Boolean(true),
+        [only] => Value::String(only.clone()),
+        _ => Value::Array(values.into_iter().map(Value::String).collect()),
     }
 }

@@ -15,11 +15,11 @@ use std::path::{Path, PathBuf};
 
 /// Looks up every file that a recipe refers to. References to the input document, `#NAME`, stay open.
 pub fn resolve_files(catalogue: &dyn Catalogue, recipe: &mut Recipe, reading: &Reading) -> Result<(), Failure> {
-    let outside =
-        |reference: &str| names_file(reference, HERE.as_ref()).then(|| Ok(found(reference, reading)?.0)).transpose();
+    let in_file =
+        |reference: &str| names_file(reference, HERE.as_ref()).then(|| Ok(look_up(reference, reading)?.0)).transpose();
     for step in &mut recipe.steps {
         let Some(info) = catalogue.info(&step.deformation) else { continue };
-        let paths = step.args.resolve_paths(info.params, outside);
+        let paths = step.args.resolve_paths(info.params, in_file);
         let all = paths.and_then(|()| step.args.resolve_files(info.params, read_data_file));
         all.map_err(Failure::of_recipe)?;
     }
@@ -35,8 +35,8 @@ pub(crate) fn resolve_names(
 ) -> Result<Vec<String>, Error> {
     let mut guides = Vec::new();
     for step in &mut recipe.steps {
-        let Some(e) = registry.get(&step.deformation) else { continue };
-        step.args.resolve_paths(e.info().params, |reference| {
+        let Some(deformation) = registry.get(&step.deformation) else { continue };
+        step.args.resolve_paths(deformation.info().params, |reference| {
             let name = reference.strip_prefix('#').unwrap_or(reference);
             let outline = match in_input(name) {
                 Err(_) if is_shape(reference) => return Ok(None),
@@ -89,12 +89,12 @@ pub const HERE: &str = "";
 
 /// Looks up the path that `FILE#NAME` or `FILE` names, and scales it to px.
 pub fn in_px(reference: &str, reading: &Reading) -> Result<Outline, Error> {
-    let (outline, to_px) = found(reference, reading)?;
+    let (outline, to_px) = look_up(reference, reading)?;
     Ok(outline.transformed(to_px))
 }
 
-/// Returns the outline of a reference, and the map from its user units to px.
-fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
+/// Returns the outline that a reference to a file names, and the map from its user units to px.
+fn look_up(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error> {
     let (file, name) = split_reference(reference);
     if let Some(outline) = outline(&file, name, &reading.limits)? {
         return Ok((outline, Affine::IDENTITY));
@@ -114,7 +114,7 @@ fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error>
         Error::input(shown.to_string(), problem)
     })?;
     if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
-        let outline = points(&bytes).map_err(|e| Error::input(reference, e))?;
+        let outline = polylines(&bytes).map_err(|e| Error::input(reference, e))?;
         return Ok((outline, Affine::IDENTITY));
     }
     let doc = Document::read(&bytes, &shown.to_string(), &reading.read_options());
@@ -139,12 +139,12 @@ fn found(reference: &str, reading: &Reading) -> Result<(Outline, Affine), Error>
 }
 
 /// Parses a JSON file of points: `[[x,y],…]`, or rows of them. Each row is a polyline.
-fn points(bytes: &[u8]) -> Result<Outline, String> {
+fn polylines(bytes: &[u8]) -> Result<Outline, String> {
     #[derive(serde::Deserialize)]
     #[serde(untagged)]
     enum PointList {
-        Points(Vec<[f64; 2]>),
-        Rows(Vec<Vec<[f64; 2]>>),
+        Points(Vec<(f64, f64)>),
+        Rows(Vec<Vec<(f64, f64)>>),
     }
     let list: PointList = serde_json::from_slice(bytes)
         .map_err(|e| format!("is not a JSON list of points [[x,y],…] or of rows of points: {e}"))?;
@@ -152,8 +152,8 @@ fn points(bytes: &[u8]) -> Result<Outline, String> {
         PointList::Points(p) => vec![p],
         PointList::Rows(r) => r,
     };
-    let subpaths = rows.iter().flat_map(|r| {
-        let points: Vec<Point> = r.iter().map(|[x, y]| Point::new(*x, *y)).collect();
+    let subpaths = rows.into_iter().flat_map(|row| {
+        let points: Vec<Point> = row.into_iter().map(Point::from).collect();
         Outline::from_points(&points, false).subpaths
     });
     Ok(Outline { subpaths: subpaths.collect() })

@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// The report of one input file.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct FileReport {
     /// The name of the file.
     pub file: String,
@@ -50,21 +50,7 @@ pub struct FileReport {
 impl FileReport {
     /// Reports an input that could not be warped.
     pub fn failed(file: String, error: String) -> Self {
-        Self {
-            file,
-            output: None,
-            error: Some(error),
-            tolerance: None,
-            frame: None,
-            selections: Vec::new(),
-            baseline: None,
-            page: None,
-            shapes: Vec::new(),
-            skipped: Vec::new(),
-            kerf: None,
-            proportions: None,
-            warnings: Vec::new(),
-        }
+        Self { file, error: Some(error), ..Self::default() }
     }
 
     /// Returns `true` if a shape was skipped or missed the tolerance.
@@ -113,13 +99,13 @@ impl Fold {
     }
 }
 
-/// Serializes without usual numbers and empty texts. Infinite numbers are unknown, and null in JSON.
+/// Leaves out what nearly all shapes have in common. An infinite number stands for an unknown one, and is null in JSON.
 impl Serialize for ReportedShape {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let ShapeReport { id, copies, path, paint_residual, pictures, stroke_error, outlined_strokes, united, .. } =
             &self.shape;
-        let place = |p: &Point| [p.x, p.y];
-        let mut map = to.serialize_map(None)?;
+        let coordinates = |p: &Point| [p.x, p.y];
+        let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", id)?;
         if let Some(steps) = &self.steps {
             map.serialize_entry("steps", steps)?;
@@ -136,10 +122,10 @@ impl Serialize for ReportedShape {
         map.serialize_entry("assurance", assurance_word(path.assurance))?;
         map.serialize_entry("folds", &self.fold.count)?;
         if let Some(at) = &self.fold.at {
-            map.serialize_entry("folded_at", &place(at))?;
+            map.serialize_entry("folded_at", &coordinates(at))?;
         }
         if !path.unresolved.is_empty() {
-            map.serialize_entry("unresolved", &path.unresolved.iter().map(place).collect::<Vec<_>>())?;
+            map.serialize_entry("unresolved", &path.unresolved.iter().map(coordinates).collect::<Vec<_>>())?;
         }
         if let Some(resolution) = path.resolution {
             map.serialize_entry("resolution", &resolution)?;
@@ -181,8 +167,8 @@ impl From<Skipped> for SkippedShape {
 impl fmt::Display for SkippedShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { id, why } = self;
-        let joined = if why.starts_with("only ") { "is warped" } else { "is not warped:" };
-        write!(f, "{id} {joined} {why}")
+        let verb = if why.starts_with("only ") { "is warped" } else { "is not warped:" };
+        write!(f, "{id} {verb} {why}")
     }
 }
 

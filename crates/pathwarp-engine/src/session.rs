@@ -24,6 +24,7 @@ use pathwarp::map::Map;
 use pathwarp::param::Frame;
 use pathwarp::recipe::{BuiltRecipe, Recipe, Step};
 use pathwarp_raster::Picture;
+use pathwarp_svg::engine::CutLine;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -53,9 +54,13 @@ pub struct Ready {
     starts: Vec<Option<Frame>>,
 }
 
-/// The frame of all artwork, and what it depends on: the guides, the edits that are done first, and the first step's baseline.
+/// Most names in a note; the report lists all.
+const NAMED: usize = 5;
+
+/// The frame of all artwork, kept from call to call.
 pub struct Framed {
-    of: (Vec<String>, Vec<Step>, Baseline),
+    /// The guides, the edits that are done first, and the first step's baseline, for which the frame was chosen.
+    chosen_for: (Vec<String>, Vec<Step>, Baseline),
     /// The box that percentages refer to.
     pub frame: Frame,
 }
@@ -81,7 +86,7 @@ pub struct Warped {
 }
 
 /// Warps the content of a file called `name` by a recipe whose file references have been looked up. Linked pictures are looked up beside
-/// `name`; if it is empty, there are none. `destination` decides about links in the result. The switch `stop` ends the work.
+/// `name`; with an empty name, they are not read. `destination` decides about links in the result. The switch `stop` ends the work.
 pub fn warp_bytes(
     registry: &Registry,
     recipe: &Recipe,
@@ -110,20 +115,20 @@ impl Session<'_> {
         let mut recipe = self.recipe.clone();
         let guides = references::resolve_names(self.registry, &mut recipe, |name| artwork.path_named(name))?;
         artwork.remove_guides(guides.clone());
-        let (own, recipe) = edits::divided(&recipe)?;
-        let mut first = [&self.options.edits[..], &own].concat();
-        let edit = first.pop_if(|last| recipe.steps.is_empty() && !is_caption(last));
+        let (edits, recipe) = edits::divided(&recipe)?;
+        let mut edits_before = [&self.options.edits[..], &edits].concat();
+        let edit = edits_before.pop_if(|last| recipe.steps.is_empty() && !is_caption(last));
         let steps = edit.as_ref().map_or(&recipe.steps[..], std::slice::from_ref);
-        artwork.edit_first(&first, steps, self.options)?;
+        artwork.edit_first(&edits_before, steps, self.options)?;
         let baseline_of = |s: &Step| baseline(self.registry, s);
         let baseline = steps.first().map_or(Baseline::None, baseline_of);
-        let known = framed.map(|cache| self.framed(artwork, (guides, first, baseline), cache)).transpose()?;
+        let known = framed.map(|cache| self.framed(artwork, (guides, edits_before, baseline), cache)).transpose()?;
         let is_selective = steps.iter().any(Step::is_selective);
         let mut parts = if is_selective { artwork.divide(steps)? } else { vec![(0..steps.len()).collect()] };
         if edit.is_some() {
             parts.iter_mut().for_each(Vec::clear);
         }
-        let portion = |(k, steps): (usize, Vec<usize>)| Portion { steps, outlines: artwork.outlines(Which::Part(k)) };
+        let portion = |(i, steps): (usize, Vec<usize>)| Portion { steps, outlines: artwork.outlines(Which::Part(i)) };
         let portions: Vec<Portion<'_>> = parts.into_iter().enumerate().map(portion).collect();
         let start = |i: usize| match &known {
             _ if !recipe.starts(i, &portions) => Ok(None),
@@ -133,7 +138,7 @@ impl Session<'_> {
         let starts: Vec<Option<Frame>> = (0..recipe.steps.len()).map(start).collect::<Result<_, Failure>>()?;
         let built = recipe.build_parts(self.registry, &starts, &portions, artwork.budget());
         let built = built.map_err(Failure::of_recipe)?;
-        sound(&built)?;
+        check_maps(&built.whole)?;
         let frame = match known.or_else(|| starts.iter().flatten().next().cloned()) {
             Some(frame) => frame,
             None => self.frame(artwork, Which::All, Baseline::None)?,
@@ -156,14 +161,14 @@ impl Session<'_> {
     fn framed(
         &self,
         artwork: &dyn Artwork,
-        of: (Vec<String>, Vec<Step>, Baseline),
+        chosen_for: (Vec<String>, Vec<Step>, Baseline),
         cache: &mut Option<Framed>,
     ) -> Result<Frame, Failure> {
-        if let Some(framed) = cache.as_ref().filter(|f| f.of == of) {
+        if let Some(framed) = cache.as_ref().filter(|f| f.chosen_for == chosen_for) {
             return Ok(framed.frame.clone());
         }
-        let frame = self.frame(artwork, Which::All, of.2)?;
-        *cache = Some(Framed { of, frame: frame.clone() });
+        let frame = self.frame(artwork, Which::All, chosen_for.2)?;
+        *cache = Some(Framed { chosen_for, frame: frame.clone() });
         Ok(frame)
     }
 
@@ -171,33 +176,25 @@ impl Session<'_> {
     pub fn request<'r>(&'r self, artwork: &dyn Artwork, ready: &'r Ready) -> Result<WarpRequest<'r>, Failure> {
         let (options, painted) = (self.options, artwork.painted_box());
         let edit = ready.edit.as_ref().map(|step| planned(step, options, (painted, &ready.frame), true));
-        let (edit, tolerance, suited) = match edit.transpose()? {
-            Some(Planned { edit, line, tolerance, suited }) => (Some((edit, line)), tolerance, suited),
-            None => (None, options.tolerance_for(painted, &ready.frame)?, options.tolerance.is_none()),
+        let (edit, line, tolerance, suited) = match edit.transpose()? {
+            Some(Planned { edit, line, tolerance, suited }) => (Some(edit), line, tolerance, suited),
+            None => {
+                let tolerance = options.tolerance_for(painted, &ready.frame)?;
+                (None, CutLine::default(), tolerance, options.tolerance.is_none())
+            }
         };
         let (recipe, built) = (self.recipe, &ready.built);
-        let (edit, line) = edit.unzip();
-        let line = line.unwrap_or_default();
-        Ok(WarpRequest {
-            recipe,
-            built,
-            options,
-            tolerance,
-            suited,
-            edit,
-            line,
-            embedded_recipe: None,
-            same_view: false,
-        })
+        let (embedded_recipe, same_view) = (None, false);
+        Ok(WarpRequest { recipe, built, options, tolerance, suited, edit, line, embedded_recipe, same_view })
     }
 
     /// Warps artwork and writes nothing. Messages of the steps name parameters as flags.
     pub fn warp(&self, artwork: &mut dyn FileArtwork, flags: &Flags) -> Result<Warped, Failure> {
         let options = self.options;
         let ready = self.ready(artwork, None)?;
-        let Ready { built, frame: first, starts, .. } = &ready;
+        let Ready { built, frame, starts, .. } = &ready;
         let whole = &built.whole;
-        let seen = artwork.bounding_box(Which::All).is_some();
+        let is_visible = artwork.bounding_box(Which::All).is_some();
         let stretched = stretched(artwork, built);
         let embed = || recipe_file::write(self.registry, self.recipe, self.given, Path::new(""));
         let embedded_recipe = options.embed_recipe.then(embed).transpose()?;
@@ -208,7 +205,8 @@ impl Session<'_> {
         let mut warnings: Vec<String> = in_flags(flags, whole, |e| &e.warnings).chain(warped.warnings).collect();
         warnings.extend(stretched);
         warnings.extend(warped.page.warnings());
-        warnings.extend(ready.edit.as_ref().and_then(|_| vanished(&warped.shapes)));
+        let shapes = || warped.shapes.iter().map(|s| &s.shape);
+        warnings.extend(ready.edit.as_ref().and_then(|_| advice::vanished(shapes())));
         let coarse = too_coarse(options.precision, &warped.shapes);
         let is_coarse = coarse.is_some();
         warnings.extend(coarse);
@@ -217,10 +215,10 @@ impl Session<'_> {
             output: None,
             error: None,
             tolerance: Some(warped.tolerance.unwrap_or(tolerance)),
-            frame: Some(shown(first.rect)),
+            frame: Some(xywh(frame.rect)),
             selections: selections(&ready.recipe, whole),
-            baseline: first.baseline,
-            page: warped.page.change.map(|[_, after]| shown(after)),
+            baseline: frame.baseline,
+            page: warped.page.change.map(|[_, after]| xywh(after)),
             shapes: warped.shapes,
             skipped: warped.skipped,
             kerf: warped.kerf,
@@ -228,14 +226,24 @@ impl Session<'_> {
             warnings,
         };
         let partial = warped.partial || is_coarse || report.is_partial();
-        let is_simplified = ready.edit.as_ref().is_some_and(|e| e.deformation == "simplify") && !options.quiet;
-        let mut notes: Vec<String> = is_simplified.then(|| simplified(&report.shapes)).into_iter().collect();
-        notes.extend(islands(&ready, &report.shapes).filter(|_| !options.quiet));
-        notes.extend(united(&report.shapes).filter(|_| !options.quiet));
-        notes.extend(report.kerf.iter().filter(|_| !options.quiet).map(KerfReport::note));
-        notes.extend(report.proportions.iter().filter(|_| !options.quiet).map(Proportions::note));
-        notes.extend(self.notes(flags, whole, &frames(options.frame, ready.steps(), starts, seen), &report.shapes));
-        notes.extend(filters(&warped.filters).filter(|_| self.options.explain));
+        let mut notes = Vec::new();
+        if !options.quiet {
+            match ready.edit.as_ref().map(|edit| edit.deformation.as_str()) {
+                Some("simplify") => notes.push(simplify_note(&report.shapes)),
+                Some("contour") => notes.extend(islands_note(&report.shapes)),
+                _ => {}
+            }
+            notes.extend(unite_note(&report.shapes));
+            notes.extend(report.kerf.iter().map(KerfReport::note));
+            notes.extend(report.proportions.iter().map(Proportions::note));
+        }
+        if options.explain {
+            notes.extend(frame_notes(options.frame, ready.steps(), starts, is_visible));
+            notes.extend(in_flags(flags, whole, |e| &e.notes));
+            notes.extend(strokes_note(&report.shapes));
+            notes.extend(gradients_note(&report.shapes));
+            notes.extend(filters_note(&warped.filters));
+        }
         Ok(Warped {
             result: warped.result,
             page: warped.page,
@@ -247,56 +255,34 @@ impl Session<'_> {
             partial,
         })
     }
-
-    /// Returns the lines of `--explain`: the decisions made on the user's behalf.
-    fn notes(&self, flags: &Flags, built: &BuiltRecipe, framed: &[String], shapes: &[ReportedShape]) -> Vec<String> {
-        if !self.options.explain {
-            return Vec::new();
-        }
-        let mut notes = framed.to_vec();
-        notes.extend(in_flags(flags, built, |e| &e.notes));
-        notes.extend(strokes(shapes));
-        notes.extend(pictures(shapes));
-        notes
-    }
 }
 
 /// Reports the numbers of nodes before and after simplifying, and the largest error.
-fn simplified(shapes: &[ReportedShape]) -> String {
-    let sum = |of: fn(&ReportedShape) -> usize| shapes.iter().map(of).sum::<usize>();
+fn simplify_note(shapes: &[ReportedShape]) -> String {
+    let sum = |count: fn(&ReportedShape) -> usize| shapes.iter().map(count).sum::<usize>();
     let (before, after) = (sum(|s| s.shape.path.segments_in), sum(|s| s.shape.path.segments_out));
     let error = shapes.iter().map(|s| s.shape.path.max_error).fold(0.0, f64::max);
-    let error =
-        if (1e-3..1e4).contains(&error) || error == 0.0 { format!("{error:.3}") } else { format!("{error:.2e}") };
+    let is_short = (1e-3..1e4).contains(&error) || error == 0.0;
+    let error = if is_short { format!("{error:.3}") } else { format!("{error:.2e}") };
     format!("{before} nodes became {after}, within {error} units of the original")
 }
 
 /// Reports the number of lines around the artwork, if there are several.
-fn islands(ready: &Ready, shapes: &[ReportedShape]) -> Option<String> {
-    let count =
-        shapes.first().filter(|_| ready.edit.as_ref().is_some_and(|e| e.deformation == "contour"))?.shape.copies;
-    (count > 1).then(|| {
-        format!(
-            "{count} lines around {count} islands, which lie further apart than twice the distance; --join bridges them"
-        )
-    })
+fn islands_note(shapes: &[ReportedShape]) -> Option<String> {
+    let count = shapes.first()?.shape.copies;
+    let advice = "which lie further apart than twice the distance; --join bridges them";
+    (count > 1).then(|| format!("{count} lines around {count} islands, {advice}"))
 }
 
 /// Reports which shapes have become one.
-fn united(shapes: &[ReportedShape]) -> Option<String> {
-    const NAMED: usize = 5;
-    let all: Vec<&ReportedShape> = shapes.iter().filter(|s| !s.shape.united.is_empty()).collect();
-    let count: usize = all.iter().map(|s| s.shape.united.len()).sum();
-    let names: Vec<&str> = all.iter().flat_map(|s| &s.shape.united).map(String::as_str).collect();
-    (!all.is_empty()).then(|| format!("{count} shapes became {}: {}", all.len(), listed(&names, NAMED)))
+fn unite_note(shapes: &[ReportedShape]) -> Option<String> {
+    let results: Vec<&ReportedShape> = shapes.iter().filter(|s| !s.shape.united.is_empty()).collect();
+    let names: Vec<&str> = results.iter().flat_map(|s| &s.shape.united).map(String::as_str).collect();
+    let (before, after) = (names.len(), results.len());
+    (after > 0).then(|| format!("{before} shapes became {after}: {}", listed(&names, NAMED)))
 }
 
-/// Warns of shapes of which nothing is left.
-fn vanished(shapes: &[ReportedShape]) -> Option<String> {
-    advice::vanished(shapes.iter().map(|s| &s.shape))
-}
-
-/// Messages of all steps, with parameters as flags.
+/// Returns the messages of all steps, with parameters as flags.
 fn in_flags(
     flags: &Flags,
     built: &BuiltRecipe,
@@ -305,7 +291,7 @@ fn in_flags(
     built.steps.iter().flat_map(move |s| messages(&s.explanation)).map(|m| flags.in_text(m))
 }
 
-/// For the report: the part of the artwork that each step applies to.
+/// Reports the part of the artwork that each step applies to, if they differ.
 fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
     if !recipe.steps.iter().any(Step::is_selective) {
         return Vec::new();
@@ -314,24 +300,24 @@ fn selections(recipe: &Recipe, built: &BuiltRecipe) -> Vec<StepSelection> {
         deformation: step.deformation.clone(),
         select: step.select.clone(),
         exclude: step.exclude.clone(),
-        frame: shown(frame.rect),
+        frame: xywh(frame.rect),
     };
     recipe.steps.iter().zip(&built.frames).map(of_step).collect()
 }
 
-/// Returns the notes about the frames of the steps that no other step precedes.
-fn frames(choice: FrameChoice, steps: &[Step], starts: &[Option<Frame>], seen: bool) -> Vec<String> {
-    let several = steps.iter().any(Step::is_selective);
+/// Describes the frames of the steps that no other step precedes.
+fn frame_notes(choice: FrameChoice, steps: &[Step], starts: &[Option<Frame>], is_visible: bool) -> Vec<String> {
+    let are_selective = steps.iter().any(Step::is_selective);
     let note = |(i, (step, frame)): (usize, (&Step, &Option<Frame>))| {
-        let note = frame_note(choice, frame.as_ref()?, seen);
-        let of = if step.select.is_empty() { String::new() } else { format!(" for {}", step.select.join(", ")) };
-        Some(if several { format!("step {}, {}{of}: {note}", i + 1, step.deformation) } else { note })
+        let note = frame_note(choice, frame.as_ref()?, is_visible);
+        let parts = if step.select.is_empty() { String::new() } else { format!(" for {}", step.select.join(", ")) };
+        Some(if are_selective { format!("step {}, {}{parts}: {note}", i + 1, step.deformation) } else { note })
     };
     steps.iter().zip(starts).enumerate().filter_map(note).collect()
 }
 
-/// Describes the frame: its box, and why it was chosen. `seen` is `true` if any artwork is visible.
-fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
+/// Describes the frame: its box, and why it was chosen. `is_visible` is `true` if any artwork is visible.
+fn frame_note(choice: FrameChoice, frame: &Frame, is_visible: bool) -> String {
     let [x, y] = frame.units_per_px;
     let Rect { x0, y0, .. } = frame.rect;
     let (width, height) = (frame.rect.width(), frame.rect.height());
@@ -339,7 +325,7 @@ fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
         (FrameChoice::Default, Some(_)) => {
             "the artwork is lettering (--frame baseline-ascent), whose baseline lies on the curve".to_owned()
         }
-        (FrameChoice::Default | FrameChoice::Artwork, _) if seen => "the visible artwork".to_owned(),
+        (FrameChoice::Default | FrameChoice::Artwork, _) if is_visible => "the visible artwork".to_owned(),
         (FrameChoice::Default | FrameChoice::Artwork, _) => "the page, as no artwork is visible".to_owned(),
         (FrameChoice::ViewBox, _) => "the page (--frame viewbox)".to_owned(),
         (FrameChoice::Rect(_), _) => "given by --frame".to_owned(),
@@ -354,7 +340,7 @@ fn frame_note(choice: FrameChoice, frame: &Frame, seen: bool) -> String {
 }
 
 /// Counts the strokes that stayed strokes, with their error, and those that became outlines.
-fn strokes(shapes: &[ReportedShape]) -> Option<String> {
+fn strokes_note(shapes: &[ReportedShape]) -> Option<String> {
     let outlined: usize = shapes.iter().map(|s| s.shape.outlined_strokes).sum();
     let scaled = || shapes.iter().filter_map(|s| Some((s.shape.stroke_error?, &s.shape.id)));
     let worst = scaled().reduce(|a, b| if b.0 > a.0 { b } else { a });
@@ -375,10 +361,11 @@ impl Ready {
     /// Returns the outcome of a warp. If the map of a plug-in has failed meanwhile, that failure takes precedence over any result or other
     /// error. An error where the map is undefined is completed by the operation that is undefined there, if a step knows it.
     pub fn checked<T>(&self, outcome: Result<T, Failure>) -> Result<T, Failure> {
-        sound(&self.built)?;
+        check_maps(&self.built.whole)?;
         outcome.map_err(|failure| self.explained(failure))
     }
 
+    /// Adds the undefined operation to an error where the map is undefined.
     fn explained(&self, failure: Failure) -> Failure {
         let Some((shape, at)) = failure.infinity() else { return failure };
         let reason = |part: &BuiltRecipe| {
@@ -389,29 +376,26 @@ impl Ready {
                 why
             })
         };
-        match self.built.parts.iter().find_map(reason) {
-            Some(why) => {
-                let place = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
-                Failure::Geometry(format!("{place}; change the formula, or leave this shape out (--on-error skip)"))
-            }
-            None => failure,
-        }
+        let Some(why) = self.built.parts.iter().find_map(reason) else { return failure };
+        let problem = format!("{shape} cannot be warped: at {:.4},{:.4} {why}", at.x, at.y);
+        Failure::Geometry(format!("{problem}; change the formula, or leave this shape out (--on-error skip)"))
     }
 }
 
-fn sound(built: &BuiltParts) -> Result<(), Failure> {
-    built.whole.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
+/// Returns the failure of a plug-in or function, whose map gives meaningless numbers from then on.
+pub(crate) fn check_maps(built: &BuiltRecipe) -> Result<(), Failure> {
+    built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))
 }
 
-/// A box for reports: x, y, width and height.
-fn shown(r: Rect) -> [f64; 4] {
+/// Returns x, y, width and height of a box, for reports.
+fn xywh(r: Rect) -> [f64; 4] {
     [r.x0, r.y0, r.width(), r.height()]
 }
 
 /// Warns of artwork that the page cuts off and the map stretches.
 fn stretched(artwork: &dyn Artwork, built: &BuiltParts) -> Vec<String> {
-    let of_part = |(k, part): (usize, &BuiltRecipe)| {
-        let (which, frame) = (Which::Part(k), part.frames.first()?.rect);
+    let of_part = |(i, part): (usize, &BuiltRecipe)| {
+        let (which, frame) = (Which::Part(i), part.frames.first()?.rect);
         let uncut = artwork.bounding_box(which).filter(|b| *b == frame).and_then(|b| artwork.uncut_box(which, b))?;
         Some(advice::stretched(uncut, stretch_beyond(&part.map, frame, uncut)?))
     };
@@ -431,12 +415,14 @@ fn baseline(registry: &Registry, step: &Step) -> Baseline {
 
 /// Warns if the decimals are too few for the tolerance.
 fn too_coarse(precision: Option<u8>, shapes: &[ReportedShape]) -> Option<String> {
+    /// Share of the tolerance from which an error counts; a little more than one, since errors are estimates.
+    const EXCESS: f64 = 1.001;
     let worst = shapes.iter().map(|s| &s.shape.path).max_by(|a, b| a.share.total_cmp(&b.share))?;
-    let (n, off, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
-    (worst.share > 1.001).then(|| {
+    let (decimals, error, tolerance) = (precision?, worst.max_error, worst.max_error / worst.share);
+    (worst.share > EXCESS).then(|| {
         format!(
-            "--precision {n} is too coarse for the tolerance of {tolerance:.3e}: with the rounding, shapes are off by up to {off:.3e}; \
-             give more decimals, or a larger --tolerance"
+            "--precision {decimals} is too coarse for the tolerance of {tolerance:.3e}: with the rounding, shapes are off by up to \
+             {error:.3e}; give more decimals, or a larger --tolerance"
         )
     })
 }
@@ -454,26 +440,26 @@ pub(super) fn stretch_beyond(map: &dyn Map, frame: Rect, uncut: Rect) -> Option<
     if map.prefers_batches() {
         return None;
     }
-    let size = frame.size().to_vec2().hypot();
-    let of_frame = image_size(map, frame)? / size;
-    let stretch = edge(uncut).filter_map(|p| {
-        let inside = Point::new(p.x.clamp(frame.x0, frame.x1), p.y.clamp(frame.y0, frame.y1));
-        let length = p.distance(inside);
-        (length > FAR * size).then(|| map.point(p).distance(map.point(inside)) / length / of_frame)
+    let diagonal = frame.size().to_vec2().hypot();
+    let frame_stretch = image_diagonal(map, frame)? / diagonal;
+    let ratio = edge_points(uncut).filter_map(|p| {
+        let nearest = Point::new(p.x.clamp(frame.x0, frame.x1), p.y.clamp(frame.y0, frame.y1));
+        let length = p.distance(nearest);
+        (length > FAR * diagonal).then(|| map.point(p).distance(map.point(nearest)) / length / frame_stretch)
     });
-    let most = stretch.filter(|s| s.is_finite()).fold(0.0, f64::max);
+    let most = ratio.filter(|r| r.is_finite()).fold(0.0, f64::max);
     (most > STRETCHED).then_some(most)
 }
 
-/// The diagonal of the image of a box under a map.
-fn image_size(map: &dyn Map, rect: Rect) -> Option<f64> {
-    let image = edge(rect).map(|p| map.point(p)).filter(|p| p.is_finite());
+/// Returns the diagonal of the image of a box under a map, if it has a size.
+fn image_diagonal(map: &dyn Map, rect: Rect) -> Option<f64> {
+    let image = edge_points(rect).map(|p| map.point(p)).filter(|p| p.is_finite());
     let bounds = image.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b))?;
     Some(bounds.size().to_vec2().hypot()).filter(|d| *d > 0.0)
 }
 
-/// Samples along the sides of a box.
-fn edge(r: Rect) -> impl Iterator<Item = Point> {
+/// Returns points along the sides of a box.
+fn edge_points(r: Rect) -> impl Iterator<Item = Point> {
     (0..SAMPLES).flat_map(move |i| {
         let t = f64::from(i) / f64::from(SAMPLES);
         let (x, y) = (r.x0 + t * r.width(), r.y0 + t * r.height());
@@ -487,21 +473,19 @@ fn edge(r: Rect) -> impl Iterator<Item = Point> {
 }
 
 /// Names the shapes whose gradients became pictures.
-fn pictures(shapes: &[ReportedShape]) -> Option<String> {
-    const NAMED: usize = 5;
+fn gradients_note(shapes: &[ReportedShape]) -> Option<String> {
     let pictured: Vec<&str> = shapes.iter().filter(|s| s.shape.pictures > 0).map(|s| s.shape.id.as_str()).collect();
-    let named = listed(&pictured, NAMED);
-    (!pictured.is_empty()).then(|| format!("gradients: pictures on {named} (--gradients fit prevents that)"))
+    let names = listed(&pictured, NAMED);
+    (!pictured.is_empty()).then(|| format!("gradients: pictures on {names} (--gradients fit prevents that)"))
 }
 
 /// Names the elements whose filters became pictures, and those whose filters kept their affine fits.
-fn filters([pictured, kept]: &[Vec<String>; 2]) -> Option<String> {
-    const NAMED: usize = 5;
-    let said = |of: &Vec<String>, before: &str, after: &str| {
-        (!of.is_empty()).then(|| format!("{before} {}{after}", listed(of, NAMED)))
+fn filters_note([pictured, kept]: &[Vec<String>; 2]) -> Option<String> {
+    let note = |names: &Vec<String>, before: &str, after: &str| {
+        (!names.is_empty()).then(|| format!("{before} {}{after}", listed(names, NAMED)))
     };
-    let pictures = said(pictured, "pictures on", " (--filters affine prevents that)");
-    let all: Vec<String> = pictures.into_iter().chain(said(kept, "affine fits on", "")).collect();
+    let pictures = note(pictured, "pictures on", " (--filters affine prevents that)");
+    let all: Vec<String> = pictures.into_iter().chain(note(kept, "affine fits on", "")).collect();
     (!all.is_empty()).then(|| format!("filters: {}", all.join("; ")))
 }
 

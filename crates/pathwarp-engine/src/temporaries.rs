@@ -76,7 +76,7 @@ pub fn protect_by(protect: fn()) {
     let _ = PROTECT.set(protect);
 }
 
-/// Keeps the handler waiting until the guard is dropped.
+/// Keeps an interruption waiting until the guard is dropped.
 pub(crate) fn hold() -> RwLockReadGuard<'static, ()> {
     GATE.read().unwrap_or_else(PoisonError::into_inner)
 }
@@ -102,6 +102,7 @@ pub fn remove_all_and(begin: impl FnOnce(), end: impl FnOnce()) {
     end();
 }
 
+/// The prefix of the names of all temporary files: `.pathwarp-MACHINE-PROCESS-…`.
 const PREFIX: &str = ".pathwarp-";
 
 /// The prefix of the names of this run's temporary files.
@@ -128,13 +129,13 @@ pub(crate) fn remove_from(folder: &Path) {
     }
 }
 
+/// Returns `true` if a process of this machine that has ended made the file called `name`.
 fn is_leftover(name: &OsStr) -> bool {
     let process = || {
-        let own = name.to_str()?.strip_prefix(PREFIX)?;
-        let (process, _) = own.strip_prefix(&machine())?.strip_prefix('-')?.split_once('-')?;
-        process.parse().ok()
+        let rest = name.to_str()?.strip_prefix(PREFIX)?.strip_prefix(&machine())?;
+        rest.strip_prefix('-')?.split_once('-')?.0.parse().ok()
     };
-    process().is_some_and(|p: i32| !is_running(p))
+    process().is_some_and(|process: i32| !is_running(process))
 }
 
 /// Returns this machine's name, reduced to letters and digits.

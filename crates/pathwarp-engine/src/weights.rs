@@ -18,7 +18,7 @@ pub const WEIGHTS: [(&str, u16); 9] = [
 
 /// The requested style.
 pub struct Wanted {
-    /// From 1 to 1000; `None` for the font's.
+    /// The weight from 1 to 1000; `None` for the font's.
     pub weight: Option<u16>,
     /// `true` for italic, `false` for upright.
     pub italic: bool,
@@ -38,9 +38,9 @@ impl Wanted {
     pub fn other_weight(&self, font: &Font<'_>) -> Option<f64> {
         let wanted = f64::from(self.weight?);
         let axis = font.axes().into_iter().find(|a| a.tag == "wght");
-        let has = axis.map_or(font.weight(), |a| wanted.max(a.min).min(a.max));
-        let made = self.synthesize && self.weight_lacking(font).is_some();
-        ((has - wanted).abs() >= 1.0 && !made).then_some(has)
+        let nearest = axis.map_or(font.weight(), |a| wanted.max(a.min).min(a.max));
+        let is_synthesized = self.synthesize && self.weight_lacking(font).is_some();
+        ((nearest - wanted).abs() >= 1.0 && !is_synthesized).then_some(nearest)
     }
 
     /// Returns `true` if italics are requested, and the font has neither them nor an axis for them.
@@ -76,28 +76,24 @@ pub fn with_variations<'a>(
 ) -> Result<Vec<Font<'a>>, Failure> {
     let mut out = Vec::with_capacity(fonts.len());
     for (i, font) in fonts.into_iter().enumerate() {
-        let mut own = Vec::new();
+        let mut variations = Vec::new();
         let font = wanted.synthesized(font);
         if let Some(w) = wanted.weight
             && let Some(axis) = font.axes().iter().find(|a| a.tag == "wght")
         {
-            own.extend(Variation::new("wght", f64::from(w).max(axis.min).min(axis.max)).ok());
+            variations.extend(Variation::new("wght", f64::from(w).max(axis.min).min(axis.max)).ok());
         }
         let slant = font.axes().into_iter().find(|a| wanted.italic && matches!(a.tag.as_str(), "ital" | "slnt"));
         if let Some(axis) = slant {
             // An italic axis runs from 0 to 1, a slant axis counts degrees counterclockwise.
             let end = if axis.tag == "ital" { axis.max } else { axis.min };
-            own.extend(Variation::new(&axis.tag, end).ok());
+            variations.extend(Variation::new(&axis.tag, end).ok());
         }
         if i == 0 {
-            own.extend_from_slice(positions);
+            variations.extend_from_slice(positions);
         }
-        let font = if own.is_empty() {
-            font
-        } else {
-            font.with_variations(&own).map_err(|e| Failure::usage(format!("--variation: {e}")))?
-        };
-        out.push(font);
+        let varied = if variations.is_empty() { Ok(font) } else { font.with_variations(&variations) };
+        out.push(varied.map_err(|e| Failure::usage(format!("--variation: {e}")))?);
     }
     Ok(out)
 }

@@ -64,11 +64,10 @@ impl Error {
         Self::new(ErrorKind::Truncated, offset, format!("{needed}, but only {left} are left"))
     }
 
-    /// Adds to a truncation that the length word of `owner` limits the bytes left.
-    pub(crate) fn limited_by(mut self, length: u64, owner: &str) -> Self {
-        if self.kind == ErrorKind::Truncated {
-            self.problem += &format!(" of the {length} bytes given for {owner}");
-        }
-        self
+    /// Reports damage at a line and a column of a text, which count from 1.
+    pub(crate) fn in_text(text: &str, line: usize, column: usize, problem: impl Into<String>) -> Self {
+        let lines = text.split_inclusive('\n').take(line.saturating_sub(1));
+        let offset = lines.map(str::len).sum::<usize>() + column.saturating_sub(1);
+        Self::damaged(offset as u64, problem)
     }
 }

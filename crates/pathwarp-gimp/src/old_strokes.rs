@@ -15,17 +15,17 @@ pub(crate) const NEW_STROKE: u32 = 3;
 pub(crate) type TypedPoint = (u32, [f64; 2]);
 
 /// Splits the points of a path into strokes. `offset` returns the offset of a point in the file.
-pub(crate) fn strokes(
+pub(crate) fn split_strokes(
     points: &[TypedPoint],
     closed: bool,
     offset: &dyn Fn(usize) -> u64,
 ) -> Result<Vec<Stroke>, Error> {
     let starts = points.iter().enumerate().filter(|(i, (kind, _))| *i == 0 || *kind == NEW_STROKE).map(|(i, _)| i);
-    let starts: Vec<usize> = starts.chain([points.len()]).collect();
-    let mut out = Vec::with_capacity(starts.len());
-    for (k, w) in starts.windows(2).enumerate() {
+    let bounds: Vec<usize> = starts.chain([points.len()]).collect();
+    let mut out = Vec::with_capacity(bounds.len());
+    for w in bounds.windows(2) {
         let run = &points[w[0]..w[1]];
-        let closed = closed || k + 2 < starts.len();
+        let closed = closed || w[1] < points.len();
         for (i, (kind, _)) in run.iter().enumerate() {
             let in_order = match i {
                 0 => matches!(*kind, ANCHOR | NEW_STROKE),
@@ -54,7 +54,7 @@ pub(crate) fn strokes(
 }
 
 /// Lists the points of a stroke in the order of GIMP 1, as a further stroke of a path.
-pub(crate) fn listed(s: &Stroke) -> Vec<TypedPoint> {
+pub(crate) fn list_points(s: &Stroke) -> Vec<TypedPoint> {
     let kind = |i: usize| match i {
         0 => NEW_STROKE,
         i if i % 3 == 0 => ANCHOR,

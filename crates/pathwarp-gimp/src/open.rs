@@ -49,10 +49,10 @@ pub fn salvage_within(mut file: impl Read + Seek, limits: &Limits) -> Result<Sal
         let paths = xcf.records.into_iter().map(|r| r.path).collect();
         return Ok(Salvaged { file: PathFile { kind: kind(xcf.version), size, paths }, damage });
     }
-    let whole = |file| Salvaged { file, damage: None };
+    let undamaged = |file| Salvaged { file, damage: None };
     match first_byte(&head) {
-        Some(b'<') => svg::read(&input.text()?).map(whole),
-        Some(b'{') => point_list::read(&input.text()?).map(whole),
+        Some(b'<') => svg::read(&input.text()?).map(undamaged),
+        Some(b'{') => point_list::read(&input.text()?).map(undamaged),
         _ if head.starts_with(text::FIRST) => {
             let mut file = PathFile { kind: FileKind::Text, size: None, paths: Vec::new() };
             let damage = text::read(&input.text()?, &mut file.paths).err();

@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use pathwarp::Outline;
-use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::{CubicBez, Line, Point};
 use pathwarp::outline::{Seg, Subpath};
 
@@ -116,17 +115,11 @@ pub struct Salvaged {
     pub damage: Option<Error>,
 }
 
-/// The shortest text that parses to a number: in single precision if the number has no more, as in GIMP's files, else in double
-/// precision.
+/// Returns the shortest text that parses to `v`: as an `f32` if `v` is one, as in GIMP's files, else as an `f64`.
 pub(crate) fn shortest(v: f64) -> String {
     let single = v as f32;
     // Adding 0.0 turns -0 into 0.
     if f64::from(single) == v { (single + 0.0).to_string() } else { (v + 0.0).to_string() }
-}
-
-/// Rounds to `decimals` and removes trailing zeros.
-pub(crate) fn rounded(v: f64, decimals: u8) -> String {
-    trimmed(v, usize::from(decimals))
 }
 
 #[cfg(test)]
@@ -165,9 +158,6 @@ mod tests {
             assert_eq!(back as f32, v as f32);
             assert!(back == v || f64::from(v as f32) == v, "{v}");
         }
-        assert_eq!(
-            (shortest(f64::from(12.55f32)), rounded(2.50, 2), rounded(-0.001, 2)),
-            ("12.55".into(), "2.5".into(), "0".into())
-        );
+        assert_eq!(shortest(f64::from(12.55f32)), "12.55");
     }
 }

@@ -46,11 +46,8 @@ struct JsonStroke {
 
 /// Parses a point list.
 pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
-    let file: JsonFile = serde_json::from_str(text).map_err(|e| {
-        let lines = text.split_inclusive('\n').take(e.line().saturating_sub(1));
-        let at = lines.map(str::len).sum::<usize>() + e.column().saturating_sub(1);
-        Error::damaged(at as u64, format!("not a list of GIMP paths: {e}"))
-    })?;
+    let file: JsonFile = serde_json::from_str(text)
+        .map_err(|e| Error::in_text(text, e.line(), e.column(), format!("not a list of GIMP paths: {e}")))?;
     let paths: Result<Vec<GimpPath>, String> = file.paths.into_iter().map(path).collect();
     let size = file.width.zip(file.height).map(|(w, h)| [w, h]);
     Ok(PathFile { kind: FileKind::Json, size, paths: paths.map_err(|e| Error::damaged(0, e))? })
@@ -73,11 +70,8 @@ fn path(p: JsonPath) -> Result<GimpPath, String> {
             return Err(format!("{}: num_points differs from its {} numbers", position(), 2 * points.len()));
         }
         if !points.len().is_multiple_of(3) {
-            return Err(format!(
-                "{}: {} points, not a multiple of three (every anchor has two handles)",
-                position(),
-                points.len()
-            ));
+            let problem = format!("{} points, not a multiple of three (every anchor has two handles)", points.len());
+            return Err(format!("{}: {problem}", position()));
         }
         if points.as_flattened().iter().any(|v| !v.is_finite()) {
             return Err(format!("{}: a coordinate is out of range", position()));
@@ -92,7 +86,7 @@ fn path(p: JsonPath) -> Result<GimpPath, String> {
 /// Writes paths as point lists in JSON. Coordinates are exact.
 #[must_use]
 pub fn to_json(size: Option<[f64; 2]>, paths: &[GimpPath]) -> String {
-    let points = |s: &Stroke| JsonStroke {
+    let stroke = |s: &Stroke| JsonStroke {
         kind: 0,
         closed: s.closed,
         num_points: Some(2 * s.points.len()),
@@ -102,7 +96,7 @@ pub fn to_json(size: Option<[f64; 2]>, paths: &[GimpPath]) -> String {
     let path = |p: &GimpPath| JsonPath {
         name: p.name.clone(),
         visible: p.visible,
-        strokes: p.strokes.iter().map(points).collect(),
+        strokes: p.strokes.iter().map(stroke).collect(),
     };
     let file =
         JsonFile { width: size.map(|s| s[0]), height: size.map(|s| s[1]), paths: paths.iter().map(path).collect() };

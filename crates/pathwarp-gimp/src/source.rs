@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind as FormatError};
 use pathwarp::budget::{Limit, Limits};
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 /// A seekable reader, as a trait object.
 pub(crate) trait ReadSeek: Read + Seek {}
@@ -14,6 +14,15 @@ const CHUNK: usize = 1 << 16;
 enum Backend<'a> {
     File(BufReader<&'a mut dyn ReadSeek>),
     Stream(BufReader<Box<dyn Read + 'a>>),
+}
+
+impl Backend<'_> {
+    fn reader(&mut self) -> &mut dyn BufRead {
+        match self {
+            Self::File(f) => f,
+            Self::Stream(s) => s,
+        }
+    }
 }
 
 /// Returns the length of a file, and rewinds it.
@@ -77,17 +86,13 @@ impl<'a> ByteSource<'a> {
     /// Fills `buffer`. An error at the end of the data names `what`.
     pub(crate) fn bytes(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Error> {
         self.need(buffer.len() as u64, self.at, || format!("{what} needs {} more bytes", buffer.len()))?;
-        let read = match &mut self.backend {
-            Backend::File(f) => f.read_exact(buffer),
-            Backend::Stream(s) => {
-                self.unpacked += buffer.len() as u64;
-                self.limits
-                    .check(Limit::Bytes, self.unpacked as f64)
-                    .map_err(|e| Error::too_large(self.at, "unpacked, its paths take", e.cut_short()))?;
-                s.read_exact(buffer)
-            }
-        };
-        read.map_err(|e| match e.kind() {
+        if let Backend::Stream(_) = self.backend {
+            self.unpacked += buffer.len() as u64;
+            self.limits
+                .check(Limit::Bytes, self.unpacked as f64)
+                .map_err(|e| Error::too_large(self.at, "unpacked, its paths take", e.cut_short()))?;
+        }
+        self.backend.reader().read_exact(buffer).map_err(|e| match e.kind() {
             ErrorKind::UnexpectedEof => {
                 Error::new(FormatError::Truncated, self.at, format!("the file ends inside {what}"))
             }
@@ -115,11 +120,7 @@ impl<'a> ByteSource<'a> {
     pub(crate) fn text(&mut self) -> Result<String, Error> {
         let mut out = Vec::new();
         let max = (self.limits.of(Limit::Bytes) as u64).saturating_add(1);
-        let read = match &mut self.backend {
-            Backend::File(f) => f.take(max).read_to_end(&mut out),
-            Backend::Stream(s) => s.take(max).read_to_end(&mut out),
-        };
-        read.map_err(|e| Error::io(self.at, &e))?;
+        self.backend.reader().take(max).read_to_end(&mut out).map_err(|e| Error::io(self.at, &e))?;
         self.limits
             .check(Limit::Bytes, out.len() as f64)
             .map_err(|e| Error::too_large(self.at, "its text takes", e.cut_short()))?;
@@ -132,11 +133,7 @@ impl<'a> ByteSource<'a> {
 
     /// Returns the next `count` bytes, or fewer at the end of the data, without consuming them.
     pub(crate) fn peek(&mut self, count: usize) -> Result<Vec<u8>, Error> {
-        let buffer = match &mut self.backend {
-            Backend::File(f) => std::io::BufRead::fill_buf(f),
-            Backend::Stream(s) => std::io::BufRead::fill_buf(s),
-        };
-        let buffer = buffer.map_err(|e| Error::io(self.at, &e))?;
+        let buffer = self.backend.reader().fill_buf().map_err(|e| Error::io(self.at, &e))?;
         Ok(buffer[..buffer.len().min(count)].to_vec())
     }
 
@@ -159,10 +156,8 @@ impl<'a> ByteSource<'a> {
                 let skipped = skipped.map_err(|e| Error::io(self.at, &e))?;
                 if skipped < count {
                     let end = self.at + skipped;
-                    return Err(Error::damaged(
-                        self.at,
-                        format!("{what} points to byte {to}, but the data ends at {end}"),
-                    ));
+                    let problem = format!("{what} points to byte {to}, but the data ends at {end}");
+                    return Err(Error::damaged(self.at, problem));
                 }
             }
         }
@@ -178,21 +173,41 @@ impl<'a> ByteSource<'a> {
         self.seek(self.at + count, what)
     }
 
+    /// Runs `read` on the next `length` bytes alone, the length that the file gives for `owner`.
+    pub(crate) fn limited<T>(
+        &mut self,
+        length: u64,
+        owner: &str,
+        read: impl FnOnce(&mut Self) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let file_end = self.end;
+        let end = self.at.saturating_add(length);
+        self.end = end.min(file_end);
+        let out = read(self);
+        self.end = file_end;
+        out.map_err(|mut e| {
+            if e.kind == FormatError::Truncated && end < file_end {
+                e.problem += &format!(" of the {length} bytes given for {owner}");
+            }
+            e
+        })
+    }
+
+    pub(crate) fn array<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Error> {
+        let mut bytes = [0; N];
+        self.bytes(&mut bytes, what)?;
+        Ok(bytes)
+    }
+
     pub(crate) fn u8(&mut self, what: &str) -> Result<u8, Error> {
-        let mut b = [0; 1];
-        self.bytes(&mut b, what)?;
-        Ok(b[0])
+        self.array(what).map(u8::from_be_bytes)
     }
 
     pub(crate) fn u32(&mut self, what: &str) -> Result<u32, Error> {
-        let mut b = [0; 4];
-        self.bytes(&mut b, what)?;
-        Ok(u32::from_be_bytes(b))
+        self.array(what).map(u32::from_be_bytes)
     }
 
     pub(crate) fn u64(&mut self, what: &str) -> Result<u64, Error> {
-        let mut b = [0; 8];
-        self.bytes(&mut b, what)?;
-        Ok(u64::from_be_bytes(b))
+        self.array(what).map(u64::from_be_bytes)
     }
 }

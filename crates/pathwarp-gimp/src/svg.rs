@@ -5,8 +5,9 @@
 //! viewBox avoid any scaling.
 
 use crate::error::Error;
-use crate::path::{FileKind, GimpPath, PathFile, Stroke, rounded, shortest};
+use crate::path::{FileKind, GimpPath, PathFile, Stroke, shortest};
 use pathwarp::Outline;
+use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Point;
 use pathwarp::outline::{Seg, Subpath};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -32,12 +33,8 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
         return Err(Error::damaged(0, "it declares entities or has very many attributes, which GIMP does not write"));
     }
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|e| {
-        let pos = e.pos();
-        let lines = text.split_inclusive('\n').take((pos.row as usize).saturating_sub(1));
-        let at = lines.map(str::len).sum::<usize>() + (pos.col as usize).saturating_sub(1);
-        Error::damaged(at as u64, format!("not valid XML: {e}"))
-    })
+    Document::parse_with_options(text, options)
+        .map_err(|e| Error::in_text(text, e.pos().row as usize, e.pos().col as usize, format!("not valid XML: {e}")))
 }
 
 /// Returns `true` if parsing takes time and memory in proportion to the text: there are no entities, which may expand to entities, and
@@ -45,10 +42,11 @@ fn parse(text: &str) -> Result<Document<'_>, Error> {
 fn is_plain(text: &str) -> bool {
     /// Far more than the six that GIMP writes.
     const MAX_ATTRIBUTES: usize = 1000;
-    let many = |tag: &str| {
+    // Two quotation marks stand for an attribute.
+    let is_long = |tag: &str| {
         tag.len() > MAX_ATTRIBUTES && tag.bytes().filter(|b| matches!(b, b'"' | b'\'')).count() / 2 > MAX_ATTRIBUTES
     };
-    !text.contains("<!ENTITY") && !text.split('<').any(|tag| many(tag.split('>').next().unwrap_or_default()))
+    !text.contains("<!ENTITY") && !text.split('<').any(|tag| is_long(tag.split('>').next().unwrap_or_default()))
 }
 
 /// Returns `true` if an SVG is as GIMP exports it: one or more paths, each with a name and GIMP's stroke and nothing else.
@@ -74,9 +72,7 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
     if !root.has_tag_name((NAMESPACE, "svg")) {
         return Err(Error::damaged(root.range().start as u64, "not an SVG file"));
     }
-    let numbers = |text: &str| -> Vec<f64> {
-        text.split([' ', ',']).filter(|w| !w.is_empty()).filter_map(|w| w.parse().ok()).collect()
-    };
+    let numbers = |text: &str| text.split([' ', ',']).filter_map(|w| w.parse().ok()).collect::<Vec<f64>>();
     let size = match root.attribute("viewBox").map(numbers).as_deref() {
         Some([_, _, w, h]) if [w, h].iter().all(|v| v.is_finite() && **v > 0.0) => Some([*w, *h]),
         _ => None,
@@ -85,11 +81,8 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
     for p in root.children().filter(|n| n.has_tag_name((NAMESPACE, "path"))) {
         let data = p.attribute("d").unwrap_or_default();
         let damaged = |e: &dyn std::fmt::Display| Error::damaged(p.range().start as u64, format!("path data: {e}"));
-        let outline = if data.trim().is_empty() {
-            Outline::default()
-        } else {
-            Outline::from_svg(data).map_err(|e| damaged(&e))?
-        };
+        let data = if data.trim().is_empty() { Ok(Outline::default()) } else { Outline::from_svg(data) };
+        let outline = data.map_err(|e| damaged(&e))?;
         if outline.segs().any(|s| !s.is_finite()) {
             return Err(damaged(&"a coordinate is out of range"));
         }
@@ -105,11 +98,10 @@ pub(crate) fn read(text: &str) -> Result<PathFile, Error> {
 
 /// Recognizes a closed stroke with a single anchor. GIMP omits its `C` command, so its four points read as three lines.
 fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
-    let lines: Option<Vec<Point>> =
-        s.segs.iter().map(|g| if let Seg::Line(l) = g { Some(l.p1) } else { None }).collect();
-    match lines?.as_slice() {
-        [outgoing, incoming, end] if !s.closed && *end == s.start => {
-            let points = [*incoming, s.start, *outgoing].map(|p| [p.x, p.y]).to_vec();
+    match s.segs.as_slice() {
+        [Seg::Line(first), Seg::Line(second), Seg::Line(third)] if !s.closed && third.p1 == s.start => {
+            let [outgoing, incoming] = [first.p1, second.p1];
+            let points = [incoming, s.start, outgoing].map(|p| [p.x, p.y]).to_vec();
             Some(Stroke { closed: true, points })
         }
         _ => None,
@@ -124,8 +116,9 @@ fn single_anchor_loop(s: &Subpath) -> Option<Stroke> {
 #[must_use]
 pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> String {
     let [w, h] = size.map(shortest);
-    let labelled = paths.iter().any(|p| !is_id(&p.name));
-    let inkscape = if labelled { format!("\n     xmlns:inkscape=\"{INKSCAPE}\"") } else { String::new() };
+    // A name that is no id is also written as Inkscape's label.
+    let is_labelled = paths.iter().any(|p| !is_id(&p.name));
+    let inkscape = if is_labelled { format!("\n     xmlns:inkscape=\"{INKSCAPE}\"") } else { String::new() };
     let mut out = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"no\"?>\n<!DOCTYPE svg PUBLIC \"{DOCTYPE}\"\n              \
          \"http://www.w3.org/TR/2001/REC-SVG-20010904/DTD/svg10.dtd\">\n\n<svg xmlns=\"{NAMESPACE}\"{inkscape}\n     \
@@ -144,15 +137,15 @@ pub fn to_svg(size: [f64; 2], paths: &[GimpPath], decimals: Option<u8>) -> Strin
         if !p.visible {
             let _ = write!(out, " {VISIBLE}=\"false\"");
         }
-        let strokes: Vec<String> = p.strokes.iter().map(|s| data(s, decimals)).collect();
+        let strokes: Vec<String> = p.strokes.iter().map(|s| path_data(s, decimals)).collect();
         let _ = writeln!(out, "\n        d=\"{}\" />", strokes.join("\n           "));
     }
     out + "</svg>\n"
 }
 
 /// Formats the path data of a stroke.
-fn data(s: &Stroke, decimals: Option<u8>) -> String {
-    let number = |v: f64| decimals.map_or_else(|| shortest(v), |d| rounded(v, d));
+fn path_data(s: &Stroke, decimals: Option<u8>) -> String {
+    let number = |v: f64| decimals.map_or_else(|| shortest(v), |d| trimmed(v, usize::from(d)));
     let point = |p: Point| format!("{},{}", number(p.x), number(p.y));
     let triples: Vec<[Point; 3]> = s.triples().collect();
     let Some((first, last)) = triples.first().zip(triples.last()) else { return String::new() };

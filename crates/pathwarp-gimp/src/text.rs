@@ -1,7 +1,7 @@
 //! Reads the text format of "Export path" in GIMP 1: records of a name, a count, flags, and one line per point.
 
 use crate::error::{Error, ErrorKind};
-use crate::old_strokes::{self, TypedPoint};
+use crate::old_strokes::{TypedPoint, split_strokes};
 use crate::path::GimpPath;
 
 /// The first bytes of a file in this format.
@@ -9,7 +9,7 @@ pub(crate) const FIRST: &[u8] = b"Name: ";
 
 /// Reads all records. After an error, `paths` holds the records before it.
 pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
-    /// A lower bound on the length of a point's line.
+    /// A lower bound on the length of a point's line, `TYPE: 1 X: 0 Y: 0`.
     const MIN_LINE: u64 = 16;
     let mut at = 0;
     let mut lines = text.split_inclusive('\n').map(|l| {
@@ -48,7 +48,7 @@ pub(crate) fn read(text: &str, paths: &mut Vec<GimpPath>) -> Result<(), Error> {
         }
         if !points.is_empty() {
             let offset = |i: usize| offsets.get(i).copied().unwrap_or(start);
-            let strokes = old_strokes::strokes(&points, closed, &offset)?;
+            let strokes = split_strokes(&points, closed, &offset)?;
             paths.push(GimpPath { name: name.to_owned(), visible: false, strokes });
         }
     }

@@ -1,6 +1,7 @@
 //! Path data as curves: svgtypes parses commands; arcs follow the formulas of SVG's appendix. No code is shared with the program's reader.
 
-use kurbo::{BezPath, CubicBez, PathSeg, Point, Vec2};
+use kurbo::{BezPath, PathSeg, Point, Vec2};
+use std::f64::consts::TAU;
 use svgtypes::{PathParser, PathSegment};
 
 /// A curve over [0, 1].
@@ -20,6 +21,7 @@ pub enum Curve {
 }
 
 impl Curve {
+    /// The point at a parameter, by de Casteljau's algorithm.
     pub fn at(&self, t: f64) -> Point {
         let mix = |a: Point, b: Point| Point::new(a.x * (1.0 - t) + b.x * t, a.y * (1.0 - t) + b.y * t);
         match *self {
@@ -39,21 +41,19 @@ impl Curve {
 
     /// The directions in which the curve starts and ends, of no particular length.
     pub fn directions(&self) -> [Vec2; 2] {
-        let (has_polygon, points): (_, &[Point]) = match self {
-            Self::Line(p) => (true, p),
-            Self::Quad(p) => (true, p),
-            Self::Cubic(p) => (true, p),
-            Self::Arc { ends, .. } => (false, ends),
+        let points: &[Point] = match self {
+            Self::Line(p) => p,
+            Self::Quad(p) => p,
+            Self::Cubic(p) => p,
+            Self::Arc { .. } => return [self.at(1e-4) - self.at(0.0), self.at(1.0) - self.at(1.0 - 1e-4)],
         };
-        if !has_polygon {
-            return [self.at(1e-4) - self.at(0.0), self.at(1.0) - self.at(1.0 - 1e-4)];
-        }
         let (first, last) = (points[0], points[points.len() - 1]);
         let away = points.iter().map(|p| *p - first).find(|v| *v != Vec2::ZERO);
         let into = points.iter().rev().map(|p| last - *p).find(|v| *v != Vec2::ZERO);
         [away.unwrap_or_default(), into.unwrap_or_default()]
     }
 
+    /// The arc of SVG's command `A` from `p` to `q`, or a line without a radius; `None` if the ends coincide.
     fn arc(p: Point, radii: Vec2, degrees: f64, large: bool, sweep: bool, q: Point) -> Option<Self> {
         let (mut r, ends) = (Vec2::new(radii.x.abs(), radii.y.abs()), [p, q]);
         if p == q {
@@ -62,24 +62,24 @@ impl Curve {
         if r.x == 0.0 || r.y == 0.0 {
             return Some(Self::Line(ends));
         }
-        let turned = Vec2::from_angle(degrees.to_radians());
+        let axis = Vec2::from_angle(degrees.to_radians());
         let half = (p - q) * 0.5;
-        let (x, y) = (half.dot(turned), turned.cross(half));
-        let over = (x / r.x).powi(2) + (y / r.y).powi(2);
-        if over > 1.0 {
-            r *= over.sqrt();
+        let (x, y) = (half.dot(axis), axis.cross(half));
+        // Radii that are too small to reach both ends are scaled up.
+        let lambda = (x / r.x).powi(2) + (y / r.y).powi(2);
+        if lambda > 1.0 {
+            r *= lambda.sqrt();
         }
         let (rx2, ry2, x2, y2) = (r.x * r.x, r.y * r.y, x * x, y * y);
         let root = ((rx2 * ry2 - rx2 * y2 - ry2 * x2) / (rx2 * y2 + ry2 * x2)).max(0.0).sqrt();
         let k = if large == sweep { -root } else { root };
         let (cx, cy) = (k * r.x * y / r.y, -k * r.y * x / r.x);
-        let center = p.midpoint(q) + Vec2::new(turned.x * cx - turned.y * cy, turned.y * cx + turned.x * cy);
+        let center = p.midpoint(q) + Vec2::new(axis.x * cx - axis.y * cy, axis.y * cx + axis.x * cy);
         let angle = |x: f64, y: f64| (y / r.y).atan2(x / r.x);
         let (from, to) = (angle(x - cx, y - cy), angle(-x - cx, -y - cy));
-        let turn = std::f64::consts::TAU;
-        let by = (to - from).rem_euclid(turn);
-        let axes = [turned * r.x, Vec2::new(-turned.y, turned.x) * r.y];
-        Some(Self::Arc { center, axes, from, sweep: if sweep { by } else { by - turn }, ends })
+        let angle = (to - from).rem_euclid(TAU);
+        let axes = [axis * r.x, Vec2::new(-axis.y, axis.x) * r.y];
+        Some(Self::Arc { center, axes, from, sweep: if sweep { angle } else { angle - TAU }, ends })
     }
 }
 
@@ -88,14 +88,8 @@ impl From<PathSeg> for Curve {
         match seg {
             PathSeg::Line(l) => Self::Line([l.p0, l.p1]),
             PathSeg::Quad(q) => Self::Quad([q.p0, q.p1, q.p2]),
-            PathSeg::Cubic(c) => Self::from(c),
+            PathSeg::Cubic(c) => Self::Cubic([c.p0, c.p1, c.p2, c.p3]),
         }
-    }
-}
-
-impl From<CubicBez> for Curve {
-    fn from(c: CubicBez) -> Self {
-        Self::Cubic([c.p0, c.p1, c.p2, c.p3])
     }
 }
 
@@ -122,7 +116,7 @@ mod outlines {
             vec![match *self {
                 Seg::Line(l) => PathSeg::Line(l).into(),
                 Seg::Quad(q) => PathSeg::Quad(q).into(),
-                Seg::Cubic(c) => c.into(),
+                Seg::Cubic(c) => PathSeg::Cubic(c).into(),
                 Seg::Arc(a) => {
                     let at = |angle: f64| a.center + a.a * angle.cos() + a.b * angle.sin();
                     let ends = [at(a.start), at(a.start + a.sweep)];
@@ -149,17 +143,17 @@ mod outlines {
 pub fn read(d: &str) -> Vec<Vec<Curve>> {
     let (mut out, mut run) = (Vec::new(), Vec::new());
     let (mut at, mut start) = (Point::ORIGIN, Point::ORIGIN);
+    // The last control points, which smooth commands reflect.
     let (mut cubic, mut quad): (Option<Point>, Option<Point>) = (None, None);
     for s in PathParser::from(d) {
         let Ok(s) = s else { break };
         let to = |abs: bool, x: f64, y: f64| if abs { Point::new(x, y) } else { Point::new(at.x + x, at.y + y) };
-        let (mut c, mut q) = (None, None);
+        let (mut next_cubic, mut next_quad) = (None, None);
         let curve = match s {
             PathSegment::MoveTo { abs, x, y } => {
                 (at, start) = (to(abs, x, y), to(abs, x, y));
                 out.push(std::mem::take(&mut run));
-                (cubic, quad) = (None, None);
-                continue;
+                None
             }
             PathSegment::ClosePath { .. } => {
                 if at != start {
@@ -167,33 +161,32 @@ pub fn read(d: &str) -> Vec<Vec<Curve>> {
                 }
                 at = start;
                 out.push(std::mem::take(&mut run));
-                (cubic, quad) = (None, None);
-                continue;
+                None
             }
             PathSegment::LineTo { abs, x, y } => Some(Curve::Line([at, to(abs, x, y)])),
             PathSegment::HorizontalLineTo { abs, x } => Some(Curve::Line([at, Point::new(to(abs, x, 0.0).x, at.y)])),
             PathSegment::VerticalLineTo { abs, y } => Some(Curve::Line([at, Point::new(at.x, to(abs, 0.0, y).y)])),
             PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
-                c = Some(to(abs, x2, y2));
+                next_cubic = Some(to(abs, x2, y2));
                 Some(Curve::Cubic([at, to(abs, x1, y1), to(abs, x2, y2), to(abs, x, y)]))
             }
             PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
-                c = Some(to(abs, x2, y2));
+                next_cubic = Some(to(abs, x2, y2));
                 Some(Curve::Cubic([at, cubic.map_or(at, |h| at + (at - h)), to(abs, x2, y2), to(abs, x, y)]))
             }
             PathSegment::Quadratic { abs, x1, y1, x, y } => {
-                q = Some(to(abs, x1, y1));
+                next_quad = Some(to(abs, x1, y1));
                 Some(Curve::Quad([at, to(abs, x1, y1), to(abs, x, y)]))
             }
             PathSegment::SmoothQuadratic { abs, x, y } => {
-                q = Some(quad.map_or(at, |h| at + (at - h)));
-                Some(Curve::Quad([at, q.unwrap_or(at), to(abs, x, y)]))
+                next_quad = Some(quad.map_or(at, |h| at + (at - h)));
+                Some(Curve::Quad([at, next_quad.unwrap_or(at), to(abs, x, y)]))
             }
             PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
                 Curve::arc(at, Vec2::new(rx, ry), x_axis_rotation, large_arc, sweep, to(abs, x, y))
             }
         };
-        (cubic, quad) = (c, q);
+        (cubic, quad) = (next_cubic, next_quad);
         if let Some(curve) = curve {
             at = curve.at(1.0);
             run.push(curve);

@@ -31,6 +31,7 @@ impl<'a> Run<'a> {
         Self { pieces, at: Box::new(move |all, out| all.iter().zip(out).for_each(|(p, out)| *out = at(*p))) }
     }
 
+    /// The curves themselves.
     pub fn of(curves: &'a [Curve]) -> Self {
         Self::image(curves, &|points, out| out.copy_from_slice(points))
     }
@@ -44,14 +45,14 @@ impl<'a> Run<'a> {
         Self { pieces: curves.len(), at: Box::new(at) }
     }
 
+    /// The number of pieces.
     pub fn pieces(&self) -> usize {
         self.pieces
     }
 
+    /// The point at a position.
     pub fn at(&self, position: Position) -> Point {
-        let mut out = [Point::ORIGIN];
-        (self.at)(&[position], &mut out);
-        out[0]
+        self.points(&[position])[0]
     }
 
     fn points(&self, positions: &[Position]) -> Vec<Point> {
@@ -62,22 +63,22 @@ impl<'a> Run<'a> {
 
     /// Samples each piece `n` times, and more often where a chord may be farther from its arc than a tenth of `height`.
     pub fn sampled(&self, n: usize, height: f64) -> Sampled<'_> {
-        const MOST: usize = 40_000;
+        const MAX_SAMPLES: usize = 40_000;
+        const MAX_ROUNDS: usize = 40;
         let even = |i: usize| (0..=n).map(move |k| (i, k as f64 / n as f64));
         let mut positions: Vec<Position> = (0..self.pieces).flat_map(even).collect();
         let mut points = self.points(&positions);
         let mut changed = vec![true; positions.len()];
-        for _ in 0..40 {
+        for _ in 0..MAX_ROUNDS {
             let steps = steps(&positions, &points);
-            let halved: Vec<usize> = (0..steps.len())
-                .filter(|&k| {
-                    let same = positions[k].0 == positions[k + 1].0 && positions[k + 1].1 - positions[k].1 > 1e-13;
-                    let looked_at =
-                        changed[k] || changed[k + 1] || (k > 0 && changed[k - 1]) || changed.get(k + 2) == Some(&true);
-                    same && looked_at && bulge(&steps, k) > 0.1 * height
-                })
-                .collect();
-            if halved.is_empty() || positions.len() > MOST {
+            let must_be_halved = |k: &usize| {
+                let (i, j) = (*k, k + 1);
+                let is_divisible = positions[i].0 == positions[j].0 && positions[j].1 - positions[i].1 > 1e-13;
+                let has_changed = changed[i.saturating_sub(1)..(i + 3).min(changed.len())].contains(&true);
+                is_divisible && has_changed && bulge(&steps, i) > 0.1 * height
+            };
+            let halved: Vec<usize> = (0..steps.len()).filter(must_be_halved).collect();
+            if halved.is_empty() || positions.len() > MAX_SAMPLES {
                 break;
             }
             let middle = |k: usize| (positions[k].0, 0.5 * (positions[k].1 + positions[k + 1].1));
@@ -95,11 +96,11 @@ impl<'a> Run<'a> {
             (positions, (points, changed)) = all.into_iter().unzip();
         }
         let steps = steps(&positions, &points);
-        let to = |k: usize| if positions[k].0 == positions[k + 1].0 { points[k + 1] } else { points[k] };
-        let chords = Polygon::new((0..steps.len()).map(|k| [points[k], to(k)]).collect());
-        let rooms: Vec<f64> = (0..steps.len()).map(|k| 2.0 * bulge(&steps, k)).collect();
-        let room = rooms.iter().copied().fold(0.0, f64::max);
-        Sampled { run: self, positions, points, chords, rooms, room }
+        let end = |k: usize| if positions[k].0 == positions[k + 1].0 { points[k + 1] } else { points[k] };
+        let chords = Polygon::new((0..steps.len()).map(|k| [points[k], end(k)]).collect());
+        let bounds: Vec<f64> = (0..steps.len()).map(|k| 2.0 * bulge(&steps, k)).collect();
+        let largest_bound = bounds.iter().copied().fold(0.0, f64::max);
+        Sampled { run: self, positions, points, chords, bounds, largest_bound }
     }
 }
 
@@ -109,7 +110,7 @@ fn steps(positions: &[Position], points: &[Point]) -> Vec<Vec2> {
     (0..points.len().saturating_sub(1)).map(step).collect()
 }
 
-/// Estimates the distance of an arc from its chord: its height is an eighth of the chord times the turn to the next chord. The first and the
+/// Estimates the distance of an arc from its chord: an eighth of the chord times the turn to the next chord. The first and the
 /// last chord of a piece may hide a turn back, after which they are short.
 fn bulge(steps: &[Vec2], k: usize) -> f64 {
     let chord = steps[k];
@@ -121,8 +122,8 @@ fn bulge(steps: &[Vec2], k: usize) -> f64 {
         if sin < 0.2 * cos { sin / cos } else { sin.atan2(cos) }
     };
     let hidden = |other: Vec2| if chord.hypot() < 0.4 * other.hypot() { other.hypot() } else { 0.0 };
-    let at_an_end = before == Vec2::ZERO || after == Vec2::ZERO;
-    let hidden = if at_an_end { hidden(before).max(hidden(after)) } else { 0.0 };
+    let is_at_end = before == Vec2::ZERO || after == Vec2::ZERO;
+    let hidden = if is_at_end { hidden(before).max(hidden(after)) } else { 0.0 };
     0.125 * (chord.hypot() * turn(before).max(turn(after))).max(hidden)
 }
 
@@ -133,19 +134,19 @@ pub struct Sampled<'a> {
     pub points: Vec<Point>,
     /// The lines between consecutive samples of a piece.
     pub chords: Polygon,
-    /// Generous bounds on the distance of the curve from each chord, and the largest bound.
-    rooms: Vec<f64>,
-    room: f64,
+    /// Generous bounds on the distance of the curve from each chord.
+    bounds: Vec<f64>,
+    largest_bound: f64,
 }
 
 impl Sampled<'_> {
     /// Goes on from a chord to its neighbours as long as they are nearer to a point. Returns an upper bound on the distance of the curve.
     fn walk(&self, p: Point, chord: &mut usize) -> f64 {
-        let most = |k: usize| self.chords.edge_distance(k, p) + self.rooms[k];
-        let mut best = most(*chord);
+        let upper_bound = |k: usize| self.chords.edge_distance(k, p) + self.bounds[k];
+        let mut best = upper_bound(*chord);
         loop {
-            let ahead = if *chord + 1 < self.rooms.len() { most(*chord + 1) } else { f64::INFINITY };
-            let behind = if *chord > 0 { most(*chord - 1) } else { f64::INFINITY };
+            let ahead = if *chord + 1 < self.bounds.len() { upper_bound(*chord + 1) } else { f64::INFINITY };
+            let behind = if *chord > 0 { upper_bound(*chord - 1) } else { f64::INFINITY };
             if ahead <= best {
                 (best, *chord) = (ahead, *chord + 1);
             } else if behind < best {
@@ -160,6 +161,7 @@ impl Sampled<'_> {
     /// neighbours, so that the lines between the last samples are within 1e-9 of the arc's height. At a jump, the line across it counts.
     fn arc_distance(&self, p: Point, k: usize) -> f64 {
         const PARTS: usize = 9;
+        const MAX_ROUNDS: usize = 10;
         let ((i, mut from), (j, mut to)) = (self.positions[k], self.positions[k + 1]);
         let mut points = [Point::ORIGIN; PARTS + 1];
         (points[0], points[PARTS]) = (self.points[k], self.points[k + 1]);
@@ -167,7 +169,7 @@ impl Sampled<'_> {
             return points[0].distance(p).min(points[PARTS].distance(p));
         }
         let mut best = f64::INFINITY;
-        for _ in 0..10 {
+        for _ in 0..MAX_ROUNDS {
             let position = |m: usize| from + (to - from) * m as f64 / PARTS as f64;
             let positions: [Position; PARTS - 1] = std::array::from_fn(|m| (i, position(m + 1)));
             (self.run.at)(&positions, &mut points[1..PARTS]);
@@ -199,24 +201,24 @@ pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
             return (f64::NAN, *p);
         }
         // Mostly, the nearest chord is near the nearest chord of the last point.
-        let mut most = near.as_mut().map_or(f64::INFINITY, |(s, k)| s.walk(*p, k));
-        if most > 4.0 * last {
+        let mut bound = near.as_mut().map_or(f64::INFINITY, |(s, k)| s.walk(*p, k));
+        if bound > 4.0 * last {
             for s in to {
-                s.chords.search(*p, most, |k, d| {
-                    if d + s.rooms[k] < most {
-                        (most, near) = (d + s.rooms[k], Some((s, k)));
+                s.chords.search(*p, bound, |k, d| {
+                    if d + s.bounds[k] < bound {
+                        (bound, near) = (d + s.bounds[k], Some((s, k)));
                     }
-                    most
+                    bound
                 });
             }
         }
-        last = most;
-        all.push((most, *p, near));
+        last = bound;
+        all.push((bound, *p, near));
     }
     all.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
     let mut worst = (0.0, Point::ORIGIN);
-    for (most, p, near) in all {
-        if most <= worst.0 {
+    for (bound, p, near) in all {
+        if bound <= worst.0 {
             break;
         }
         let d = exact_distance(p, to, near, worst.0);
@@ -227,17 +229,18 @@ pub fn far<'a>(points: &[Point], to: &'a [Sampled<'a>]) -> (f64, Point) {
     worst
 }
 
+/// A chord of sampled curves, by its index.
 type Chord<'a> = (&'a Sampled<'a>, usize);
 
 /// The distance of a point from curves, of which `near` may be the nearest chord. Below `enough` it need not be exact.
 fn exact_distance(p: Point, to: &[Sampled<'_>], near: Option<Chord<'_>>, enough: f64) -> f64 {
     let mut best = near.map_or(f64::INFINITY, |(s, k)| s.arc_distance(p, k));
     for s in to {
-        s.chords.search(p, best + s.room, |k, d| {
-            if best > enough && d - s.rooms[k] < best {
+        s.chords.search(p, best + s.largest_bound, |k, d| {
+            if best > enough && d - s.bounds[k] < best {
                 best = best.min(s.arc_distance(p, k));
             }
-            if best > enough { best + s.room } else { 0.0 }
+            if best > enough { best + s.largest_bound } else { 0.0 }
         });
     }
     best

@@ -37,6 +37,7 @@ pub fn oblique() -> Affine {
         * Affine::translate((-50.0, -50.0))
 }
 
+/// Options for reading without the machine's fonts.
 pub fn options() -> ReadOptions {
     ReadOptions::default().with_system_fonts(false)
 }
@@ -48,18 +49,22 @@ pub fn drawing(body: &str) -> String {
     )
 }
 
+/// Reads a drawing.
 pub fn read(svg: &str) -> Document {
     Document::read(svg.as_bytes(), "test.svg", &options()).unwrap()
 }
 
+/// A fine tolerance, with the nodes of the source.
 pub fn warp_options() -> WarpOptions {
     WarpOptions::new(refit::Options::new(1e-4).with_nodes(refit::Nodes::Source))
 }
 
+/// Warps a drawing by a hidden affine map.
 pub fn warp(svg: &str, map: Affine) -> WarpedDocument {
     read(svg).warp(&Hidden(map), &warp_options()).unwrap()
 }
 
+/// Renders a drawing, transformed, in a square of `size` pixels.
 pub fn rendered(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     let mut out = Pixmap::new(size, size).unwrap();
     let [a, b, c, d, e, f] = t.as_coeffs().map(|v| v as f32);
@@ -73,10 +78,10 @@ fn picture(tree: &Tree, size: u32, t: Affine) -> Pixmap {
     const OVER: usize = 4;
     let large = rendered(tree, size * OVER as u32, Affine::scale(OVER as f64) * t);
     let mut out = Pixmap::new(size, size).unwrap();
-    let wide = 4 * size as usize;
-    for (row, lines) in out.data_mut().chunks_exact_mut(wide).zip(large.data().chunks_exact(OVER * OVER * wide)) {
-        let mut sums = vec![0u32; wide];
-        for line in lines.chunks_exact(OVER * wide) {
+    let bytes = 4 * size as usize;
+    for (row, lines) in out.data_mut().chunks_exact_mut(bytes).zip(large.data().chunks_exact(OVER * OVER * bytes)) {
+        let mut sums = vec![0u32; bytes];
+        for line in lines.chunks_exact(OVER * bytes) {
             for (sum, pixels) in sums.chunks_exact_mut(4).zip(line.chunks_exact(4 * OVER)) {
                 pixels.iter().enumerate().for_each(|(i, v)| sum[i % 4] += u32::from(*v));
             }
@@ -142,16 +147,16 @@ const SIDE: u32 = 140;
 fn sources() -> &'static [Point] {
     static ALL: OnceLock<Vec<Point>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let wide = SIDE * SCALE;
-        let samples = (0..wide.pow(2) * OVER * OVER).map(|n| {
+        let width = SIDE * SCALE;
+        let samples = (0..width.pow(2) * OVER * OVER).map(|n| {
             let (pixel, k) = (n / (OVER * OVER), n % (OVER * OVER));
-            let sub =
+            let coordinate =
                 |c: u32, k: u32| FROM + (f64::from(c) + (f64::from(k) + 0.5) / f64::from(OVER)) / f64::from(SCALE);
-            let to = Point::new(sub(pixel % wide, k % OVER), sub(pixel / wide, k / OVER));
-            let mut p = to;
+            let q = Point::new(coordinate(pixel % width, k % OVER), coordinate(pixel / width, k / OVER));
+            let mut p = q;
             for _ in 0..4 {
-                p.x = to.x - (p.y / 30.0).sin() * 6.0;
-                p.y = to.y - (p.x / 25.0).sin() * 8.0;
+                p.x = q.x - (p.y / 30.0).sin() * 6.0;
+                p.y = q.y - (p.x / 25.0).sin() * 8.0;
             }
             p
         });
@@ -168,13 +173,14 @@ fn warped_picture(svg: &str) -> Arc<Pixmap> {
     }
     let document = read(svg);
     let original = rendered(usvg_tree::tree(&document), SIDE * FINE, window(FINE) * document.user_to_px().inverse());
-    let (wide, data) = ((SIDE * FINE) as usize, original.data());
-    let at = |p: Point| {
+    let (width, data) = ((SIDE * FINE) as usize, original.data());
+    // The bilinear interpolation of the four pixels about a point.
+    let color = |p: Point| {
         let q = window(FINE) * p - Vec2::new(0.5, 0.5);
-        let [x, y] = [q.x, q.y].map(|v| v.clamp(0.0, wide as f64 - 1.001));
+        let [x, y] = [q.x, q.y].map(|v| v.clamp(0.0, width as f64 - 1.001));
         let (i, j) = (x as usize, y as usize);
         let [u, v] = [x - i as f64, y - j as f64].map(|v| v as f32);
-        let [above, below] = [j, j + 1].map(|j| &data[(j * wide + i) * 4..][..8]);
+        let [above, below] = [j, j + 1].map(|j| &data[(j * width + i) * 4..][..8]);
         let mix = |a: u8, b: u8, t: f32| f32::from(a) + (f32::from(b) - f32::from(a)) * t;
         [0, 1, 2, 3].map(|k| {
             let [a, b] = [mix(above[k], above[k + 4], u), mix(below[k], below[k + 4], u)];
@@ -185,7 +191,7 @@ fn warped_picture(svg: &str) -> Arc<Pixmap> {
     for (samples, out) in sources().chunks((OVER * OVER) as usize).zip(out.data_mut().chunks_exact_mut(4)) {
         let mut sums = [0.0; 4];
         for p in samples {
-            sums.iter_mut().zip(at(*p)).for_each(|(sum, c)| *sum += c);
+            sums.iter_mut().zip(color(*p)).for_each(|(sum, c)| *sum += c);
         }
         out.iter_mut().zip(sums).for_each(|(out, sum)| *out = (sum / (OVER * OVER) as f32).round() as u8);
     }

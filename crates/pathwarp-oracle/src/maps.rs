@@ -19,6 +19,7 @@ pub struct Bicubic {
 const POWER: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [-3.0, 3.0, 0.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]];
 
+/// The power coefficients of a net of Bernstein coefficients.
 fn tensor_power(net: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -46,27 +47,27 @@ impl Bicubic {
 
     /// A mild map: control points moved by at most 5 %.
     pub fn mild() -> Self {
-        const D: [[(f64, f64); 4]; 4] = [
+        const MOVES: [[(f64, f64); 4]; 4] = [
             [(25.0, 25.0), (40.0, -50.0), (-20.0, -35.0), (-5.0, 50.0)],
             [(-20.0, 30.0), (45.0, 40.0), (45.0, 45.0), (-10.0, 50.0)],
             [(-15.0, 10.0), (50.0, -15.0), (20.0, -20.0), (-50.0, -50.0)],
             [(45.0, 15.0), (-25.0, 40.0), (-50.0, 0.0), (15.0, -30.0)],
         ];
-        Self::moved(|i, j| D[i][j])
+        Self::moved(|i, j| MOVES[i][j])
     }
 
     /// A strong bulge with a twist, whose Jacobian determinant just touches zero.
     pub fn strong() -> Self {
         Self::moved(|i, j| {
             let (u, v) = (i as f64 / 3.0 - 0.5, j as f64 / 3.0 - 0.5);
-            let inner = (1..3).contains(&i) && (1..3).contains(&j);
-            let k = if inner { 2.1 } else { -0.1 };
-            let w = if inner { 1.6 } else { 0.0 };
-            (BOX * (k * u - w * v), BOX * (k * v + w * u))
+            let is_inner = (1..3).contains(&i) && (1..3).contains(&j);
+            let (bulge, twist) = if is_inner { (2.1, 1.6) } else { (-0.1, 0.0) };
+            (BOX * (bulge * u - twist * v), BOX * (bulge * v + twist * u))
         })
     }
 
-    fn tables(&self, u: f64) -> [[f64; 4]; 4] {
+    /// The coefficients of the powers of v at `u`: of x, y, ∂x/∂u and ∂y/∂u.
+    fn rows(&self, u: f64) -> [[f64; 4]; 4] {
         let f = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
         let d = |c: &[[f64; 4]; 4], j: usize| (3.0 * c[3][j] * u + 2.0 * c[2][j]) * u + c[1][j];
         [
@@ -78,11 +79,13 @@ impl Bicubic {
     }
 }
 
+/// The value of a cubic polynomial.
 #[inline(always)]
 fn horner(r: &[f64; 4], v: f64) -> f64 {
     ((r[3] * v + r[2]) * v + r[1]) * v + r[0]
 }
 
+/// The derivative of a cubic polynomial.
 #[inline(always)]
 fn slope(r: &[f64; 4], v: f64) -> f64 {
     (3.0 * r[3] * v + 2.0 * r[2]) * v + r[1]
@@ -96,7 +99,7 @@ impl Map for Bicubic {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
-        let [x, y, dx, dy] = self.tables(u);
+        let [x, y, dx, dy] = self.rows(u);
         Jet {
             p: Point::new(horner(&x, v), horner(&y, v)),
             dx: Vec2::new(horner(&dx, v), horner(&dy, v)) / BOX,
@@ -108,8 +111,8 @@ impl Map for Bicubic {
     fn point(&self, p: Point) -> Point {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
         let row = |c: &[[f64; 4]; 4], j: usize| ((c[3][j] * u + c[2][j]) * u + c[1][j]) * u + c[0][j];
-        let at = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
-        Point::new(at(&self.x), at(&self.y))
+        let value = |c: &[[f64; 4]; 4]| ((row(c, 3) * v + row(c, 2)) * v + row(c, 1)) * v + row(c, 0);
+        Point::new(value(&self.x), value(&self.y))
     }
 }
 
@@ -121,6 +124,7 @@ pub struct Rational {
 }
 
 impl Rational {
+    /// An envelope about as large as the box, with uneven weights.
     pub fn new() -> Self {
         let points = [
             [(30.0, -20.0), (160.0, 330.0), (-120.0, 640.0), (20.0, 1010.0)],
@@ -161,27 +165,25 @@ impl Map for Rational {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
-        let f: [(f64, f64, f64); 3] = std::array::from_fn(|k| {
-            let [r, s] = &self.c[k];
-            let e = horner(s, v);
-            (horner(r, v) + u * e, e, slope(r, v) + u * slope(s, v))
+        // The homogeneous coordinates with their derivatives by u and by v.
+        let [(x, xu, xv), (y, yu, yv), (w, wu, wv)] = self.c.each_ref().map(|[r, s]| {
+            let du = horner(s, v);
+            (horner(r, v) + u * du, du, slope(r, v) + u * slope(s, v))
         });
-        let k = 1.0 / f[2].0;
-        let (x, y) = (f[0].0 * k, f[1].0 * k);
-        let d = k / BOX;
+        let k = 1.0 / w;
+        let (x, y, d) = (x * k, y * k, k / BOX);
         Jet {
             p: Point::new(x, y),
-            dx: Vec2::new((f[0].1 - x * f[2].1) * d, (f[1].1 - y * f[2].1) * d),
-            dy: Vec2::new((f[0].2 - x * f[2].2) * d, (f[1].2 - y * f[2].2) * d),
+            dx: Vec2::new((xu - x * wu) * d, (yu - y * wu) * d),
+            dy: Vec2::new((xv - x * wv) * d, (yv - y * wv) * d),
         }
     }
 
     #[inline]
     fn point(&self, p: Point) -> Point {
         let (u, v) = (p.x * (1.0 / BOX), p.y * (1.0 / BOX));
-        let f = |k: usize| horner(&self.c[k][0], v) + u * horner(&self.c[k][1], v);
-        let w = f(2);
-        Point::new(f(0) / w, f(1) / w)
+        let [x, y, w] = self.c.each_ref().map(|[r, s]| horner(r, v) + u * horner(s, v));
+        Point::new(x / w, y / w)
     }
 }
 

@@ -26,13 +26,14 @@ impl Difference {
     }
 }
 
+/// Compares two pictures.
 pub fn difference(a: &Pixmap, b: &Pixmap) -> Difference {
     assert_eq!((a.width(), a.height()), (b.width(), b.height()), "pictures of different sizes");
     let (mut pixels, mut sum, mut painted) = ([0; 256], 0, 0);
     for (p, q) in a.data().chunks_exact(4).zip(b.data().chunks_exact(4)) {
-        let off = [0, 1, 2, 3].map(|k| usize::from(p[k].abs_diff(q[k])));
-        sum += off.iter().sum::<usize>();
-        pixels[off.into_iter().fold(0, usize::max)] += 1;
+        let differences = [0, 1, 2, 3].map(|k| usize::from(p[k].abs_diff(q[k])));
+        sum += differences.iter().sum::<usize>();
+        pixels[differences.into_iter().fold(0, usize::max)] += 1;
         painted += usize::from(p[3] > 0 || q[3] > 0);
     }
     let all = a.pixels().len() as f64;
@@ -41,9 +42,9 @@ pub fn difference(a: &Pixmap, b: &Pixmap) -> Difference {
 
 /// The box of the pixels that are painted with an alpha above `least`, and their number.
 pub fn ink(picture: &Pixmap, least: u8) -> (Rect, usize) {
-    let wide = picture.width() as usize;
+    let width = picture.width() as usize;
     let marked = picture.pixels().iter().enumerate().filter(|p| p.1.alpha() > least).map(|p| p.0);
-    let pixels = marked.map(|i| (Rect::from_origin_size(((i % wide) as f64, (i / wide) as f64), (1.0, 1.0)), 1));
+    let pixels = marked.map(|i| (Rect::from_origin_size(((i % width) as f64, (i / width) as f64), (1.0, 1.0)), 1));
     pixels.reduce(|(a, n), (b, m)| (a.union(b), n + m)).unwrap_or_default()
 }
 
@@ -59,16 +60,12 @@ pub fn on_white(mut picture: Pixmap) -> Pixmap {
 /// The number of pixels that are painted in one picture and bare in the other, as are all their neighbours.
 pub fn beyond_edges(a: &Pixmap, b: &Pixmap) -> usize {
     let (w, h) = (a.width() as usize, a.height() as usize);
-    let alpha = |p: &Pixmap, x: usize, y: usize| p.data()[4 * (y * w + x) + 3];
-    let all = |p: &Pixmap, x: usize, y: usize, holds: fn(u8) -> bool| {
-        (y - 1..=y + 1).all(|y| (x - 1..=x + 1).all(|x| holds(alpha(p, x, y))))
+    let is_painted = |p: &Pixmap, x: usize, y: usize| p.data()[4 * (y * w + x) + 3] > 127;
+    // Painted or bare, with all neighbours.
+    let is_inner = |p: &Pixmap, x: usize, y: usize| {
+        (y - 1..=y + 1).all(|j| (x - 1..=x + 1).all(|i| is_painted(p, i, j) == is_painted(p, x, y)))
     };
-    let off = |x: usize, y: usize| {
-        let full: fn(u8) -> bool = |v| v > 127;
-        let bare: fn(u8) -> bool = |v| v < 128;
-        (alpha(a, x, y) > 127) != (alpha(b, x, y) > 127)
-            && (all(a, x, y, full) || all(a, x, y, bare))
-            && (all(b, x, y, full) || all(b, x, y, bare))
-    };
-    (1..h - 1).map(|y| (1..w - 1).filter(|x| off(*x, y)).count()).sum()
+    let differs =
+        |x: usize, y: usize| is_painted(a, x, y) != is_painted(b, x, y) && is_inner(a, x, y) && is_inner(b, x, y);
+    (1..h - 1).map(|y| (1..w - 1).filter(|x| differs(*x, y)).count()).sum()
 }

@@ -13,6 +13,7 @@ pub struct Polygon {
 }
 
 impl Polygon {
+    /// Builds the tree over these edges.
     pub fn new(edges: Vec<[Point; 2]>) -> Self {
         let leaves = edges.len().div_ceil(LEAF).next_power_of_two();
         let nothing = Rect::new(f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
@@ -32,6 +33,7 @@ impl Polygon {
         Self::new(rings.into_iter().flat_map(closed).collect())
     }
 
+    /// The winding number about a point, by the edges that cross the horizontal line to its right.
     pub fn winding(&self, p: Point) -> i32 {
         let (leaves, mut turns, mut open) = (self.boxes.len() / 2, 0, vec![1]);
         while let Some(node) = open.pop() {
@@ -55,6 +57,7 @@ impl Polygon {
         turns
     }
 
+    /// Returns `true` if the area holds a point.
     pub fn covers(&self, p: Point) -> bool {
         self.winding(p) != 0
     }
@@ -112,11 +115,12 @@ impl Polygon {
     /// Calls `visit` with each edge that may be nearer to a point than `within`, and its distance. `visit` returns a new `within`.
     pub(crate) fn search(&self, p: Point, mut within: f64, mut visit: impl FnMut(usize, f64) -> f64) {
         let leaves = self.boxes.len() / 2;
-        let far = |node: usize| {
+        let distance_squared = |node: usize| {
             let b = self.boxes[node];
             Vec2::new((b.x0 - p.x).max(p.x - b.x1).max(0.0), (b.y0 - p.y).max(p.y - b.y1).max(0.0)).hypot2()
         };
-        let mut open = [(1, far(1)); 64];
+        // A stack of nodes: one more for each level of the tree.
+        let mut open = [(1, distance_squared(1)); 64];
         let mut count = 1;
         while count > 0 {
             count -= 1;
@@ -125,7 +129,7 @@ impl Polygon {
                 continue;
             }
             if node < leaves {
-                let [a, b] = [2 * node, 2 * node + 1].map(|n| (n, far(n)));
+                let [a, b] = [2 * node, 2 * node + 1].map(|n| (n, distance_squared(n)));
                 (open[count], open[count + 1]) = if a.1 < b.1 { (b, a) } else { (a, b) };
                 count += 2;
                 continue;

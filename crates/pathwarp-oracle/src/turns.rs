@@ -3,6 +3,7 @@
 use crate::curves::Curve;
 use crate::distance::Sampled;
 use kurbo::{CubicBez, Point, Vec2};
+use std::f64::consts::PI;
 
 /// The sharpest turn between consecutive cubics, in degrees.
 pub fn largest_turn(out: &[CubicBez]) -> f64 {
@@ -41,7 +42,7 @@ pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64))
     let beyond =
         |from: usize, by: usize| (1..=m).map(|k| (from + k * by) % m).find(|i| closed && !short[*i]).unwrap_or(from);
     let mut worst = (0.0, Point::ORIGIN);
-    for i in (if closed { 0 } else { 1 })..n {
+    for i in usize::from(!closed)..n {
         let (a, b) = (written[(i + n - 1) % n], written[i]);
         let (into, away) = (a.directions()[1], b.directions()[0]);
         let turn = into.cross(away).atan2(into.dot(away));
@@ -50,11 +51,10 @@ pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64))
             continue;
         }
         // The samples of the exact image near the joint. There may be several parts if the path meets itself.
-        let reach = room + exact.points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
-        let is_near = |k: &usize| exact.points[*k].distance(p) <= reach && !short[exact.positions[*k].0];
-        let near = (0..exact.points.len()).filter(is_near).map(|k| exact.positions[k]);
+        let radius = room + exact.points.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+        let is_near = |k: &usize| exact.points[*k].distance(p) <= radius && !short[exact.positions[*k].0];
         let mut corner = 0.0_f64;
-        for (at, t) in near {
+        for (at, t) in (0..exact.points.len()).filter(is_near).map(|k| exact.positions[k]) {
             // The image just before and after, across a joint of the source.
             let (before, after) = match t {
                 0.0 => ((beyond(at, m - 1), 1.0), (at, 0.0)),
@@ -62,30 +62,21 @@ pub fn kink(exact: &Sampled<'_>, written: &[Curve], (closed, room): (bool, f64))
                 t => ((at, t), (at, t)),
             };
             // Far enough on both sides for a crease near the sample.
-            let ahead = if t < 0.5 { STEP } else { -STEP };
-            let pair = [t, t + ahead].map(|t| exact.run.at((at, t)));
-            let beside = (reach * STEP / pair[0].distance(pair[1])).clamp(2.0 * STEP, 0.05);
-            let q = [
-                (before.0, before.1 - beside - STEP),
-                (before.0, before.1 - beside),
-                (after.0, after.1 + beside),
-                (after.0, after.1 + beside + STEP),
-            ]
-            .map(|position| exact.run.at(position));
-            let (u, v) = (q[1] - q[0], q[3] - q[2]);
+            let step = if t < 0.5 { STEP } else { -STEP };
+            let pair = [t, t + step].map(|t| exact.run.at((at, t)));
+            let gap = (radius * STEP / pair[0].distance(pair[1])).clamp(2.0 * STEP, 0.05);
+            let [a, b] = [gap + STEP, gap].map(|d| exact.run.at((before.0, before.1 - d)));
+            let [c, d] = [gap, gap + STEP].map(|d| exact.run.at((after.0, after.1 + d)));
+            let (u, v) = (b - a, d - c);
             // At a tear the image jumps, whatever the directions.
-            let torn = q[1].distance(q[2]) > 10.0 * (2.0 * beside / STEP) * u.hypot().max(v.hypot());
-            let turned = if torn || u == Vec2::ZERO || v == Vec2::ZERO {
-                std::f64::consts::PI
-            } else {
-                u.cross(v).atan2(u.dot(v)).abs()
-            };
-            corner = corner.max(turned);
+            let is_torn = b.distance(c) > 10.0 * (2.0 * gap / STEP) * u.hypot().max(v.hypot());
+            let has_no_direction = is_torn || u == Vec2::ZERO || v == Vec2::ZERO;
+            corner = corner.max(if has_no_direction { PI } else { u.cross(v).atan2(u.dot(v)).abs() });
         }
         // Beside the joint, a curve turns as well.
-        let off = turn.abs() - 2.0 * corner;
-        if corner.to_degrees() < 0.25 && off > worst.0 {
-            worst = (off, p);
+        let excess = turn.abs() - 2.0 * corner;
+        if corner.to_degrees() < 0.25 && excess > worst.0 {
+            worst = (excess, p);
         }
     }
     (worst.0.to_degrees(), worst.1)

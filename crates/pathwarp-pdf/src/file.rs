@@ -27,6 +27,7 @@ pub(crate) struct File<'a> {
     pub(crate) failed: Option<Error>,
     /// The objects of embedded pictures, by their data, with `true` if they are interpolated.
     pub(crate) embedded: HashMap<(Arc<Vec<u8>>, bool), Ref>,
+    /// Number of the last object.
     last: i32,
     states: HashMap<State, Ref>,
     inks: HashMap<String, Ref>,
@@ -37,20 +38,9 @@ pub(crate) struct File<'a> {
 pub(crate) struct State {
     /// Opacity as bits.
     opacity: Option<u32>,
-    blend: Option<Blend>,
-    mask: Option<(MaskKind, Ref)>,
+    blend: Option<BlendMode>,
+    mask: Option<(MaskType, Ref)>,
     overprint: bool,
-}
-
-/// Index of a blend mode in [`BLEND_MODES`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Blend(u8);
-
-/// The property of a mask's content that determines what shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum MaskKind {
-    Luminosity,
-    Alpha,
 }
 
 impl State {
@@ -59,7 +49,7 @@ impl State {
         self
     }
 
-    pub(crate) fn mask(mut self, kind: MaskKind, group: Ref) -> Self {
+    pub(crate) fn mask(mut self, kind: MaskType, group: Ref) -> Self {
         self.mask = Some((kind, group));
         self
     }
@@ -71,7 +61,7 @@ impl State {
     }
 
     pub(crate) fn blend(mut self, mode: usvg::BlendMode) -> Self {
-        self.blend = BLEND_MODES.iter().position(|(m, _)| *m == mode).map(|i| Blend(i as u8));
+        self.blend = BLEND_MODES.iter().find(|(m, _)| *m == mode).map(|(_, mode)| *mode);
         self
     }
 
@@ -127,8 +117,8 @@ impl<'a> File<'a> {
     }
 
     /// Adds a compressed stream.
-    pub(crate) fn compressed(&mut self, at: Ref, bytes: &[u8]) {
-        self.pdf.stream(at, &deflated(bytes)).filter(Filter::FlateDecode);
+    pub(crate) fn compressed(&mut self, object: Ref, bytes: &[u8]) {
+        self.pdf.stream(object, &deflated(bytes)).filter(Filter::FlateDecode);
     }
 
     /// Adds an isolated group with the content that `draw` draws. `bounds` is in the group's coordinates, which are written with the
@@ -137,14 +127,14 @@ impl<'a> File<'a> {
         let mut stream = Stream::shifted(shift);
         draw(self, &mut stream);
         let (bytes, used) = stream.finish();
-        let at = self.new_ref();
+        let group = self.new_ref();
         let bytes = deflated(&bytes);
-        let mut object = self.pdf.form_xobject(at, &bytes);
-        object.filter(Filter::FlateDecode);
-        object.bbox(pdf_rect(bounds - shift));
-        used.write(&mut object.resources());
-        object.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
-        at
+        let mut out = self.pdf.form_xobject(group, &bytes);
+        out.filter(Filter::FlateDecode);
+        out.bbox(pdf_rect(bounds - shift));
+        used.write(&mut out.resources());
+        out.group().transparency().isolated(true).pair(Name(b"CS"), Name(b"DeviceRGB"));
+        group
     }
 
     /// Returns the colour space of an ink, adding it if it is new. A device without that ink shows it as magenta, or `All` as all process
@@ -153,13 +143,14 @@ impl<'a> File<'a> {
         if let Some(known) = self.inks.get(name) {
             return *known;
         }
-        let at = self.new_ref();
-        self.inks.insert(name.to_owned(), at);
+        let space = self.new_ref();
+        self.inks.insert(name.to_owned(), space);
+        // Cyan, magenta, yellow and black of the full tint.
         let full = if name == "All" { [1.0; 4] } else { [0.0, 1.0, 0.0, 0.0] };
-        let mut ink = self.pdf.color_space(at).separation(Name(name.as_bytes()));
+        let mut ink = self.pdf.color_space(space).separation(Name(name.as_bytes()));
         ink.alternate_color_space().device_cmyk();
         ink.tint_exponential().domain([0.0, 1.0]).n(1.0).c0([0.0; 4]).c1(full);
-        at
+        space
     }
 
     /// Returns the graphics state with these parameters, adding it if it is new.
@@ -173,18 +164,14 @@ impl<'a> File<'a> {
         if let Some(opacity) = state.opacity.map(f32::from_bits) {
             out.non_stroking_alpha(opacity).stroking_alpha(opacity);
         }
-        if let Some((_, mode)) = state.blend.and_then(|b| BLEND_MODES.get(usize::from(b.0))) {
-            out.blend_mode(*mode);
+        if let Some(mode) = state.blend {
+            out.blend_mode(mode);
         }
         if state.overprint {
             out.overprint(true).overprint_fill(true).overprint_mode(OverprintMode::IgnoreZeroChannel);
         }
         if let Some((kind, group)) = state.mask {
-            let subtype = match kind {
-                MaskKind::Luminosity => MaskType::Luminosity,
-                MaskKind::Alpha => MaskType::Alpha,
-            };
-            out.soft_mask().subtype(subtype).group(group);
+            out.soft_mask().subtype(kind).group(group);
         }
         at
     }

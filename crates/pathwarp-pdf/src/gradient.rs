@@ -40,7 +40,7 @@ enum Shape {
 }
 
 impl Gradient {
-    /// A mesh gradient in user space.
+    /// Makes a mesh gradient in user space.
     pub(crate) fn mesh(patches: Vec<MeshPatch>) -> Self {
         Self { transform: Affine::IDENTITY, shape: Shape::Mesh(patches), stops: Vec::new() }
     }
@@ -56,8 +56,8 @@ impl Gradient {
                     SpreadMethod::Pad => (0, 1),
                     _ => periods_of_line(p, q, corners(transform, area)?),
                 };
-                let at = |t: i32| p + (q - p) * f64::from(t);
-                let shape = Shape::Axial([at(range.0), at(range.1)]);
+                let point_at = |t: i32| p + (q - p) * f64::from(t);
+                let shape = Shape::Axial([point_at(range.0), point_at(range.1)]);
                 Some(Self { transform, shape, stops: stops(g.stops(), g.spread_method(), range) })
             }
             Paint::RadialGradient(g) => {
@@ -105,36 +105,35 @@ impl Gradient {
         self.shading(file, to_start, &stops, Name(b"DeviceGray"))
     }
 
-    /// The position of a gradient far from the origin; zero for others.
-    fn far(&self) -> Vec2 {
-        let (Shape::Axial([at, _]) | Shape::Radial([(at, _), _])) = self.shape else { return Vec2::ZERO };
-        if at.to_vec2().hypot() > FAR { at.to_vec2() } else { Vec2::ZERO }
+    /// Returns the position of a gradient far from the origin, to be subtracted from its coordinates; zero for others.
+    fn shift(&self) -> Vec2 {
+        let (Shape::Axial([start, _]) | Shape::Radial([(start, _), _])) = self.shape else { return Vec2::ZERO };
+        if start.to_vec2().hypot() > FAR { start.to_vec2() } else { Vec2::ZERO }
     }
 
     fn shading(&self, file: &mut File<'_>, to_start: Affine, stops: &[(f64, Vec<f32>)], space: Name<'_>) -> Ref {
-        let function = function(file, stops);
-        let at = file.new_ref();
-        let mut pattern = file.pdf.shading_pattern(at);
-        let near = self.far();
-        pattern.matrix(matrix(to_start * self.transform * Affine::translate(near)));
+        let function = add_function(file, stops);
+        let object = file.new_ref();
+        let mut pattern = file.pdf.shading_pattern(object);
+        let shift = self.shift();
+        pattern.matrix(matrix(to_start * self.transform * Affine::translate(shift)));
         let mut shading = pattern.function_shading();
         match &self.shape {
             Shape::Axial(ends) => {
                 shading.shading_type(FunctionShadingType::Axial);
-                shading.coords(ends.iter().map(|p| *p - near).flat_map(|p| [p.x as f32, p.y as f32]));
+                shading.coords(ends.iter().map(|p| *p - shift).flat_map(|p| [p.x as f32, p.y as f32]));
             }
             Shape::Radial(circles) => {
                 shading.shading_type(FunctionShadingType::Radial);
-                shading.coords(
-                    circles.iter().flat_map(|(c, r)| [(c.x - near.x) as f32, (c.y - near.y) as f32, *r as f32]),
-                );
+                let circles = circles.iter().map(|(c, r)| (*c - shift, *r));
+                shading.coords(circles.flat_map(|(c, r)| [c.x, c.y, r].map(|v| v as f32)));
             }
             Shape::Mesh(_) => {}
         }
         shading.pair(Name(b"ColorSpace"), space);
         shading.extend([true, true]).function(function);
         shading.finish();
-        at
+        object
     }
 }
 
@@ -146,8 +145,8 @@ fn mesh(
     components: Range<usize>,
     space: Name<'_>,
 ) -> Ref {
-    let all = || patches.iter().flat_map(|p| p.0);
-    let bounds = all().map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or_default();
+    let points = patches.iter().flat_map(|p| p.0);
+    let bounds = points.map(|p| Rect::from_points(p, p)).reduce(|a, b| a.union(b)).unwrap_or_default();
     // Coordinates are counted from the corner, in whole numbers of 32 bits.
     let share = |v: f64, size: f64| if size > 0.0 { ((v / size) * f64::from(u32::MAX)).round() as u32 } else { 0 };
     let mut data = Vec::new();
@@ -162,7 +161,7 @@ fn mesh(
             data.extend(((level * f64::from(u16::MAX)).round() as u16).to_be_bytes());
         }
     }
-    let [shading, at] = [file.new_ref(), file.new_ref()];
+    let [shading, object] = [file.new_ref(), file.new_ref()];
     let bytes = deflated(&data);
     let mut out = file.pdf.stream_shading(shading, &bytes);
     out.filter(Filter::FlateDecode);
@@ -171,31 +170,31 @@ fn mesh(
     let sides = [0.0, bounds.width() as f32, 0.0, bounds.height() as f32];
     out.decode(sides.into_iter().chain(components.flat_map(|_| [0.0, 1.0])));
     out.finish();
-    let mut pattern = file.pdf.shading_pattern(at);
+    let mut pattern = file.pdf.shading_pattern(object);
     pattern.matrix(matrix(to_start * Affine::translate(bounds.origin().to_vec2())));
     pattern.shading_ref(shading);
     pattern.finish();
-    at
+    object
 }
 
-/// The corners of an area in the coordinates of a gradient; `None` if the gradient has no area.
+/// Returns the corners of an area in the coordinates of a gradient; `None` if the gradient has no area.
 fn corners(transform: Affine, area: Rect) -> Option<[Point; 4]> {
     let back = transform.inverse();
     let all = [(area.x0, area.y0), (area.x1, area.y0), (area.x1, area.y1), (area.x0, area.y1)];
     back.is_finite().then(|| all.map(|p| back * Point::from(p)))
 }
 
-/// The range of whole periods of a repeating axis from `p` to `q` that covers these points.
+/// Returns the range of whole periods of a repeating axis from `p` to `q` that covers these points.
 fn periods_of_line(p: Point, q: Point, points: [Point; 4]) -> (i32, i32) {
-    let along: Vec2 = q - p;
-    let at = points.map(|c| (c - p).dot(along) / along.hypot2());
+    let axis: Vec2 = q - p;
+    let offsets = points.map(|c| (c - p).dot(axis) / axis.hypot2());
     let half = f64::from(MAX_PERIODS / 2);
-    let first = at.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-half, half - 1.0);
-    let last = at.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().clamp(first + 1.0, half.max(first + 1.0));
-    (first as i32, last as i32)
+    let first = offsets.iter().copied().fold(f64::INFINITY, f64::min).floor().clamp(-half, half - 1.0);
+    let last = offsets.into_iter().fold(f64::NEG_INFINITY, f64::max).ceil();
+    (first as i32, last.clamp(first + 1.0, half.max(first + 1.0)) as i32)
 }
 
-/// The stops of all periods, with offsets over the whole range.
+/// Returns the stops of all periods, with offsets over the whole range.
 fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec<(f64, [f32; 3], f32)> {
     let one = |s: &Stop| {
         let c = s.color();
@@ -210,9 +209,9 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
     }
     let mut out = Vec::new();
     let span = f64::from(last - first);
-    for k in first..last {
-        let offset = |at: f64| (f64::from(k - first) + at) / span;
-        if spread == SpreadMethod::Reflect && k.rem_euclid(2) == 1 {
+    for index in first..last {
+        let offset = |at: f64| (f64::from(index - first) + at) / span;
+        if spread == SpreadMethod::Reflect && index.rem_euclid(2) == 1 {
             out.extend(period.iter().rev().map(|(at, color, opacity)| (offset(1.0 - at), *color, *opacity)));
         } else {
             out.extend(period.iter().map(|(at, color, opacity)| (offset(*at), *color, *opacity)));
@@ -222,7 +221,7 @@ fn stops(stops: &[Stop], spread: SpreadMethod, (first, last): (i32, i32)) -> Vec
 }
 
 /// Adds the function that interpolates these stops.
-fn function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
+fn add_function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
     let span = 1.0 / stops.len().max(1) as f64;
     let pairs = stops.iter().zip(stops.iter().skip(1));
     let mut pieces: Vec<[(f64, Vec<f32>); 2]> =
@@ -241,20 +240,19 @@ fn function(file: &mut File<'_>, stops: &[(f64, Vec<f32>)]) -> Ref {
         pieces.push([(1.0 - EDGE, last.1.clone()), (1.0, last.1.clone())]);
     }
     let mut refs = Vec::with_capacity(pieces.len());
-    for w in &pieces {
-        let at = file.new_ref();
-        let mut f = file.pdf.exponential_function(at);
-        f.domain([0.0, 1.0]).c0(w[0].1.iter().copied()).c1(w[1].1.iter().copied()).n(1.0);
-        refs.push(at);
+    for [(_, from), (_, to)] in &pieces {
+        let piece = file.new_ref();
+        let mut f = file.pdf.exponential_function(piece);
+        f.domain([0.0, 1.0]).c0(from.iter().copied()).c1(to.iter().copied()).n(1.0);
+        refs.push(piece);
     }
     if let [only] = refs.as_slice() {
         return *only;
     }
-    let at = file.new_ref();
-    let mut f = file.pdf.stitching_function(at);
+    let function = file.new_ref();
+    let mut f = file.pdf.stitching_function(function);
     f.domain([0.0, 1.0]).functions(refs.iter().copied());
-    f.bounds(pieces.iter().skip(1).map(|w| w[0].0 as f32));
+    f.bounds(pieces.iter().skip(1).map(|[(start, _), _]| *start as f32));
     f.encode(refs.iter().flat_map(|_| [0.0, 1.0]));
-    drop(f);
-    at
+    function
 }

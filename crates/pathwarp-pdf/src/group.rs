@@ -1,36 +1,37 @@
 //! Draws groups with their clip paths, masks, opacity, blend modes and content. A group with a filter becomes a picture.
 
-use crate::file::{File, MaskKind, State};
+use crate::file::{File, State};
 use crate::options::PRINT;
 use crate::stream::{Stream, affine, rect, roomy};
 use crate::{image, paint};
 use kurbo::{Affine, BezPath, Rect, Shape as _, Vec2};
 use pathwarp_raster::{Error, Pixmap, render_group};
 use pdf_writer::Ref;
+use pdf_writer::types::MaskType;
 use resvg::tiny_skia::Transform;
-use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, MaskType, Node};
+use usvg::{BlendMode, ClipPath, Fill, FillRule, Group, Mask, Node};
 
 /// Draws a group.
 pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     let transform = affine(group.transform());
     let is_plain = !group.should_isolate();
     if is_plain && transform == Affine::IDENTITY {
-        children(file, stream, group);
+        draw_children(file, stream, group);
         return;
     }
     stream.save();
     stream.transform(transform);
     if is_plain {
-        children(file, stream, group);
+        draw_children(file, stream, group);
     } else if group.filters().is_empty() {
-        isolated(file, stream, group);
+        draw_isolated(file, stream, group);
     } else {
-        filtered(file, stream, group);
+        draw_as_picture(file, stream, group);
     }
     stream.restore();
 }
 
-fn children(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+fn draw_children(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     for child in group.children() {
         match child {
             Node::Group(group) => draw(file, stream, group),
@@ -42,26 +43,26 @@ fn children(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
 }
 
 /// Draws an isolated group, in the coordinates of its content.
-fn isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+fn draw_isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     let bounds = roomy(rect(group.layer_bounding_box().to_rect()));
     let mut masks = Vec::new();
     if let Some(clip) = group.clip_path() {
-        masks.extend(apply(file, stream, clip, bounds).map(|m| (MaskKind::Luminosity, m)));
+        masks.extend(apply_clip(file, stream, clip, bounds).map(|m| (MaskType::Luminosity, m)));
     }
-    masks.extend(group.mask().map(|m| mask(file, m, stream.shift)));
+    masks.extend(group.mask().map(|m| add_mask(file, m, stream.shift)));
     let state = State::default().opacity(group.opacity().get()).blend(group.blend_mode());
     // A clip path alone does not need a group.
     if masks.is_empty() && state.is_plain() && !group.isolate() {
-        children(file, stream, group);
+        draw_children(file, stream, group);
         return;
     }
-    let mut content = file.group(bounds, stream.shift, |file, stream| children(file, stream, group));
-    while masks.len() > 1 {
-        let Some((kind, mask)) = masks.pop() else { break };
+    let mut content = file.group(bounds, stream.shift, |file, stream| draw_children(file, stream, group));
+    // A state has one mask, so a second one goes into another group.
+    if masks.len() > 1
+        && let Some((kind, mask)) = masks.pop()
+    {
         content = file.group(bounds, stream.shift, |file, stream| {
-            let state = file.state(State::default().mask(kind, mask));
-            stream.state(state);
-            stream.object(content);
+            compose(file, stream, State::default().mask(kind, mask), content);
         });
     }
     let state = masks.pop().map_or(state, |(kind, mask)| state.mask(kind, mask));
@@ -71,21 +72,19 @@ fn isolated(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
 /// Draws an object under a graphics state.
 fn compose(file: &mut File<'_>, stream: &mut Stream, state: State, object: Ref) {
     if !state.is_plain() {
-        let state = file.state(state);
-        stream.state(state);
+        stream.state(file.state(state));
     }
     stream.object(object);
 }
 
-/// Adds a mask.
-fn mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskKind, Ref) {
+fn add_mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskType, Ref) {
     let kind = match m.kind() {
-        MaskType::Luminance => MaskKind::Luminosity,
-        MaskType::Alpha => MaskKind::Alpha,
+        usvg::MaskType::Luminance => MaskType::Luminosity,
+        usvg::MaskType::Alpha => MaskType::Alpha,
     };
     let area: Rect = rect(m.rect().to_rect());
     let group = file.group(area, shift, |file, stream| {
-        let outer = m.mask().map(|m| mask(file, m, shift));
+        let outer = m.mask().map(|m| add_mask(file, m, shift));
         let content = file.group(area, shift, |file, stream| draw(file, stream, m.root()));
         let state = outer.map_or(State::default(), |(kind, group)| State::default().mask(kind, group));
         compose(file, stream, state, content);
@@ -94,34 +93,30 @@ fn mask(file: &mut File<'_>, m: &Mask, shift: Vec2) -> (MaskKind, Ref) {
 }
 
 /// Draws a group with a filter as a picture.
-fn filtered(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
+fn draw_as_picture(file: &mut File<'_>, stream: &mut Stream, group: &Group) {
     if file.failed.is_some() {
         return;
     }
-    let drawn = rendered(file, group).and_then(|drawn| {
-        let Some(picture) = drawn else { return Ok(None) };
-        let object = image::add(file, &picture.pixmap, true)?;
-        Ok(Some((object, picture.area)))
+    let added = render(file, group).and_then(|picture| {
+        let Some(picture) = picture else { return Ok(None) };
+        Ok(Some((image::add(file, &picture.pixmap, true)?, picture.area)))
     });
-    let (object, area) = match drawn {
-        Ok(Some(drawn)) => drawn,
-        Ok(None) => return,
-        Err(e) => {
-            file.failed = Some(e);
-            return;
+    match added {
+        Ok(Some((object, area))) => {
+            file.pictures += 1;
+            if group.blend_mode() != BlendMode::Normal {
+                stream.state(file.state(State::default().blend(group.blend_mode())));
+            }
+            image::draw_over(stream, object, area);
         }
-    };
-    file.pictures += 1;
-    if group.blend_mode() != BlendMode::Normal {
-        let state = file.state(State::default().blend(group.blend_mode()));
-        stream.state(state);
+        Ok(None) => {}
+        Err(e) => file.failed = Some(e),
     }
-    image::draw_over(stream, object, area);
 }
 
 /// Restricts drawing to a clip path. If outlines cannot express it, returns the group of a mask that does.
-fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect) -> Option<Ref> {
-    if let Some(outlines) = outlines(file, clip) {
+fn apply_clip(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect) -> Option<Ref> {
+    if let Some(outlines) = clip_outlines(file, clip) {
         for (path, rule) in &outlines {
             stream.clip(path, *rule);
         }
@@ -129,21 +124,20 @@ fn apply(file: &mut File<'_>, stream: &mut Stream, clip: &ClipPath, bounds: Rect
     }
     Some(file.group(bounds, stream.shift, |file, stream| {
         if let Some(next) = clip.clip_path()
-            && let Some(mask) = apply(file, stream, next, bounds)
+            && let Some(mask) = apply_clip(file, stream, next, bounds)
         {
-            let state = file.state(State::default().mask(MaskKind::Luminosity, mask));
-            stream.state(state);
+            stream.state(file.state(State::default().mask(MaskType::Luminosity, mask)));
         }
         stream.content.set_fill_gray(1.0);
         stream.transform(affine(clip.transform()));
-        silhouette(file, stream, clip.root(), bounds);
+        fill_silhouette(file, stream, clip.root(), bounds);
     }))
 }
 
 /// Expresses a clip path as an intersection of outlines. Returns `None` if that is impossible.
-fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>> {
+fn clip_outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>> {
     let mut content = Vec::new();
-    collect(file, clip.root(), affine(clip.transform()), &mut content)?;
+    collect_outlines(file, clip.root(), affine(clip.transform()), &mut content)?;
     let rule = content.first().map_or(FillRule::NonZero, |(_, rule)| *rule);
     let boxes: Vec<Rect> = content.iter().map(|(path, _)| path.bounding_box()).collect();
     // The winding numbers of outlines that overlap would add up.
@@ -156,7 +150,7 @@ fn outlines(file: &File<'_>, clip: &ClipPath) -> Option<Vec<(BezPath, FillRule)>
         // An empty clip path hides everything, but an empty outline would not clip at all.
         path = Rect::ZERO.to_path(1.0);
     }
-    let mut out = clip.clip_path().map_or(Some(Vec::new()), |next| outlines(file, next))?;
+    let mut out = clip.clip_path().map_or(Some(Vec::new()), |next| clip_outlines(file, next))?;
     out.push((path, rule));
     Some(out)
 }
@@ -169,12 +163,12 @@ fn are_apart(boxes: &[Rect]) -> bool {
 }
 
 /// Collects the outlines of a clip path's content. Returns `None` if a part of it is clipped in turn.
-fn collect(file: &File<'_>, group: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
+fn collect_outlines(file: &File<'_>, group: &Group, to_user: Affine, out: &mut Vec<(BezPath, FillRule)>) -> Option<()> {
     for child in group.children() {
         match child {
             Node::Group(group) if group.clip_path().is_some() => return None,
-            Node::Group(group) => collect(file, group, to_user * affine(group.transform()), out)?,
-            Node::Text(t) => collect(file, t.flattened(), to_user * affine(t.flattened().transform()), out)?,
+            Node::Group(group) => collect_outlines(file, group, to_user * affine(group.transform()), out)?,
+            Node::Text(t) => collect_outlines(file, t.flattened(), to_user * affine(t.flattened().transform()), out)?,
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
                     out.push((to_user * paint::outline(file, p), Fill::rule(fill)));
@@ -186,19 +180,15 @@ fn collect(file: &File<'_>, group: &Group, to_user: Affine, out: &mut Vec<(BezPa
     Some(())
 }
 
-/// Fills the content of a clip path with the current colour.
-fn silhouette(file: &mut File<'_>, stream: &mut Stream, group: &Group, bounds: Rect) {
+/// Fills the content of a clip path with the current colour. `bounds` is in its coordinates.
+fn fill_silhouette(file: &mut File<'_>, stream: &mut Stream, group: &Group, bounds: Rect) {
     for child in group.children() {
         let group = match child {
             Node::Group(group) => &**group,
             Node::Text(t) => t.flattened(),
             Node::Path(p) => {
                 if let Some(fill) = p.fill().filter(|_| p.is_visible()) {
-                    stream.outline(&paint::outline(file, p));
-                    match fill.rule() {
-                        FillRule::NonZero => stream.content.fill_nonzero(),
-                        FillRule::EvenOdd => stream.content.fill_even_odd(),
-                    };
+                    stream.fill(&paint::outline(file, p), fill.rule());
                 }
                 continue;
             }
@@ -209,12 +199,11 @@ fn silhouette(file: &mut File<'_>, stream: &mut Stream, group: &Group, bounds: R
         let inner = affine(group.transform()).inverse();
         let inner = if inner.is_finite() { inner.transform_rect_bbox(bounds) } else { bounds };
         if let Some(clip) = group.clip_path()
-            && let Some(mask) = apply(file, stream, clip, inner)
+            && let Some(mask) = apply_clip(file, stream, clip, inner)
         {
-            let state = file.state(State::default().mask(MaskKind::Luminosity, mask));
-            stream.state(state);
+            stream.state(file.state(State::default().mask(MaskType::Luminosity, mask)));
         }
-        silhouette(file, stream, group, inner);
+        fill_silhouette(file, stream, group, inner);
         stream.restore();
     }
 }
@@ -232,13 +221,13 @@ struct Picture {
 
 /// Renders a group with its filters, clip path, mask and opacity, with fewer pixels if the limits do not allow the resolution.
 /// Returns `None` if it shows nothing.
-fn rendered(file: &mut File<'_>, group: &Group) -> Result<Option<Picture>, Error> {
+fn render(file: &mut File<'_>, group: &Group) -> Result<Option<Picture>, Error> {
     let area = rect(group.layer_bounding_box().to_rect());
     let dpi = file.options.picture_dpi.unwrap_or(PRINT);
-    let wanted = affine(group.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
+    let pixels_per_unit = affine(group.abs_transform()).determinant().abs().sqrt() * dpi / PX_PER_INCH;
     // The renderer moves the picture's corner to the origin and applies the group's transform; undo both.
     let back = affine(group.transform()).inverse();
-    if !back.is_finite() || !wanted.is_finite() {
+    if !back.is_finite() || !pixels_per_unit.is_finite() {
         return Ok(None);
     }
     let layer = group.abs_layer_bounding_box();
@@ -247,7 +236,7 @@ fn rendered(file: &mut File<'_>, group: &Group) -> Result<Option<Picture>, Error
         * Affine::translate((f64::from(layer.x()), f64::from(layer.y())));
     let mut halvings = 0;
     loop {
-        let scale = wanted * 0.5_f64.powi(halvings);
+        let scale = pixels_per_unit * 0.5_f64.powi(halvings);
         let size = [area.width(), area.height()].map(|v| (v * scale).ceil().max(1.0));
         let to_pixels = Affine::scale_non_uniform(size[0] / area.width(), size[1] / area.height()) * to_area;
         let [a, b, c, d, e, f] = to_pixels.as_coeffs().map(|v| v as f32);

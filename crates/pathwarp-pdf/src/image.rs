@@ -31,7 +31,7 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
             return;
         }
         ImageKind::JPEG(data) | ImageKind::PNG(data) | ImageKind::GIF(data) | ImageKind::WEBP(data) => {
-            embedded(file, data, smooth)
+            embed(file, data, smooth)
         }
     };
     if let Some(object) = object {
@@ -39,13 +39,13 @@ pub(crate) fn draw(file: &mut File<'_>, stream: &mut Stream, image: &Image) {
     }
 }
 
-/// The object of an embedded picture. It is added only once, no matter how often it is drawn.
-fn embedded(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Ref> {
+/// Returns the object of a picture, adding it if it is new.
+fn embed(file: &mut File<'_>, data: &Arc<Vec<u8>>, smooth: bool) -> Option<Ref> {
     let key = (Arc::clone(data), smooth);
     if let Some(known) = file.embedded.get(&key) {
         return Some(*known);
     }
-    let object = jpeg(file, data, smooth).or_else(|| decoded(file, data, smooth))?;
+    let object = add_jpeg(file, data, smooth).or_else(|| add_pixels(file, data, smooth))?;
     file.embedded.insert(key, object);
     Some(object)
 }
@@ -58,7 +58,7 @@ pub(crate) fn draw_over(stream: &mut Stream, object: Ref, area: Rect) {
 }
 
 /// Adds the pixels of a picture. If it cannot be decoded, it is not drawn, as in browsers; if it is too large, that is an error.
-fn decoded(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
+fn add_pixels(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     if file.failed.is_some() {
         return None;
     }
@@ -95,16 +95,16 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
         opacities.push(c.alpha());
     }
     let mut add = |bytes: &[u8], space: Name<'_>, mask: Option<Ref>| {
-        let at = file.new_ref();
+        let object = file.new_ref();
         let bytes = deflated(bytes);
-        let mut out = file.pdf.image_xobject(at, &bytes);
+        let mut out = file.pdf.image_xobject(object, &bytes);
         out.filter(Filter::FlateDecode);
         out.width(width as i32).height(height as i32).bits_per_component(8).interpolate(smooth);
         out.color_space_name(space);
         if let Some(mask) = mask {
             out.s_mask(mask);
         }
-        at
+        object
     };
     let is_opaque = opacities.iter().all(|a| *a == u8::MAX);
     let mask = (!is_opaque).then(|| add(&opacities, Name(b"DeviceGray"), None));
@@ -112,20 +112,20 @@ pub(crate) fn add(file: &mut File<'_>, pixmap: &Pixmap, smooth: bool) -> Result<
 }
 
 /// Adds a JPEG as it is, if PDF programs show it as browsers do, which takes one or three components of 8 bits.
-fn jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
+fn add_jpeg(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     let frame = JpegFrame::find(data)?;
     let space = match frame.components {
         1 => Name(b"DeviceGray"),
         3 => Name(b"DeviceRGB"),
         _ => return None,
     };
-    let at = file.new_ref();
-    let mut out = file.pdf.image_xobject(at, data);
+    let object = file.new_ref();
+    let mut out = file.pdf.image_xobject(object, data);
     out.filter(Filter::DctDecode);
     out.width(frame.width.into()).height(frame.height.into()).bits_per_component(8).interpolate(smooth);
     out.color_space_name(space);
     out.finish();
-    Some(at)
+    Some(object)
 }
 
 /// The header of a JPEG's frame (ISO 10918-1, B.2.2).

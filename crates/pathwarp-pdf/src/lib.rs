@@ -1,7 +1,7 @@
 //! Writes a resolved SVG drawing as a PDF of one page.
 //!
-//! Shapes, strokes, gradients, patterns, clip paths, masks, opacity and blend modes become their counterparts in PDF. Letters are written as
-//! outlines, and JPEG images byte for byte. Only groups with filters become pictures, as PDF has no filters. The page has the physical
+//! Shapes, strokes, gradients, patterns, clip paths, masks, opacity and blend modes become their counterparts in PDF. Letters are written
+//! as outlines, and JPEG images byte for byte. Only groups with filters become pictures, as PDF has no filters. The page has the physical
 //! size of the drawing: 1 px is ¾ pt.
 //!
 //! The output holds neither dates nor random ids: the same drawing always gives the same bytes.

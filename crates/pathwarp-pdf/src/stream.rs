@@ -24,7 +24,7 @@ enum Kind {
     Ink,
 }
 
-/// The resources that a content stream uses.
+/// The resources that a content stream uses: their kinds, and the numbers of their objects.
 #[derive(Debug, Default)]
 pub(crate) struct Used(BTreeSet<(Kind, i32)>);
 
@@ -98,6 +98,15 @@ impl Stream {
             usvg::FillRule::EvenOdd => self.content.clip_even_odd(),
         };
         self.content.end_path();
+    }
+
+    /// Fills an outline with the current paint.
+    pub(crate) fn fill(&mut self, path: &BezPath, rule: usvg::FillRule) {
+        self.outline(path);
+        match rule {
+            usvg::FillRule::NonZero => self.content.fill_nonzero(),
+            usvg::FillRule::EvenOdd => self.content.fill_even_odd(),
+        };
     }
 
     pub(crate) fn state(&mut self, state: Ref) {
@@ -191,22 +200,21 @@ pub(crate) fn from_usvg(path: &Path) -> BezPath {
 
 /// Writes the operators that construct an outline.
 fn write(out: &mut Content, path: &BezPath) {
-    let mut at = Point::ORIGIN;
+    let mut start = Point::ORIGIN;
     for element in path.elements() {
-        let f = |p: Point| (p.x as f32, p.y as f32);
         let cubic = |out: &mut Content, p: Point, q: Point, r: Point| {
-            let ((x1, y1), (x2, y2), (x3, y3)) = (f(p), f(q), f(r));
+            let [x1, y1, x2, y2, x3, y3] = [p.x, p.y, q.x, q.y, r.x, r.y].map(|v| v as f32);
             out.cubic_to(x1, y1, x2, y2, x3, y3);
         };
         match *element {
-            PathEl::MoveTo(p) => drop(out.move_to(f(p).0, f(p).1)),
-            PathEl::LineTo(p) => drop(out.line_to(f(p).0, f(p).1)),
+            PathEl::MoveTo(p) => drop(out.move_to(p.x as f32, p.y as f32)),
+            PathEl::LineTo(p) => drop(out.line_to(p.x as f32, p.y as f32)),
             // PDF has no quadratics, but this cubic is the same curve.
-            PathEl::QuadTo(p, q) => cubic(out, at + (p - at) * (2.0 / 3.0), q + (p - q) * (2.0 / 3.0), q),
+            PathEl::QuadTo(p, q) => cubic(out, start + (p - start) * (2.0 / 3.0), q + (p - q) * (2.0 / 3.0), q),
             PathEl::CurveTo(p, q, r) => cubic(out, p, q, r),
             PathEl::ClosePath => drop(out.close_path()),
         }
-        at = element.end_point().unwrap_or(at);
+        start = element.end_point().unwrap_or(start);
     }
 }
 

@@ -47,9 +47,9 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) -> Result<(),
     head(kind, 16 * points.len(), out)?;
     let start = out.len();
     out.resize(start + 16 * points.len(), 0);
-    let places = out[start..].as_chunks_mut::<8>().0;
-    for (place, number) in places.iter_mut().zip(points.iter().flat_map(|p| [p.x, p.y])) {
-        *place = number.to_le_bytes();
+    let numbers = points.iter().flat_map(|p| [p.x, p.y]);
+    for (slot, number) in out[start..].as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
+        *slot = number.to_le_bytes();
     }
     Ok(())
 }
@@ -60,15 +60,15 @@ pub(crate) fn length(bytes: &[u8], body: Option<usize>, expected: &dyn Fn() -> S
     let Some((head, _)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
     let [a, b, c, d, kind] = *head;
     let length = u32::from_le_bytes([a, b, c, d]) as usize;
-    let garbage = || Err(Fault::Garbage { expected: expected(), found: beginning(bytes) });
     match (kind, body) {
         (DONE, Some(body)) if length == body + 1 => Ok(Some(length + 4)),
+        // Pairs of numbers, and not absurdly many: a wrong count, not text that was taken for a length.
         (DONE, Some(body)) if length % 16 == 1 && length < 100 * (body + 16) => Err(Fault::Count {
             expected: expected(),
             found: format!("has {} bytes of numbers instead of {body}", length - 1),
         }),
         (DONE, None) | (REFUSED, _) if (1..=MAX_MESSAGE_BYTES).contains(&length) => Ok(Some(length + 4)),
-        _ => garbage(),
+        _ => Err(Fault::Garbage { expected: expected(), found: beginning(bytes) }),
     }
 }
 

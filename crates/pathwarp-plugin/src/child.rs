@@ -4,6 +4,7 @@ use crate::fault::Fault;
 use std::path::Path;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// All running processes.
 static LIVE: Mutex<Vec<Shared>> = Mutex::new(Vec::new());
@@ -13,6 +14,12 @@ type Shared = Arc<Mutex<Option<Child>>>;
 
 /// Environment variable set for plug-ins. A plug-in that called pathwarp with itself as a plug-in would start programs endlessly.
 const WITHIN: &str = "PATHWARP_WITHIN_PLUGIN";
+
+/// Time for a program to end after closing a pipe, so that its exit status can be reported.
+pub(crate) const GRACE: Duration = Duration::from_millis(200);
+
+/// Interval between checks whether the program has ended, since a child of it may hold its pipes open.
+pub(crate) const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A running program, in a separate process group where the system has them. Killed and waited for when dropped.
 pub(crate) struct Running {
@@ -63,6 +70,15 @@ impl Running {
         let status = self.child().take().and_then(kill);
         live().retain(|c| !Arc::ptr_eq(c, &self.child));
         status
+    }
+
+    /// Returns the fault of a program that has ended or closed a stream where an answer was `expected`. `said` is its standard error.
+    pub(crate) fn fault(&mut self, stream: &str, expected: String, said: String) -> Fault {
+        if !self.has_ended() {
+            return Fault::Closed { stream: stream.to_owned(), expected, said };
+        }
+        let status = self.end().map_or_else(|| "unknown status".to_owned(), |s| s.to_string());
+        Fault::Ended { expected, status, said }
     }
 }
 

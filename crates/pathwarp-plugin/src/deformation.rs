@@ -85,7 +85,6 @@ impl Deformation for Plugin {
     }
 
     fn build(&self, settings: &Settings<'_>) -> Result<Built, Error> {
-        let frame = settings.frame();
         let lines = lines(self.info.params, settings, self.version)?;
         let request = match self.program.protocol {
             Protocol::Text => text::build(&lines),
@@ -98,8 +97,8 @@ impl Deformation for Plugin {
         };
         let answer = self.program.build(&instance).map_err(refused)?;
         let abilities = Abilities { creases: answer.creases, detail: answer.detail, ..self.abilities.clone() };
-        let callee = Arc::new(Asked { program: Arc::clone(&self.program), instance });
-        let map = Called::new(callee, abilities, frame.extent(Axis::Diagonal));
+        let callee = Arc::new(ProgramMap { program: Arc::clone(&self.program), instance });
+        let map = Called::new(callee, abilities, settings.frame().extent(Axis::Diagonal));
         let mut built = Built::called(map, "the plug-in gives no numbers there");
         answer.notes.into_iter().for_each(|n| built.note(n));
         answer.warnings.into_iter().for_each(|w| built.warn(w));
@@ -108,12 +107,12 @@ impl Deformation for Plugin {
 }
 
 /// A map that a program has built.
-struct Asked {
+struct ProgramMap {
     program: Arc<Program>,
     instance: Instance,
 }
 
-impl Callee for Asked {
+impl Callee for ProgramMap {
     fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error> {
         self.program.ask(&self.instance, ask, points).map_err(|fault| fault.of(&self.program.path))
     }

@@ -137,7 +137,7 @@ struct WrittenCase {
 
 /// Reads an entry. Its texts are kept until the process ends, like those of built-in deformations.
 pub(crate) fn read(bytes: &[u8], reserved: Reserved<'_>) -> Result<Entry, Fault> {
-    let wrong = |problem: String| Fault::Entry(problem);
+    let wrong = Fault::Entry;
     let json: Value = serde_json::from_slice(bytes).map_err(|e| wrong(format!("it is not JSON: {e}")))?;
     match json.get("pathwarp-plugin") {
         Some(v) if v.as_u64().is_some_and(|v| (FIRST_VERSION.into()..=VERSION.into()).contains(&v)) => {}

@@ -129,16 +129,38 @@ fn quoted(said: &str) -> String {
     if said.is_empty() { String::new() } else { format!("; it said: {said}") }
 }
 
-/// Joins the last lines of `bytes` to one line, without characters that would control the terminal. Repeated lines appear once with
-/// their number.
-pub(crate) fn readable(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes);
-    let line: Vec<&str> = text.split(|c: char| c.is_control()).map(str::trim).filter(|l| !l.is_empty()).collect();
-    let times =
-        |run: &[&str]| if run.len() == 1 { run[0].to_owned() } else { format!("{} ({} times)", run[0], run.len()) };
-    let line = line.chunk_by(|a, b| a == b).map(times).collect::<Vec<_>>().join(" | ");
-    let skipped = line.char_indices().rev().nth(MAX_QUOTED_BYTES).map_or(0, |(i, _)| i);
-    if skipped == 0 { line } else { format!("…{}", &line[skipped..]) }
+/// The standard error of a program: its end, for messages, and its length.
+#[derive(Default)]
+pub(crate) struct StandardError {
+    end: Vec<u8>,
+    length: usize,
+}
+
+impl StandardError {
+    pub(crate) fn push(&mut self, bytes: &[u8]) {
+        self.length += bytes.len();
+        self.end.extend_from_slice(bytes);
+        let surplus = self.end.len().saturating_sub(KEPT_ERROR_BYTES);
+        self.end.drain(..surplus);
+    }
+
+    /// Checks that the program has not written too much.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
+        if self.length > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(self.readable())) } else { Ok(()) }
+    }
+
+    /// Joins the last lines to one line, without characters that would control the terminal. Repeated lines appear once with their number.
+    pub(crate) fn readable(&self) -> String {
+        let text = String::from_utf8_lossy(&self.end);
+        let lines: Vec<&str> = text.split(|c: char| c.is_control()).map(str::trim).filter(|l| !l.is_empty()).collect();
+        let times = |same: &[&str]| match same.len() {
+            1 => same[0].to_owned(),
+            n => format!("{} ({n} times)", same[0]),
+        };
+        let line = lines.chunk_by(|a, b| a == b).map(times).collect::<Vec<_>>().join(" | ");
+        let skipped = line.char_indices().rev().nth(MAX_QUOTED_BYTES).map_or(0, |(i, _)| i);
+        if skipped == 0 { line } else { format!("…{}", &line[skipped..]) }
+    }
 }
 
 /// Quotes the beginning of `bytes`.
@@ -170,7 +192,10 @@ pub(crate) const MAX_MESSAGE_BYTES: usize = 1 << 16;
 pub(crate) const MAX_LINE_BYTES: usize = 256;
 
 /// Limit on standard error over the whole run of a program.
-pub(crate) const MAX_ERROR_BYTES: usize = 1 << 20;
+const MAX_ERROR_BYTES: usize = 1 << 20;
+
+/// Bytes of standard error to keep for messages.
+const KEPT_ERROR_BYTES: usize = 4096;
 
 /// Limit on the part of standard error that messages quote.
 const MAX_QUOTED_BYTES: usize = 300;

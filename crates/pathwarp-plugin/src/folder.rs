@@ -40,7 +40,7 @@ pub struct Broken {
 #[must_use]
 pub fn folder() -> Option<PathBuf> {
     let given = env::var_os(FOLDER_VARIABLE).filter(|f| !f.is_empty());
-    given.map(PathBuf::from).or_else(|| Some(of_user("XDG_DATA_HOME", ".local/share", "APPDATA")?.join("plug-ins")))
+    given.map(PathBuf::from).or_else(|| Some(user_folder("XDG_DATA_HOME", ".local/share", "APPDATA")?.join("plug-ins")))
 }
 
 /// Returns the file that caches entries.
@@ -48,13 +48,13 @@ fn cache_file() -> Option<PathBuf> {
     let folder = if cfg!(target_os = "macos") {
         PathBuf::from(env::var_os("HOME")?).join("Library/Caches/pathwarp")
     } else {
-        of_user("XDG_CACHE_HOME", ".cache", "LOCALAPPDATA")?
+        user_folder("XDG_CACHE_HOME", ".cache", "LOCALAPPDATA")?
     };
     Some(folder.join("plug-ins.json"))
 }
 
-/// Returns this program's folder within one of the user's folders.
-fn of_user(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
+/// Returns pathwarp's folder in one of the user's folders, which these variables name, or a path below the home folder.
+fn user_folder(xdg: &str, below_home: &str, windows: &str) -> Option<PathBuf> {
     let var = |name: &str| env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     let base = if cfg!(target_os = "windows") {
         var(windows)?
@@ -162,12 +162,12 @@ struct Known {
     entry: Result<String, Fault>,
 }
 
-/// Time of the last change in nanoseconds, size, and permissions.
+/// Time of the last change in nanoseconds, size in bytes, and permissions.
 #[derive(Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 struct Stamp(u128, u64, u32);
 
 impl Stamp {
-    fn of(path: &Path) -> Option<Self> {
+    fn from_file(path: &Path) -> Option<Self> {
         let meta = path.metadata().ok()?;
         #[cfg(unix)]
         let mode = std::os::unix::fs::PermissionsExt::mode(&meta.permissions());
@@ -189,7 +189,7 @@ impl Cache {
     /// Returns the entry or fault of a program if its file has not changed.
     fn get(&self, path: &Path) -> Option<Result<&str, &Fault>> {
         let known = self.data.programs.get(path.to_str()?)?;
-        (Stamp::of(path)? == known.stamp).then_some(known.entry.as_deref())
+        (Stamp::from_file(path)? == known.stamp).then_some(known.entry.as_deref())
     }
 
     /// Stores an entry or a fault.
@@ -198,7 +198,7 @@ impl Cache {
         if entry == Err(&Fault::Nested) {
             return;
         }
-        let (Some(name), Some(stamp)) = (path.to_str(), Stamp::of(path)) else { return };
+        let (Some(name), Some(stamp)) = (path.to_str(), Stamp::from_file(path)) else { return };
         let entry = entry.map(ToOwned::to_owned).map_err(Clone::clone);
         self.data.programs.insert(name.to_owned(), Known { stamp, entry });
         self.data.programs.retain(|name, _| Path::new(name).exists());

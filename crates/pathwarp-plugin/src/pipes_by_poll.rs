@@ -1,22 +1,13 @@
 //! Handles the three pipes of a program on Unix. One loop writes, reads, and checks the clock, so that neither side can block the
 //! other, and a short answer waits for no other thread.
 
-use crate::child::Running;
-use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
+use crate::child::{GRACE, POLL_INTERVAL, Running};
+use crate::fault::{Fault, StandardError, time};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{OFlags, fcntl_setfl};
 use std::io::{ErrorKind, Read, Write};
 use std::process::{ChildStderr, ChildStdin, ChildStdout};
 use std::time::{Duration, Instant};
-
-/// Interval between checks whether the program has ended, since a child of it may hold its pipes open.
-const LOOK: Duration = Duration::from_millis(50);
-
-/// Time for a program to end after closing a pipe, so that its exit status can be reported.
-const GRACE: Duration = Duration::from_millis(200);
-
-/// Bytes of standard error to keep for messages.
-const KEPT: usize = 4096;
 
 /// The pipes of a running program.
 pub(crate) struct Pipes {
@@ -25,8 +16,7 @@ pub(crate) struct Pipes {
     errors: Option<ChildStderr>,
     /// Bytes received and not yet taken.
     incoming: Vec<u8>,
-    said: Vec<u8>,
-    said_in_all: usize,
+    said: StandardError,
     chunk: Box<[u8]>,
 }
 
@@ -42,8 +32,7 @@ impl Pipes {
             output,
             errors: Some(errors),
             incoming: Vec::new(),
-            said: Vec::new(),
-            said_in_all: 0,
+            said: StandardError::default(),
             chunk: vec![0; 1 << 16].into_boxed_slice(),
         })
     }
@@ -74,17 +63,16 @@ impl Pipes {
                 if self.input_is_closed() {
                     self.stopped(running, "input", expected)?;
                 }
-                return Err(Fault::Silent {
-                    expected: expected(),
-                    seconds: time().as_secs_f64(),
-                    said: readable(&self.said),
-                });
+                let (expected, said) = (expected(), self.said.readable());
+                return Err(Fault::Silent { expected, seconds: time().as_secs_f64(), said });
             }
-            let [can_read, can_hear] = self.wait(!rest.is_empty(), left.min(LOOK));
+            let [can_read, can_hear] = self.wait(!rest.is_empty(), left.min(POLL_INTERVAL));
             if can_hear {
                 self.hear()?;
             }
-            if can_read && !self.read() || !can_read && running.has_ended() && !self.wait(false, Duration::ZERO)[0] {
+            let is_over =
+                if can_read { !self.read() } else { running.has_ended() && !self.wait(false, Duration::ZERO)[0] };
+            if is_over {
                 self.stopped(running, "output", expected)?;
             }
         }
@@ -93,7 +81,7 @@ impl Pipes {
     /// Returns the end of standard error so far.
     pub(crate) fn said(&mut self) -> String {
         while self.wait(false, Duration::ZERO)[1] && self.hear().is_ok() {}
-        readable(&self.said)
+        self.said.readable()
     }
 
     /// Returns the bytes received after the last answer.
@@ -153,33 +141,23 @@ impl Pipes {
         let Some(errors) = &mut self.errors else { return Ok(()) };
         match errors.read(&mut self.chunk) {
             Ok(0) => self.errors = None,
-            Ok(n) => {
-                self.said_in_all += n;
-                self.said.extend_from_slice(&self.chunk[..n]);
-                let surplus = self.said.len().saturating_sub(KEPT);
-                self.said.drain(..surplus);
-            }
+            Ok(n) => self.said.push(&self.chunk[..n]),
             Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
             Err(_) => self.errors = None,
         }
-        if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
+        self.said.check()
     }
 
-    /// Returns the fault of a program that has ended, or closed a stream.
+    /// Waits for the end of a program that seems to have ended or closed a stream, hears it out, and returns its fault.
     fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Result<(), Fault> {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !(running.has_ended() && self.errors.is_none()) {
-            if !self.wait(false, LOOK.min(GRACE / 10))[1] && running.has_ended() {
+            if !self.wait(false, POLL_INTERVAL.min(GRACE / 10))[1] && running.has_ended() {
                 break;
             }
             self.hear()?;
             std::thread::sleep(Duration::from_millis(1));
         }
-        let (expected, said) = (expected(), readable(&self.said));
-        if !running.has_ended() {
-            return Err(Fault::Closed { stream: stream.to_owned(), expected, said });
-        }
-        let status = running.end().map_or_else(|| "unknown status".to_owned(), |s| s.to_string());
-        Err(Fault::Ended { expected, status, said })
+        Err(running.fault(stream, expected(), self.said.readable()))
     }
 }

@@ -1,17 +1,11 @@
 //! Handles the three pipes of a program where they cannot be polled, with a thread for each.
 
-use crate::child::Running;
-use crate::fault::{Fault, MAX_ERROR_BYTES, readable, time};
+use crate::child::{GRACE, POLL_INTERVAL, Running};
+use crate::fault::{Fault, StandardError, time};
 use std::io::{Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
-
-/// Time for a program to end after closing a pipe, so that its exit status can be reported.
-const GRACE: Duration = Duration::from_millis(200);
-
-/// Interval between checks whether the program has ended, since a child of it may hold its pipes open.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// Capacity of the queue of events. A program that writes more has to wait.
 const WAITING: usize = 4;
@@ -27,9 +21,9 @@ enum Event {
 pub(crate) struct Pipes {
     requests: Sender<Vec<u8>>,
     events: Receiver<Event>,
+    /// Bytes received and not yet taken.
     incoming: Vec<u8>,
-    said: Vec<u8>,
-    said_in_all: usize,
+    said: StandardError,
 }
 
 impl Pipes {
@@ -47,13 +41,13 @@ impl Pipes {
                     }
                 }
             }),
-            reading(output, happened.clone(), Event::Output, Some("output")),
-            reading(errors, happened, Event::Errors, None),
+            forward(output, happened.clone(), Event::Output, Some("output")),
+            forward(errors, happened, Event::Errors, None),
         ];
         for thread in threads {
             thread.map_err(|e| Fault::NotStarted(e.to_string()))?;
         }
-        Ok(Self { requests, events, incoming: Vec::new(), said: Vec::new(), said_in_all: 0 })
+        Ok(Self { requests, events, incoming: Vec::new(), said: StandardError::default() })
     }
 
     /// Sends `request` and reads until `whole` finds the end of the answer, which may take up to `limit` bytes.
@@ -82,10 +76,10 @@ impl Pipes {
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                let (expected, said) = (expected(), readable(&self.said));
+                let (expected, said) = (expected(), self.said.readable());
                 return Err(Fault::Silent { expected, seconds: time().as_secs_f64(), said });
             }
-            match self.events.recv_timeout(left.min(LOOK)) {
+            match self.events.recv_timeout(left.min(POLL_INTERVAL)) {
                 Ok(Event::Output(bytes)) => self.incoming.extend(bytes),
                 Ok(Event::Errors(bytes)) => self.hear(&bytes)?,
                 Ok(Event::Ended(stream)) => ended = Some(stream),
@@ -104,7 +98,7 @@ impl Pipes {
                 _ => break,
             }
         }
-        readable(&self.said)
+        self.said.readable()
     }
 
     /// Returns the bytes received after the last answer.
@@ -113,16 +107,11 @@ impl Pipes {
     }
 
     fn hear(&mut self, bytes: &[u8]) -> Result<(), Fault> {
-        /// Bytes to keep for messages.
-        const KEPT: usize = 4096;
-        self.said_in_all += bytes.len();
-        self.said.extend_from_slice(bytes);
-        let surplus = self.said.len().saturating_sub(KEPT);
-        self.said.drain(..surplus);
-        if self.said_in_all > MAX_ERROR_BYTES { Err(Fault::ErrorFlood(readable(&self.said))) } else { Ok(()) }
+        self.said.push(bytes);
+        self.said.check()
     }
 
-    /// Returns the fault of a program that has ended, or closed a stream.
+    /// Waits for the end of a program that seems to have ended or closed a stream, hears it out, and returns its fault.
     fn stopped(&mut self, running: &mut Running, stream: &str, expected: &dyn Fn() -> String) -> Fault {
         let until = Instant::now() + GRACE;
         while Instant::now() < until && !running.has_ended() {
@@ -135,17 +124,12 @@ impl Pipes {
                 return fault;
             }
         }
-        let (expected, said) = (expected(), readable(&self.said));
-        if !running.has_ended() {
-            return Fault::Closed { stream: stream.to_owned(), expected, said };
-        }
-        let status = running.end().map_or_else(|| "unknown status".to_owned(), |s| s.to_string());
-        Fault::Ended { expected, status, said }
+        running.fault(stream, expected(), self.said.readable())
     }
 }
 
-/// Starts a thread that forwards all bytes read from `pipe`.
-fn reading(
+/// Starts a thread that forwards all bytes read from `pipe` as events, and the end of the stream if it has a `name`.
+fn forward(
     mut pipe: impl Read + Send + 'static,
     happened: SyncSender<Event>,
     event: fn(Vec<u8>) -> Event,

@@ -33,6 +33,9 @@ pub(crate) struct Session {
     instance: u64,
 }
 
+/// A question about points, and the list for the numbers of the answer.
+type Batch<'a> = (Ask, &'a [Point], &'a mut Vec<f64>);
+
 // Names of expected answers in messages.
 const ENTRY: &str = "its entry as JSON with a line break after it";
 const BUILT: &str = "the answer to `build`";
@@ -55,25 +58,21 @@ impl Session {
     }
 
     fn build(&mut self, protocol: Protocol, instance: &Instance) -> Result<BuildAnswer, Fault> {
-        let answer = self.built(protocol, &instance.request, 0)?;
+        let answer = self.request_map(protocol, &instance.request, 0)?;
         self.nothing_left(|| BUILT.to_owned())?;
         self.instance = instance.id;
         Ok(answer)
     }
 
     /// Sends `request`, which starts by requesting a map, and reads the description of the map. Up to `more` bytes may follow it.
-    fn built(&mut self, protocol: Protocol, request: &[u8], more: usize) -> Result<BuildAnswer, Fault> {
+    fn request_map(&mut self, protocol: Protocol, request: &[u8], more: usize) -> Result<BuildAnswer, Fault> {
         let expected = || BUILT.to_owned();
-        let bytes =
-            self.pipes.exchange(
-                &mut self.running,
-                request,
-                (&expected, MAX_MESSAGE_BYTES + more),
-                |b| match protocol {
-                    Protocol::Text => Ok(text::build_length(b)),
-                    Protocol::Binary => binary::length(b, None, &expected),
-                },
-            )?;
+        let length = |b: &[u8]| match protocol {
+            Protocol::Text => Ok(text::build_length(b)),
+            Protocol::Binary => binary::length(b, None, &expected),
+        };
+        let limit = MAX_MESSAGE_BYTES + more;
+        let bytes = self.pipes.exchange(&mut self.running, request, (&expected, limit), length)?;
         match protocol {
             Protocol::Text => text::read_build(&bytes),
             Protocol::Binary => text::read_build(binary::body(&bytes)?),
@@ -82,12 +81,7 @@ impl Session {
 
     /// Asks for batches of a map, which is built first if it is not the last one. All requests are sent at once. Appends the numbers of
     /// each answer to the batch's list.
-    fn ask(
-        &mut self,
-        protocol: Protocol,
-        instance: &Instance,
-        batches: &mut [(Ask, &[Point], &mut Vec<f64>)],
-    ) -> Result<(), Fault> {
+    fn ask(&mut self, protocol: Protocol, instance: &Instance, batches: &mut [Batch<'_>]) -> Result<(), Fault> {
         let must_build = self.instance != instance.id;
         let mut request = if must_build { instance.request.clone() } else { Vec::new() };
         for (ask, points, _) in batches.iter() {
@@ -99,7 +93,7 @@ impl Session {
         // All answers may arrive while the requests are still being sent.
         let mut limit = batches.iter().map(|(ask, points, _)| answer_bytes(protocol, *ask, points.len())).sum();
         if must_build {
-            self.built(protocol, &request, limit)?;
+            self.request_map(protocol, &request, limit)?;
             self.instance = instance.id;
             request.clear();
         }
@@ -270,7 +264,7 @@ impl Program {
         Ok([values, jets])
     }
 
-    /// Runs `f` with a process, preferably one that has built the map `id`. A process that fails is ended.
+    /// Runs `f` with a process, preferably one that has built the map `id`; 0 stands for none. A process that fails is ended.
     fn with_session<T>(&self, id: u64, f: impl FnOnce(&mut Session) -> Result<T, Fault>) -> Result<T, Fault> {
         let mut session = self.take(id)?;
         let result = f(&mut session);
@@ -287,13 +281,13 @@ impl Program {
         result
     }
 
+    /// Takes an idle process, starts one, or waits for one if there are as many as processors.
     fn take(&self, id: u64) -> Result<Session, Fault> {
         let mut state = self.state();
         loop {
             if state.silent >= MAX_TIMEOUTS {
-                return Err(Fault::Refused(format!(
-                    "gave no answer in time {MAX_TIMEOUTS} times; it is not asked again"
-                )));
+                let why = format!("gave no answer in time {MAX_TIMEOUTS} times; it is not asked again");
+                return Err(Fault::Refused(why));
             }
             let same = state.idle.iter().position(|s| s.instance == id);
             if let Some(i) = same.or_else(|| state.idle.len().checked_sub(1)) {

@@ -24,12 +24,12 @@ pub(crate) fn batch(ask: Ask, points: &[Point], out: &mut Vec<u8>) {
 
 /// Returns the length of the answer to `build` at the beginning of `bytes`, up to the line `ok`, or a line that begins with `error`.
 pub(crate) fn build_length(bytes: &[u8]) -> Option<usize> {
-    let mut at = 0;
+    let mut length = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
-        at += line.len();
-        let last = matches!(line.split(u8::is_ascii_whitespace).next(), Some(b"ok" | b"error"));
-        if line.ends_with(b"\n") && last {
-            return Some(at);
+        length += line.len();
+        let is_last = matches!(line.split(u8::is_ascii_whitespace).next(), Some(b"ok" | b"error"));
+        if line.ends_with(b"\n") && is_last {
+            return Some(length);
         }
     }
     None
@@ -45,7 +45,7 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
             "error" => return Err(Fault::Refused(rest.to_owned())),
             "note" => out.notes.push(rest.to_owned()),
             "warning" => out.warnings.push(rest.to_owned()),
-            "detail" => out.detail = Some(size(rest).ok_or_else(|| garbage(line))?),
+            "detail" => out.detail = Some(positive(rest).ok_or_else(|| garbage(line))?),
             "crease" | "edge" => {
                 let read = crease(rest, word == "edge");
                 out.creases.push(read.ok_or_else(|| Fault::Crease(beginning(line.as_bytes())))?);
@@ -57,14 +57,12 @@ pub(crate) fn read_build(bytes: &[u8]) -> Result<BuildAnswer, Fault> {
 }
 
 fn garbage(line: &str) -> Fault {
-    Fault::Garbage {
-        expected: "ok, error, note, warning, detail, crease or edge".into(),
-        found: beginning(line.as_bytes()),
-    }
+    let expected = "ok, error, note, warning, detail, crease or edge".into();
+    Fault::Garbage { expected, found: beginning(line.as_bytes()) }
 }
 
 /// Reads a number above zero.
-fn size(text: &str) -> Option<f64> {
+fn positive(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite())
 }
 

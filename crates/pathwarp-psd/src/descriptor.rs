@@ -13,7 +13,7 @@ pub(crate) type Items = Vec<(String, Value)>;
 pub(crate) enum Value {
     Number(f64),
     Numbers(Vec<f64>),
-    /// The value of an enumeration.
+    /// The value of an enumeration, or a text.
     Name(String),
     Items(Items),
     Other,
@@ -51,11 +51,9 @@ fn descriptor(input: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> 
     if depth > MAX_DEPTH {
         return Err(input.error(format!("descriptors are nested more than {MAX_DEPTH} deep")));
     }
-    text(input)?;
-    id(input)?;
-    let count = count(input)?;
+    text_and_class(input)?;
     let mut out = Items::new();
-    for _ in 0..count {
+    for _ in 0..count(input)? {
         let key = id(input)?;
         let kind = input.tag()?;
         out.push((key, value(input, kind, depth)?));
@@ -73,7 +71,7 @@ fn count(input: &mut ByteReader<'_>) -> Result<usize, Error> {
 pub(crate) fn text(input: &mut ByteReader<'_>) -> Result<String, Error> {
     let n = count(input)?;
     let bytes = input.take(2 * n)?;
-    let units: Vec<u16> = bytes.chunks_exact(2).map(|c| u16::from_be_bytes([c[0], c[1]])).collect();
+    let units: Vec<u16> = bytes.as_chunks().0.iter().map(|c| u16::from_be_bytes(*c)).collect();
     Ok(String::from_utf16_lossy(&units).trim_end_matches('\0').to_owned())
 }
 
@@ -86,13 +84,14 @@ fn id(input: &mut ByteReader<'_>) -> Result<String, Error> {
 
 fn doubles(input: &mut ByteReader<'_>) -> Result<Vec<f64>, Error> {
     let n = count(input)?;
-    let mut inside = input.window(8 * n)?;
-    (0..n).map(|_| inside.f64()).collect()
+    let mut numbers = input.window(8 * n)?;
+    (0..n).map(|_| numbers.f64()).collect()
 }
 
 fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Value, Error> {
     Ok(match &kind {
         b"doub" => Value::Number(input.f64()?),
+        // The tag is the unit.
         b"UntF" => {
             input.tag()?;
             Value::Number(input.f64()?)
@@ -102,10 +101,7 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
             Value::Numbers(doubles(input)?)
         }
         b"long" => Value::Number(f64::from(input.i32()?)),
-        b"comp" => {
-            input.take(8)?;
-            Value::Other
-        }
+        b"comp" => input.take(8).map(|_| Value::Other)?,
         b"bool" => Value::Number(f64::from(input.u8()?)),
         b"enum" => {
             id(input)?;
@@ -113,7 +109,11 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
         }
         b"TEXT" => Value::Name(text(input)?),
         b"Objc" | b"GlbO" => Value::Items(descriptor(input, depth + 1)?),
-        b"ObAr" => Value::Items(array(input, depth + 1)?),
+        // Objects of one class, as a descriptor of each key with all its values.
+        b"ObAr" => {
+            input.u32()?;
+            Value::Items(descriptor(input, depth + 1)?)
+        }
         b"VlLs" => {
             if depth > MAX_DEPTH {
                 return Err(input.error(format!("lists are nested more than {MAX_DEPTH} deep")));
@@ -126,28 +126,15 @@ fn value(input: &mut ByteReader<'_>, kind: [u8; 4], depth: usize) -> Result<Valu
             }
             numbers.into_iter().collect::<Option<Vec<f64>>>().map_or(Value::Other, Value::Numbers)
         }
-        b"type" | b"GlbC" => {
-            text(input)?;
-            id(input)?;
-            Value::Other
-        }
+        b"type" | b"GlbC" => text_and_class(input).map(|()| Value::Other)?,
         b"alis" | b"tdta" | b"Pth " => {
             let n = count(input)?;
             input.take(n)?;
             Value::Other
         }
-        b"obj " => {
-            reference(input)?;
-            Value::Other
-        }
+        b"obj " => reference(input).map(|()| Value::Other)?,
         other => return Err(input.error(format!("unknown type of value `{}`", String::from_utf8_lossy(other)))),
     })
-}
-
-/// Reads objects of one class as a descriptor of each key with all its values.
-fn array(input: &mut ByteReader<'_>, depth: usize) -> Result<Items, Error> {
-    input.u32()?;
-    descriptor(input, depth)
 }
 
 fn reference(input: &mut ByteReader<'_>) -> Result<(), Error> {
@@ -171,8 +158,7 @@ fn reference(input: &mut ByteReader<'_>) -> Result<(), Error> {
 
 fn text_and_class(input: &mut ByteReader<'_>) -> Result<(), Error> {
     text(input)?;
-    id(input)?;
-    Ok(())
+    id(input).map(drop)
 }
 
 /// A reader over a window of a file.

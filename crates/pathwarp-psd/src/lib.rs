@@ -35,8 +35,8 @@ pub fn warps(data: &[u8]) -> Result<LayerWarps, Error> {
         Ok(2) => true,
         _ => return Err(Error::NotPsd),
     };
+    // Skip reserved bytes, channels, height, width, depth and colour mode; then colour mode data and image resources.
     input.take(6 + 2 + 4 + 4 + 2 + 2)?;
-    // Skip colour mode data and image resources.
     for _ in 0..2 {
         let n = input.u32()? as usize;
         input.take(n)?;

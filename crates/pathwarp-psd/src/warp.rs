@@ -6,12 +6,11 @@ use serde::Serialize;
 /// Reads `SoLd`: identifier, version, and a descriptor that includes the warp.
 pub(crate) fn smart_object(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
     input.take(8)?;
-    version(input)?;
-    let items = descriptor::read(input)?;
-    let quilt = get(&items, "quiltWarp").and_then(Value::items).and_then(|w| warp(w, input).transpose());
-    match quilt {
-        Some(quilt) => quilt.map(Some),
-        None => get(&items, "warp").and_then(Value::items).map_or(Ok(None), |w| warp(w, input)),
+    let items = versioned(input)?;
+    let warp_of = |key: &str| get(&items, key).and_then(Value::items).map_or(Ok(None), |w| warp(w, input));
+    match warp_of("quiltWarp")? {
+        Some(quilt) => Ok(Some(quilt)),
+        None => warp_of("warp"),
     }
 }
 
@@ -20,26 +19,21 @@ pub(crate) fn placed(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Er
     input.take(8)?;
     let n = usize::from(input.u8()?);
     input.take(n + 16 + 64 + 4)?;
-    version(input)?;
-    let items = descriptor::read(input)?;
-    warp(&items, input)
+    warp(&versioned(input)?, input)
 }
 
-/// Reads `TySh`: a transform, the descriptor of the text, and the descriptor of the warp.
+/// Reads `TySh`: a transform, the descriptor of the text, and the descriptor of the warp, each with its version.
 pub(crate) fn text(input: &mut ByteReader<'_>) -> Result<Option<LayerWarp>, Error> {
     input.take(2 + 48 + 2)?;
-    version(input)?;
-    descriptor::read(input)?;
+    versioned(input)?;
     input.take(2)?;
-    version(input)?;
-    let items = descriptor::read(input)?;
-    warp(&items, input)
+    warp(&versioned(input)?, input)
 }
 
-/// Checks the version of a descriptor.
-fn version(input: &mut ByteReader<'_>) -> Result<(), Error> {
+/// Reads a descriptor and the version before it.
+fn versioned(input: &mut ByteReader<'_>) -> Result<Items, Error> {
     match input.u32()? {
-        16 => Ok(()),
+        16 => descriptor::read(input),
         other => Err(input.error(format!("descriptor version {other} is unknown"))),
     }
 }
@@ -73,11 +67,10 @@ fn mesh(items: &Items, custom: &Items) -> Result<WarpMesh, String> {
         return Err(format!("the points have {} x and {} y coordinates", x.len(), y.len()));
     }
     let whole = |key: &str| get(items, key).and_then(Value::number).map(|n| n as usize);
-    // The sizes count points or patches; take those that match the number of points.
+    // The sizes count points or patches, of which n have 3n + 1 points; take those that match the number of points.
+    let points_of = |patches: usize| patches.saturating_mul(3).saturating_add(1);
     let sizes = match (whole("deformNumRows"), whole("deformNumCols")) {
-        (Some(r), Some(c)) => {
-            vec![(r, c), (r.saturating_mul(3).saturating_add(1), c.saturating_mul(3).saturating_add(1))]
-        }
+        (Some(r), Some(c)) => vec![(r, c), (points_of(r), points_of(c))],
         _ => vec![(4, 4)],
     };
     let fits =
@@ -87,6 +80,7 @@ fn mesh(items: &Items, custom: &Items) -> Result<WarpMesh, String> {
     let bounds = get(items, "bounds").and_then(Value::items).ok_or("a custom warp has no bounds")?;
     let side = |key: &str| get(bounds, key).and_then(Value::number).ok_or(format!("the bounds have no {key}"));
     let (top, left, bottom, right) = (side("Top")?, side("Left")?, side("Btom")?, side("Rght")?);
+    // A list of boundaries may lie in a descriptor of the same name, and may include the two sides of the box.
     let slices = |key: &str, patches: usize, from: f64, to: f64| {
         let found = get(custom, key)?;
         let numbers = found.numbers().or_else(|| get(found.items()?, key)?.numbers())?;
@@ -162,20 +156,22 @@ pub(crate) fn layers(input: &mut ByteReader<'_>, wide: bool, out: &mut Vec<Layer
     // A negative count means that the first alpha channel is the transparency of the merged picture.
     let count = input.u16()?.cast_signed().unsigned_abs();
     for _ in 0..count {
+        // The box, then for each channel its id and length, then the blend mode with its flags.
         input.take(16)?;
         let channels = usize::from(input.u16()?);
         input.take(channels * if wide { 10 } else { 6 })?;
         input.take(12)?;
         let n = input.u32()? as usize;
         let mut extra = input.window(n)?;
+        // Skip the layer mask and the blending ranges.
         for _ in 0..2 {
             let n = extra.u32()? as usize;
             extra.take(n)?;
         }
-        let short = usize::from(extra.u8()?);
-        let mut name = String::from_utf8_lossy(extra.take(short)?).into_owned();
-        let padding = (4 - ((short + 1) % 4)) % 4;
-        extra.take(padding)?;
+        let length = usize::from(extra.u8()?);
+        let mut name = String::from_utf8_lossy(extra.take(length)?).into_owned();
+        // The name with its length byte is padded to a multiple of four.
+        extra.take((length + 1).next_multiple_of(4) - (length + 1))?;
         let mut warp: Option<LayerWarp> = None;
         blocks(&mut extra, wide, 1, &mut |key, mut block| {
             match key {
@@ -218,9 +214,8 @@ pub(crate) fn blocks<'a>(
         }
         let key = input.tag()?;
         let n = input.length(wide && WIDE.contains(&&key))?;
-        let block = input.window(n)?;
-        each(&key, block)?;
-        let padding = (unit - (n % unit)) % unit;
+        each(&key, input.window(n)?)?;
+        let padding = n.next_multiple_of(unit) - n;
         input.take(padding.min(input.left()))?;
     }
     Ok(())

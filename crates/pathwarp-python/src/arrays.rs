@@ -6,13 +6,16 @@ use pathwarp_engine::PointMap;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Points mapped by one call of the map: few enough for the stack and the first cache.
+/// Points mapped by one call of the map: few enough for the first cache.
 const BLOCK: usize = 256;
 /// Points that a thread takes at a time.
 const CHUNK: usize = 16 * 1024;
 
+/// An array of points.
+pub(crate) type View<'a> = ArrayView2<'a, f64>;
+
 /// Returns the bounding box of the finite points.
-pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
+pub(crate) fn bounds(points: View<'_>) -> Option<Rect> {
     let mut all: Option<[f64; 4]> = None;
     for p in points.rows() {
         let (x, y) = (p[0], p[1]);
@@ -25,23 +28,19 @@ pub(crate) fn bounds(points: ArrayView2<'_, f64>) -> Option<Rect> {
 }
 
 /// Maps `from` to `to`, which has its shape, or `to` in place without `from`. Points are left unmapped once `stop` is `true`.
-pub(crate) fn map(
-    map: &PointMap,
-    from: Option<ArrayView2<'_, f64>>,
-    mut to: ArrayViewMut2<'_, f64>,
-    stop: &AtomicBool,
-) {
+pub(crate) fn map(map: &PointMap, from: Option<View<'_>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
     let to: Vec<_> = to.axis_chunks_iter_mut(Axis(0), CHUNK).collect();
     match from {
         Some(from) => {
             let from: Vec<_> = from.axis_chunks_iter(Axis(0), CHUNK).collect();
-            from.into_par_iter().zip(to).for_each(|(from, to)| chunk(map, Some(from), to, stop));
+            from.into_par_iter().zip(to).for_each(|(from, to)| map_chunk(map, Some(from), to, stop));
         }
-        None => to.into_par_iter().for_each(|to| chunk(map, None, to, stop)),
+        None => to.into_par_iter().for_each(|to| map_chunk(map, None, to, stop)),
     }
 }
 
-fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
+/// Maps a chunk block by block.
+fn map_chunk(map: &PointMap, from: Option<View<'_>>, mut to: ArrayViewMut2<'_, f64>, stop: &AtomicBool) {
     // A function of Python gets as many points as possible at once.
     let block = if map.prefers_batches() { CHUNK } else { BLOCK }.min(to.nrows().max(1));
     let (mut source, mut image) = (vec![Point::ORIGIN; block], vec![Point::ORIGIN; block]);
@@ -69,7 +68,7 @@ fn chunk(map: &PointMap, from: Option<ArrayView2<'_, f64>>, mut to: ArrayViewMut
     }
 }
 
-fn read(from: ArrayView2<'_, f64>, points: &mut [Point]) {
+fn read(from: View<'_>, points: &mut [Point]) {
     if let Some(flat) = from.as_slice() {
         for ([x, y], p) in flat.as_chunks().0.iter().zip(points) {
             *p = Point::new(*x, *y);
@@ -82,12 +81,7 @@ fn read(from: ArrayView2<'_, f64>, points: &mut [Point]) {
 }
 
 /// Writes the Jacobians at `points`: `out[i]` is [[∂x'/∂x, ∂x'/∂y], [∂y'/∂x, ∂y'/∂y]].
-pub(crate) fn jacobian(
-    map: &PointMap,
-    points: ArrayView2<'_, f64>,
-    mut out: ArrayViewMut3<'_, f64>,
-    stop: &AtomicBool,
-) {
+pub(crate) fn jacobian(map: &PointMap, points: View<'_>, mut out: ArrayViewMut3<'_, f64>, stop: &AtomicBool) {
     let block = if map.prefers_batches() { CHUNK } else { BLOCK };
     let out: Vec<_> = out.axis_chunks_iter_mut(Axis(0), block).collect();
     let points: Vec<_> = points.axis_chunks_iter(Axis(0), block).collect();
@@ -95,9 +89,9 @@ pub(crate) fn jacobian(
         if stop.load(Ordering::Relaxed) {
             return;
         }
-        let (mut at, mut columns) = (vec![Point::ORIGIN; points.nrows()], vec![[Vec2::ZERO; 2]; points.nrows()]);
-        read(points, &mut at);
-        map.jacobians(&at, &mut columns);
+        let (mut source, mut columns) = (vec![Point::ORIGIN; points.nrows()], vec![[Vec2::ZERO; 2]; points.nrows()]);
+        read(points, &mut source);
+        map.jacobians(&source, &mut columns);
         for (mut m, [dx, dy]) in out.outer_iter_mut().zip(&columns) {
             (m[[0, 0]], m[[0, 1]], m[[1, 0]], m[[1, 1]]) = (dx.x, dy.x, dx.y, dy.y);
         }

@@ -21,17 +21,17 @@ pub(crate) fn option_help() -> Vec<(&'static str, String, Vec<&'static str>)> {
 
 fn deformation(registry: &Registry, info: &Info) -> Value {
     let params: Vec<Value> = info.params.iter().filter(|p| p.kind != Kind::Save).map(param).collect();
-    let names = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets)).map(|p| p.kind);
-    let names = match names {
+    let kind = info.gallery.and_then(|g| info.params.iter().find(|p| p.name == g.presets)).map(|p| p.kind);
+    let names = match kind {
         Some(Kind::NameOrFile(names) | Kind::Choice(names)) => names,
         _ => &[],
     };
     // The name of a preset may be that of a deformation, or of another deformation's preset.
-    let own = |name: &&&str| {
-        let meaning = pathwarp_engine::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
-        registry.get(name).is_none() && meaning
+    let is_preset = |name: &&&str| {
+        let is_of_this = pathwarp_engine::preset(registry, name).is_some_and(|(i, ..)| i.name == info.name);
+        registry.get(name).is_none() && is_of_this
     };
-    let presets: Vec<&&str> = names.iter().filter(own).collect();
+    let presets: Vec<&&str> = names.iter().filter(is_preset).collect();
     let examples: Vec<&str> = info.examples.iter().map(|e| e.command).collect();
     json!({
         "name": info.name, "title": info.title, "group": info.group, "about": info.about, "source": info.source,

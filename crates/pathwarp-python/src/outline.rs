@@ -20,13 +20,7 @@ pub(crate) fn path(verbs: &str, coordinates: &[f64]) -> Result<BezPath, String> 
             _ => return Err(format!("`{verb}` is none of the verbs M, L, Q, C and Z")),
         });
     }
-    let points = verbs.chars().map(|v| match v {
-        'M' | 'L' => 1,
-        'Q' => 2,
-        'C' => 3,
-        _ => 0,
-    });
-    if 2 * points.sum::<usize>() != coordinates.len() {
+    if numbers.next().is_some() || !coordinates.len().is_multiple_of(2) {
         return Err("there are more coordinates than the verbs take".into());
     }
     Ok(path)

@@ -4,9 +4,10 @@
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::borrow::Borrow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, LockResult, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// A pool, and the process that started it.
@@ -22,7 +23,7 @@ static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
 /// Interval of checking Python's signals during work.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Sets the number of threads; 0 means one per core. Results do not depend on it.
 #[pyfunction]
@@ -37,7 +38,7 @@ static SWITCHES: Mutex<Vec<&'static AtomicBool>> = Mutex::new(Vec::new());
 
 impl Switch {
     fn take() -> Self {
-        let unused = SWITCHES.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let unused = lock(&SWITCHES).pop();
         Self(unused.unwrap_or_else(|| Box::leak(Box::default())))
     }
 }
@@ -45,8 +46,13 @@ impl Switch {
 impl Drop for Switch {
     fn drop(&mut self) {
         self.0.store(false, Ordering::Relaxed);
-        SWITCHES.lock().unwrap_or_else(PoisonError::into_inner).push(self.0);
+        lock(&SWITCHES).push(self.0);
     }
+}
+
+/// Locks a mutex, also after a panic.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// State shared by work and the thread that waits for its end.
@@ -57,19 +63,13 @@ struct End {
 }
 
 /// Signals the end when it is dropped, even by a panic.
-struct Ending<E: AsRef<End>>(E);
+struct Ending<E: Borrow<End>>(E);
 
-impl<E: AsRef<End>> Drop for Ending<E> {
+impl<E: Borrow<End>> Drop for Ending<E> {
     fn drop(&mut self) {
-        let end = self.0.as_ref();
-        *end.reached.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        let end = self.0.borrow();
+        *lock(&end.reached) = true;
         end.news.notify_all();
-    }
-}
-
-impl AsRef<Self> for End {
-    fn as_ref(&self) -> &Self {
-        self
     }
 }
 
@@ -84,11 +84,11 @@ impl End {
         mut patience: usize,
     ) -> PyResult<()> {
         let mut polled = Ok(());
-        let look = || {
-            let reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
-            *self.news.wait_timeout_while(reached, LOOK, |r| !*r).unwrap_or_else(PoisonError::into_inner).0
+        let wait = || {
+            let waited = self.news.wait_timeout_while(lock(&self.reached), POLL_INTERVAL, |reached| !*reached);
+            *waited.unwrap_or_else(PoisonError::into_inner).0
         };
-        while !py.detach(look) {
+        while !py.detach(wait) {
             if polled.is_ok() {
                 polled = py.check_signals().and_then(|()| poll());
                 stop.store(polled.is_err(), Ordering::Relaxed);
@@ -114,11 +114,11 @@ pub(crate) fn on_threads<T: Send>(py: Python<'_>, work: impl FnOnce(&'static Ato
     let waited = pool.in_place_scope(|scope| {
         scope.spawn(|_| {
             let _ending = Ending(&end);
-            *result.lock().unwrap_or_else(PoisonError::into_inner) = Some(work(stop));
+            *lock(&result) = Some(work(stop));
         });
         end.wait(py, || Ok(()), stop, usize::MAX)
     });
-    waited.and_then(|()| done(result.into_inner()))
+    waited.and_then(|()| done(&result))
 }
 
 /// Calls `work`, which owns its data, on the threads of this process, without the interpreter's lock. After Ctrl-C, it returns soon, even
@@ -135,23 +135,22 @@ pub(crate) fn on_threads_alone<T: Send + 'static>(
     };
     let end = Arc::new(End::default());
     let result = Arc::new(Mutex::new(None));
-    let (ending, place) = (Ending(Arc::clone(&end)), Arc::clone(&result));
+    let (ending, slot) = (Ending(Arc::clone(&end)), Arc::clone(&result));
     pool.spawn(move || {
         // In this order: the switch is released before the end is signalled.
         let _ending = ending;
         let _switch = switch;
         // A panic must not end the process; the missing result is reported.
         let worked = catch_unwind(AssertUnwindSafe(|| work(stop)));
-        *place.lock().unwrap_or_else(PoisonError::into_inner) = worked.ok();
+        *lock(&slot) = worked.ok();
     });
     end.wait(py, poll, stop, 2)?;
-    let mut result = result.lock().unwrap_or_else(PoisonError::into_inner);
-    done(Ok(result.take()))
+    done(&result)
 }
 
-fn done<T>(result: LockResult<Option<T>>) -> PyResult<T> {
-    let result = result.unwrap_or_else(PoisonError::into_inner);
-    result.ok_or_else(|| PyRuntimeError::new_err("pathwarp failed; please report it"))
+/// Returns the result of work, which is missing after a panic.
+fn done<T>(result: &Mutex<Option<T>>) -> PyResult<T> {
+    lock(result).take().ok_or_else(|| PyRuntimeError::new_err("pathwarp failed; please report it"))
 }
 
 /// Returns the threads of this process. `None` if it may start none, or if the caller is one of them, as in a function that a map calls:
@@ -161,7 +160,7 @@ fn pool() -> Option<Arc<ThreadPool>> {
         return None;
     }
     let (process, threads) = (std::process::id(), THREADS.load(Ordering::Relaxed));
-    let mut current = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut current = lock(&POOL);
     if let Some(p) = current.as_ref().filter(|p| p.process == process && p.threads == threads) {
         return Some(Arc::clone(&p.pool));
     }

@@ -32,6 +32,9 @@ pub(crate) struct Warper {
     functions: Vec<Arc<Function>>,
 }
 
+/// An array of points, of shape (n, 2).
+type Points<'py> = Bound<'py, PyArray2<f64>>;
+
 /// Verbs, coordinates and report of a path.
 type VerbsOut<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyDict>);
 
@@ -44,7 +47,7 @@ impl Warper {
     #[new]
     fn new(py: Python<'_>, name: &str, values: Vec<(String, String)>, plugins: Vec<PathBuf>) -> PyResult<Self> {
         let registry = plugins::registry(py, &plugins, &[name])?;
-        done(py, py.detach(|| pathwarp_engine::Warper::new(&registry, name, &values))).map(Self::of)
+        done(py, py.detach(|| pathwarp_engine::Warper::new(&registry, name, &values))).map(Self::from_engine)
     }
 
     /// A function of Python as a deformation; `call` answers as [`Function`] asks.
@@ -69,7 +72,7 @@ impl Warper {
     /// An edit of shapes, such as `simplify`.
     #[staticmethod]
     fn edit(py: Python<'_>, name: &str, values: Vec<(String, String)>) -> PyResult<Self> {
-        done(py, pathwarp_engine::Warper::edit(&Registry::builtin(), name, &values)).map(Self::of)
+        done(py, pathwarp_engine::Warper::edit(&Registry::builtin(), name, &values)).map(Self::from_engine)
     }
 
     /// The recipe in the text of a recipe file.
@@ -85,10 +88,10 @@ impl Warper {
                 done(py, py.detach(|| read(&registry)))?
             }
         };
-        Ok(Self::of(engine))
+        Ok(Self::from_engine(engine))
     }
 
-    /// The same with more options.
+    /// A copy with more options.
     fn with_options(&self, py: Python<'_>, options: Vec<(String, String)>) -> PyResult<Self> {
         let mut engine = self.engine.clone();
         for (name, value) in &options {
@@ -132,13 +135,8 @@ impl Warper {
 
     /// Maps points, to `out` if it is given, which may be the same array.
     #[pyo3(signature = (points, out=None))]
-    fn map<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyArray2<f64>>,
-        out: Option<Bound<'py, PyArray2<f64>>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        pairs(points)?;
+    fn map<'py>(&self, py: Python<'py>, points: &Points<'py>, out: Option<Points<'py>>) -> PyResult<Points<'py>> {
+        check_shape(points)?;
         let borrowed = |e: &dyn std::fmt::Display| usage(py, &format!("out: {e}; give another array"));
         if let Some(out) = out.as_ref().filter(|o| o.is(points)) {
             let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
@@ -153,10 +151,8 @@ impl Warper {
         }
         let out = out.unwrap_or_else(|| PyArray2::zeros(py, points.dims(), false));
         if out.dims() != points.dims() {
-            return Err(usage(
-                py,
-                &format!("out: has shape {:?}, not {:?} as the points", out.shape(), points.shape()),
-            ));
+            let message = format!("out: has shape {:?}, not {:?} as the points", out.shape(), points.shape());
+            return Err(usage(py, &message));
         }
         let source = points.try_readonly().map_err(|e| borrowed(&e))?;
         let mut target = out.try_readwrite().map_err(|e| borrowed(&e))?;
@@ -171,12 +167,8 @@ impl Warper {
     }
 
     /// The Jacobians at points.
-    fn jacobian<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyArray2<f64>>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        pairs(points)?;
+    fn jacobian<'py>(&self, py: Python<'py>, points: &Points<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        check_shape(points)?;
         let out = PyArray3::zeros(py, [points.dims()[0], 2, 2], false);
         let source = points.try_readonly()?;
         let mut target = out.try_readwrite()?;
@@ -217,15 +209,11 @@ impl Warper {
         let path = outline::path(verbs, coordinates.as_slice()?).map_err(|e| usage(py, &e))?;
         let outline = Outline::from(&path);
         let warper = self.engine.clone();
-        let warped = on_threads_alone(
-            py,
-            || Ok(()),
-            move |stop| {
-                let warper = warper.stopped_by(stop);
-                if quadratic { warper.warp_outline_to_quadratics(&outline) } else { warper.warp_outline(&outline) }
-            },
-        )?;
-        let warped = self.done(py, warped)?;
+        let work = move |stop| {
+            let warper = warper.stopped_by(stop);
+            if quadratic { warper.warp_outline_to_quadratics(&outline) } else { warper.warp_outline(&outline) }
+        };
+        let warped = self.done(py, on_threads_alone(py, || Ok(()), work)?)?;
         let (verbs, coordinates) = outline::verbs(&warped.path.path);
         Ok((verbs, coordinates.into_pyarray(py), report(py, &warped)?))
     }
@@ -271,7 +259,7 @@ impl Warper {
 }
 
 impl Warper {
-    fn of(engine: pathwarp_engine::Warper) -> Self {
+    fn from_engine(engine: pathwarp_engine::Warper) -> Self {
         Self { engine, functions: Vec::new() }
     }
 
@@ -287,11 +275,7 @@ impl Warper {
     }
 
     /// The map for these points. Deformations that examine artwork examine lines all over the points' box (`hatching`).
-    fn point_map(
-        &self,
-        points: numpy::ndarray::ArrayView2<'_, f64>,
-        stop: &'static AtomicBool,
-    ) -> Result<PointMap, Error> {
+    fn point_map(&self, points: arrays::View<'_>, stop: &'static AtomicBool) -> Result<PointMap, Error> {
         self.engine.stopped_by(stop).point_map(|| arrays::bounds(points), hatching)
     }
 }
@@ -312,8 +296,8 @@ pub(crate) fn path_verbs<'py>(py: Python<'py>, data: &str) -> (String, Bound<'py
     (verbs, coordinates.into_pyarray(py))
 }
 
-/// Checks that an array holds pairs.
-fn pairs(points: &Bound<'_, PyArray2<f64>>) -> PyResult<()> {
+/// Checks that an array holds points.
+fn check_shape(points: &Points<'_>) -> PyResult<()> {
     match points.dims()[1] {
         2 => Ok(()),
         _ => Err(usage(points.py(), &format!("points: has shape {:?}; it must be (n, 2)", points.shape()))),

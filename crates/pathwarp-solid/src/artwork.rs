@@ -20,7 +20,7 @@
 //! # Ok::<(), pathwarp_solid::artwork::Error>(())
 //! ```
 
-use crate::mesh::{Edge, edge, from_chord, sides};
+use crate::mesh::{Edge, edge, from_chord, parts_of_halved, sides};
 use lyon_tessellation::geom::euclid::default::Point2D;
 use lyon_tessellation::path::Path;
 use lyon_tessellation::{BuffersBuilder, FillOptions, FillRule, FillTessellator, FillVertex, VertexBuffers};
@@ -104,12 +104,10 @@ pub fn scene(
 ) -> Result<String, Error> {
     let mut out = ObjWriter::new();
     for (s, space) in groups.iter().flat_map(|(shapes, space)| shapes.iter().map(move |s| (s, space))) {
-        let polygons = polygons(s, space, tolerance, budget)?;
-        let mesh = fill(s, &polygons)?;
-        let mesh = to_surface(s.name, mesh, space, tolerance, budget)?;
-        out.mesh(s.name, &mesh);
+        let flat = fill(s, &polygons(s, space, tolerance, budget)?)?;
+        out.mesh(s.name, &to_surface(s.name, flat, space, tolerance, budget)?);
     }
-    Ok(out.finish())
+    Ok(out.text)
 }
 
 /// Fills a shape with triangles in the plane of the drawing, within `tolerance` (user units) of its outline.
@@ -117,8 +115,7 @@ pub fn scene(
 /// # Errors
 /// [`Error::TooMany`] when the shape exceeds the budget, [`Error::Tessellation`] when it cannot be filled.
 pub fn flat(shape: &NamedShape<'_>, tolerance: f64, budget: &Budget) -> Result<FlatMesh, Error> {
-    let polygons = polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?;
-    fill(shape, &polygons)
+    fill(shape, &polygons(shape, &|p| Some([p.x, p.y, 0.0]), tolerance, budget)?)
 }
 
 /// Returns the outlines of the shapes as polylines in OBJ format, within `tolerance` (user units) of their images in space.
@@ -135,13 +132,17 @@ pub fn outlines(
     for s in shapes {
         let mut lines = Vec::new();
         for polygon in polygons(s, space, tolerance, budget)? {
-            let place = |p: &Point| space(*p).ok_or_else(|| Error::NoPlace { shape: s.name.to_owned(), at: *p });
-            let points: Result<Vec<Point3>, Error> = polygon.points.iter().map(place).collect();
+            let points: Result<Vec<Point3>, Error> = polygon.points.iter().map(|p| image(s.name, space, *p)).collect();
             lines.push((points?, polygon.closed));
         }
         out.polylines(s.name, &lines);
     }
-    Ok(out.finish())
+    Ok(out.text)
+}
+
+/// Returns the image of a point of a shape on the surface.
+fn image(shape: &str, space: &SurfaceFn<'_>, p: Point) -> Result<Point3, Error> {
+    space(p).ok_or_else(|| Error::NoPlace { shape: shape.to_owned(), at: p })
 }
 
 /// Maximum number of halvings of a segment.
@@ -160,13 +161,12 @@ fn polygons(
     tolerance: f64,
     budget: &Budget,
 ) -> Result<Vec<Polygon>, Error> {
-    let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: shape.name.to_owned(), at: p });
     let mut out = Vec::new();
     for sub in &shape.outline.subpaths {
         let mut points = vec![sub.start];
         for seg in &sub.segs {
             let before = points.len();
-            flatten(seg, &place, tolerance, &mut points)?;
+            flatten(seg, &|p| image(shape.name, space, p), tolerance, &mut points)?;
             spend(shape.name, (points.len() - before) as f64, budget)?;
         }
         if sub.closed && points.len() > 1 && points.first() == points.last() {
@@ -186,23 +186,22 @@ fn spend(shape: &str, segments: f64, budget: &Budget) -> Result<(), Error> {
 /// Appends points of a segment, without its first, whose chords are within `tolerance` of the image.
 fn flatten(
     seg: &Seg,
-    place: &impl Fn(Point) -> Result<Point3, Error>,
+    image: &impl Fn(Point) -> Result<Point3, Error>,
     tolerance: f64,
     out: &mut Vec<Point>,
 ) -> Result<(), Error> {
-    // Start with quarters, so that a symmetric bend is not missed.
-    let mut stack: Vec<(f64, f64, u32)> =
-        (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect();
-    if let Seg::Line(_) = seg {
-        stack = vec![(0.0, 1.0, 0)];
-    }
+    // Parameter ranges with their numbers of halvings. Curves start with quarters, so that a symmetric bend is not missed.
+    let mut stack: Vec<(f64, f64, u32)> = match seg {
+        Seg::Line(_) => vec![(0.0, 1.0, 0)],
+        _ => (0..4).rev().map(|i| (0.25 * f64::from(i), 0.25 * f64::from(i + 1), 2)).collect(),
+    };
     while let Some((a, b, depth)) = stack.pop() {
-        let (from, to) = (place(seg.eval(a))?.into(), place(seg.eval(b))?.into());
-        let mut off: f64 = 0.0;
+        let (from, to) = (image(seg.eval(a))?.into(), image(seg.eval(b))?.into());
+        let mut error: f64 = 0.0;
         for k in [0.25, 0.5, 0.75] {
-            off = off.max(from_chord(from, to, place(seg.eval(a + k * (b - a)))?.into()));
+            error = error.max(from_chord(from, to, image(seg.eval(a + k * (b - a)))?.into()));
         }
-        if off <= tolerance || depth >= MAX_HALVINGS {
+        if error <= tolerance || depth >= MAX_HALVINGS {
             out.push(seg.eval(b));
         } else {
             let m = 0.5 * (a + b);
@@ -232,13 +231,14 @@ fn fill(shape: &NamedShape<'_>, polygons: &[Polygon]) -> Result<FlatMesh, Error>
     if size == 0.0 {
         return Ok(empty);
     }
+    // The tessellator works in single precision, in a box of size 1 about the origin.
     let c = b.center();
     let mut path = Path::builder();
     for polygon in polygons.iter().filter(|p| p.points.len() > 2) {
-        let at = |p: &Point| Point2D::new(((p.x - c.x) / size) as f32, ((p.y - c.y) / size) as f32);
-        path.begin(at(&polygon.points[0]));
+        let to_unit = |p: &Point| Point2D::new(((p.x - c.x) / size) as f32, ((p.y - c.y) / size) as f32);
+        path.begin(to_unit(&polygon.points[0]));
         for p in &polygon.points[1..] {
-            path.line_to(at(p));
+            path.line_to(to_unit(p));
         }
         // Filling closes every subpath.
         path.end(true);
@@ -256,8 +256,7 @@ fn fill(shape: &NamedShape<'_>, polygons: &[Polygon]) -> Result<FlatMesh, Error>
             &mut BuffersBuilder::new(&mut buffers, vertex),
         )
         .map_err(|e| Error::Tessellation { shape: shape.name.to_owned(), why: e.to_string() })?;
-    let triangles = buffers.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    Ok(FlatMesh { points: buffers.vertices, triangles })
+    Ok(FlatMesh { points: buffers.vertices, triangles: buffers.indices.as_chunks().0.to_vec() })
 }
 
 /// Number of sides per triangle of a mesh, since two triangles share a side.
@@ -280,29 +279,27 @@ fn to_surface(
     budget: &Budget,
 ) -> Result<TriangleMesh, Error> {
     let count = |triangles: usize| spend(name, SIDES * triangles as f64, budget);
-    let place = |p: Point| space(p).ok_or_else(|| Error::NoPlace { shape: name.to_owned(), at: p });
-    let mut plane = flat.points;
-    let placed: Result<Vec<Point3>, Error> = plane.iter().map(|p| place(*p)).collect();
-    let mut points = placed?;
-    let mut triangles = flat.triangles;
+    let FlatMesh { points: mut sources, mut triangles } = flat;
+    let images: Result<Vec<Point3>, Error> = sources.iter().map(|p| image(name, space, *p)).collect();
+    let mut points = images?;
     count(triangles.len())?;
     // Edges whose middles are within the tolerance.
-    let mut close: HashSet<Edge> = HashSet::new();
+    let mut fine: HashSet<Edge> = HashSet::new();
     for _ in 0..MAX_ROUNDS {
         let mut middles: HashMap<Edge, u32> = HashMap::new();
         for (a, b) in sides(&triangles) {
             let e = edge(a, b);
-            if close.contains(&e) || middles.contains_key(&e) {
+            if fine.contains(&e) || middles.contains_key(&e) {
                 continue;
             }
             let (a, b) = (e.0 as usize, e.1 as usize);
-            let m = plane[a].midpoint(plane[b]);
-            let q = place(m)?;
+            let m = sources[a].midpoint(sources[b]);
+            let q = image(name, space, m)?;
             if from_chord(points[a].into(), points[b].into(), q.into()) <= tolerance {
-                close.insert(e);
+                fine.insert(e);
             } else {
                 middles.insert(e, points.len() as u32);
-                plane.push(m);
+                sources.push(m);
                 points.push(q);
             }
         }
@@ -311,28 +308,14 @@ fn to_surface(
         }
         let mut finer = Vec::with_capacity(triangles.len() * 2);
         for t in &triangles {
-            split(*t, &middles, &mut finer);
+            let halves = [0, 1, 2].map(|i| middles.get(&edge(t[i], t[(i + 1) % 3])).copied());
+            let corner = |k: usize| if k < 3 { t[k] } else { halves[k - 3].unwrap_or_default() };
+            finer.extend(parts_of_halved(halves.map(|h| h.is_some())).iter().map(|part| part.map(corner)));
         }
         count(finer.len() - triangles.len())?;
         triangles = finer;
     }
     Ok(TriangleMesh { points, triangles })
-}
-
-/// Splits a triangle at the midpoints of its edges, keeping the orientation.
-fn split(t: [u32; 3], middles: &HashMap<Edge, u32>, out: &mut Vec<[u32; 3]>) {
-    let [a, b, c] = t;
-    let m = |x, y| middles.get(&edge(x, y)).copied();
-    match (m(a, b), m(b, c), m(c, a)) {
-        (None, None, None) => out.push(t),
-        (Some(ab), None, None) => out.extend([[a, ab, c], [ab, b, c]]),
-        (None, Some(bc), None) => out.extend([[b, bc, a], [bc, c, a]]),
-        (None, None, Some(ca)) => out.extend([[c, ca, b], [ca, a, b]]),
-        (Some(ab), Some(bc), None) => out.extend([[ab, b, bc], [a, ab, bc], [a, bc, c]]),
-        (None, Some(bc), Some(ca)) => out.extend([[bc, c, ca], [b, bc, ca], [b, ca, a]]),
-        (Some(ab), None, Some(ca)) => out.extend([[ca, a, ab], [c, ca, ab], [c, ab, b]]),
-        (Some(ab), Some(bc), Some(ca)) => out.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]),
-    }
 }
 
 /// The text of an OBJ file, and the number of its vertices.
@@ -386,10 +369,6 @@ impl ObjWriter {
             self.text.push('\n');
             self.vertices += points.len();
         }
-    }
-
-    fn finish(self) -> String {
-        self.text
     }
 }
 

@@ -8,7 +8,7 @@
 
 use crate::lattice::{Lattice3, LatticeMap3};
 use crate::map::{Creases3, Jet3, Map3, NewtonInverse3};
-use crate::settings::{Box3, show};
+use crate::settings::{Box3, grid, show};
 use glam::DVec3;
 use pathwarp::Error;
 use pathwarp::budget::Budget;
@@ -25,7 +25,7 @@ pub(crate) struct HullMap {
     inner: NewtonInverse3,
 }
 
-/// Margin around the region in which local coordinates are found, as a fraction of its size.
+/// Margin around the region in which local coordinates are found, as a fraction of its size. It makes the depth change its sign at a face.
 const BEYOND: f64 = 1.0 / 16.0;
 
 impl HullMap {
@@ -35,25 +35,23 @@ impl HullMap {
     /// [`Error::Usage`] when the hull folds or is flat.
     pub(crate) fn new(hull: &Lattice3, moved: &Lattice3) -> Result<Self, Error> {
         /// Points along each axis at which the hull's orientation is compared.
-        const PLACES: u32 = 12;
-        let region = hull.region();
-        let [x, y] = [hull, moved].map(|l| Arc::new(LatticeMap3::new(l, true)));
-        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES);
-        let places =
-            (0..PLACES.pow(3)).map(|n| DVec3::new(at(n % PLACES), at(n / PLACES % PLACES), at(n / PLACES.pow(2))));
-        let mut jets = places.map(|t| x.jet(region.min + t * region.size()));
+        const SAMPLES: usize = 12;
+        let (region, cells) = (hull.region(), hull.cells());
+        let [hull, moved] = [hull, moved].map(|l| Arc::new(LatticeMap3::new(l, true)));
+        let points = grid([SAMPLES; 3]).map(|n| DVec3::from_array(n.map(|i| (i as f64 + 0.5) / SAMPLES as f64)));
+        let mut jets = points.map(|t| hull.jet(region.min + t * region.size()));
         let first = jets.next().map_or(0.0, |j| j.det());
         if let Some(j) = jets.find(|j| (j.det() * first).is_nan() || j.det() * first <= 0.0) {
             let problem = format!("is flat or folds at {}; put its control points in order", show(j.p));
             return Err(Error::usage("hull", "", problem));
         }
-        Ok(Self::between(x, y, region, hull.cells()))
+        Ok(Self::between(hull, moved, region, cells))
     }
 
     fn between(hull: Arc<LatticeMap3>, moved: Arc<LatticeMap3>, region: Box3, cells: [usize; 3]) -> Self {
         let domain = region.inflate(BEYOND * region.size());
-        let reach = 1e-9 * region.diagonal();
-        let inner = NewtonInverse3::with_core(Arc::clone(&hull) as Arc<dyn Map3>, region, domain, reach, cells);
+        let rounding = 1e-9 * region.diagonal();
+        let inner = NewtonInverse3::with_core(Arc::clone(&hull) as Arc<dyn Map3>, region, domain, rounding, cells);
         Self { region, cells, hull, moved, inner }
     }
 
@@ -79,8 +77,8 @@ impl Map3 for HullMap {
     }
 
     fn creases(&self, out: &mut Creases3) {
-        let own = self.clone();
-        out.kink(move |p| own.inner.solve(p).map_or(-BEYOND, |u| own.depth(u.p)));
+        let map = self.clone();
+        out.kink(move |p| map.inner.solve(p).map_or(-BEYOND, |u| map.depth(u.p)));
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map3>> {

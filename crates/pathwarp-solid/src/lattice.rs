@@ -13,7 +13,7 @@ use crate::map::{
     Chart, Collineation, Creases3, Displaced, Fraction3, Jet3, Local, Map3, NewtonInverse3, Poly3, Quotient, Tensor,
     for_all,
 };
-use crate::settings::Box3;
+use crate::settings::{Box3, grid};
 use glam::{DMat3, DVec3};
 use pathwarp::budget::Budget;
 use pathwarp::engine::bspline;
@@ -26,9 +26,9 @@ pub struct Lattice3 {
     degree: [usize; 3],
     cells: [usize; 3],
     /// Regular positions along x, y and z, from 0 to 1, by number.
-    places: [Vec<f64>; 3],
+    regular: [Vec<f64>; 3],
     /// Displacements from the regular positions, with x running fastest.
-    moves: Vec<DVec3>,
+    displacements: Vec<DVec3>,
     weights: Vec<f64>,
 }
 
@@ -47,9 +47,9 @@ impl Lattice3 {
     #[must_use]
     pub fn regular(region: Box3, degree: [usize; 3], cells: [usize; 3]) -> Self {
         let (degree, cells) = (degree.map(|d| d.max(1)), cells.map(|c| c.max(1)));
-        let places = [0, 1, 2].map(|a| bspline::regular(degree[a], cells[a]));
-        let count = places.iter().map(Vec::len).product();
-        Self { region, degree, cells, places, moves: vec![DVec3::ZERO; count], weights: vec![1.0; count] }
+        let regular = [0, 1, 2].map(|a| bspline::regular(degree[a], cells[a]));
+        let count = regular.iter().map(Vec::len).product();
+        Self { region, degree, cells, regular, displacements: vec![DVec3::ZERO; count], weights: vec![1.0; count] }
     }
 
     /// Returns the degrees along the axes.
@@ -73,13 +73,12 @@ impl Lattice3 {
     /// Returns the numbers of control points along the axes.
     #[must_use]
     pub fn size(&self) -> [usize; 3] {
-        [0, 1, 2].map(|a| self.places[a].len())
+        self.regular.each_ref().map(Vec::len)
     }
 
     /// Iterates over the numbers of all control points, with the first running fastest.
     pub fn nodes(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let [nx, ny, nz] = self.size();
-        (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
+        grid(self.size())
     }
 
     /// Returns `true` if a control point exists.
@@ -91,32 +90,31 @@ impl Lattice3 {
     /// Returns the index of a control point in the order of [`nodes`](Self::nodes).
     #[must_use]
     pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
-        (k * self.places[1].len() + j) * self.places[0].len() + i
+        (k * self.regular[1].len() + j) * self.regular[0].len() + i
     }
 
     /// Returns the position of a control point in the identity.
     #[must_use]
     pub fn regular_point(&self, node: [usize; 3]) -> DVec3 {
-        let at = |a: usize| self.places[a][node[a]];
-        self.region.min + DVec3::new(at(0), at(1), at(2)) * self.region.size()
+        self.region.min + DVec3::from_array([0, 1, 2].map(|a| self.regular[a][node[a]])) * self.region.size()
     }
 
     /// Returns the position of a control point.
     #[must_use]
     pub fn point(&self, node: [usize; 3]) -> DVec3 {
-        self.regular_point(node) + self.moves[self.index(node)]
+        self.regular_point(node) + self.displacements[self.index(node)]
     }
 
     /// Puts a control point at `p`.
     pub fn place(&mut self, node: [usize; 3], p: DVec3) {
         let n = self.index(node);
-        self.moves[n] = p - self.regular_point(node);
+        self.displacements[n] = p - self.regular_point(node);
     }
 
     /// Moves a control point by `v`.
     pub fn shift(&mut self, node: [usize; 3], v: DVec3) {
         let n = self.index(node);
-        self.moves[n] += v;
+        self.displacements[n] += v;
     }
 
     /// Returns the weight of a control point.
@@ -136,14 +134,14 @@ impl Lattice3 {
     pub fn is_changed(&self, node: [usize; 3]) -> bool {
         let size = self.region.diagonal() + self.region.min.length();
         let n = self.index(node);
-        self.moves[n].length() > 1e-12 * size || self.weights[n] != 1.0
+        self.displacements[n].length() > ROUNDING * size || self.weights[n] != 1.0
     }
 
     /// Scales the lattice to another box.
     #[must_use]
     pub fn on(&self, region: Box3) -> Self {
         let scale = region.size() / self.region.size();
-        Self { region, moves: self.moves.iter().map(|v| *v * scale).collect(), ..self.clone() }
+        Self { region, displacements: self.displacements.iter().map(|v| *v * scale).collect(), ..self.clone() }
     }
 
     /// Returns the influences of control points on `p`, with their numbers: Nᵢ·Nⱼ·Nₖ·wᵢⱼₖ / Σ, which add up to 1.
@@ -152,15 +150,11 @@ impl Lattice3 {
         let at = ((p - self.region.min) / self.region.size()).to_array();
         let along = [0, 1, 2].map(|a| bspline::basis(self.degree[a], self.cells[a], at[a]));
         let [(i0, across), (j0, up), (k0, front)] = &along;
-        let mut out = Vec::with_capacity(across.len() * up.len() * front.len());
-        for (k, c) in front.iter().enumerate() {
-            for (j, b) in up.iter().enumerate() {
-                for (i, a) in across.iter().enumerate() {
-                    let node = [i0 + i, j0 + j, k0 + k];
-                    out.push((node, a * b * c * self.weight(node)));
-                }
-            }
-        }
+        let influence = |[i, j, k]: [usize; 3]| {
+            let node = [i0 + i, j0 + j, k0 + k];
+            (node, across[i] * up[j] * front[k] * self.weight(node))
+        };
+        let mut out: Vec<_> = grid([across.len(), up.len(), front.len()]).map(influence).collect();
         let sum: f64 = out.iter().map(|v| v.1).sum();
         out.iter_mut().for_each(|v| v.1 /= sum);
         out
@@ -179,41 +173,32 @@ impl Lattice3 {
         let matrices = [0, 1, 2].map(|a| bspline::extraction(self.degree[a], self.cells[a]).swap_remove(cell[a]));
         let size = self.degree.map(|d| d + 1);
         if self.weights.iter().all(|w| *w == self.weights[0]) {
-            let moves: Vec<[f64; 3]> = self.moves.iter().map(DVec3::to_array).collect();
-            Piece::Displacement(Tensor::bernstein(size, self.bezier(cell, &matrices, &moves)))
+            let displacements: Vec<[f64; 3]> = self.displacements.iter().map(DVec3::to_array).collect();
+            Piece::Displacement(Tensor::bernstein(size, self.bezier(cell, &matrices, &displacements)))
         } else {
             let weighted =
                 |node: [usize; 3]| (self.point(node) * self.weight(node)).extend(self.weight(node)).to_array();
-            let all: Vec<[f64; 4]> = self.nodes().map(weighted).collect();
-            Piece::Quotient(Tensor::bernstein(size, self.bezier(cell, &matrices, &all)))
+            let points: Vec<[f64; 4]> = self.nodes().map(weighted).collect();
+            Piece::Quotient(Tensor::bernstein(size, self.bezier(cell, &matrices, &points)))
         }
     }
 
-    /// Returns the Bézier coefficients of one cell of a spline with the coefficients `c`.
+    /// Returns the Bézier coefficients of one cell of a spline with the coefficients `c`, from the extraction matrices along the axes.
     fn bezier<const C: usize>(&self, cell: [usize; 3], matrices: &[Vec<Vec<f64>>; 3], c: &[[f64; C]]) -> Vec<[f64; C]> {
-        let [a, b, d] = matrices;
-        let mut out = Vec::with_capacity(a.len() * b.len() * d.len());
-        for front in d {
-            for up in b {
-                for across in a {
-                    let mut sum = [0.0; C];
-                    for (k, kc) in front.iter().enumerate() {
-                        for (j, kb) in up.iter().enumerate() {
-                            for (i, ka) in across.iter().enumerate() {
-                                let from = &c[self.index([cell[0] + i, cell[1] + j, cell[2] + k])];
-                                sum.iter_mut().zip(from).for_each(|(s, v)| *s += ka * kb * kc * v);
-                            }
-                        }
-                    }
-                    out.push(sum);
-                }
+        let coefficient = |row: [usize; 3]| {
+            let [across, up, front] = [0, 1, 2].map(|a| &matrices[a][row[a]]);
+            let mut sum = [0.0; C];
+            for [i, j, k] in grid([across.len(), up.len(), front.len()]) {
+                let from = &c[self.index([cell[0] + i, cell[1] + j, cell[2] + k])];
+                sum.iter_mut().zip(from).for_each(|(s, v)| *s += across[i] * up[j] * front[k] * v);
             }
-        }
-        out
+            sum
+        };
+        grid(matrices.each_ref().map(Vec::len)).map(coefficient).collect()
     }
 }
 
-/// Distance from the faces, relative to the coordinates, within which points outside count as inside.
+/// Distance, relative to the coordinates, that counts as rounding: points outside but so near to a face count as inside.
 const ROUNDING: f64 = 1e-12;
 
 /// Free-form deformation of space by a [`Lattice3`] of control points.
@@ -245,14 +230,12 @@ impl LatticeMap3 {
     #[must_use]
     pub fn new(lattice: &Lattice3, extended: bool) -> Self {
         let region = lattice.region();
-        let reach = ROUNDING * (region.min.abs().max_element() + region.max.abs().max_element());
-        let [nx, ny, nz] = lattice.cells();
-        let cells = (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
+        let rounding = ROUNDING * (region.min.abs().max_element() + region.max.abs().max_element());
         Self {
             region,
-            inside: region.inflate(DVec3::splat(reach)),
+            inside: region.inflate(DVec3::splat(rounding)),
             cells: lattice.cells(),
-            pieces: cells.map(|c| (lattice.local(c), lattice.piece(c))).collect(),
+            pieces: grid(lattice.cells()).map(|c| (lattice.local(c), lattice.piece(c))).collect(),
             extended,
         }
     }
@@ -274,8 +257,8 @@ impl LatticeMap3 {
     /// Returns the piece that applies to a whole box, `Some(None)` if nothing moves there, or `None` if a crease may cross the box.
     fn piece_on(&self, on: &Box3) -> Option<Option<&(Local, Piece)>> {
         let slack = 4.0 * (self.inside.max - self.region.max);
-        let within = self.extended || self.inside.contains(on.min) && self.inside.contains(on.max);
-        if !within {
+        let is_covered = self.extended || (self.inside.contains(on.min) && self.inside.contains(on.max));
+        if !is_covered {
             let beside = on.max.cmple(self.region.min + slack).any() || on.min.cmpge(self.region.max - slack).any();
             return beside.then_some(None);
         }
@@ -283,14 +266,14 @@ impl LatticeMap3 {
         // crease.
         let middle = on.center();
         let cell = |p: DVec3| self.piece(p).map(std::ptr::from_ref);
-        let same = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
-        same.then(|| self.piece(middle))
+        let is_single = cell((on.min + slack).min(middle))? == cell((on.max - slack).max(middle))?;
+        is_single.then(|| self.piece(middle))
     }
 
     /// Returns the common denominator at `p`, which is positive where the map is defined.
     fn denominator(&self, p: DVec3) -> f64 {
         match self.piece(p) {
-            Some((local, Piece::Quotient(t))) => t.at((p - local.middle) * local.scale)[3],
+            Some((local, Piece::Quotient(t))) => t.value(local.coordinates(p).to_array())[3],
             _ => 1.0,
         }
     }
@@ -305,13 +288,13 @@ impl Map3 for LatticeMap3 {
         match self.piece(p) {
             None => Jet3::identity(p),
             Some((local, Piece::Displacement(tensor))) => {
-                let d = tensor.jet((p - local.middle) * local.scale);
+                let d = tensor.jet(local.coordinates(p));
                 let column = |a: usize| DVec3::new(d[0][a + 1], d[1][a + 1], d[2][a + 1]) * local.scale[a];
                 let jacobian = DMat3::from_cols(column(0), column(1), column(2));
                 Jet3 { p: p + DVec3::new(d[0][0], d[1][0], d[2][0]), d: DMat3::IDENTITY + jacobian }
             }
             Some((local, Piece::Quotient(tensor))) => {
-                let d = tensor.jet((p - local.middle) * local.scale);
+                let d = tensor.jet(local.coordinates(p));
                 let w = d[3][0];
                 let image = DVec3::new(d[0][0], d[1][0], d[2][0]) / w;
                 // d(N/W) = (dN − image·dW)/W.
@@ -327,43 +310,38 @@ impl Map3 for LatticeMap3 {
         match self.piece(p) {
             None => p,
             Some((local, Piece::Displacement(tensor))) => {
-                p + DVec3::from_array(tensor.at((p - local.middle) * local.scale))
+                p + DVec3::from_array(tensor.value(local.coordinates(p).to_array()))
             }
             Some((local, Piece::Quotient(tensor))) => {
-                let [x, y, z, w] = tensor.at((p - local.middle) * local.scale);
+                let [x, y, z, w] = tensor.value(local.coordinates(p).to_array());
                 DVec3::new(x, y, z) / w
             }
         }
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        let single = self.pieces.len() == 1 && (self.extended || ps.iter().all(|p| self.inside.contains(*p)));
-        match self.pieces.first() {
-            Some((local, Piece::Displacement(tensor))) if single => for_all(&Displaced { local: *local, tensor }, ps),
-            Some((local, Piece::Quotient(tensor))) if single => for_all(&Quotient { local: *local, tensor }, ps),
+        match &*self.pieces {
+            [(local, piece)] if self.extended || ps.iter().all(|p| self.inside.contains(*p)) => match piece {
+                Piece::Displacement(tensor) => for_all(&Displaced { local: *local, tensor }, ps),
+                Piece::Quotient(tensor) => for_all(&Quotient { local: *local, tensor }, ps),
+            },
             _ => ps.iter_mut().for_each(|p| *p = self.point(*p)),
         }
     }
 
-    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
+    fn fraction(&self, on: &Box3, max: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
         let Some((local, piece)) = self.piece_on(on)? else {
             return Some(Fraction3::identity(chart));
         };
         let t = chart.local(local);
-        let degree = match piece {
-            Piece::Displacement(tensor) => tensor.total_degree(),
-            Piece::Quotient(tensor) => tensor.total_degree(),
-        };
-        if degree > most {
-            return None;
-        }
         let parts = match piece {
-            Piece::Displacement(tensor) => {
-                let ([x, y, z], [dx, dy, dz]) = (chart.place(), tensor.in_terms_of(&t));
+            Piece::Displacement(tensor) if tensor.total_degree() <= max => {
+                let ([x, y, z], [dx, dy, dz]) = (chart.xyz(), tensor.in_terms_of(&t));
                 [x.plus(1.0, &dx), y.plus(1.0, &dy), z.plus(1.0, &dz), Poly3::constant(1.0)]
             }
-            Piece::Quotient(tensor) => tensor.in_terms_of(&t),
+            Piece::Quotient(tensor) if tensor.total_degree() <= max => tensor.in_terms_of(&t),
+            _ => return None,
         };
         Some(Fraction3 { chart, parts })
     }
@@ -397,24 +375,24 @@ impl Map3 for LatticeMap3 {
     /// Inverts by Newton's method over the region, or up to half its size outside if the map is extended. Outside points that are not
     /// the image of a point of the region stay where they are.
     fn inverse(&self) -> Option<Arc<dyn Map3>> {
-        let beyond = if self.extended { 0.5 } else { 0.0 };
-        let domain = self.region.inflate(beyond * self.region.size());
+        let margin = if self.extended { 0.5 } else { 0.0 };
+        let domain = self.region.inflate(margin * self.region.size());
         // Newton steps may leave the region on the way, where they must not meet the identity.
         let smooth = Self { extended: true, ..self.clone() };
-        let reach = 1e3 * (self.inside.max - self.region.max).max_element();
-        let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, reach, self.cells);
+        let rounding = 1e3 * (self.inside.max - self.region.max).max_element();
+        let inner = NewtonInverse3::with_core(Arc::new(smooth), self.region, domain, rounding, self.cells);
         Some(Arc::new(LatticeInverse { map: self.clone(), inner }))
     }
 
     /// Grows with the number of control points of a piece, all of which affect a point.
     fn work(&self) -> f64 {
         const EACH: f64 = 1.0 / 16.0;
-        let degrees = |piece: &Piece| match piece {
-            Piece::Displacement(t) => t.degrees(),
-            Piece::Quotient(t) => t.degrees(),
+        let degrees = match self.pieces.first() {
+            Some((_, Piece::Displacement(t))) => t.degrees(),
+            Some((_, Piece::Quotient(t))) => t.degrees(),
+            None => return 1.0,
         };
-        let points = |(_, piece): &(Local, Piece)| degrees(piece).iter().map(|d| d + 1).product::<usize>() as f64;
-        self.pieces.first().map_or(1.0, |piece| 1.0 + EACH * points(piece))
+        1.0 + EACH * degrees.iter().map(|d| d + 1).product::<usize>() as f64
     }
 }
 

@@ -1,6 +1,6 @@
 //! Pictures of meshes, drawn by a small rasterizer with a depth buffer and shading.
 
-use crate::mesh::{Mark, Mesh, PolygonKind};
+use crate::mesh::{Mark, Mesh, PolygonKind, fan};
 use crate::settings::Box3;
 use glam::{DMat3, DVec3};
 
@@ -21,20 +21,21 @@ impl Camera3 {
     /// Makes a camera at `eye` that looks at the middle of a box and shows all of it, y up. `None` unless the box is in front of the eye.
     #[must_use]
     pub fn at(eye: DVec3, scene: Box3) -> Option<Self> {
-        let to = scene.center() - eye;
-        let forward = to.try_normalize()?;
+        /// Half the height of the view beside the scene's, which leaves a margin.
+        const MARGIN: f64 = 1.04;
+        let to_middle = scene.center() - eye;
+        let forward = to_middle.try_normalize()?;
         // Seen straight from above, the back of the scene is at the top of the picture.
         let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
         let axes = DMat3::from_cols(right, right.cross(forward), forward).transpose();
-        let sight = |p: DVec3| axes * (p - eye);
         let mut half: f64 = 0.0;
-        for p in scene.corners().map(sight) {
-            if p.z <= NEAR * to.length() {
+        for p in scene.corners().map(|p| axes * (p - eye)) {
+            if p.z <= NEAR * to_middle.length() {
                 return None;
             }
             half = half.max(p.x.abs().max(p.y.abs()) / p.z);
         }
-        Some(Self { eye, axes, half: half * 1.04 })
+        Some(Self { eye, axes, half: half * MARGIN })
     }
 
     /// Makes a camera that looks at the middle of a box from this direction, twice the box's diagonal away.
@@ -70,25 +71,26 @@ const SAMPLES: usize = 2;
 #[must_use]
 pub fn samples(mesh: &Mesh, camera: &Camera3, side: usize) -> f64 {
     let fine = (side * SAMPLES) as f64;
-    let places: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine)).collect();
-    let triangles = mesh.polygons().flat_map(|(_, corners)| {
-        corners.windows(2).skip(1).map(move |w| [corners[0], w[0], w[1]].map(|c| c.vertex as usize))
-    });
+    let projected: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine)).collect();
+    let triangles = mesh.polygons().flat_map(|(_, corners)| fan(corners));
+    // The length of an interval within the picture.
     let length = |v: [f64; 3]| {
         let [min, max] = [v.iter().copied().fold(fine, f64::min), v.iter().copied().fold(0.0, f64::max)];
         (max.min(fine) - min.max(0.0)).max(0.0)
     };
-    triangles.map(|t| length(t.map(|v| places[v].x)) * length(t.map(|v| places[v].y))).sum()
+    let corners = triangles.map(|t| t.map(|c| projected[c.vertex as usize]));
+    corners.map(|t| length(t.map(|p| p.x)) * length(t.map(|p| p.y))).sum()
 }
 
 /// Draws a mesh with guides over it, on white: `side` × `side` opaque pixels of red, green, blue and alpha.
 #[must_use]
 pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -> Vec<u8> {
     let fine = side * SAMPLES;
-    let mut canvas = Canvas { side: fine, color: vec![[1.0; 3]; fine * fine], near: vec![0.0; fine * fine] };
-    let places: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine as f64)).collect();
+    let mut canvas = Canvas { side: fine, color: vec![[1.0; 3]; fine * fine], nearness: vec![0.0; fine * fine] };
+    let projected: Vec<DVec3> = mesh.positions.iter().map(|p| camera.project(*p, fine as f64)).collect();
+    // The direction to the light, which is above the camera to its left.
     let light = camera.axes.transpose() * DVec3::new(-0.4, 0.6, -0.7).normalize();
-    let nearest = NEAR * places.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+    let nearest = NEAR * projected.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
     let mut names: Vec<&str> = Vec::new();
     let mut marks = mesh.marks.iter().peekable();
     for (n, (kind, corners)) in mesh.polygons().enumerate() {
@@ -100,21 +102,21 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
         let base = PALETTE[names.len().saturating_sub(1) % PALETTE.len()];
         if kind == PolygonKind::Line {
             for w in corners.windows(2) {
-                canvas.line([w[0], w[1]].map(|c| places[c.vertex as usize]), nearest, base);
+                canvas.line([w[0], w[1]].map(|c| projected[c.vertex as usize]), nearest, base);
             }
         }
         if kind != PolygonKind::Face {
             continue;
         }
-        for w in corners.windows(2).skip(1) {
-            let t = [corners[0], w[0], w[1]].map(|c| c.vertex as usize);
+        for t in fan(corners) {
+            let t = t.map(|c| c.vertex as usize);
             let [a, b, c] = t.map(|v| mesh.positions[v]);
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let facing = normal.dot(camera.eye - a) >= 0.0;
             let shade = 0.35 + 0.65 * (normal.dot(light) * if facing { 1.0 } else { -1.0 }).max(0.0);
             let color = (if facing { base } else { INSIDE }).map(|v| v * shade);
-            if t.iter().all(|v| places[*v].z > nearest) {
-                canvas.triangle(t.map(|v| places[v]), color);
+            if t.iter().all(|v| projected[*v].z > nearest) {
+                canvas.triangle(t.map(|v| projected[v]), color);
             }
         }
     }
@@ -129,8 +131,8 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
 struct Canvas {
     side: usize,
     color: Vec<[f64; 3]>,
-    /// Reciprocal depths.
-    near: Vec<f64>,
+    /// Reciprocal depths, which are linear in a picture's coordinates.
+    nearness: Vec<f64>,
 }
 
 impl Canvas {
@@ -148,12 +150,13 @@ impl Canvas {
         for y in rows {
             for x in columns.clone() {
                 let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
-                let part = |p: DVec3, q: DVec3| ((q.x - p.x) * (py - p.y) - (q.y - p.y) * (px - p.x)) / area;
-                let (u, v, w) = (part(b, c), part(c, a), part(a, b));
-                let near = u / a.z + v / b.z + w / c.z;
-                let at = y * self.side + x;
-                if u >= 0.0 && v >= 0.0 && w >= 0.0 && near > self.near[at] {
-                    (self.near[at], self.color[at]) = (near, color);
+                // Barycentric coordinates, as the shares of the triangle's area opposite the corners.
+                let share = |p: DVec3, q: DVec3| ((q.x - p.x) * (py - p.y) - (q.y - p.y) * (px - p.x)) / area;
+                let (u, v, w) = (share(b, c), share(c, a), share(a, b));
+                let nearness = u / a.z + v / b.z + w / c.z;
+                let i = y * self.side + x;
+                if u >= 0.0 && v >= 0.0 && w >= 0.0 && nearness > self.nearness[i] {
+                    (self.nearness[i], self.color[i]) = (nearness, color);
                 }
             }
         }
@@ -181,8 +184,8 @@ impl Canvas {
         for y in 0..side {
             for x in 0..side {
                 for k in 0..3 {
-                    let sample =
-                        |i: usize| self.color[(y * SAMPLES + i / SAMPLES) * self.side + x * SAMPLES + i % SAMPLES][k];
+                    let (top, left) = (y * SAMPLES, x * SAMPLES);
+                    let sample = |i: usize| self.color[(top + (i / SAMPLES)) * self.side + left + (i % SAMPLES)][k];
                     let mean = (0..SAMPLES * SAMPLES).map(sample).sum::<f64>() / (SAMPLES * SAMPLES) as f64;
                     out.push((mean.clamp(0.0, 1.0) * 255.0).round() as u8);
                 }

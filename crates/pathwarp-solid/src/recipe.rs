@@ -2,7 +2,7 @@
 
 use crate::deform::{Built3, Registry3};
 use crate::map::{Chain3, Creases3, Map3, NewtonInverse3};
-use crate::settings::{Box3, Frame3};
+use crate::settings::{Box3, Frame3, grid};
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, Limits};
 use pathwarp::recipe::Recipe;
@@ -30,13 +30,14 @@ impl fmt::Debug for BuiltRecipe3 {
 }
 
 impl BuiltRecipe3 {
-    fn new(steps: usize, budget: &Arc<Budget>) -> Self {
-        Self {
-            map: Chain3::default(),
-            steps: Vec::with_capacity(steps),
-            frames: Vec::with_capacity(steps),
-            budget: Arc::clone(budget),
-        }
+    fn new(budget: &Arc<Budget>) -> Self {
+        Self { map: Chain3::default(), steps: Vec::new(), frames: Vec::new(), budget: Arc::clone(budget) }
+    }
+
+    fn push(&mut self, step: Built3, frame: Frame3) {
+        self.map.push(Arc::clone(&step.map));
+        self.steps.push(step);
+        self.frames.push(frame);
     }
 
     /// Returns the limit that searches for an inverse have exceeded, if any. Results computed with the map must then be discarded.
@@ -55,21 +56,19 @@ const PIECES: [usize; 3] = [4; 3];
 const GRID: usize = 12;
 
 /// Returns a grid of points all over a box, corners included.
-fn places(bounds: &Box3) -> impl Iterator<Item = DVec3> {
-    let at = |i: usize| i as f64 / (GRID - 1) as f64;
-    let place = move |k: usize| DVec3::new(at(k % GRID), at(k / GRID % GRID), at(k / (GRID * GRID)));
+fn grid_points(bounds: &Box3) -> impl Iterator<Item = DVec3> {
     let (from, size) = (bounds.min, bounds.size());
-    (0..GRID.pow(3)).map(move |k| from + place(k) * size)
+    grid([GRID; 3]).map(move |n| from + DVec3::from_array(n.map(|i| i as f64 / (GRID - 1) as f64)) * size)
 }
 
 /// Returns a point of a box at which a map turns space inside out, unless it does so everywhere.
-fn fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
+fn find_fold(map: &dyn Map3, bounds: &Box3) -> Option<DVec3> {
     let mut creases = Creases3::default();
     map.creases(&mut creases);
-    let all = places(bounds).filter(|p| creases.defined_at(*p));
-    let signs: Vec<(DVec3, f64)> = all.map(|p| (p, map.jet(p).det())).collect();
-    let first = signs.iter().find(|(_, det)| *det < 0.0)?;
-    signs.iter().any(|(_, det)| *det > 0.0).then_some(first.0)
+    let points = grid_points(bounds).filter(|p| creases.defined_at(*p));
+    let determinants: Vec<(DVec3, f64)> = points.map(|p| (p, map.jet(p).det())).collect();
+    let first = determinants.iter().find(|(_, det)| *det < 0.0)?;
+    determinants.iter().any(|(_, det)| *det > 0.0).then_some(first.0)
 }
 
 /// Builds every step of a recipe. Percentages refer to `frame` in the first step, and to the bounding box of the points mapped so far in
@@ -95,110 +94,100 @@ pub fn build_within(
     points: &[DVec3],
     budget: &Arc<Budget>,
 ) -> Result<BuiltRecipe3, Error> {
+    let builder = Builder { registry, frame, budget };
     let out = if recipe.steps.len() > 1 && recipe.steps.iter().all(|s| s.inverse) {
-        undo(&recipe.inverted(), registry, frame, points, budget)?
+        builder.build_inverse(&recipe.inverted(), points)?
     } else {
-        built(recipe, registry, frame, points, budget)?
+        builder.build(recipe, points)?
     };
-    count(budget, &out.map, points.len())?;
+    charge(budget, &out.map, points.len())?;
     Ok(out)
 }
 
-/// Charges the budget for evaluations of a map at `places` points.
-fn count(budget: &Budget, map: &dyn Map3, places: usize) -> Result<(), GeometryError> {
-    budget.spend(places as f64 * map.work()).map_err(GeometryError::Limit)
+/// Charges the budget for evaluations of a map at `points` points.
+fn charge(budget: &Budget, map: &dyn Map3, points: usize) -> Result<(), GeometryError> {
+    budget.spend(points as f64 * map.work()).map_err(GeometryError::Limit)
 }
 
-fn built(
-    recipe: &Recipe,
-    registry: &Registry3,
+/// The surroundings in which recipes are built.
+struct Builder<'a> {
+    registry: &'a Registry3,
     frame: Frame3,
-    points: &[DVec3],
-    budget: &Arc<Budget>,
-) -> Result<BuiltRecipe3, Error> {
-    let mut out = BuiltRecipe3::new(recipe.steps.len(), budget);
-    let mut frame = frame;
-    let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
-    for (i, step) in recipe.steps.iter().enumerate() {
-        let entry = registry.get(&step.deformation).ok_or_else(|| {
-            let known: Vec<_> = registry.entries().iter().map(|e| e.about().info.name).collect();
-            let problem =
-                format!("there is no deformation of space `{}`; known are {}", step.deformation, known.join(", "));
-            Error::input(format!("step {}", i + 1), problem)
-        })?;
-        if i > 0 {
-            frame.bounds = Box3::around(images.iter().copied()).unwrap_or(frame.bounds);
-        }
-        let mut built = entry.build_from(&step.args, &frame)?;
-        if step.inverse {
-            built = inverted(built, &frame.bounds, budget)?;
-        }
-        if i + 1 < recipe.steps.len() {
-            count(budget, &*built.map, points.len())?;
-            built.map.points(&mut images);
-        }
-        out.map.push(Arc::clone(&built.map));
-        out.steps.push(built);
-        out.frames.push(frame);
-    }
-    Ok(out)
+    budget: &'a Arc<Budget>,
 }
 
-/// Builds the inverse of a recipe of several steps. The boxes of the steps depend on the points of the source, which depend on the boxes:
-/// both are computed in turn until the boxes settle.
-fn undo(
-    recipe: &Recipe,
-    registry: &Registry3,
-    frame: Frame3,
-    images: &[DVec3],
-    budget: &Arc<Budget>,
-) -> Result<BuiltRecipe3, Error> {
-    /// Boxes that differ by less than this fraction of their size count as equal.
-    const SETTLED: f64 = 1e-12;
-    const MAX_ROUNDS: usize = 64;
-    let mut there = built(recipe, registry, frame, &places(&frame.bounds).collect::<Vec<_>>(), budget)?;
-    let mut off = f64::INFINITY;
-    for _ in 0..MAX_ROUNDS {
-        if off <= SETTLED {
-            break;
+impl Builder<'_> {
+    fn build(&self, recipe: &Recipe, points: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+        let Self { registry, mut frame, budget } = *self;
+        let mut out = BuiltRecipe3::new(budget);
+        let mut images = if recipe.steps.len() > 1 { points.to_vec() } else { Vec::new() };
+        for (i, step) in recipe.steps.iter().enumerate() {
+            let entry = registry.get(&step.deformation).ok_or_else(|| {
+                let known = registry.entries().iter().map(|e| e.about().info.name).collect::<Vec<_>>().join(", ");
+                let problem = format!("there is no deformation of space `{}`; known are {known}", step.deformation);
+                Error::input(format!("step {}", i + 1), problem)
+            })?;
+            if i > 0 {
+                frame.bounds = Box3::around(images.iter().copied()).unwrap_or(frame.bounds);
+            }
+            let mut built = entry.build_from(&step.args, &frame)?;
+            if step.inverse {
+                built = invert_step(built, &frame.bounds, budget)?;
+            }
+            if i + 1 < recipe.steps.len() {
+                charge(budget, &*built.map, points.len())?;
+                built.map.points(&mut images);
+            }
+            out.push(built, frame);
         }
-        let mut sources = images.to_vec();
-        for (step, frame) in there.steps.iter().zip(&there.frames).rev() {
-            let back = inverse(&step.map, &frame.bounds, budget);
-            count(budget, &*back, sources.len())?;
-            back.points(&mut sources);
-        }
-        sources.retain(|p| p.is_finite());
-        let next = built(recipe, registry, frame, &sources, budget)?;
-        off = next.frames.iter().zip(&there.frames).map(|(a, b)| apart(&a.bounds, &b.bounds)).fold(0.0, f64::max);
-        there = next;
+        Ok(out)
     }
-    let mut out = BuiltRecipe3::new(there.steps.len(), budget);
-    for (step, frame) in there.steps.into_iter().zip(there.frames).rev() {
-        let step = inverted(step, &frame.bounds, budget)?;
-        out.map.push(Arc::clone(&step.map));
-        out.steps.push(step);
-        out.frames.push(frame);
-    }
-    if let Some(step) = out.steps.last_mut().filter(|_| off > SETTLED) {
-        step.warn(format!(
-            "the boxes to which percentages of later steps refer were not found again, and differ by {off:.1e} of their size: the \
-             result is not the source; give those steps lengths instead"
-        ));
-    }
-    Ok(out)
-}
 
-/// Returns the distance between the corners of two boxes, as a fraction of their size.
-fn apart(a: &Box3, b: &Box3) -> f64 {
-    a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal()
+    /// Builds the inverse of a recipe of several steps. The steps' boxes depend on the points of the source, which depend on the boxes:
+    /// both are computed in turn until the boxes settle.
+    fn build_inverse(&self, recipe: &Recipe, images: &[DVec3]) -> Result<BuiltRecipe3, Error> {
+        /// Boxes that differ by less than this fraction of their size count as equal.
+        const SETTLED: f64 = 1e-12;
+        const MAX_ROUNDS: usize = 64;
+        // The distance between the corners of two boxes, as a fraction of their size.
+        let distance = |a: &Box3, b: &Box3| a.min.distance(b.min).max(a.max.distance(b.max)) / b.diagonal();
+        let Self { frame, budget, .. } = *self;
+        let mut forward = self.build(recipe, &grid_points(&frame.bounds).collect::<Vec<_>>())?;
+        let mut change = f64::INFINITY;
+        for _ in 0..MAX_ROUNDS {
+            if change <= SETTLED {
+                break;
+            }
+            let mut sources = images.to_vec();
+            for (step, frame) in forward.steps.iter().zip(&forward.frames).rev() {
+                let back = inverse(&step.map, &frame.bounds, budget);
+                charge(budget, &*back, sources.len())?;
+                back.points(&mut sources);
+            }
+            sources.retain(|p| p.is_finite());
+            let next = self.build(recipe, &sources)?;
+            let frames = next.frames.iter().zip(&forward.frames);
+            change = frames.map(|(a, b)| distance(&a.bounds, &b.bounds)).fold(0.0, f64::max);
+            forward = next;
+        }
+        let mut out = BuiltRecipe3::new(budget);
+        for (step, frame) in forward.steps.into_iter().zip(forward.frames).rev() {
+            out.push(invert_step(step, &frame.bounds, budget)?, frame);
+        }
+        if let Some(step) = out.steps.last_mut().filter(|_| change > SETTLED) {
+            step.warn(format!(
+                "the boxes to which percentages of later steps refer were not found again, and differ by {change:.1e} of their size: the \
+                 result is not the source; give those steps lengths instead"
+            ));
+        }
+        Ok(out)
+    }
 }
 
 /// Inverts a step over its box. Warns if the step folds space there.
-fn inverted(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Built3, GeometryError> {
-    count(budget, &*built.map, GRID.pow(3))?;
-    if let Some(at) = fold(&*built.map, bounds) {
-        let DVec3 { x, y, z } = at;
+fn invert_step(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Built3, GeometryError> {
+    charge(budget, &*built.map, GRID.pow(3))?;
+    if let Some(DVec3 { x, y, z }) = find_fold(&*built.map, bounds) {
         built.warn(format!(
             "the map that is inverted folds space over itself, first at {x:.6},{y:.6},{z:.6}: places there have several \
              sources, and one of them is taken"
@@ -210,9 +199,7 @@ fn inverted(mut built: Built3, bounds: &Box3, budget: &Arc<Budget>) -> Result<Bu
 
 /// Returns the inverse of a map, in closed form if the map has one, or by Newton's method over a box.
 fn inverse(map: &Arc<dyn Map3>, bounds: &Box3, budget: &Arc<Budget>) -> Arc<dyn Map3> {
-    let newton = || -> Arc<dyn Map3> {
-        Arc::new(NewtonInverse3::new(Arc::clone(map), *bounds, REACH * bounds.diagonal(), PIECES))
-    };
-    let inverse = map.inverse().unwrap_or_else(newton);
+    let newton = || NewtonInverse3::new(Arc::clone(map), *bounds, REACH * bounds.diagonal(), PIECES);
+    let inverse = map.inverse().unwrap_or_else(|| Arc::new(newton()));
     inverse.within(budget).unwrap_or(inverse)
 }

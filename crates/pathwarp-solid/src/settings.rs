@@ -105,6 +105,7 @@ impl<'a> Settings3<'a> {
         if length.unit == LengthUnit::Percent {
             return Ok(length.value / 100.0 * self.frame.extent(along));
         }
+        // The axis matters to percentages only.
         Ok(length.in_units(Axis::X, &self.frame.front()))
     }
 
@@ -117,8 +118,8 @@ impl<'a> Settings3<'a> {
         let [x, y, z] = parts[..] else {
             return Err(Error::usage(name, text, "is not three lengths x,y,z"));
         };
-        let along = |t: &str, e| self.length_in(name, t, e);
-        Ok(DVec3::new(along(x, Extent::X)?, along(y, Extent::Y)?, along(z, Extent::Z)?))
+        let length = |text: &str, along| self.length_in(name, text, along);
+        Ok(DVec3::new(length(x, Extent::X)?, length(y, Extent::Y)?, length(z, Extent::Z)?))
     }
 
     /// Reads a point `x,y,z` from a text parameter. Percentages count from the left, bottom and back of the frame.
@@ -141,6 +142,12 @@ impl<'a> Settings3<'a> {
     /// [`Error::Usage`], naming the parameter, when the value is not a point.
     pub fn point_if(&self, name: &str) -> Result<Option<DVec3>, Error> {
         self.last(name).map(|t| self.point_in(name, t)).transpose()
+    }
+
+    /// Returns the points given for a text parameter, separated by spaces or semicolons.
+    pub(crate) fn listed_points(&self, name: &str) -> Result<Vec<DVec3>, Error> {
+        let words = self.words(name).into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
+        words.map(|w| self.point_in(name, w)).collect()
     }
 
     /// Returns the points `x,y,z x,y,z …` given for a text parameter.
@@ -210,6 +217,11 @@ pub(crate) fn show(p: DVec3) -> String {
     format!("{},{},{}", round(p.x), round(p.y), round(p.z))
 }
 
+/// Iterates over the numbers i, j, k of a grid of this size, with i running fastest.
+pub(crate) fn grid([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
+}
+
 /// A box with edges along the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Box3 {
@@ -266,14 +278,8 @@ impl Box3 {
     /// Returns the eight corners; x changes fastest.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
-        std::array::from_fn(|i| {
-            let pick = |bit: usize, a: f64, b: f64| if i & bit == 0 { a } else { b };
-            DVec3::new(
-                pick(1, self.min.x, self.max.x),
-                pick(2, self.min.y, self.max.y),
-                pick(4, self.min.z, self.max.z),
-            )
-        })
+        let coordinate = |i: usize, axis: usize| if (i >> axis) & 1 == 0 { self.min[axis] } else { self.max[axis] };
+        std::array::from_fn(|i| DVec3::from_array([0, 1, 2].map(|axis| coordinate(i, axis))))
     }
 }
 

@@ -1,5 +1,5 @@
-//! Measures the work of CFF and CFF2 charstrings. Subroutines that call others a hundred times, ten levels deep, would occupy the
-//! reader forever.
+//! Measures the work of the charstrings of CFF and CFF2 fonts, the programs that draw glyphs. Subroutines that call others a hundred
+//! times, ten levels deep, would occupy the reader forever.
 
 use skrifa::raw::TableProvider as _;
 use skrifa::raw::ps::cff::CffFontRef;
@@ -23,42 +23,43 @@ impl<'a> Charstrings<'a> {
         cff2().or_else(cff).map(Self)
     }
 
-    /// The number of bytes that the reader evaluates for a glyph, counting subroutines at each call. Stops counting at `max`.
+    /// Returns the number of bytes that the reader evaluates for a glyph, counting subroutines at each call. Stops counting at `max`.
     pub(crate) fn work(&self, glyph: GlyphId, max: u64) -> u64 {
         let used = Cell::new(0);
         // A damaged charstring counts up to the damage.
-        let _ = self.evaluated(glyph, max, &used);
+        let _ = self.evaluate_counting(glyph, max, &used);
         used.get()
     }
 
-    fn evaluated(&self, glyph: GlyphId, max: u64, used: &Cell<u64>) -> Result<(), Error> {
+    fn evaluate_counting(&self, glyph: GlyphId, max: u64, used: &Cell<u64>) -> Result<(), Error> {
         let Self(font) = self;
-        let part = font.subfont_index(glyph).ok_or(Error::MissingFdArray)?;
-        let part = font.subfont(part, &[])?;
-        let local = match part.subrs_offset() {
+        let subfont = font.subfont(font.subfont_index(glyph).ok_or(Error::MissingFdArray)?, &[])?;
+        let local = match subfont.subrs_offset() {
             0 => Index::Empty,
-            at => {
-                let data = font.data().get(at as usize..).ok_or(Error::MissingSubroutines)?;
+            offset => {
+                let data = font.data().get(offset as usize..).ok_or(Error::MissingSubroutines)?;
                 Index::new(data, font.version() == 2)?
             }
         };
-        let blend = font.var_store().and_then(|s| BlendState::new(s.clone(), &[], part.vs_index()).ok());
+        let blend = font.var_store().and_then(|s| BlendState::new(s.clone(), &[], subfont.vs_index()).ok());
         let all = font.charstrings();
         let context = Counting { inner: (font.data(), all, font.global_subrs(), &local), used, max };
         let charstring = context.counted(all.get(glyph.to_u32() as usize)?)?;
-        evaluate(&context, blend, charstring, &mut Nothing)?;
+        evaluate(&context, blend, charstring, &mut NullSink)?;
         Ok(())
     }
 }
 
 /// Counts the charstrings that the evaluator looks up.
 struct Counting<'a> {
+    /// The table's bytes, the charstrings, and the global and the local subroutines: skrifa's context that does not count.
     inner: (&'a [u8], &'a Index<'a>, &'a Index<'a>, &'a Index<'a>),
     used: &'a Cell<u64>,
     max: u64,
 }
 
 impl Counting<'_> {
+    /// Counts the bytes of a charstring, and 1 for the call. Any error stops the evaluator at the limit.
     fn counted<'b>(&self, charstring: &'b [u8]) -> Result<&'b [u8], Error> {
         self.used.set(self.used.get() + 1 + charstring.len() as u64);
         if self.used.get() < self.max { Ok(charstring) } else { Err(Error::CharstringNestingDepthLimitExceeded) }
@@ -85,9 +86,9 @@ impl CharstringContext for Counting<'_> {
 }
 
 /// Discards an outline.
-struct Nothing;
+struct NullSink;
 
-impl CommandSink for Nothing {
+impl CommandSink for NullSink {
     fn move_to(&mut self, _: Fixed, _: Fixed) {}
 
     fn line_to(&mut self, _: Fixed, _: Fixed) {}

@@ -51,7 +51,8 @@ impl<'a> Font<'a> {
     /// Reads a TrueType or OpenType font with `glyf`, CFF or CFF2 outlines. `index` counts the fonts of a collection from 0.
     ///
     /// # Errors
-    /// [`Error::NotAFont`] when the bytes are not such a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`].
+    /// [`Error::NotAFont`] when the bytes are not such a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`] when
+    /// a damaged font makes its reader panic.
     pub fn new(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         guarded(|| Self::read(bytes, index, Outlines::new))
     }
@@ -59,7 +60,8 @@ impl<'a> Font<'a> {
     /// Reads a font with any outlines or none, to shape text. Glyphs are empty.
     ///
     /// # Errors
-    /// [`Error::NotAFont`] when the bytes are not a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`].
+    /// [`Error::NotAFont`] when the bytes are not a font, [`Error::NoSuchFace`] when the file has fewer fonts, [`Error::Failed`] when a
+    /// damaged font makes its reader panic.
     pub fn for_shaping(bytes: &'a [u8], index: u32) -> Result<Self, Error> {
         guarded(|| Self::read(bytes, index, |_| Ok(Outlines::default())))
     }
@@ -103,26 +105,25 @@ impl<'a> Font<'a> {
     /// Returns the font at another position on its axes. Axes that are not given take their defaults.
     ///
     /// # Errors
-    /// [`Error::NoSuchAxis`] when the font lacks an axis, [`Error::OutsideAxis`] when a value is out of range, [`Error::Failed`].
-    pub fn with_variations(self, variations: &[Variation]) -> Result<Self, Error> {
-        guarded(|| self.set_variations(variations))
-    }
-
-    fn set_variations(mut self, variations: &[Variation]) -> Result<Self, Error> {
-        let axes = self.axes();
-        for v in variations {
-            let tag = v.tag.to_string();
-            let Some(axis) = axes.iter().find(|a| a.tag == tag) else {
-                return Err(Error::NoSuchAxis { tag, axes });
-            };
-            if !(axis.min..=axis.max).contains(&v.value) {
-                return Err(Error::OutsideAxis { tag, value: v.value, min: axis.min, max: axis.max });
+    /// [`Error::NoSuchAxis`] when the font lacks an axis, [`Error::OutsideAxis`] when a value is out of range, [`Error::Failed`] when a
+    /// damaged font makes its reader panic.
+    pub fn with_variations(mut self, variations: &[Variation]) -> Result<Self, Error> {
+        guarded(|| {
+            let axes = self.axes();
+            for v in variations {
+                let tag = v.tag.to_string();
+                let Some(axis) = axes.iter().find(|a| a.tag == tag) else {
+                    return Err(Error::NoSuchAxis { tag, axes });
+                };
+                if !(axis.min..=axis.max).contains(&v.value) {
+                    return Err(Error::OutsideAxis { tag, value: v.value, min: axis.min, max: axis.max });
+                }
             }
-        }
-        let location = self.font.axes().location(variations.iter().map(|v| (v.tag, v.value as f32)));
-        self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
-        self.measure();
-        Ok(self)
+            let location = self.font.axes().location(variations.iter().map(|v| (v.tag, v.value as f32)));
+            self.instance = ShaperInstance::from_coords(&self.font, location.coords().iter().copied());
+            self.measure();
+            Ok(self)
+        })
     }
 
     /// Restricts the font to one writing: text of other writings does not use it, and emoji prefer it to fonts without a restriction.
@@ -219,7 +220,7 @@ impl<'a> Font<'a> {
         };
     }
 
-    /// The height of a character's outline.
+    /// Returns the height of a character's outline above the baseline, in font units.
     fn top_of(&self, c: char) -> Option<f64> {
         let glyph: GlyphId = self.charmap.map(c)?;
         let outline = self.outlines.draw(glyph, self.location()).ok()?;
@@ -228,7 +229,7 @@ impl<'a> Font<'a> {
     }
 }
 
-/// The error for bytes that are not a readable font.
+/// Returns the error for bytes that are not a readable font, which names kinds of fonts that people try (by their first four bytes).
 fn not_a_font(bytes: &[u8], e: &ReadError) -> Error {
     Error::NotAFont(match bytes.get(..4) {
         Some(b"wOFF" | b"wOF2") => "it is a web font (WOFF); convert it to .ttf or .otf first".into(),

@@ -41,9 +41,9 @@ impl<'a> Outlines<'a> {
     }
 
     /// Returns the outline of a glyph; empty for spaces.
-    pub(crate) fn draw(&self, glyph: GlyphId, at: LocationRef<'_>) -> Result<BezPath, Error> {
+    pub(crate) fn draw(&self, glyph: GlyphId, location: LocationRef<'_>) -> Result<BezPath, Error> {
         let damaged = |problem: String| Error::Glyph { glyph: glyph.to_u32(), problem };
-        if self.parts(glyph, 0, &mut HashMap::new())? > MAX_PARTS {
+        if self.count_parts(glyph, 0, &mut HashMap::new())? > MAX_PARTS {
             return Err(damaged(format!("it has more than {MAX_PARTS} parts")));
         }
         if self.charstrings.as_ref().is_some_and(|c| c.work(glyph, MAX_WORK) >= MAX_WORK) {
@@ -52,18 +52,18 @@ impl<'a> Outlines<'a> {
         let mut pen = GlyphPen::default();
         if let Some(outline) = self.glyphs.as_ref().and_then(|all| all.get(glyph)) {
             // The HarfBuzz style keeps fractions of units in variable fonts; the FreeType style rounds.
-            let settings = DrawSettings::unhinted(Size::unscaled(), at).with_path_style(PathStyle::HarfBuzz);
+            let settings = DrawSettings::unhinted(Size::unscaled(), location).with_path_style(PathStyle::HarfBuzz);
             outline.draw(settings, &mut pen).map_err(|e| damaged(e.to_string()))?;
         }
-        if pen.path.iter().any(|el| el.end_point().is_some_and(|p| !p.is_finite())) {
+        if pen.0.iter().any(|el| el.end_point().is_some_and(|p| !p.is_finite())) {
             return Err(damaged("it has points that are not finite".into()));
         }
-        Ok(pen.path)
+        Ok(pen.0)
     }
 
-    /// Counts the components of a glyph, including nested ones, with memoized sums. A component without points but with data for
+    /// Counts the components of a glyph, including nested ones; `known` keeps the sums. A component without points but with data for
     /// them is an error, since the reader would panic.
-    fn parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
+    fn count_parts(&self, glyph: GlyphId, depth: usize, known: &mut HashMap<u32, usize>) -> Result<usize, Error> {
         /// One more level than the reader follows.
         const MAX_DEPTH: usize = 33;
         if let Some(n) = known.get(&glyph.to_u32()) {
@@ -76,7 +76,7 @@ impl<'a> Outlines<'a> {
             Ok(Some(Glyph::Composite(c))) if depth < MAX_DEPTH => {
                 let mut n = 1_usize;
                 for part in c.components() {
-                    n = n.saturating_add(self.parts(part.glyph.into(), depth + 1, known)?);
+                    n = n.saturating_add(self.count_parts(part.glyph.into(), depth + 1, known)?);
                     if n > MAX_PARTS {
                         break;
                     }
@@ -93,35 +93,34 @@ impl<'a> Outlines<'a> {
     }
 }
 
-/// Collects a path.
+/// Collects the path that skrifa draws.
 #[derive(Default)]
-struct GlyphPen {
-    path: BezPath,
-}
+struct GlyphPen(BezPath);
 
+/// Turns y to point down.
 fn point(x: f32, y: f32) -> Point {
     Point::new(f64::from(x), -f64::from(y))
 }
 
 impl OutlinePen for GlyphPen {
     fn move_to(&mut self, x: f32, y: f32) {
-        self.path.move_to(point(x, y));
+        self.0.move_to(point(x, y));
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
-        self.path.line_to(point(x, y));
+        self.0.line_to(point(x, y));
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.path.quad_to(point(x1, y1), point(x, y));
+        self.0.quad_to(point(x1, y1), point(x, y));
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.path.curve_to(point(x1, y1), point(x2, y2), point(x, y));
+        self.0.curve_to(point(x1, y1), point(x2, y2), point(x, y));
     }
 
     fn close(&mut self) {
-        self.path.close_path();
+        self.0.close_path();
     }
 }
 
@@ -142,39 +141,39 @@ impl Synthesis {
     }
 }
 
-/// Thickens stems by `by`, half of it on each side, and moves the outline right by that half, so that the left side bearing stays.
-fn emboldened(outline: &BezPath, by: f64) -> BezPath {
-    // The outer of nested contours decides the sign.
+/// Thickens stems by `thickness`, half of it on each side, and moves the outline right by that half, so that the left side bearing stays.
+fn emboldened(outline: &BezPath, thickness: f64) -> BezPath {
+    // An outer contour has a larger area than its holes, so it decides the sign. With y down, a negative area has its outside on the right.
     let outwards = if outline.area() < 0.0 { 1.0 } else { -1.0 };
     let mut out = BezPath::new();
     let mut contour: Vec<PathEl> = Vec::new();
     for el in outline.elements().iter().copied().chain([PathEl::MoveTo(Point::ORIGIN)]) {
         if matches!(el, PathEl::MoveTo(_)) && !contour.is_empty() {
-            out.extend(thickened(&contour, 0.5 * by * outwards));
+            out.extend(moved_right(&contour, 0.5 * thickness * outwards));
             contour.clear();
         }
         contour.push(el);
     }
-    Affine::translate((0.5 * by, 0.0)) * out
+    Affine::translate((0.5 * thickness, 0.0)) * out
 }
 
-/// Moves the points of one contour by `distance` to the right of its direction (y pointing down).
-fn thickened(contour: &[PathEl], distance: f64) -> Vec<PathEl> {
-    let points: Vec<Point> = contour.iter().flat_map(points_of).collect();
-    let moved: Vec<Point> = (0..points.len()).map(|i| points[i] + mitre(&points, i) * distance).collect();
-    let mut next = moved.into_iter();
-    let mut take = || next.next().unwrap_or_default();
+/// Moves a contour by about `distance` to the right of its direction (y pointing down): every control point by the mitre of the control
+/// polygon.
+fn moved_right(contour: &[PathEl], distance: f64) -> Vec<PathEl> {
+    let points: Vec<Point> = contour.iter().flat_map(control_points).collect();
+    let mut moved = (0..points.len()).map(|i| points[i] + mitre(&points, i) * distance);
+    let mut next = || moved.next().unwrap_or_default();
     let rebuilt = contour.iter().map(|el| match el {
-        PathEl::MoveTo(_) => PathEl::MoveTo(take()),
-        PathEl::LineTo(_) => PathEl::LineTo(take()),
-        PathEl::QuadTo(..) => PathEl::QuadTo(take(), take()),
-        PathEl::CurveTo(..) => PathEl::CurveTo(take(), take(), take()),
+        PathEl::MoveTo(_) => PathEl::MoveTo(next()),
+        PathEl::LineTo(_) => PathEl::LineTo(next()),
+        PathEl::QuadTo(..) => PathEl::QuadTo(next(), next()),
+        PathEl::CurveTo(..) => PathEl::CurveTo(next(), next(), next()),
         PathEl::ClosePath => PathEl::ClosePath,
     });
     rebuilt.collect()
 }
 
-fn points_of(el: &PathEl) -> Vec<Point> {
+fn control_points(el: &PathEl) -> Vec<Point> {
     match *el {
         PathEl::MoveTo(p) | PathEl::LineTo(p) => vec![p],
         PathEl::QuadTo(a, p) => vec![a, p],
@@ -183,15 +182,16 @@ fn points_of(el: &PathEl) -> Vec<Point> {
     }
 }
 
-/// The vector by which a point moves if both edges of the closed polygon at it move by 1 to their right.
+/// Returns the vector by which point `i` of a closed polygon moves if both of its edges move by 1 to their right. Where the turn is too
+/// sharp for a mitre, it is the normal of the edge before.
 fn mitre(points: &[Point], i: usize) -> Vec2 {
     /// 1 + cos of the turn beyond which the mitre is cut, as in FreeType.
     const MIN_SPREAD: f64 = 1.0 / 16.0;
     let n = points.len();
-    // Skip neighbours that coincide with the point.
+    // Skips neighbours that coincide with the point. A step of n - 1 goes back by 1.
     let towards = |step: usize| {
-        let others = (1..n).map(|k| points[(i + k * step) % n] - points[i]);
-        others.into_iter().find(|d| d.hypot2() > 0.0).map(|d| d / d.hypot())
+        let mut others = (1..n).map(|k| points[(i + k * step) % n] - points[i]);
+        others.find(|d| d.hypot2() > 0.0).map(Vec2::normalize)
     };
     let (Some(after), Some(before)) = (towards(1), towards(n - 1)) else { return Vec2::ZERO };
     let normal = |d: Vec2| Vec2::new(-d.y, d.x);

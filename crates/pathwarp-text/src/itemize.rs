@@ -60,7 +60,8 @@ pub fn runs(line: &str) -> Vec<Run> {
     runs_from(line, false, None)
 }
 
-/// Returns the runs of a line from left to right (Unicode annex 9, rules L1 and L2).
+/// Returns the runs of a line from left to right (Unicode annex 9, rules L1 and L2), in a paragraph that goes from right to left if `rtl`.
+/// A given `script` holds for all letters.
 pub(crate) fn runs_from(line: &str, rtl: bool, script: Option<Script>) -> Vec<Run> {
     let base = if rtl { Level::rtl() } else { Level::ltr() };
     let writings = writings(line, script);
@@ -71,24 +72,21 @@ pub(crate) fn runs_from(line: &str, rtl: bool, script: Option<Script>) -> Vec<Ru
         for (level_run, range) in visual.into_iter().enumerate() {
             let rtl = levels.get(range.start).is_some_and(Level::is_rtl);
             let clipped = |r: &Range<usize>| r.start.max(range.start)..r.end.min(range.end);
-            let mut parts: Vec<Run> = writings
-                .iter()
-                .map(|(r, writing)| Run { range: clipped(r), rtl, writing: *writing, level_run })
-                .filter(|r| !r.range.is_empty())
-                .collect();
+            let parts = writings.iter().map(|(r, w)| Run { range: clipped(r), rtl, writing: *w, level_run });
+            let first = out.len();
+            out.extend(parts.filter(|r| !r.range.is_empty()));
             if rtl {
-                parts.reverse();
+                out[first..].reverse();
             }
-            out.append(&mut parts);
         }
     }
     out
 }
 
-/// Splits a line by writing. Characters common to many scripts join the preceding letters, or else the following ones (Unicode annex
-/// 24, 5.1).
-fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
-    if let Some(script) = all {
+/// Splits a line by writing, unless the script is given. Characters common to many scripts join the preceding letters, or else the
+/// following ones (Unicode annex 24, 5.1).
+fn writings(line: &str, given: Option<Script>) -> Vec<(Range<usize>, Writing)> {
+    if let Some(script) = given {
         return vec![(0..line.len(), Writing::Script(script))];
     }
     const COMMON: Writing = Writing::Script(Script::Common);
@@ -114,22 +112,25 @@ fn writings(line: &str, all: Option<Script>) -> Vec<(Range<usize>, Writing)> {
     out
 }
 
-/// The length in bytes of the emoji that a text begins with (Unicode technical standard 51, section 1.4.9); 0 if there is none.
+/// Returns the length in bytes of the emoji that a text begins with (Unicode technical standard 51, section 1.4.9); 0 if there is none.
 fn emoji_length(text: &str) -> usize {
     const JOINER: char = '\u{200d}';
-    let follows =
-        |c: char| matches!(c, '\u{fe0f}' | '\u{20e3}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{e0020}'..='\u{e007f}');
+    // Variation selectors that ask for a picture or for text.
+    const AS_PICTURE: char = '\u{fe0f}';
+    const AS_TEXT: char = '\u{fe0e}';
+    // Keycap, skin tones and tags.
+    let modifies = |c: char| matches!(c, '\u{20e3}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{e0020}'..='\u{e007f}');
     let mut chars = text.chars();
     let Some(first) = chars.next() else { return 0 };
     match chars.next() {
-        Some('\u{fe0f}') => {}
-        Some('\u{fe0e}') => return 0,
+        Some(AS_PICTURE) => {}
+        Some(AS_TEXT) => return 0,
         _ if !is_picture(first) => return 0,
         _ => {}
     }
     let mut joined = false;
     let goes_on = |c: &char| {
-        let goes_on = joined || *c == JOINER || follows(*c);
+        let goes_on = joined || *c == JOINER || *c == AS_PICTURE || modifies(*c);
         joined = *c == JOINER;
         goes_on
     };
@@ -152,7 +153,7 @@ pub(crate) fn for_shaper(script: Script) -> Option<ShapeScript> {
 }
 
 /// Returns `true` if a script joins letters, which letter spacing would tear apart (CSS Text 3, "Cursive Scripts").
-pub(crate) fn joins(writing: Writing) -> bool {
+pub(crate) fn joins_letters(writing: Writing) -> bool {
     use Script as S;
     let joined = [S::Arabic, S::Hanifi_Rohingya, S::Mandaic, S::Mongolian, S::Nko, S::Phags_Pa, S::Syriac];
     matches!(writing, Writing::Script(script) if joined.contains(&script))

@@ -7,9 +7,9 @@ use crate::lettering::{Cluster, LetteringLine, OutlinedText};
 use crate::limits::TextLimits;
 use crate::metrics::FontMetrics;
 use crate::painter::{GlyphPainter, SpacedCluster};
-use crate::shape::{self, RunShaper};
+use crate::shape::{self, RunShaper, ShapedCluster};
 use crate::style::{Align, Direction, Feature, Ligatures, TextStyle, check};
-use kurbo::Affine;
+use kurbo::{Affine, Vec2};
 use std::collections::{BTreeSet, HashMap};
 
 /// Sets text within the default limits. Lines end at newlines; tabs and other control characters become spaces. Characters that the
@@ -45,7 +45,7 @@ pub fn layout_within(
     style: &TextStyle,
     limits: &TextLimits,
 ) -> Result<OutlinedText, Error> {
-    let Some(font) = fonts.first() else { return Err(Error::NoFont) };
+    let metrics = fonts.first().ok_or(Error::NoFont)?.metrics(style.size);
     let (script, language) = check(style)?;
     let lines = lines(text);
     let text = lines.join("\n");
@@ -55,10 +55,10 @@ pub fn layout_within(
         Direction::Ltr => false,
         Direction::Rtl => true,
     };
-    let mut shaper = RunShaper { fonts, size: style.size, features: features(style), language, limits, set: 0 };
-    let mut painter = GlyphPainter { fonts, size: style.size, drawn: HashMap::new(), limits, painted: 0 };
+    let (size, features) = (style.size, features(style));
+    let mut shaper = RunShaper { fonts, size, features, language, limits, glyph_count: 0 };
+    let mut painter = GlyphPainter { fonts, size, outlines: HashMap::new(), limits, element_count: 0 };
     let set_lines = || -> Result<Vec<LetteringLine>, Error> {
-        let metrics = font.metrics(style.size);
         let step = style.line_height.unwrap_or(metrics.ascent + metrics.descent + metrics.line_gap);
         let mut out = Vec::with_capacity(lines.len());
         for (i, line) in lines.iter().enumerate() {
@@ -74,25 +74,24 @@ pub fn layout_within(
     };
     let lines = guarded(set_lines)?;
     let missing: BTreeSet<char> = lines.iter().flat_map(|l| missing(l, fonts)).collect();
-    let out =
-        OutlinedText { text, metrics: font.metrics(style.size), rtl, lines, missing: missing.into_iter().collect() };
+    let out = OutlinedText { text, metrics, rtl, lines, missing: missing.into_iter().collect() };
     if out.page().area() > 0.0 { Ok(out) } else { Err(Error::Empty) }
 }
 
 /// Splits text into lines and replaces control characters.
 fn lines(text: &str) -> Vec<String> {
     let text = text.replace("\r\n", "\n");
-    let ends = |c: char| matches!(c, '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}' | '\u{2028}' | '\u{2029}');
+    let is_line_end = |c: char| matches!(c, '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}' | '\u{2028}' | '\u{2029}');
     let plain = |c: char| match c {
         c if c.is_control() => ' ',
         // Noncharacters, which XML does not allow.
         '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
         c => c,
     };
-    text.split(ends).map(|l| l.chars().map(plain).collect()).collect()
+    text.split(is_line_end).map(|l| l.chars().map(plain).collect()).collect()
 }
 
-/// The OpenType features of a style.
+/// Returns the OpenType features of a style. Later ones override earlier ones.
 fn features(style: &TextStyle) -> Vec<harfrust::Feature> {
     let ligatures = match style.ligatures {
         Ligatures::Auto => style.letter_spacing == 0.0,
@@ -118,23 +117,23 @@ fn clusters(
     style: &TextStyle,
     shaper: &mut RunShaper<'_, '_>,
 ) -> Result<Vec<SpacedCluster>, Error> {
+    let word_spacing = |c: &ShapedCluster| if is_space(&line[c.range.clone()]) { style.word_spacing } else { 0.0 };
     let mut out: Vec<SpacedCluster> = Vec::new();
     for run in runs {
-        let joined = itemize::joins(run.writing);
+        let script_joins = itemize::joins_letters(run.writing);
         let shaped = shaper.run(line, run)?;
         let count = shaped.len();
         for (i, cluster) in shaped.into_iter().enumerate() {
-            let inside = joined && i + 1 < count;
+            let joins_next = script_joins && i + 1 < count;
             // Letters move together until they would pass each other.
             let closest = -cluster.advance.max(0.0);
-            let letter = if inside || cluster.advance == 0.0 { 0.0 } else { style.letter_spacing.max(closest) };
-            let word = if is_space(&line[cluster.range.clone()]) { style.word_spacing } else { 0.0 };
-            out.push(SpacedCluster { cluster, gap: letter + word });
+            let letter = if joins_next || cluster.advance == 0.0 { 0.0 } else { style.letter_spacing.max(closest) };
+            out.push(SpacedCluster { gap: letter + word_spacing(&cluster), cluster });
         }
     }
     // No letter spacing follows the last cluster; a space keeps its word spacing.
     if let Some(last) = out.last_mut() {
-        last.gap = if is_space(&line[last.cluster.range.clone()]) { style.word_spacing } else { 0.0 };
+        last.gap = word_spacing(&last.cluster);
     }
     Ok(out)
 }
@@ -161,18 +160,14 @@ pub(crate) fn align(lines: &mut [LetteringLine], align: Align, rtl: bool) {
     let width = lines.iter().map(|l| l.end.x).fold(0.0, f64::max);
     for line in lines {
         let room = width - line.end.x;
-        let before = match align {
+        let dx = match align {
             Align::Center => 0.5 * room,
             Align::Right => room,
             Align::Justify if widen(line, room) => 0.0,
             Align::Start | Align::Justify | Align::Fill if rtl => room,
             Align::Left | Align::Start | Align::Justify | Align::Fill => 0.0,
         };
-        for c in &mut line.clusters {
-            shift(c, before);
-        }
-        line.start.x += before;
-        line.end.x += before;
+        move_line(line, Vec2::new(dx, 0.0));
     }
 }
 
@@ -213,14 +208,15 @@ pub(crate) fn stack(lines: &mut [LetteringLine], style: &TextStyle, metrics: &Fo
                 before + (metrics.descent + metrics.line_gap) * scale + metrics.ascent * line.scale
             }
         };
-        let down = Affine::translate((0.0, baseline - y));
-        for c in &mut line.clusters {
-            c.origin = down * c.origin;
-            c.outline.apply_affine(down);
-        }
-        (line.start, line.end) = (down * line.start, down * line.end);
+        move_line(line, Vec2::new(0.0, baseline - y));
         above = Some((baseline, line.scale, baseline + ink.1));
     }
+}
+
+fn move_line(line: &mut LetteringLine, by: Vec2) {
+    line.clusters.iter_mut().for_each(|c| move_cluster(c, by));
+    line.start += by;
+    line.end += by;
 }
 
 /// Distributes `room` among the spaces of a line; returns `false` if there are none.
@@ -229,23 +225,22 @@ fn widen(line: &mut LetteringLine, room: f64) -> bool {
     if spaces == 0 {
         return false;
     }
-    let each = room / spaces as f64;
-    let mut before = 0.0;
+    let share = room / spaces as f64;
+    let mut dx = 0.0;
     for c in &mut line.clusters {
-        shift(c, before);
+        move_cluster(c, Vec2::new(dx, 0.0));
         if is_space(&c.text) {
-            before += each;
+            dx += share;
         }
     }
     line.end.x += room;
     true
 }
 
-/// Moves a cluster horizontally.
-fn shift(c: &mut Cluster, dx: f64) {
-    if dx != 0.0 {
-        c.origin.x += dx;
-        c.outline.apply_affine(Affine::translate((dx, 0.0)));
+fn move_cluster(c: &mut Cluster, by: Vec2) {
+    if by != Vec2::ZERO {
+        c.origin += by;
+        c.outline.apply_affine(Affine::translate(by));
     }
 }
 

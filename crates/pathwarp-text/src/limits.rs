@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Quantity};
 
-/// Glyphs allowed for each letter, several times as many as sound fonts use.
+/// Glyphs allowed for each letter on average, several times as many as sound fonts use.
 const GLYPHS_PER_LETTER: usize = 16;
 
 /// Limits on a text.

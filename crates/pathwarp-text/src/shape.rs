@@ -7,7 +7,7 @@ use crate::lettering::PlacedGlyph;
 use crate::limits::TextLimits;
 use crate::style::Feature;
 use harfrust::{BufferFlags, Direction, Language, ShapeOptions, UnicodeBuffer};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// A cluster of glyphs, in user units.
@@ -29,17 +29,17 @@ pub(crate) struct RunShaper<'s, 'f> {
     pub(crate) language: Option<Language>,
     pub(crate) limits: &'s TextLimits,
     /// Number of glyphs so far.
-    pub(crate) set: usize,
+    pub(crate) glyph_count: usize,
 }
 
 impl RunShaper<'_, '_> {
     /// Shapes a run. The clusters go from left to right.
     pub(crate) fn run(&mut self, line: &str, run: &Run) -> Result<Vec<ShapedCluster>, Error> {
-        let order = order(self.fonts, run.writing);
+        let order = order_of_preference(self.fonts, run.writing);
         self.shape(line, run, run.range.clone(), &order)
     }
 
-    /// Shapes a part of a run with the first font of `order`, and clusters that it lacks with the others.
+    /// Shapes the `range` of a run with the first font of `order`, and clusters that it lacks with the others.
     fn shape(
         &mut self,
         line: &str,
@@ -64,15 +64,15 @@ impl RunShaper<'_, '_> {
             let end = group.iter().map(|c| c.range.end).max().unwrap_or(0);
             if sought.insert(start) && start < end {
                 let found = self.shape(line, run, start..end, others)?;
-                // Clusters that no font has become boxes of the first one.
-                let none = found.iter().all(|c| c.missing);
-                out.extend(if none { group.to_vec() } else { found });
+                // Clusters that no font has show the first font's box for missing characters.
+                let all_missing = found.iter().all(|c| c.missing);
+                out.extend(if all_missing { group.to_vec() } else { found });
             }
         }
         Ok(out)
     }
 
-    /// Shapes a part of a run with one font.
+    /// Shapes the `range` of a run with one font. The clusters go from left to right.
     fn with_font(
         &mut self,
         line: &str,
@@ -103,33 +103,29 @@ impl RunShaper<'_, '_> {
         }
         let shaper = font.data.shaper(&font.font).instance(Some(&font.instance)).build();
         let shaped = shaper.shape(buffer, ShapeOptions::new().features(&self.features));
-        self.set += shaped.len();
-        self.limits.glyphs(self.set)?;
+        self.glyph_count += shaped.len();
+        self.limits.glyphs(self.glyph_count)?;
 
         let scale = self.size / font.units_per_em();
         let infos = shaped.glyph_infos();
-        // A cluster ends at the start of the next one in text order.
         let starts: BTreeSet<usize> = infos.iter().map(|g| g.cluster as usize).collect();
-        let ends: HashMap<usize, usize> =
-            starts.iter().copied().zip(starts.iter().skip(1).copied().chain([range.end])).collect();
         let mut out: Vec<ShapedCluster> = Vec::new();
-        let mut last = None;
         for (info, position) in infos.iter().zip(shaped.glyph_positions()) {
-            if last != Some(info.cluster) {
-                last = Some(info.cluster);
-                let start = info.cluster as usize;
-                let end = ends.get(&start).copied().unwrap_or(range.end);
+            let start = info.cluster as usize;
+            if out.last().is_none_or(|c| c.range.start != start) {
+                // A cluster ends at the start of the next one in text order.
+                let end = starts.range(start + 1..).next().copied().unwrap_or(range.end);
                 out.push(ShapedCluster { range: start..end, advance: 0.0, glyphs: Vec::new(), missing: false });
             }
             let Some(cluster) = out.last_mut() else { continue };
             // Marks without an advance don't get one.
-            let thicker = if position.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
+            let thickness = if position.x_advance > 0 { font.synthesis.bold * self.size } else { 0.0 };
             let glyph = PlacedGlyph {
                 font: index,
                 id: info.glyph_id,
                 dx: cluster.advance + f64::from(position.x_offset) * scale,
                 dy: -f64::from(position.y_offset) * scale,
-                advance: f64::from(position.x_advance) * scale + thicker,
+                advance: f64::from(position.x_advance) * scale + thickness,
             };
             cluster.advance += glyph.advance;
             cluster.missing |= glyph.id == 0;
@@ -139,11 +135,11 @@ impl RunShaper<'_, '_> {
     }
 }
 
-/// The fonts for a writing in order of preference: emoji prefer fonts that are only for emoji.
-fn order(fonts: &[Font<'_>], writing: Writing) -> Vec<usize> {
+/// Returns the fonts for a writing in order of preference: emoji prefer fonts that are only for emoji, other writings those for all.
+fn order_of_preference(fonts: &[Font<'_>], writing: Writing) -> Vec<usize> {
     let restricted_to = |only: Option<Writing>| (0..fonts.len()).filter(move |i| fonts[*i].only == only);
-    let (all, special) = (restricted_to(None), restricted_to(Some(writing)));
-    if writing == Writing::Emoji { special.chain(all).collect() } else { all.chain(special).collect() }
+    let (general, special) = (restricted_to(None), restricted_to(Some(writing)));
+    if writing == Writing::Emoji { special.chain(general).collect() } else { general.chain(special).collect() }
 }
 
 /// A part of a line in one font.
@@ -161,7 +157,8 @@ pub struct FontRun {
 /// Shapes a run of a line and divides it by font, from left to right. Letters outside the run have no influence.
 ///
 /// # Errors
-/// [`Error::Failed`] when a font is damaged, [`Error::TooLarge`] when the glyphs exceed the limits, [`Error::NoFont`].
+/// [`Error::Failed`] when a font is damaged, [`Error::TooLarge`] when the glyphs exceed the default limits, [`Error::NoFont`] when `fonts`
+/// has none for the run's writing.
 pub fn shape_run(
     line: &str,
     run: &Run,
@@ -170,8 +167,8 @@ pub fn shape_run(
     features: &[Feature],
 ) -> Result<Vec<FontRun>, Error> {
     let limits = TextLimits::default();
-    let mut shaper =
-        RunShaper { fonts, size, features: for_whole_text(features), language: None, limits: &limits, set: 0 };
+    let features = for_whole_text(features);
+    let mut shaper = RunShaper { fonts, size, features, language: None, limits: &limits, glyph_count: 0 };
     let start = run.range.start;
     let alone = Run { range: 0..run.range.len(), ..run.clone() };
     let clusters = guarded(|| shaper.run(&line[run.range.clone()], &alone))?;

@@ -111,28 +111,23 @@ pub(crate) fn check(style: &TextStyle) -> Result<(Option<Script>, Option<harfrus
     if !(style.size > 0.0 && style.size <= MAX_SIZE) {
         return out_of_range("size", style.size, "greater than 0 and at most 1000000");
     }
-    let far = |v: f64| v.is_nan() || v.abs() > MAX_LENGTH * style.size;
-    if far(style.letter_spacing) {
+    let too_long = |v: f64| v.is_nan() || v.abs() > MAX_LENGTH * style.size;
+    if too_long(style.letter_spacing) {
         return out_of_range("letter spacing", style.letter_spacing, "at most 1000 times the size");
     }
-    if far(style.word_spacing) {
+    if too_long(style.word_spacing) {
         return out_of_range("word spacing", style.word_spacing, "at most 1000 times the size");
     }
-    if let Some(h) = style.line_height.filter(|h| far(*h) || *h < 0.0) {
+    if let Some(h) = style.line_height.filter(|h| too_long(*h) || *h < 0.0) {
         return out_of_range("line height", h, "at least 0 and at most 1000 times the size");
     }
-    if let Some(gap) = style.gap.filter(|g| far(*g)) {
+    if let Some(gap) = style.gap.filter(|g| too_long(*g)) {
         return out_of_range("gap", gap, "at most 1000 times the size");
     }
     let script = style.script.as_deref().map(|code| {
-        let mut letters = code.chars();
-        let title: String = letters
-            .next()
-            .map(|c| c.to_ascii_uppercase())
-            .into_iter()
-            .chain(letters.map(|c| c.to_ascii_lowercase()))
-            .collect();
-        Script::from_short_name(&title)
+        let mut capitalized = code.to_ascii_lowercase();
+        capitalized.get_mut(..1).into_iter().for_each(str::make_ascii_uppercase);
+        Script::from_short_name(&capitalized)
             .ok_or_else(|| Error::setting(code, "is not a script code of ISO 15924, such as Latn, Arab or Deva"))
     });
     let language = style.language.as_deref().map(|tag| {
@@ -250,12 +245,12 @@ pub fn variations(text: &str) -> Result<Vec<Variation>, Error> {
     words(text).map(parse).collect()
 }
 
-/// The items between a list's commas, trimmed, without empty ones.
+/// Returns the items between a list's commas, trimmed, without empty ones.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(str::trim).filter(|w| !w.is_empty())
 }
 
-/// Parses a tag; `word` is the setting for the error message.
+/// Parses the tag `name`; the error shows `word`, the whole setting.
 fn tag(name: &str, word: &str) -> Result<Tag, Error> {
     let plain = name.len() == 4 && name.bytes().all(|b| (b' '..=b'~').contains(&b));
     let tag = plain.then(|| Tag::new_checked(name.as_bytes()).ok()).flatten();

@@ -12,7 +12,7 @@ use skrifa::{FontRef, GlyphId};
 use std::collections::HashMap;
 use std::fmt;
 
-/// Limit on the work of one glyph. Ornaments and coloured glyphs in sound fonts take far less.
+/// Limit on the work of one glyph, in points or bytes. Ornaments and coloured glyphs in sound fonts take far less.
 pub const MAX_WORK: u64 = 200_000;
 
 /// Limit on the nesting of parts and paints, more than readers follow.
@@ -26,10 +26,10 @@ pub struct GlyphWork<'a> {
     glyf: Option<(Glyf<'a>, Loca<'a>)>,
     charstrings: Option<Charstrings<'a>>,
     colr: Option<Colr<'a>>,
+    // The known work of outlines and of layers of colour by glyph, and of paints by address.
     outlines: HashMap<u32, u64>,
-    /// The work of paints by address.
-    paints: HashMap<usize, u64>,
     coloured: HashMap<u32, u64>,
+    paints: HashMap<usize, u64>,
 }
 
 impl fmt::Debug for GlyphWork<'_> {
@@ -42,29 +42,26 @@ impl<'a> GlyphWork<'a> {
     /// Opens a font; `index` counts the fonts of a collection from 0. Returns `None` if it cannot be read.
     #[must_use]
     pub fn new(bytes: &'a [u8], index: u32) -> Option<Self> {
-        Self::from_font(&FontRef::from_index(bytes, index).ok()?)
-    }
-
-    pub(crate) fn from_font(font: &FontRef<'a>) -> Option<Self> {
+        let font = FontRef::from_index(bytes, index).ok()?;
         Some(Self {
-            charmap: Charmap::new(font),
+            charmap: Charmap::new(&font),
             glyphs: font.maxp().ok()?.num_glyphs().into(),
             glyf: font.glyf().ok().zip(font.loca(None).ok()),
-            charstrings: Charstrings::new(font),
+            charstrings: Charstrings::new(&font),
             colr: font.colr().ok(),
             outlines: HashMap::new(),
-            paints: HashMap::new(),
             coloured: HashMap::new(),
+            paints: HashMap::new(),
         })
     }
 
-    /// The work of a letter, if the shaper does not substitute it; at most [`MAX_WORK`].
+    /// Returns the work of a letter, if the shaper does not substitute it; at most [`MAX_WORK`].
     pub fn of_letter(&mut self, letter: char) -> u64 {
         let glyph = self.charmap.map(letter).unwrap_or_default();
         guarded(|| Ok(self.glyph(glyph))).unwrap_or(MAX_WORK)
     }
 
-    /// The first glyph that takes [`MAX_WORK`] or more.
+    /// Returns the first glyph that takes [`MAX_WORK`] or more.
     pub fn endless(&mut self) -> Option<u32> {
         let found = guarded(|| Ok((0..self.glyphs).find(|g| self.glyph(GlyphId::new(*g)) >= MAX_WORK)));
         // A font that makes its reader panic must not be used.
@@ -103,7 +100,7 @@ impl<'a> GlyphWork<'a> {
         }
     }
 
-    /// The work of a glyph's layers of colour, including the outlines that they fill.
+    /// Returns the work of a glyph's layers of colour, including the outlines that they fill.
     fn colours(&mut self, glyph: GlyphId, depth: usize) -> u64 {
         let Some(colr) = self.colr.clone() else { return 0 };
         if let Some(known) = self.coloured.get(&glyph.to_u32()) {
@@ -150,7 +147,7 @@ impl<'a> GlyphWork<'a> {
     }
 }
 
-/// Work of a layer, in points; it becomes an element.
+/// Work of a layer of colour, in points. The layer becomes an element of the drawing, which costs about as much as this many points.
 const LAYER: u64 = 20;
 
 /// Adds up work, stopping at the limit.
@@ -165,7 +162,7 @@ fn sum<T>(items: impl Iterator<Item = T>, mut work: impl FnMut(T) -> u64) -> u64
     total
 }
 
-/// The paint that another one transforms. `None` for paints that fill.
+/// Returns the paint that another one transforms; `None` for paints that fill.
 fn child<'a>(paint: &Paint<'a>) -> Option<Paint<'a>> {
     let found = match paint {
         Paint::Transform(p) => p.paint(),

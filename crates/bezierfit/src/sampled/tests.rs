@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fit::ChordFrame;
-use crate::sample::{CHECKED, FITTED, UNIT, between};
+use crate::sample::{CHECKED, FITTED, UNIT, feet_between};
 use crate::source::images;
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 
@@ -145,7 +145,7 @@ fn prove(degree: usize, below: f64, rounds: usize) -> ([usize; 3], f64, f64) {
         let g = [images(&FITTED), images(&CHECKED)];
         let mut s0 = FITTED.map(|j| j * UNIT);
         frame.distances(&g[0], a, b, &mut s0, 4);
-        let mut s1 = between(&s0);
+        let mut s1 = feet_between(&s0);
         frame.distances(&g[1], a, b, &mut s1, 4);
         let real = truth(&source, &c);
         // The tolerance is near the true error, so that every stage occurs.

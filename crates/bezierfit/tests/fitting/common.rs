@@ -3,7 +3,7 @@
 use bezierfit::Source;
 use kurbo::{BezPath, Point, Vec2};
 use pathwarp_oracle::curves::Curved as _;
-use pathwarp_oracle::{Random, Run, apart, far};
+use pathwarp_oracle::{Run, apart, far};
 use std::cell::Cell;
 
 /// A curve given by a function and its breaks, which counts its evaluations.
@@ -53,8 +53,8 @@ pub fn wave(radians: f64) -> Drawn<'static> {
 
 /// Lines, quadratics and cubics through random points, some of which coincide or nearly do; every second path is closed.
 #[cfg(feature = "area")]
-pub fn random_path(random: &mut Random, i: usize) -> BezPath {
-    let point = |r: &mut Random| Point::new(r.between(0.0, 100.0), r.between(0.0, 100.0));
+pub fn random_path(random: &mut pathwarp_oracle::Random, i: usize) -> BezPath {
+    let point = |r: &mut pathwarp_oracle::Random| Point::new(r.between(0.0, 100.0), r.between(0.0, 100.0));
     let mut path = BezPath::new();
     let mut at = point(random);
     path.move_to(at);

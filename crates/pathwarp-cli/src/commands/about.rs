@@ -1,6 +1,6 @@
 //! The commands that describe the program: `list`, `schema`, `man` and `completions`.
 
-use crate::commands::args::switch;
+use crate::commands::args::{option, switch};
 use crate::ending::Status;
 use crate::plugins::Plugins;
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -22,13 +22,13 @@ pub(super) fn list_command() -> Command {
     Command::new("list").about("List the deformations").arg(switch("json", "Print JSON, with every parameter"))
 }
 
-/// Lists the deformations with their parameters, and the plug-ins that are broken.
-fn listed(registry: &Registry, plugins: &Plugins) -> Value {
+/// Returns the deformations with their parameters, and the plug-ins that are broken, as JSON.
+fn catalogue_json(registry: &Registry, plugins: &Plugins) -> Value {
     let param = |p: &Param| {
-        let mut v =
+        let mut json =
             json!({ "name": p.name, "kind": p.kind.name(), "help": p.help, "needed": p.needed, "repeat": p.repeat });
         if let Kind::Length(axis) = p.kind {
-            v["axis"] = match axis {
+            json["axis"] = match axis {
                 Axis::X => json!("x"),
                 Axis::Y => json!("y"),
                 Axis::Diagonal => json!("diagonal"),
@@ -36,18 +36,18 @@ fn listed(registry: &Registry, plugins: &Plugins) -> Value {
         }
         if p.range.0.is_finite() || p.range.1.is_finite() {
             // JSON has no infinity; `json!` writes null.
-            v["range"] = json!([p.range.0, p.range.1]);
+            json["range"] = json!([p.range.0, p.range.1]);
         }
         match p.kind {
-            Kind::Flag => v["flag"] = json!(true),
-            Kind::Choice(words) => v["choices"] = json!(words),
-            Kind::NameOrFile(names) => v["names"] = json!(names),
-            _ => v["value"] = json!(p.value_name()),
+            Kind::Flag => json["flag"] = json!(true),
+            Kind::Choice(words) => json["choices"] = json!(words),
+            Kind::NameOrFile(names) => json["names"] = json!(names),
+            _ => json["value"] = json!(p.value_name()),
         }
         if let Some(default) = p.default {
-            v["default"] = json!(default);
+            json["default"] = json!(default);
         }
-        v
+        json
     };
     let deformation = |i: &Info| {
         let params: Vec<Value> = i.params.iter().map(param).collect();
@@ -65,7 +65,7 @@ fn listed(registry: &Registry, plugins: &Plugins) -> Value {
 
 pub(super) fn list(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     if m.get_flag("json") {
-        let text = readable::json(&listed(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
+        let text = readable::json(&catalogue_json(registry, plugins)).map_err(|e| Failure::Output(e.to_string()))?;
         output::to_stdout((text + "\n").as_bytes())?;
         return Ok(Status::Complete);
     }
@@ -138,6 +138,7 @@ fn step_schema(info: &Info) -> Value {
     json!({ "type": "object", "required": required, "additionalProperties": false, "properties": properties })
 }
 
+/// Returns the schema of a parameter.
 fn property(p: &Param) -> Value {
     let single = match p.kind {
         Kind::Flag => json!({ "type": "boolean" }),
@@ -148,18 +149,18 @@ fn property(p: &Param) -> Value {
         Kind::NameOrFile(names) => json!({ "type": "string", "examples": names }),
         _ => json!({ "type": "string" }),
     };
-    let mut v = if p.repeat { json!({ "anyOf": [single, { "type": "array", "items": single }] }) } else { single };
-    v["description"] = json!(p.help);
-    if let Some(d) = p.default {
-        v["default"] = json!(d);
+    let mut schema = if p.repeat { json!({ "anyOf": [single, { "type": "array", "items": single }] }) } else { single };
+    schema["description"] = json!(p.help);
+    if let Some(default) = p.default {
+        schema["default"] = json!(default);
     }
     for (key, limit) in [("minimum", p.range.0), ("maximum", p.range.1)] {
         // A length or angle may be in other units than its limits, so only plain numbers have limits in the schema.
         if limit.is_finite() && matches!(p.kind, Kind::Number | Kind::Count) {
-            v[key] = json!(limit);
+            schema[key] = json!(limit);
         }
     }
-    v
+    schema
 }
 
 /// The id of the argument.
@@ -170,12 +171,9 @@ pub(super) fn man_command() -> Command {
         .about("Print the manual page of the program, or of one command")
         .arg(Arg::new(PAGE).value_name("NAME").help("A command or deformation [default: the program]"))
         .arg(
-            Arg::new("out-dir")
-                .long("out-dir")
-                .value_name("DIR")
+            option("out-dir", "DIR", "Write the pages of the program and of all commands to this folder: pathwarp.1, pathwarp-NAME.1")
                 .value_parser(value_parser!(PathBuf))
-                .conflicts_with(PAGE)
-                .help("Write the pages of the program and of all commands to this folder: pathwarp.1, pathwarp-NAME.1"),
+                .conflicts_with(PAGE),
         )
         .after_help(
             "Examples:\n  pathwarp man | man -l -\n  pathwarp man shaper | man -l -\n  pathwarp man --out-dir ~/.local/share/man/man1",

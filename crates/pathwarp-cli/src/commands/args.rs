@@ -14,6 +14,11 @@ pub(super) fn switch(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
 }
 
+/// An option `--NAME` with a value, which `value_name` stands for in help.
+pub(super) fn option(name: &'static str, value_name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value_name).help(help)
+}
+
 /// An option `--NAME` whose value is one of these words.
 pub(super) fn choice(name: &'static str, words: &[&'static str], help: &'static str) -> Arg {
     let arg = Arg::new(name).long(name).value_name(words.join("|")).value_parser(words.to_vec());
@@ -33,7 +38,7 @@ pub(super) fn given_file<'a>(m: &'a ArgMatches, name: &str) -> Result<&'a Path, 
 
 /// The option `-o, --out`.
 pub(super) fn out_arg(value_name: &'static str, help: &'static str) -> Arg {
-    Arg::new(OUT).short('o').long(OUT).value_name(value_name).value_parser(value_parser!(PathBuf)).help(help)
+    option(OUT, value_name, help).short('o').value_parser(value_parser!(PathBuf))
 }
 
 /// Returns the output file; `None` is standard output.

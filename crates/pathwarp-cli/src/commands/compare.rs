@@ -1,11 +1,10 @@
 //! `pathwarp compare A.svg B.svg`: measures the distance between two drawings, path by path and pixel by pixel.
 
-use crate::arguments;
-use crate::arguments::reading_args;
-use crate::commands::args::{file_arg, given_file, switch};
+use crate::arguments::{self, reading_args};
+use crate::commands::args::{file_arg, given_file, option, switch};
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{ArgMatches, Command, value_parser};
 use pathwarp::budget::Exceeded;
 use pathwarp::distance;
 use pathwarp::kurbo::Rect;
@@ -23,20 +22,15 @@ use std::sync::Arc;
 const VISIBLE: u8 = 16;
 
 pub(super) fn compare_command() -> Command {
-    let limit = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(f64)).help(help)
-    };
+    let limit = |name, value, help| option(name, value, help).value_parser(value_parser!(f64));
     Command::new("compare")
         .about("Measure the distance between two drawings, path by path and pixel by pixel")
         .arg(file_arg("A", "An SVG file"))
         .arg(file_arg("B", "An SVG file"))
         .arg(
-            Arg::new("width")
-                .long("width")
-                .value_name("PX")
+            option("width", "PX", "Width in pixels of the renderings that are compared")
                 .value_parser(value_parser!(u32).range(1..))
-                .default_value("1000")
-                .help("Width in pixels of the renderings that are compared"),
+                .default_value("1000"),
         )
         .arg(limit("max-distance", "D", "Exit with 1 if a path differs by more than this, in user units"))
         .arg(limit("max-pixels", "SHARE", "Exit with 1 if more than this fraction of the pixels differs visibly (0 to 1)"))
@@ -96,32 +90,26 @@ pub(super) fn compare_files(m: &ArgMatches) -> Result<Status, Failure> {
         table(&result)
     };
     output::to_stdout(text.as_bytes())?;
-    let over = |name: &str, value: f64| m.get_one::<f64>(name).is_some_and(|most| value > *most);
+    let exceeds = |name: &str, value: f64| m.get_one::<f64>(name).is_some_and(|most| value > *most);
     // Pages of different proportions differ everywhere.
-    let differing = result.pixels.as_ref().map_or(f64::INFINITY, |p| p.visible_share);
-    let apart = over("max-distance", result.max_distance) || over("max-pixels", differing);
-    let unmatched = !result.only_in_a.is_empty() || !result.only_in_b.is_empty();
-    Ok(Status::partial_if(apart || unmatched))
+    let share = result.pixels.as_ref().map_or(f64::INFINITY, |p| p.visible_share);
+    let is_beyond = exceeds("max-distance", result.max_distance) || exceeds("max-pixels", share);
+    let has_unmatched = !result.only_in_a.is_empty() || !result.only_in_b.is_empty();
+    Ok(Status::partial_if(is_beyond || has_unmatched))
 }
 
 fn compare((a, shown_a): &(Document, Pixmap), (b, shown_b): &(Document, Pixmap)) -> Result<Comparison, Failure> {
     let (paths_a, paths_b) = (a.paths(), b.paths());
     let mut counterparts = counterparts(&paths_a, &paths_b);
-    match_by_place(&paths_a, &paths_b, &mut counterparts);
-    let pairs: Result<Vec<PathPair>, Exceeded> = paths_a
-        .par_iter()
-        .zip(&counterparts)
-        .filter_map(|(p, i)| i.map(|i| (p, &paths_b[i])))
-        .map(|(p, q)| {
-            Ok(PathPair {
-                id: p.id.clone(),
-                segments_a: p.outline.segs().count(),
-                segments_b: q.outline.segs().count(),
-                distance: distance::symmetric_within(&p.outline, &q.outline, a.budget())?,
-            })
-        })
-        .collect();
-    let pairs = pairs.map_err(|e| pathwarp::Error::limit(a.name(), "comparing it takes", e))?;
+    match_by_boxes(&paths_a, &paths_b, &mut counterparts);
+    let pair = |(p, counterpart): (&NamedPath, &Option<usize>)| {
+        let q = &paths_b[(*counterpart)?];
+        let distance = distance::symmetric_within(&p.outline, &q.outline, a.budget());
+        let (segments_a, segments_b) = (p.outline.segs().count(), q.outline.segs().count());
+        Some(distance.map(|distance| PathPair { id: p.id.clone(), segments_a, segments_b, distance }))
+    };
+    let paths: Result<Vec<PathPair>, Exceeded> = paths_a.par_iter().zip(&counterparts).filter_map(pair).collect();
+    let paths = paths.map_err(|e| pathwarp::Error::limit(a.name(), "comparing it takes", e))?;
     let unpaired = paths_a.iter().zip(&counterparts).filter(|(_, i)| i.is_none());
     let only_in_a = unpaired.map(|(p, _)| p.id.clone()).collect();
     let only_in_b = unpaired_in(&paths_b, &counterparts).map(|i| paths_b[i].id.clone()).collect();
@@ -136,38 +124,32 @@ fn compare((a, shown_a): &(Document, Pixmap), (b, shown_b): &(Document, Pixmap))
         Err(pathwarp_raster::Error::SizesDiffer { .. }) => None,
         Err(e) => return Err(e.into()),
     };
-    Ok(Comparison {
-        max_distance: pairs.iter().filter_map(|p| p.distance).fold(0.0, f64::max),
-        only_in_a,
-        only_in_b,
-        paths: pairs,
-        pixels,
-    })
+    let max_distance = paths.iter().filter_map(|p| p.distance).fold(0.0, f64::max);
+    Ok(Comparison { paths, only_in_a, only_in_b, max_distance, pixels })
 }
 
 /// Returns, for every path of `a`, the index of its counterpart in `b`: the first path with an equal id, which is the one that SVG readers
 /// use. Paths without an id are matched by their order within the closest ancestor with an id or, if the drawings differ in the number of
 /// such paths there, by their position in the file.
 fn counterparts(a: &[NamedPath], b: &[NamedPath]) -> Vec<Option<usize>> {
+    // Paths without an id by the id of that ancestor.
     let unnamed = |paths: &[NamedPath]| {
-        let mut out: HashMap<Arc<str>, Vec<usize>> = HashMap::new();
-        for (i, p) in paths.iter().enumerate() {
-            if let Some(g) = &p.group {
-                out.entry(g.clone()).or_default().push(i);
-            }
+        let mut by_group: HashMap<Arc<str>, Vec<usize>> = HashMap::new();
+        for (i, group) in paths.iter().enumerate().filter_map(|(i, p)| Some((i, p.group.clone()?))) {
+            by_group.entry(group).or_default().push(i);
         }
-        out
+        by_group
     };
-    let others = unnamed(b);
+    let unnamed_b = unnamed(b);
     let mut out = vec![None; a.len()];
-    let mut counted = HashSet::new();
-    for (group, own) in unnamed(a) {
-        for (i, j) in others.get(&group).filter(|o| o.len() == own.len()).into_iter().flat_map(|o| own.iter().zip(o)) {
-            out[*i] = Some(*j);
-            counted.insert(*j);
+    let mut matched: HashSet<usize> = HashSet::new();
+    for (group, in_a) in unnamed(a) {
+        if let Some(in_b) = unnamed_b.get(&group).filter(|in_b| in_b.len() == in_a.len()) {
+            in_a.iter().zip(in_b).for_each(|(i, j)| out[*i] = Some(*j));
+            matched.extend(in_b);
         }
     }
-    let rest = b.iter().enumerate().rev().filter(|(j, _)| !counted.contains(j));
+    let rest = b.iter().enumerate().rev().filter(|(j, _)| !matched.contains(j));
     let by_id: HashMap<(bool, &str), usize> = rest.map(|(j, q)| ((q.group.is_none(), q.id.as_str()), j)).collect();
     for (counterpart, p) in out.iter_mut().zip(a) {
         *counterpart = counterpart.or_else(|| by_id.get(&(p.group.is_none(), p.id.as_str())).copied());
@@ -183,34 +165,32 @@ fn unpaired_in(b: &[NamedPath], counterparts: &[Option<usize>]) -> impl Iterator
 }
 
 /// Matches the remaining paths by the distance of their boxes, nearest first. Boxes farther apart than half their size do not match.
-fn match_by_place(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<usize>]) {
+fn match_by_boxes(a: &[NamedPath], b: &[NamedPath], counterparts: &mut [Option<usize>]) {
     /// Most pairs that are compared. Larger numbers of paths are matched by their order in the file.
     const MOST: usize = 4_000_000;
-    let left: Vec<usize> = (0..a.len()).filter(|&i| counterparts[i].is_none()).collect();
-    let others: Vec<usize> = unpaired_in(b, counterparts).collect();
-    if left.len().saturating_mul(others.len()) > MOST {
-        left.iter().zip(&others).for_each(|(&i, &j)| counterparts[i] = Some(j));
+    let left_a: Vec<usize> = (0..a.len()).filter(|&i| counterparts[i].is_none()).collect();
+    let left_b: Vec<usize> = unpaired_in(b, counterparts).collect();
+    if left_a.len().saturating_mul(left_b.len()) > MOST {
+        left_a.iter().zip(&left_b).for_each(|(&i, &j)| counterparts[i] = Some(j));
         return;
     }
-    let boxes = |paths: &[NamedPath], of: &[usize]| -> Vec<Option<Rect>> {
-        of.iter().map(|&i| paths[i].outline.bounding_box()).collect()
+    let boxes = |paths: &[NamedPath], left: &[usize]| -> Vec<(usize, Rect)> {
+        left.iter().filter_map(|&i| Some((i, paths[i].outline.bounding_box()?))).collect()
     };
-    let (own, other) = (boxes(a, &left), boxes(b, &others));
-    let apart =
+    let boxes_b = boxes(b, &left_b);
+    let distance =
         |p: &Rect, q: &Rect| (p.x0 - q.x0).abs() + (p.y0 - q.y0).abs() + (p.x1 - q.x1).abs() + (p.y1 - q.y1).abs();
     let mut pairs = Vec::new();
-    for (i, p) in own.iter().enumerate() {
-        let Some(p) = p else { continue };
-        let around = p.inflate(0.5 * p.width().max(p.height()), 0.5 * p.width().max(p.height()));
-        let near =
-            other.iter().enumerate().filter_map(|(j, q)| Some((j, q.as_ref().filter(|q| around.overlaps(**q))?)));
-        pairs.extend(near.map(|(j, q)| (apart(p, q), i, j)));
+    for (i, p) in boxes(a, &left_a) {
+        let margin = 0.5 * p.width().max(p.height());
+        let near = boxes_b.iter().filter(|(_, q)| p.inflate(margin, margin).overlaps(*q));
+        pairs.extend(near.map(|(j, q)| (distance(&p, q), i, *j)));
     }
     pairs.sort_by(|p, q| p.0.total_cmp(&q.0).then((p.1, p.2).cmp(&(q.1, q.2))));
     let mut taken = HashSet::new();
     for (_, i, j) in pairs {
-        if counterparts[left[i]].is_none() && taken.insert(j) {
-            counterparts[left[i]] = Some(others[j]);
+        if counterparts[i].is_none() && taken.insert(j) {
+            counterparts[i] = Some(j);
         }
     }
 }

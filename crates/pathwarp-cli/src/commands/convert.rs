@@ -1,26 +1,23 @@
 //! Commands that extract the contents of a file: `convert` copies paths into another format, or a drawing into a PDF or DXF; `paths` lists
 //! them; `unwarp` restores the source of a drawing that was written with `--embed-recipe`.
 
-use crate::arguments;
-use crate::arguments::{OF_OUTPUT, reading_args, some_options};
+use crate::arguments::{self, OUTPUT_OPTIONS, reading_args, some_options};
 use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
 use crate::commands::gimp_paths;
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use clap::{ArgMatches, Command};
 use pathwarp::engine::decimal::trimmed;
 use pathwarp::kurbo::Point;
 use pathwarp_engine::export::{self, Exported, KerfReport};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::format::{Choice, Format};
-use pathwarp_engine::input;
-use pathwarp_engine::input::GimpFile;
+use pathwarp_engine::input::{self, GimpFile};
 use pathwarp_engine::links::Destination;
 use pathwarp_engine::options::CommonOptions;
-use pathwarp_engine::output;
-use pathwarp_engine::{advice, readable};
+use pathwarp_engine::{advice, output, readable};
 use pathwarp_gimp::GimpPath;
-use pathwarp_svg::Origin;
+use pathwarp_svg::{Document, NamedPath, Origin};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -35,17 +32,9 @@ pub(super) fn convert_command() -> Command {
             "Output file: .svg, .svgz, .json (GIMP point list) or .xcf with the paths; of an SVG also .pdf with the whole \
              drawing, or .dxf with its outlines in mm; - or none writes to standard output",
         ))
-        .args(some_options(&[&OF_OUTPUT[..], &["union", "quiet"]].concat()))
-        .arg(
-            Arg::new("split")
-                .long("split")
-                .action(ArgAction::SetTrue)
-                .requires("out")
-                .help("Write every path to its own file, named after OUT and the path: out-NAME.svg"),
-        )
-        .arg(
-            switch("salvage", "Copy the paths before the damage in a damaged file"),
-        )
+        .args(some_options(&[&OUTPUT_OPTIONS[..], &["union", "quiet"]].concat()))
+        .arg(switch("split", "Write every path to its own file, named after OUT and the path: out-NAME.svg").requires("out"))
+        .arg(switch("salvage", "Copy the paths before the damage in a damaged file"))
         .args(reading_args())
         .after_help(
             "The SVG has its size in px and a matching viewBox, so that GIMP imports it without scaling; path names become ids. \
@@ -75,12 +64,17 @@ pub(crate) fn convert_file(
     let format = choice.format(target, options.format)?;
     match gimp_paths::copy(file, target, format, options, split, salvage)? {
         Some(status) => Ok(status),
-        None => whole(file, target, format, options),
+        None => convert_drawing(file, target, format, options),
     }
 }
 
 /// Writes the drawing in an SVG as a PDF or DXF.
-fn whole(file: &Path, target: Option<&Path>, format: Format, options: &CommonOptions) -> Result<Status, Failure> {
+fn convert_drawing(
+    file: &Path,
+    target: Option<&Path>,
+    format: Format,
+    options: &CommonOptions,
+) -> Result<Status, Failure> {
     let doc = input::document(file, &options.reading)?;
     let read = input::read_options(file, &options.reading);
     let Exported { bytes, warnings, kerf } =
@@ -109,9 +103,7 @@ pub(super) fn paths_command() -> Command {
             "An SVG file or a GIMP file (XCF, exported SVG, point list, GIMP 1 text); - is standard input",
         ))
         .arg(switch("json", "Print JSON with every point"))
-        .arg(
-            switch("salvage", "List the paths before the damage in a damaged GIMP file"),
-        )
+        .arg(switch("salvage", "List the paths before the damage in a damaged GIMP file"))
         .args(reading_args())
         .after_help(
             "Every anchor is listed as drawing programs store it: incoming handle, anchor, outgoing handle. Arcs are listed as \
@@ -124,7 +116,7 @@ struct PathList {
     paths: Vec<ListedPath>,
 }
 
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct ListedPath {
     name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -176,28 +168,24 @@ fn print(file: &Path, paths: Vec<ListedPath>, is_json: bool) -> Result<(), Failu
 fn of_gimp(p: &GimpPath) -> ListedPath {
     ListedPath {
         name: p.name.clone(),
-        label: None,
-        title: None,
-        element: None,
         visible: Some(p.visible),
         bounds: p.bounds().map(|[x0, y0, x1, y1]| [x0, y0, x1 - x0, y1 - y0]),
         strokes: p.strokes.iter().map(|s| stroke(s.closed, s.triples())).collect(),
+        ..ListedPath::default()
     }
 }
 
-fn of_drawing(doc: &pathwarp_svg::Document) -> Vec<ListedPath> {
-    doc.paths()
-        .into_iter()
-        .map(|p| ListedPath {
-            name: p.id,
-            label: p.label,
-            title: p.title,
-            element: Some(p.element),
-            visible: None,
-            bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
-            strokes: p.outline.subpaths.iter().map(|s| stroke(s.closed, s.with_handles().into_iter())).collect(),
-        })
-        .collect()
+fn of_drawing(doc: &Document) -> Vec<ListedPath> {
+    let listed = |p: NamedPath| ListedPath {
+        name: p.id,
+        label: p.label,
+        title: p.title,
+        element: Some(p.element),
+        visible: None,
+        bounds: p.outline.bounding_box().map(|b| [b.x0, b.y0, b.width(), b.height()]),
+        strokes: p.outline.subpaths.iter().map(|s| stroke(s.closed, s.with_handles().into_iter())).collect(),
+    };
+    doc.paths().into_iter().map(listed).collect()
 }
 
 fn stroke(closed: bool, with_handles: impl Iterator<Item = [Point; 3]>) -> ListedStroke {
@@ -209,17 +197,15 @@ fn table(paths: &[ListedPath]) -> String {
     let mut out = String::new();
     let names: Vec<_> = paths.iter().map(|p| readable::name(&p.name)).collect();
     let width = terminal::column(names.iter().map(AsRef::as_ref));
-    let what = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
-    let _ = writeln!(out, "{:width$}  {what:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
+    let kind = if paths.iter().any(|p| p.visible.is_some()) { "visible" } else { "element" };
+    let _ = writeln!(out, "{:width$}  {kind:8}  {:7}  {:>7}  x y width height", "name", "closed", "anchors");
     for (p, name) in paths.iter().zip(names) {
-        let closed: Vec<&str> = p.strokes.iter().map(|s| if s.closed { "closed" } else { "open" }).collect();
-        let all_same = closed.windows(2).all(|w| w[0] == w[1]);
-        let closed = if closed.is_empty() {
-            "empty"
-        } else if all_same {
-            closed[0]
-        } else {
-            "mixed"
+        let has = |closed: bool| p.strokes.iter().any(|s| s.closed == closed);
+        let closed = match (has(true), has(false)) {
+            (true, true) => "mixed",
+            (true, false) => "closed",
+            (false, true) => "open",
+            (false, false) => "empty",
         };
         let anchors: Vec<String> = p.strokes.iter().map(|s| s.anchors.to_string()).collect();
         let anchors = if anchors.len() > 6 {
@@ -228,8 +214,8 @@ fn table(paths: &[ListedPath]) -> String {
             anchors.join("+")
         };
         let bounds = p.bounds.map_or(String::new(), |b| b.map(|v| trimmed(v, 6)).join(" "));
-        let what = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
-        let _ = write!(out, "{name:width$}  {what:8}  {closed:7}  {anchors:>7}  {bounds}");
+        let kind = p.visible.map(|v| if v { "visible" } else { "hidden" }).or(p.element.as_deref()).unwrap_or_default();
+        let _ = write!(out, "{name:width$}  {kind:8}  {closed:7}  {anchors:>7}  {bounds}");
         if let Some(l) = p.label.as_ref().or(p.title.as_ref()) {
             let _ = write!(out, "  ({})", readable::name(l));
         }

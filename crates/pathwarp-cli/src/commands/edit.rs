@@ -1,15 +1,13 @@
 //! `pathwarp edit FILE`: bends a drawing by hand in the browser.
 
 use crate::arguments;
-use crate::commands::args::{file_arg, given_file, out_arg, switch, target};
+use crate::commands::args::{file_arg, given_file, option, out_arg, switch, target};
 use crate::ending::Status;
-use crate::interruption;
 use crate::plugins::Plugins;
-use crate::terminal;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use crate::{interruption, terminal};
+use clap::{ArgMatches, Command, value_parser};
 use pathwarp::deform::Registry;
-use pathwarp_editor::EngineHost;
-use pathwarp_editor::{News, Options, Purpose};
+use pathwarp_editor::{EngineHost, News, Options, Purpose};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Given;
 use pathwarp_engine::{input, output};
@@ -21,11 +19,8 @@ pub(super) fn edit_command() -> Command {
         .arg(file_arg("FILE", "An SVG file, a picture (PNG, JPEG, WebP), or a result of this command, to go on with it"))
         .arg(out_arg("OUT", "Save to this file; without it, the page offers a name beside the drawing"))
         .arg(
-            Arg::new("port")
-                .long("port")
-                .value_name("N")
-                .value_parser(value_parser!(u16).range(1..))
-                .help("Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]"),
+            option("port", "N", "Listen on this port of 127.0.0.1 [default: that of the last run on the drawing, or a free one]")
+                .value_parser(value_parser!(u16).range(1..)),
         )
         .arg(switch("no-open", "Only print the page's address"))
         .args(arguments::reading_args())
@@ -58,9 +53,8 @@ pub(super) fn edit(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Re
     };
     // Ctrl-C is the usual end of this command.
     interruption::end_quietly();
-    let host = Arc::new(
-        EngineHost::new(registry.clone(), Given::default(), arguments::given(m)).with_plugins(plugins.options()),
-    );
+    let host = EngineHost::new(registry.clone(), Given::default(), arguments::given(m));
+    let host = Arc::new(host.with_plugins(plugins.options()));
     let announce = |news: &News<'_>| match news {
         News::Address(address) => drop(output::to_stdout(format!("{address}\n").as_bytes())),
         News::NoBrowser(e) => terminal::warning(&format!("no browser can be started ({e}); open the address in one")),

@@ -54,9 +54,8 @@ impl Curves {
                 let all = json::read(&bytes).map_err(|e| Failure::file(file, e))?;
                 let is_flat = |s: &Surface| s.is_curve() && s.points.iter().all(|p| p.z == 0.0);
                 let Some(i) = all.iter().position(|s| !is_flat(s)) else { return Ok(Some(Self::Nurbs(all))) };
-                let what = named(&all, i);
-                let problem = format!("{what} is not in the plane z = 0; `pathwarp solid` deforms it");
-                return Err(Failure::file(file, problem));
+                let problem = "is not in the plane z = 0; `pathwarp solid` deforms it";
+                return Err(Failure::file(file, format!("{} {problem}", numbered(&all, i))));
             }
         }
         let mut args = Args::from_pairs(&[(EXACT.name, text)]);
@@ -79,13 +78,13 @@ impl Curves {
     }
 
     /// Prints the images, or writes them to the file of `--out`.
-    pub(super) fn mapped(&self, map: &dyn Map, m: &ArgMatches) -> Result<Status, Failure> {
+    pub(super) fn write_images(&self, map: &dyn Map, m: &ArgMatches) -> Result<Status, Failure> {
         let wrong = |problem: String| Failure::usage(format!("--exact: {problem}"));
         let target = m.get_one::<PathBuf>(OUT).map(PathBuf::as_path);
         let bytes = match target.map(|file| file.extension().unwrap_or_default().to_ascii_lowercase()) {
             None => self.text(map).map_err(wrong)?,
             Some(format) if format == "json" => {
-                let all = self.splines(map).and_then(|all| checked(&all, patch::MAX_DEGREE).map(|()| all));
+                let all = self.splines(map).and_then(|all| check_degrees(&all, patch::MAX_DEGREE).map(|()| all));
                 json::write(&all.map_err(wrong)?).map_err(Failure::Output)?
             }
             Some(format) if format == "dxf" => {
@@ -113,21 +112,21 @@ impl Curves {
 
     /// Returns the images of all contours, piece by piece.
     fn contours(&self, map: &dyn Map) -> Result<Vec<Contour>, String> {
-        let (mut out, mut before) = (Vec::new(), 0);
+        let (mut out, mut number) = (Vec::new(), 0);
         match self {
             Self::Path(path) => {
                 for subpath in &path.subpaths {
                     let mut images = Vec::new();
                     for seg in &subpath.segs {
-                        before += 1;
-                        images.extend(exact_images(map, seg).ok_or_else(|| no_image(&format!("segment {before}")))?);
+                        number += 1;
+                        images.extend(exact_images(map, seg).ok_or_else(|| no_image(&format!("segment {number}")))?);
                     }
                     out.push(Contour { name: String::new(), images, closed: subpath.closed });
                 }
             }
             Self::Nurbs(all) => {
                 for (i, s) in all.iter().enumerate() {
-                    let (pieces, what) = (s.pieces().0, named(all, i));
+                    let (pieces, what) = (s.pieces().0, numbered(all, i));
                     let images = pieces.iter().map(|p| image(map, &p.points[..=p.degree[0]], &what));
                     let images = images.collect::<Result<_, _>>()?;
                     out.push(Contour { name: s.name.clone(), images, closed: false });
@@ -152,7 +151,7 @@ impl Curves {
             }
         }
         let all = self.contours(map)?;
-        all.iter().enumerate().map(|(i, c)| c.joined().ok_or_else(|| far(i + 1))).collect()
+        all.iter().enumerate().map(|(i, c)| c.joined().ok_or_else(|| no_weights(i + 1))).collect()
     }
 }
 
@@ -171,18 +170,20 @@ impl Contour {
         let mut points: Vec<[f64; 3]> = Vec::with_capacity(degree * parts.len() + 1);
         for part in parts {
             part.hull()?;
-            let own = part.raised(degree).points;
+            let raised = part.raised(degree).points;
             // Scaling homogeneous control points does not change a curve, so the weights can be made to agree at joints.
             let last = points.pop().unwrap_or([0.0, 0.0, 1.0]);
-            let scale = last[2] / own[0][2];
-            points.extend(own.iter().map(|p| p.map(|v| v * scale)));
+            let scale = last[2] / raised[0][2];
+            points.extend(raised.iter().map(|p| p.map(|v| v * scale)));
         }
         if self.closed {
             let ([x, y, w], last) = (points[0], points.last_mut()?);
             *last = [x, y, w].map(|v| v / w * last[2]);
         }
-        let ends = |joint: usize| usize::from(joint == 0 || joint == parts.len());
-        let knots = (0..=parts.len()).flat_map(|k| std::iter::repeat_n(k as f64, degree + ends(k))).collect();
+        // A joint is a knot of the multiplicity `degree`, an end one of one more.
+        let is_end = |joint: usize| joint == 0 || joint == parts.len();
+        let multiplicity = |joint: usize| degree + usize::from(is_end(joint));
+        let knots = (0..=parts.len()).flat_map(|k| std::iter::repeat_n(k as f64, multiplicity(k))).collect();
         Some(spline(&self.name, [degree, points.len()], knots, &points))
     }
 }
@@ -204,22 +205,23 @@ fn spline(name: &str, [degree, n]: [usize; 2], knots: Vec<f64>, points: &[[f64; 
 /// Returns the image of a rational Bézier curve that no crease crosses. Errors call the curve `what`.
 fn image(map: &dyn Map, points: &[DVec4], what: &str) -> Result<RationalBezier, String> {
     /// Number of parameters at which the image is compared with the map, and the tolerance relative to the coordinates.
-    const PLACES: u32 = 64;
+    const SAMPLES: u32 = 64;
     const ROUNDING: f64 = 1e-9;
     let curve = RationalBezier { points: points.iter().map(|p| [p.x, p.y, p.w]).collect() };
     let branch = map.branch(curve.eval(0.5));
     let image = branch.as_deref().map_or_else(|| map.image(&curve), |m| m.image(&curve));
     let image = image.ok_or_else(|| no_image(what))?.reduced();
     let holds = |i| {
-        let t = f64::from(i) / f64::from(PLACES);
+        let t = f64::from(i) / f64::from(SAMPLES);
         let (source, wanted) = (curve.eval(t), map.point(curve.eval(t)));
         image.eval(t).distance(wanted) <= ROUNDING * (source.to_vec2().hypot() + wanted.to_vec2().hypot())
     };
     let crossed = || format!("{what} meets a crease of the map or the end of its domain; cut it there");
-    (0..=PLACES).all(holds).then_some(image).ok_or_else(crossed)
+    (0..=SAMPLES).all(holds).then_some(image).ok_or_else(crossed)
 }
 
-fn far(contour: usize) -> String {
+/// Returns the error that a weight of a contour's image is not positive.
+fn no_weights(contour: usize) -> String {
     let advice = "cut it into shorter curves, or warp its drawing with -o out.dxf, which fits curves";
     format!("contour {contour} has control points beyond infinity, for which a spline has no weights: {advice}")
 }
@@ -228,8 +230,8 @@ fn no_image(what: &str) -> String {
     format!("{what} has no exact image: the map's coordinates are not quotients of polynomials there")
 }
 
-/// Names one of several curves in a message.
-fn named(all: &[Surface], i: usize) -> String {
+/// Names one of several curves in a message by its number, and its name if it has one.
+fn numbered(all: &[Surface], i: usize) -> String {
     let name = &all[i].name;
     let kind = if all[i].is_curve() { "curve" } else { "surface" };
     format!("{kind} {}{}", i + 1, if name.is_empty() { String::new() } else { format!(" ({name})") })
@@ -238,33 +240,29 @@ fn named(all: &[Surface], i: usize) -> String {
 /// Writes curves in space, in millimetres, as the splines of a DXF. The error names the curve at fault and advises.
 pub(super) fn dxf(curves: &[Surface]) -> Result<String, String> {
     if let Some(i) = curves.iter().position(|s| !s.is_curve()) {
-        return Err(format!("{}: a DXF holds curves alone; write surfaces as .json or .bpt", named(curves, i)));
+        return Err(format!("{}: a DXF holds curves alone; write surfaces as .json or .bpt", numbered(curves, i)));
     }
-    checked(curves, MAX_DEGREE)?;
+    check_degrees(curves, MAX_DEGREE)?;
     let points: Vec<Vec<[f64; 3]>> = curves.iter().map(|s| s.points.iter().map(DVec3::to_array).collect()).collect();
-    let splines: Vec<Spline<'_>> = curves
-        .iter()
-        .zip(&points)
-        .map(|(s, points)| Spline {
-            layer: &s.name,
-            degree: s.degree[0],
-            knots: &s.knots[0],
-            points: &points[..s.size()[0]],
-            weights: &s.weights[..s.size()[0]],
-        })
-        .collect();
-    Ok(write_splines(&splines))
+    // A curve is a surface whose second row of control points repeats the first.
+    let splines = curves.iter().zip(&points).map(|(s, points)| Spline {
+        layer: &s.name,
+        degree: s.degree[0],
+        knots: &s.knots[0],
+        points: &points[..s.size()[0]],
+        weights: &s.weights[..s.size()[0]],
+    });
+    Ok(write_splines(&splines.collect::<Vec<_>>()))
 }
 
-/// Checks that no curve has a higher degree than its format.
-fn checked(curves: &[Surface], most: usize) -> Result<(), String> {
+/// Checks that no curve has a higher degree than its format allows.
+fn check_degrees(curves: &[Surface], most: usize) -> Result<(), String> {
     let Some(i) = curves.iter().position(|s| s.degree[0] > most) else { return Ok(()) };
-    let other =
+    let (name, degree) = (numbered(curves, i), curves[i].degree[0]);
+    let advice =
         if most < patch::MAX_DEGREE { "write .json" } else { "leave --out away, which prints its control points" };
     Err(format!(
-        "{} has degree {}, and a file of this format at most {most}: {other}, take a tool of a lower degree, or fit curves within a \
-         tolerance (warp the drawing with -o out.dxf)",
-        named(curves, i),
-        curves[i].degree[0]
+        "{name} has degree {degree}, and a file of this format at most {most}: {advice}, take a tool of a lower degree, or fit curves \
+         within a tolerance (warp the drawing with -o out.dxf)"
     ))
 }

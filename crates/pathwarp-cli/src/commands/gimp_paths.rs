@@ -33,8 +33,8 @@ pub(super) fn copy(
         Some(gimp) => (gimp.canvas(), gimp.paths().cloned().collect()),
         None => drawing(file, &options.reading)?,
     };
-    if let Some(d) = damage.as_ref().filter(|_| !options.quiet) {
-        terminal::warning(&format!("{}: {d}", input::display(file)));
+    if let Some(damage) = damage.as_ref().filter(|_| !options.quiet) {
+        terminal::warning(&format!("{}: {damage}", input::display(file)));
     }
     let bytes = |paths: &[GimpPath]| export::paths(size, paths, format, options, None).map(|exported| exported.bytes);
     match target {

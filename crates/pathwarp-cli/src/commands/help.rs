@@ -48,13 +48,13 @@ const BRIEF: usize = 2 * (PAGE - TEXT) - 10;
 
 /// Sets a page as the help of the subcommand that `words` name.
 pub(super) fn paged(command: Command, words: &[OsString]) -> Command {
-    let named = words.iter().find_map(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
-    let Some(name) = named else { return command };
+    let name = words.iter().find_map(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
+    let Some(name) = name else { return command };
     let line = format!("{} {name}", command.get_bin_name().unwrap_or("pathwarp"));
     command.mut_subcommand(name, |c| {
-        let further = words.iter().skip(1).any(|w| c.find_subcommand(w).is_some());
+        let goes_on = words.iter().skip(1).any(|w| c.find_subcommand(w).is_some());
         let c = c.bin_name(line);
-        if further {
+        if goes_on {
             return paged(c, &words[1..]);
         }
         let page = page(c.clone());
@@ -128,12 +128,12 @@ fn section<'a>(heading: &str, args: impl Iterator<Item = &'a Arg>, is_whole: boo
 
 /// Lists the options that `help options` explains, by task.
 fn other_options(args: &[&Arg]) -> String {
-    let named = |names: &[&str]| -> Vec<String> {
+    let options = |names: &[&str]| -> Vec<String> {
         let is_there = |name: &&&str| args.iter().any(|a| a.get_id() == **name);
         names.iter().filter(is_there).map(|name| format!("--{name}")).collect()
     };
-    let rows = TASKS.iter().map(|(task, names)| (*task, named(names))).filter(|(_, names)| !names.is_empty());
-    let rows: String = rows.map(|(task, names)| beside(task, &names.join(" "))).collect();
+    let rows = TASKS.iter().map(|(task, names)| (*task, options(names))).filter(|(_, options)| !options.is_empty());
+    let rows: String = rows.map(|(task, options)| beside(task, &options.join(" "))).collect();
     if rows.is_empty() { rows } else { format!("\nMore options (pathwarp help options):\n{rows}") }
 }
 
@@ -190,16 +190,15 @@ fn wrapped(text: &str, indent: usize) -> String {
             let _ = writeln!(out, "{:indent$}{line}", "");
             continue;
         }
-        let own = line.len() - line.trim_start().len();
-        let mut width = indent + own;
+        let indent = indent + line.len() - line.trim_start().len();
+        let mut width = indent;
         let _ = write!(out, "{:width$}", "");
-        let words: Vec<&str> = line.trim_start().split(' ').collect();
-        for (k, word) in words.into_iter().enumerate() {
+        for (i, word) in line.trim_start().split(' ').enumerate() {
             let length = word.chars().count();
-            if k > 0 && width + 1 + length > PAGE {
-                width = indent + own;
+            if i > 0 && width + 1 + length > PAGE {
+                width = indent;
                 let _ = write!(out, "\n{:width$}", "");
-            } else if k > 0 {
+            } else if i > 0 {
                 out.push(' ');
                 width += 1;
             }
@@ -212,7 +211,7 @@ fn wrapped(text: &str, indent: usize) -> String {
     out
 }
 
-/// Lines of a screen.
+/// Lines and columns of a screen.
 const LINES: usize = 40;
 const COLUMNS: usize = 80;
 
@@ -224,25 +223,25 @@ const ALWAYS: [&str; 6] = ["out", "out-dir", "select", "tolerance", "fit", "prev
 
 /// Shortens the help of the subcommand that `words` name. `line` is the name of the program.
 pub(super) fn shortened(command: Command, words: &[OsString], line: &str) -> Command {
-    let named = words.first().and_then(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
-    let Some(name) = named else { return command };
+    let name = words.first().and_then(|w| Some(command.find_subcommand(w)?.get_name().to_owned()));
+    let Some(name) = name else { return command };
     let line = format!("{line} {name}");
     command.mut_subcommand(name, |c| {
-        let further = words[1..].first().is_some_and(|w| c.find_subcommand(w).is_some());
-        if further { shortened(c, &words[1..], &line) } else { fitted(c, &line) }
+        let goes_on = words.get(1).is_some_and(|w| c.find_subcommand(w).is_some());
+        if goes_on { shortened(c, &words[1..], &line) } else { fit_to_screen(c, &line) }
     })
 }
 
 /// Shortens a command's help to a screen: a line for each option, and one example.
-fn fitted(command: Command, line: &str) -> Command {
+fn fit_to_screen(command: Command, line: &str) -> Command {
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let lines: Vec<&str> = after.lines().map(str::trim).collect();
     let example = lines.iter().position(|l| l.starts_with("pathwarp ") && !l.contains(" = ")).map(|i| {
         let what = lines[..i].last().filter(|l| l.ends_with(':') && **l != "Examples:").unwrap_or(&"Example:");
         format!("{what}\n  {}\n\n", lines[i])
     });
-    let mut shown: Vec<String> =
-        command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string()).collect();
+    let shown = command.get_arguments().filter(|a| is_wanted(a)).map(|a| a.get_id().to_string());
+    let mut shown: Vec<String> = shown.collect();
     // The reader knows `-h` already.
     let help = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).hide(true);
     let after = format!("{}All options: {line} --help", example.unwrap_or_default());
@@ -271,6 +270,7 @@ fn fitted(command: Command, line: &str) -> Command {
     }
 }
 
+/// Returns `true` for an option that a screen shows if there is room.
 fn is_wanted(arg: &Arg) -> bool {
     let wanted = match arg.get_help_heading() {
         Some("Reading") => false,
@@ -307,16 +307,17 @@ fn clipped(help: &str, room: usize) -> String {
     let text = help.split_once(" [default: ").map_or(help, |(text, _)| text);
     let default = default_in(help, room);
     let room = room - default.chars().count();
-    let ends = |signs: &[&str]| {
+    let last_cut = |signs: &[&str]| {
         let all = signs.iter().flat_map(|s| text.match_indices(s)).map(|(i, _)| i);
         all.filter(|i| text[..*i].chars().count() < room).max().unwrap_or_default()
     };
+    let sentence = last_cut(&[". ", "; ", ": "]);
     let text = if text.chars().count() <= room {
         text.trim_end_matches('.').to_owned()
-    } else if ends(&[". ", "; ", ": "]) > room / 2 {
-        text[..ends(&[". ", "; ", ": "])].to_owned()
+    } else if sentence > room / 2 {
+        text[..sentence].to_owned()
     } else {
-        text[..ends(&[" "])].trim_end_matches([',', ':', '(']).to_owned() + "…"
+        text[..last_cut(&[" "])].trim_end_matches([',', ':', '(']).to_owned() + "…"
     };
     text + &default
 }

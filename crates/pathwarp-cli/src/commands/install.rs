@@ -1,6 +1,6 @@
 //! `pathwarp install gimp|inkscape`: installs the plug-in, with a copy of this program, in another program's folder.
 
-use crate::commands::args::switch;
+use crate::commands::args::{option, switch};
 use crate::ending::Status;
 use crate::inkscape::inx::{self, Program};
 use crate::terminal;
@@ -14,9 +14,7 @@ use std::process::{self, Stdio};
 use std::{env, fs};
 
 pub(super) fn install_command() -> Command {
-    let path = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf)).help(help)
-    };
+    let path = |name, value, help| option(name, value, help).value_parser(value_parser!(PathBuf));
     Command::new("install")
         .about("Install the plug-in for another program")
         .arg(
@@ -63,35 +61,34 @@ pub(super) fn install(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
             if is_gimp { "GIMP 3; start GIMP 3 once, or name its plug-ins" } else { "Inkscape; name its extensions" };
         return Err(Failure::usage(format!("found no folder of {what} folder with --dir")));
     }
-    let home = |folder: &Path| if is_gimp { folder.join(PLUG_IN_NAME) } else { folder.join(HOME) };
     let parts = || if is_gimp { gimp_parts() } else { inkscape_parts(registry, program) };
-    let dry = m.get_flag("dry-run");
-    let mut done = String::new();
-    for home in folders.iter().map(|f| home(f)) {
-        done += &if m.get_flag("uninstall") {
+    let is_dry = m.get_flag("dry-run");
+    let mut lines = String::new();
+    for folder in folders {
+        let home = folder.join(if is_gimp { GIMP_HOME } else { INKSCAPE_HOME });
+        lines += &if m.get_flag("uninstall") {
             let names = if is_gimp { gimp_names().to_vec() } else { inkscape_installed(&home) };
-            uninstall_files(&home, &names, dry)?
+            uninstall_files(&home, &names, is_dry)?
         } else {
-            install_files(&home, &parts()?, dry)?
+            install_files(&home, &parts()?, is_dry)?
         };
     }
-    output::to_stdout(done.as_bytes())?;
+    output::to_stdout(lines.as_bytes())?;
     Ok(Status::Complete)
 }
 
 /// A file to install.
-struct Part {
+pub(super) struct Part {
     /// Path relative to the plug-in's folder.
-    name: PathBuf,
-    content: Vec<u8>,
-    /// `true` if the file is executable.
-    runs: bool,
+    pub(super) name: PathBuf,
+    pub(super) content: Vec<u8>,
+    pub(super) is_executable: bool,
 }
 
 /// Reads this program's executable file.
-fn own_program() -> Result<Vec<u8>, Failure> {
-    let own = env::current_exe().and_then(fs::read);
-    own.map_err(|e| Failure::Input(format!("the program file cannot be read: {e}")))
+fn this_program() -> Result<Vec<u8>, Failure> {
+    let program = env::current_exe().and_then(fs::read);
+    program.map_err(|e| Failure::Input(format!("the program file cannot be read: {e}")))
 }
 
 /// Returns a path from an environment variable.
@@ -100,13 +97,13 @@ fn variable(name: &str) -> Option<PathBuf> {
 }
 
 /// Writes the files below `home`. Returns a line for each.
-fn install_files(home: &Path, parts: &[Part], dry: bool) -> Result<String, Failure> {
-    let mut done = String::new();
+pub(super) fn install_files(home: &Path, parts: &[Part], is_dry: bool) -> Result<String, Failure> {
+    let mut lines = String::new();
     let mut pending = Vec::new();
     for part in parts {
         let file = home.join(&part.name);
-        let _ = writeln!(done, "{} {}", if dry { "would write" } else { "wrote" }, file.display());
-        if !dry {
+        let _ = writeln!(lines, "{} {}", if is_dry { "would write" } else { "wrote" }, file.display());
+        if !is_dry {
             let folder = file.parent().unwrap_or(Path::new(""));
             fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
             pending.push(PendingFile::new(&file, &part.content)?);
@@ -114,86 +111,87 @@ fn install_files(home: &Path, parts: &[Part], dry: bool) -> Result<String, Failu
     }
     PendingFile::commit_all(pending)?;
     #[cfg(unix)]
-    for file in parts.iter().filter(|p| p.runs && !dry).map(|p| home.join(&p.name)) {
+    for file in parts.iter().filter(|p| p.is_executable && !is_dry).map(|p| home.join(&p.name)) {
         use std::os::unix::fs::PermissionsExt;
         fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(&file, e))?;
     }
-    Ok(done)
+    Ok(lines)
 }
 
 /// Removes the files that exist, and folders that become empty. Returns a line for each file.
-fn uninstall_files(home: &Path, names: &[PathBuf], dry: bool) -> Result<String, Failure> {
-    let mut done = String::new();
+fn uninstall_files(home: &Path, names: &[PathBuf], is_dry: bool) -> Result<String, Failure> {
+    let mut lines = String::new();
     let existing: Vec<PathBuf> = names.iter().map(|n| home.join(n)).filter(|f| f.exists()).collect();
     if existing.is_empty() {
         terminal::note(&format!("{} is not installed", home.display()));
     }
-    for f in &existing {
-        let _ = writeln!(done, "{} {}", if dry { "would remove" } else { "removed" }, f.display());
-        if !dry {
-            fs::remove_file(f).map_err(|e| Failure::output(f, format!("cannot be removed: {e}")))?;
+    for file in &existing {
+        let _ = writeln!(lines, "{} {}", if is_dry { "would remove" } else { "removed" }, file.display());
+        if !is_dry {
+            fs::remove_file(file).map_err(|e| Failure::output(file, format!("cannot be removed: {e}")))?;
         }
     }
-    if !dry {
+    if !is_dry {
         // Folders with other files stay.
         for folder in existing.iter().filter_map(|f| f.parent()).filter(|f| *f != home) {
             let _ = fs::remove_dir(folder);
         }
         let _ = fs::remove_dir(home);
     }
-    Ok(done)
+    Ok(lines)
+}
+
+/// Returns the folders where a program called `name` may keep its settings. On Linux, it may also be a package of Flatpak, `flatpak`, or of
+/// Snap. The folders of macOS are below the user's.
+fn settings_folders(name: &str, flatpak: &str, macos: &[&str]) -> Vec<PathBuf> {
+    let home = variable("HOME").unwrap_or_default();
+    if cfg!(target_os = "windows") {
+        return vec![variable("APPDATA").unwrap_or_default().join(name)];
+    }
+    if cfg!(target_os = "macos") {
+        return macos.iter().map(|folder| home.join(folder)).collect();
+    }
+    let config = variable("XDG_CONFIG_HOME").unwrap_or_else(|| home.join(".config"));
+    let of_flatpak = home.join(format!(".var/app/{flatpak}/config"));
+    let of_snap = home.join(format!("snap/{}/current/.config", name.to_lowercase()));
+    [config, of_flatpak, of_snap].map(|folder| folder.join(name)).to_vec()
 }
 
 /// The plug-in's source. GIMP 3 looks for `plug-ins/NAME/NAME.py`.
 const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
-const PLUG_IN_NAME: &str = "pathwarp-gimp";
+/// The plug-in's folder within GIMP's folder of plug-ins.
+const GIMP_HOME: &str = "pathwarp-gimp";
 
 /// Returns the paths of the script and the program, relative to the plug-in's folder.
 fn gimp_names() -> [PathBuf; 2] {
     let program = Path::new("bin").join("pathwarp").with_extension(env::consts::EXE_EXTENSION);
-    [PathBuf::from(PLUG_IN_NAME).with_extension("py"), program]
+    [PathBuf::from(GIMP_HOME).with_extension("py"), program]
 }
 
 /// Returns the files to install for GIMP.
 fn gimp_parts() -> Result<Vec<Part>, Failure> {
     let [script, program] = gimp_names();
     Ok(vec![
-        Part { name: script, content: PLUG_IN.as_bytes().to_vec(), runs: true },
-        Part { name: program, content: own_program()?, runs: true },
+        Part { name: script, content: PLUG_IN.as_bytes().to_vec(), is_executable: true },
+        Part { name: program, content: this_program()?, is_executable: true },
     ])
 }
 
 /// Returns the plug-ins folders of all versions of GIMP 3 that this user has started.
 fn gimp_folders() -> Vec<PathBuf> {
-    if let Some(own) = env::var_os("GIMP3_DIRECTORY") {
-        return vec![PathBuf::from(own).join("plug-ins")];
+    if let Some(folder) = env::var_os("GIMP3_DIRECTORY") {
+        return vec![PathBuf::from(folder).join("plug-ins")];
     }
-    let home = variable("HOME").unwrap_or_default();
-    let roots = if cfg!(target_os = "windows") {
-        vec![variable("APPDATA").unwrap_or_default().join("GIMP")]
-    } else if cfg!(target_os = "macos") {
-        vec![home.join("Library/Application Support/GIMP")]
-    } else {
-        vec![
-            variable("XDG_CONFIG_HOME").unwrap_or_else(|| home.join(".config")).join("GIMP"),
-            home.join(".var/app/org.gimp.GIMP/config/GIMP"),
-            home.join("snap/gimp/current/.config/GIMP"),
-        ]
-    };
-    let mut out = Vec::new();
-    for root in roots {
-        for entry in fs::read_dir(&root).into_iter().flatten().flatten() {
-            if entry.file_name().to_string_lossy().starts_with("3.") && entry.path().is_dir() {
-                out.push(entry.path().join("plug-ins"));
-            }
-        }
-    }
+    let roots = settings_folders("GIMP", "org.gimp.GIMP", &["Library/Application Support/GIMP"]);
+    let entries = roots.iter().flat_map(|root| fs::read_dir(root).into_iter().flatten().flatten());
+    let versions = entries.filter(|e| e.file_name().to_string_lossy().starts_with("3.") && e.path().is_dir());
+    let mut out: Vec<PathBuf> = versions.map(|version| version.path().join("plug-ins")).collect();
     out.sort();
     out
 }
 
-/// The program's folder within Inkscape's folder of extensions.
-const HOME: &str = "pathwarp";
+/// The extension's folder within Inkscape's folder of extensions.
+const INKSCAPE_HOME: &str = "pathwarp";
 
 /// Returns the files to install for Inkscape. The extension calls `program`, a name or path, or by default a copy of this program.
 fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Part>, Failure> {
@@ -206,10 +204,13 @@ fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Par
         Some(p) => return Err(Failure::usage(format!("--program {}: give an absolute path or a name", p.display()))),
     };
     let descriptions = inx::files(registry, &Program { location, name });
-    let part = |(name, text): (String, String)| Part { name: name.into(), content: text.into_bytes(), runs: false };
+    let part = |(name, text): (String, String)| {
+        let content = text.into_bytes();
+        Part { name: name.into(), content, is_executable: false }
+    };
     let mut parts: Vec<Part> = descriptions.into_iter().map(part).collect();
     if program.is_none() {
-        parts.push(Part { name: copy, content: own_program()?, runs: true });
+        parts.push(Part { name: copy, content: this_program()?, is_executable: true });
     }
     Ok(parts)
 }
@@ -218,7 +219,7 @@ fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Par
 fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
     let is_ours = |name: &Path| {
         let name = name.to_string_lossy();
-        name.starts_with("pathwarp-") && name.ends_with(".inx") || name == "pathwarp" || name == "pathwarp.exe"
+        (name.starts_with("pathwarp-") && name.ends_with(".inx")) || name == "pathwarp" || name == "pathwarp.exe"
     };
     let entries = fs::read_dir(home).into_iter().flatten().flatten();
     let mut names: Vec<PathBuf> = entries.map(|e| PathBuf::from(e.file_name())).filter(|n| is_ours(n)).collect();
@@ -228,24 +229,11 @@ fn inkscape_installed(home: &Path) -> Vec<PathBuf> {
 
 /// Returns the extensions folders of every Inkscape that this user has.
 fn inkscape_folders() -> Vec<PathBuf> {
-    if let Some(own) = variable("INKSCAPE_PROFILE_DIR") {
-        return vec![own.join("extensions")];
+    if let Some(folder) = variable("INKSCAPE_PROFILE_DIR") {
+        return vec![folder.join("extensions")];
     }
-    let home = variable("HOME").unwrap_or_default();
-    let roots = if cfg!(target_os = "windows") {
-        vec![variable("APPDATA").unwrap_or_default().join("inkscape")]
-    } else if cfg!(target_os = "macos") {
-        vec![
-            home.join("Library/Application Support/org.inkscape.Inkscape/config/inkscape"),
-            home.join(".config/inkscape"),
-        ]
-    } else {
-        vec![
-            variable("XDG_CONFIG_HOME").unwrap_or_else(|| home.join(".config")).join("inkscape"),
-            home.join(".var/app/org.inkscape.Inkscape/config/inkscape"),
-            home.join("snap/inkscape/current/.config/inkscape"),
-        ]
-    };
+    let macos = ["Library/Application Support/org.inkscape.Inkscape/config/inkscape", ".config/inkscape"];
+    let roots = settings_folders("inkscape", "org.inkscape.Inkscape", &macos);
     let mut found: Vec<PathBuf> = roots.into_iter().filter(|r| r.is_dir()).collect();
     if found.is_empty() {
         // Inkscape is installed, but the user has never started it.

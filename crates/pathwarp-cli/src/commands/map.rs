@@ -1,8 +1,7 @@
 //! `pathwarp map DEFORMATION … --points FILE`: maps plain points, for scripts and for checks.
 
-use crate::arguments;
-use crate::arguments::reading_args;
-use crate::commands::args::switch;
+use crate::arguments::{self, reading_args};
+use crate::commands::args::{option, switch};
 use crate::commands::exact::{self, Curves};
 use crate::ending::{Ending, Status};
 use crate::steps;
@@ -51,28 +50,22 @@ pub(super) fn map_command(registry: &Registry) -> Command {
              keeps it under projective maps and has degree p n under others of degree n, p (m + n) under lattices of degree m x n.\n\nExample:\n  echo 50 50 | pathwarp map shaper --shaper cage.svg --frame \
              0,0,100,100 --points -",
         );
-    let frame = Arg::new("frame")
-        .long("frame")
-        .value_name("X,Y,W,H")
-        .allow_hyphen_values(true)
-        .help("Box that percentages and defaults refer to [default: the bounding box of the points]");
+    let help = "Box that percentages and defaults refer to [default: the bounding box of the points]";
+    let frame = option("frame", "X,Y,W,H", help).allow_hyphen_values(true);
     let all = switch("all", "Print all points that the maps of steps with --inverse lead back to").requires(INVERSE);
-    let own = [frame, all.conflicts_with("jacobian")];
+    let frame_and_all = [frame, all.conflicts_with("jacobian")];
     for info in registry.infos() {
         let command = Command::new(info.name).aliases(steps::aliases(info.name)).about(info.title);
-        c = c.subcommand(command.args(steps::args(info)).args(points_args()).args(own.clone()).args(exact::args()));
+        let command = command.args(steps::args(info)).args(points_args()).args(frame_and_all.clone());
+        c = c.subcommand(command.args(exact::args()));
     }
     c
 }
 
 /// The arguments for the file of points, and for derivatives.
 pub(super) fn points_args() -> [Arg; 2] {
-    let points = Arg::new("points")
-        .long("points")
-        .value_name("FILE")
-        .value_parser(value_parser!(PathBuf))
-        .default_value("-")
-        .help("File of points; - is standard input");
+    let points = option("points", "FILE", "File of points; - is standard input");
+    let points = points.value_parser(value_parser!(PathBuf)).default_value("-");
     [points, switch("jacobian", "Print the partial derivatives too")]
 }
 
@@ -89,12 +82,9 @@ pub(super) fn print_images<const N: usize, const M: usize>(
     m: &ArgMatches,
     images: impl Iterator<Item = (Option<[f64; N]>, [f64; M])>,
 ) -> Result<Status, Failure> {
-    let mut out = String::new();
-    let mut status = Status::Complete;
+    let (mut out, mut is_partial) = (String::new(), false);
     for (image, derivatives) in images {
-        if image.is_none() {
-            status = Status::Partial;
-        }
+        is_partial |= image.is_none();
         let image = image.unwrap_or([f64::NAN; N]);
         let derivatives = derivatives.iter().filter(|_| m.get_flag("jacobian"));
         for (i, v) in image.iter().chain(derivatives).enumerate() {
@@ -104,7 +94,7 @@ pub(super) fn print_images<const N: usize, const M: usize>(
         out.push('\n');
     }
     output::to_stdout(out.as_bytes())?;
-    Ok(status)
+    Ok(Status::partial_if(is_partial))
 }
 
 /// Runs `map`; `later` holds the parts of the chain after each `+`.
@@ -134,7 +124,7 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     let spent = budget.spend(work * map.cost().work * points.len() as f64);
     spent.map_err(|e| Failure::of_recipe(GeometryError::Limit(e).into()))?;
     if let Some(curves) = exact {
-        return Ok(curves.mapped(map, m)?);
+        return Ok(curves.write_images(map, m)?);
     }
     if m.get_flag("all") {
         return Ok(print_preimages(&points, &recipe, &built.steps, frame)?);
@@ -146,9 +136,9 @@ pub(super) fn map(registry: &Registry, m: &ArgMatches, later: &[&[OsString]]) ->
     if let Some(e) = built.failure() {
         return Err(Failure::of_recipe(e).into());
     }
-    let image = |(p, j): (&Point, &Jet)| {
-        let defined = creases.defined_at(*p) && j.p.is_finite();
-        (defined.then_some([j.p.x, j.p.y]), [j.dx.x, j.dx.y, j.dy.x, j.dy.y])
+    let image = |(p, jet): (&Point, &Jet)| {
+        let is_defined = creases.defined_at(*p) && jet.p.is_finite();
+        (is_defined.then_some([jet.p.x, jet.p.y]), [jet.dx.x, jet.dx.y, jet.dy.x, jet.dy.y])
     };
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
 }
@@ -171,7 +161,7 @@ fn print_preimages(points: &[Point], recipe: &Recipe, steps: &[Built], frame: Re
         let _ = writeln!(out, "{}", if set.is_empty() { "nan nan".into() } else { line.join(" ") });
     }
     output::to_stdout(out.as_bytes())?;
-    Ok(if all.iter().any(Vec::is_empty) { Status::Partial } else { Status::Complete })
+    Ok(Status::partial_if(all.iter().any(Vec::is_empty)))
 }
 
 /// Most characters of a wrong line in a message.
@@ -186,9 +176,8 @@ fn parse_points<const N: usize>(text: &str, wanted: &str) -> Result<Vec<[f64; N]
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let numbers: Result<Vec<f64>, _> =
-            line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>).collect();
-        match numbers.map(<[f64; N]>::try_from) {
+        let numbers = line.split([' ', ',', '\t']).filter(|w| !w.is_empty()).map(str::parse::<f64>);
+        match numbers.collect::<Result<Vec<f64>, _>>().map(<[f64; N]>::try_from) {
             Ok(Ok(point)) if point.iter().all(|c| c.is_finite()) => out.push(point),
             _ => {
                 let shown: String = line.chars().take(SHOWN).collect();

@@ -69,12 +69,13 @@ fn build_for(registry: &Registry, word: Option<&OsString>) -> Command {
     if let Some(entry) = registry.get(word) {
         return root().subcommand(warp::deformation_command(entry.info()));
     }
-    match other(word) {
+    match find_other(word) {
         Some(o) => root().subcommand((o.declare)(registry)),
         None => build(registry),
     }
 }
 
+/// Returns the command line without subcommands.
 fn root() -> Command {
     let lines: Vec<String> = shape_names().chunks(8).map(|names| format!("{:18}{}", "", names.join(" "))).collect();
     Command::new("pathwarp")
@@ -149,8 +150,8 @@ static OTHERS: &[Subcommand] = &[
         "new-plugin",
         |_| plugin::new_plugin_command(),
         |c| {
-            let taken = |name: &str| name == "help" || other(name).is_some() || c.registry.get(name).is_some();
-            Ok(plugin::new_plugin(c.matches, taken)?)
+            let is_taken = |name: &str| name == "help" || find_other(name).is_some() || c.registry.get(name).is_some();
+            Ok(plugin::new_plugin(c.matches, is_taken)?)
         },
     ),
     subcommand("install", |_| install::install_command(), |c| Ok(install::install(c.registry, c.matches)?)),
@@ -162,29 +163,31 @@ static OTHERS: &[Subcommand] = &[
     subcommand("man", |_| about::man_command(), |c| Ok(about::man(build(c.registry), c.matches)?)),
 ];
 
-fn other(name: &str) -> Option<&'static Subcommand> {
+/// Finds a subcommand that is not a deformation.
+fn find_other(name: &str) -> Option<&'static Subcommand> {
     OTHERS.iter().find(|o| o.name == name)
 }
 
 /// Runs the subcommand that `args` names; the first of them is the program's name.
 pub(crate) fn dispatch(registry: &Registry, args: &[OsString]) -> Result<Status, Ending> {
     let (args, plugins) = plugins::load(registry, args, &OTHERS.iter().map(|o| o.name).collect::<Vec<_>>())?;
-    let result = dispatched(&plugins.added_to(registry), &args, &plugins);
-    plugins.tell();
+    let result = dispatch_with(&plugins, &plugins.added_to(registry), &args);
+    plugins.show_messages();
     result
 }
 
 /// Corrects the spelling of a command in `help WORD…`: capitals, accents, spaces or underscores for hyphens. `None` if that does not help.
 fn respelled(registry: &Registry, args: &[OsString]) -> Option<Vec<OsString>> {
     let [program, help, words @ ..] = args else { return None };
-    let wanted = coming_from::plain(&joined(words));
+    let wanted = coming_from::plain(&join_words(words));
     let is_wanted = |name: &&str| !wanted.is_empty() && coming_from::plain(name) == wanted;
     let mut names = OTHERS.iter().map(|o| o.name).chain(registry.infos().into_iter().map(|i| i.name));
     let name = names.find(is_wanted).filter(|_| help == "help" && words.iter().all(|w| w != "+"))?;
     Some(vec![program.clone(), help.clone(), name.into()])
 }
 
-fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Result<Status, Ending> {
+/// Runs a subcommand with the plug-ins that are loaded, which `registry` has, too.
+fn dispatch_with(plugins: &Plugins, registry: &Registry, args: &[OsString]) -> Result<Status, Ending> {
     let respelled = respelled(registry, args);
     let args = respelled.as_deref().unwrap_or(args);
     // Each part after a lone `+` is parsed separately.
@@ -199,8 +202,8 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
         output::to_stdout(text.as_bytes())?;
         return Ok(Status::Complete);
     }
-    if let Some(said) = mistakes::single_dashed(args, || options_of(registry, args)) {
-        return Err(Failure::Usage(said).into());
+    if let Some(problem) = mistakes::single_dashed(args, || options_of(registry, args)) {
+        return Err(Failure::Usage(problem).into());
     }
     let mut command = build_for(registry, first.get(1));
     if first.iter().any(|a| a == "-h") {
@@ -210,7 +213,7 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     }
     let matches = command
         .try_get_matches_from(first)
-        .map_err(|e| broken(plugins, first).map_or_else(|| suggested(registry, first, e), Ending::from))?;
+        .map_err(|e| broken_plugin(plugins, first).map_or_else(|| with_advice(registry, first, e), Ending::from))?;
     let Some((name, m)) = matches.subcommand() else {
         return Err(Failure::usage("no command given; `pathwarp list` shows the deformations").into());
     };
@@ -222,53 +225,53 @@ fn dispatched(registry: &Registry, args: &[OsString], plugins: &Plugins) -> Resu
     // The pipeline checks the fonts later, when it knows the options of all parts and of the recipe.
     if registry.get(name).is_some() {
         return warp::deform(registry, name, m, first, &later).map_err(|e| match e {
-            Ending::Clap(e) => suggested(registry, args, e),
+            Ending::Clap(e) => with_advice(registry, args, e),
             other => other,
         });
     }
     if name != "run" {
         reading.check()?;
     }
-    let chains = ["run", "map", "solid"].contains(&name) || edits::info(name).is_some();
-    if !chains && !later.is_empty() {
+    let takes_chain = ["run", "map", "solid"].contains(&name) || edits::info(name).is_some();
+    if !takes_chain && !later.is_empty() {
         return Err(Failure::usage(format!("{name} is not a deformation; `+` chains deformations")).into());
     }
     let missing = || Failure::usage(format!("there is no command {name}"));
-    (other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
+    (find_other(name).ok_or_else(missing)?.run)(&Call { registry, plugins, matches: m, words: first, later: &later })
 }
 
 /// Joins words to a text.
-fn joined(words: &[OsString]) -> String {
+fn join_words(words: &[OsString]) -> String {
     words.iter().map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the text of `help WORD` for a word, or several words, that is not a command.
 fn foreign_help(registry: &Registry, args: &[OsString]) -> Option<String> {
     let [_, help, words @ ..] = args else { return None };
-    let known = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
-    let wanted = joined(words);
-    if help != "help" || wanted.starts_with('-') || known(&wanted).is_some() || wanted == "help" {
+    let command = |name: &str| build_for(registry, Some(&name.into())).find_subcommand(name).cloned();
+    let wanted = join_words(words);
+    if help != "help" || wanted.starts_with('-') || command(&wanted).is_some() || wanted == "help" {
         return None;
     }
-    coming_from::help(registry, &wanted, |name| known(name)?.get_about().map(ToString::to_string))
+    coming_from::help(registry, &wanted, |name| command(name)?.get_about().map(ToString::to_string))
 }
 
 /// Returns the error that `args` begin with a deformation whose plug-in is broken.
-fn broken(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
+fn broken_plugin(plugins: &Plugins, args: &[OsString]) -> Option<Failure> {
     let word = args.get(1).filter(|w| *w != "help").or(args.get(2));
     plugins.failure(word?.to_str()?)
 }
 
-/// Adds suggestions to an error of clap: commands and options of other programs, and quotes for `#NAME`, a comment to shells.
-fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Ending {
+/// Adds advice to an error of clap: commands and options of other programs, and quotes for `#NAME`, a comment to shells.
+fn with_advice(registry: &Registry, args: &[OsString], mut error: clap::Error) -> Ending {
     let context = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),
         _ => None,
     };
     let is_help = args.get(1).is_some_and(|a| a == "help");
-    let tip = match error.kind() {
+    match error.kind() {
         ErrorKind::InvalidSubcommand if args.get(1).is_none_or(|a| a != "solid") => {
-            let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(joined);
+            let asked = args.get(2..).filter(|words| is_help && !words.is_empty()).map(join_words);
             let word = asked.or_else(|| context(ContextKind::InvalidSubcommand)).unwrap_or_default();
             if let Some(meant) = mistakes::command(registry, &word) {
                 return Failure::usage(meant).into();
@@ -278,40 +281,38 @@ fn suggested(registry: &Registry, args: &[OsString], mut error: clap::Error) -> 
             let known = whole.get_subcommands().map(Command::get_name).chain(foreign.iter().map(String::as_str));
             let word = word.to_lowercase();
             let unknown = advice::unknown("command", &word, known);
-            let join = if unknown.ends_with('?') { " " } else { "; " };
-            let unknown = unknown + join + "`pathwarp list` shows all deformations";
-            return if is_help { Failure::usage(unknown).into() } else { error.into() };
+            let separator = if unknown.ends_with('?') { " " } else { "; " };
+            let unknown = unknown + separator + "`pathwarp list` shows all deformations";
+            if is_help { Failure::usage(unknown).into() } else { error.into() }
         }
         ErrorKind::InvalidValue if context(ContextKind::InvalidArg).is_some_and(|arg| arg.contains(PATHREF)) => {
-            Some("shells take a word that starts with # for a comment; quote it: '#NAME'".to_owned())
+            let advice = "shells take a word that starts with # for a comment; quote it: '#NAME'";
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![advice.into()]));
+            error.into()
         }
         ErrorKind::UnknownArgument => {
             let arg = context(ContextKind::InvalidArg).unwrap_or_default();
             let known = options_of(registry, args);
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let said = if arg.starts_with('-') {
+            let problem = if arg.starts_with('-') {
                 format!("there is no option {arg}; {}", mistakes::option(&arg, &known))
             } else {
                 format!("{arg} is one word too many; {}", mistakes::surplus(&arg, args, &known))
             };
-            return Failure::usage(said).into();
+            Failure::usage(problem).into()
         }
-        _ => None,
-    };
-    if let Some(tip) = tip {
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        _ => error.into(),
     }
-    error.into()
 }
 
 /// Returns the options of the commands that a command line names.
 fn options_of(registry: &Registry, args: &[OsString]) -> Vec<String> {
     let commands = args.iter().enumerate().skip(1).filter(|(i, _)| *i == 1 || args[i - 1] == "+").map(|(_, word)| word);
-    let names = commands.flat_map(|word| {
+    let options = commands.flat_map(|word| {
         let whole = build_for(registry, Some(word));
-        let command = word.to_str().and_then(|w| whole.find_subcommand(w));
-        let longs = command.into_iter().flat_map(|c| c.get_arguments().filter_map(|a| a.get_long().map(str::to_owned)));
-        longs.collect::<Vec<_>>()
+        let arguments =
+            word.to_str().and_then(|w| whole.find_subcommand(w)).into_iter().flat_map(Command::get_arguments);
+        arguments.filter_map(|a| a.get_long().map(str::to_owned)).collect::<Vec<_>>()
     });
-    names.collect()
+    options.collect()
 }

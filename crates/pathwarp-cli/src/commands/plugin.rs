@@ -1,5 +1,7 @@
 //! Commands for authors of plug-ins: `new-plugin` writes a template, and `check` checks a plug-in or a built-in deformation.
 
+use crate::commands::args::option;
+use crate::commands::install::{Part, install_files};
 use crate::ending::Status;
 use crate::plugins::{Plugins, is_file_name};
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -9,10 +11,8 @@ use pathwarp::kurbo::Point;
 use pathwarp::map::Jet;
 use pathwarp::param::Args;
 use pathwarp_engine::failure::Failure;
-use pathwarp_engine::output::{self, PendingFile};
-use pathwarp_engine::{advice, readable};
+use pathwarp_engine::{advice, output, readable};
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -35,37 +35,37 @@ pub(super) fn check_command() -> Command {
 pub(super) fn check(registry: &Registry, plugins: &Plugins, m: &ArgMatches) -> Result<Status, Failure> {
     let what = m.get_one::<String>("WHAT").map_or("", String::as_str);
     let by_file = || plugins.last_given().map(|p| p as &dyn Deformation);
-    let named = registry.get(what).map(|e| &**e as &dyn Deformation);
-    let entry = if is_file_name(Path::new(what)) { by_file() } else { named };
+    let by_name = registry.get(what).map(|e| &**e as &dyn Deformation);
+    let entry = if is_file_name(Path::new(what)) { by_file() } else { by_name };
     let Some(entry) = entry else {
         let unknown = || advice::unknown("deformation", what, registry.entries().iter().map(|e| e.info().name));
         return Err(plugins.failure(what).unwrap_or_else(|| Failure::usage(unknown())));
     };
     let name = entry.info().name;
-    let whose = match plugins.get(name) {
+    let title = match plugins.get(name) {
         None => format!("{name}, built in\n"),
         Some(p) => format!("{name}, the plug-in {}\n", p.path().display()),
     };
-    output::to_stdout(whose.as_bytes())?;
+    output::to_stdout(title.as_bytes())?;
     // Measure before the checks, which take long if it is slow.
     let speed = speed(entry).map(|speed| format!("  ok    {:<10}  {speed}\n", "speed")).unwrap_or_default();
-    let mut told = output::to_stdout(speed.as_bytes());
+    let mut printed = output::to_stdout(speed.as_bytes());
     let (mut wrong, mut count) = (0, 0);
     report(entry, |check| {
         count += 1;
         wrong += usize::from(!check.faults.is_empty());
-        if told.is_ok() {
-            told = show(&check);
+        if printed.is_ok() {
+            printed = print_check(&check);
         }
     });
-    told?;
+    printed?;
     let verdict = if wrong == 0 { "is sound".to_owned() } else { format!("fails {wrong} of {count} checks") };
     output::to_stdout(format!("{name} {verdict}\n").as_bytes())?;
     Ok(Status::partial_if(wrong > 0))
 }
 
 /// Prints the lines of one check.
-fn show(check: &Check) -> Result<(), Failure> {
+fn print_check(check: &Check) -> Result<(), Failure> {
     let word = if check.faults.is_empty() { "ok  " } else { "FAIL" };
     let mut out = format!("  {word}  {:<10}  {}\n", check.name, readable::message(&check.detail));
     for fault in &check.faults {
@@ -86,22 +86,23 @@ fn speed(entry: &dyn Deformation) -> Option<String> {
     const DRAWING: u32 = 20_000;
     let built = entry.build_from(&Args::from_pairs(entry.info().demo), &frame()).ok()?;
     let map = &*built.map;
-    let place = |i: usize| Point::new(3.0 + 0.0231 * i as f64, 97.0 - 0.0229 * i as f64);
-    let points: Vec<Point> = (0..BATCH).map(place).collect();
+    // Points along a diagonal of the box.
+    let sample = |i: usize| Point::new(3.0 + 0.0231 * i as f64, 97.0 - 0.0229 * i as f64);
+    let points: Vec<Point> = (0..BATCH).map(sample).collect();
     let (mut images, mut jets) = (points.clone(), vec![Jet::default(); BATCH]);
-    let each = |count: usize, work: &mut dyn FnMut()| {
+    let time_each = |count: usize, work: &mut dyn FnMut()| {
         let clock = Instant::now();
         work();
         clock.elapsed() / count as u32
     };
-    let point = each(FEW, &mut || map.points(&points[..FEW], &mut images[..FEW]));
+    let point = time_each(FEW, &mut || map.points(&points[..FEW], &mut images[..FEW]));
     let speed = if point > SLOW {
         let drawing = point * DRAWING;
         format!("slow: {point:.1?} for a point, in batches of {FEW}; a drawing of {DRAWING} points takes {drawing:.1?}")
     } else {
-        let point = each(BATCH, &mut || map.points(&points, &mut images));
-        let jet = each(BATCH, &mut || map.jets(&points, &mut jets));
-        let single = each(FEW, &mut || points.iter().take(FEW).for_each(|p| _ = map.point(*p)));
+        let point = time_each(BATCH, &mut || map.points(&points, &mut images));
+        let jet = time_each(BATCH, &mut || map.jets(&points, &mut jets));
+        let single = time_each(FEW, &mut || points.iter().take(FEW).for_each(|p| _ = map.point(*p)));
         format!(
             "{point:.1?} for a point and {jet:.1?} for one with derivatives, in batches of {BATCH}; {single:.1?} for a single one"
         )
@@ -127,12 +128,7 @@ pub(super) fn new_plugin_command() -> Command {
         )
         .arg(Arg::new("NAME").required(true).help("Name of the deformation: lower-case words joined by hyphens"))
         .arg(
-            Arg::new("dir")
-                .long("dir")
-                .value_name("DIR")
-                .default_value(".")
-                .value_parser(value_parser!(PathBuf))
-                .help("Folder to write to"),
+            option("dir", "DIR", "Folder to write to").default_value(".").value_parser(value_parser!(PathBuf)),
         )
         .after_help(
             "Existing files are not overwritten.\n\nExamples:\n  pathwarp new-plugin python ripple\n  pathwarp check \
@@ -141,38 +137,40 @@ pub(super) fn new_plugin_command() -> Command {
         )
 }
 
-/// Writes the template. `taken` returns `true` for names of commands.
-pub(super) fn new_plugin(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result<Status, Failure> {
+/// Writes the template. `is_taken` returns `true` for names of commands.
+pub(super) fn new_plugin(m: &ArgMatches, is_taken: impl Fn(&str) -> bool) -> Result<Status, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let (language, name) = (word("LANGUAGE"), word("NAME"));
     let is_word = |w: &str| !w.is_empty() && w.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
     if !name.split('-').all(is_word) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
         return Err(Failure::usage(format!("NAME: `{name}` is not lower-case words joined by hyphens")));
     }
-    if taken(name) {
+    if is_taken(name) {
         return Err(Failure::usage(format!("NAME: `{name}` is a command already; choose another name")));
     }
     let folder = m.get_one::<PathBuf>("dir").map_or(Path::new("."), PathBuf::as_path);
     let program = format!("pathwarp-{name}");
+    let home = folder.join(&program);
     let files = match language {
-        "python" => vec![(folder.join(program).with_extension("py"), PYTHON)],
+        "python" => vec![(home.with_extension("py"), PYTHON)],
+        _ => vec![(home.join("Cargo.toml"), MANIFEST), (home.join("src/main.rs"), RUST)],
+    };
+    if let Some((file, _)) = files.iter().find(|(file, _)| file.exists()) {
+        return Err(Failure::output(file, "exists already"));
+    }
+    let part = |(file, template): &(PathBuf, &str)| {
+        let content = template.replace(PLACEHOLDER, name).into_bytes();
+        Part { name: file.clone(), content, is_executable: language == "python" }
+    };
+    let mut text = install_files(Path::new(""), &files.iter().map(part).collect::<Vec<_>>(), false)?;
+    let first = files[0].0.display();
+    let (build, file) = match language {
+        "python" => (String::new(), first.to_string()),
         _ => {
-            let home = folder.join(program);
-            vec![(home.join("Cargo.toml"), MANIFEST), (home.join("src/main.rs"), RUST)]
+            let built = home.join("target/release").join(program).display().to_string();
+            (format!("  cargo build --release --manifest-path {first}\n"), built)
         }
     };
-    write(&files, name)?;
-    let first = files[0].0.display().to_string();
-    let home = folder.join(format!("pathwarp-{name}"));
-    let built = home.join("target/release").join(format!("pathwarp-{name}")).display().to_string();
-    let (build, file) = match language {
-        "python" => (String::new(), first),
-        _ => (format!("  cargo build --release --manifest-path {first}\n"), built),
-    };
-    let mut text = String::new();
-    for (file, _) in &files {
-        let _ = writeln!(text, "wrote {}", file.display());
-    }
     let _ =
         write!(text, "next:\n{build}  pathwarp check {file}\n  pathwarp {name} IN.svg -o OUT.svg --plugin {file}\n");
     if let Some(folder) = pathwarp_plugin::folder() {
@@ -180,24 +178,4 @@ pub(super) fn new_plugin(m: &ArgMatches, taken: impl Fn(&str) -> bool) -> Result
     }
     output::to_stdout(text.as_bytes())?;
     Ok(Status::Complete)
-}
-
-/// Writes the files, none of which may exist; scripts become executable.
-fn write(files: &[(PathBuf, &str)], name: &str) -> Result<(), Failure> {
-    let mut pending = Vec::new();
-    for (file, template) in files {
-        if file.exists() {
-            return Err(Failure::output(file, "exists already"));
-        }
-        let folder = file.parent().unwrap_or(Path::new(""));
-        fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))?;
-        pending.push(PendingFile::new(file, template.replace(PLACEHOLDER, name).as_bytes())?);
-    }
-    PendingFile::commit_all(pending)?;
-    #[cfg(unix)]
-    for (file, _) in files.iter().filter(|(f, _)| f.extension().is_some_and(|e| e == "py")) {
-        use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(file, fs::Permissions::from_mode(0o755)).map_err(|e| Failure::output(file, e))?;
-    }
-    Ok(())
 }

@@ -1,11 +1,10 @@
 //! Commands for pictures: `render` draws an SVG file; `gallery` shows artwork under presets, or words in fonts, on one sheet.
 
-use crate::arguments;
-use crate::arguments::{reading_args, some_options};
-use crate::commands::args::{choice, file_arg, given_file, out_arg, target};
+use crate::arguments::{self, reading_args, some_options};
+use crate::commands::args::{choice, file_arg, given_file, option, out_arg, switch, target};
 use crate::ending::Status;
 use crate::terminal;
-use clap::{Arg, ArgAction, ArgGroup, ArgMatches, Command, value_parser};
+use clap::{ArgGroup, ArgMatches, Command, value_parser};
 use pathwarp::deform::{Deformation, Gallery, Registry};
 use pathwarp::param::{Args, Axis, Frame, Param};
 use pathwarp::refit;
@@ -27,9 +26,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 pub(super) fn render_command() -> Command {
-    let pixels = |name: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name("PX").value_parser(value_parser!(u32).range(1..)).help(help)
-    };
+    let pixels = |name, help| option(name, "PX", help).value_parser(value_parser!(u32).range(1..));
     Command::new("render")
         .about("Draw an SVG file as a picture: PNG, JPEG or WebP")
         .arg(file_arg("INPUT", "An SVG file; - is standard input"))
@@ -40,20 +37,15 @@ pub(super) fn render_command() -> Command {
         .args(some_options(&["format", "quality", "quiet"]))
         .arg(pixels("width", "Width in pixels"))
         .arg(pixels("height", "Height in pixels"))
-        .arg(
-            Arg::new("scale")
-                .long("scale")
-                .value_name("S")
-                .value_parser(value_parser!(f32))
-                .help("Pixels per px of the drawing"),
-        )
+        .arg(option("scale", "S", "Pixels per px of the drawing").value_parser(value_parser!(f32)))
         .group(ArgGroup::new("size").args(["width", "height", "scale"]))
         .arg(
-            Arg::new("background")
-                .long("background")
-                .value_name("COLOUR|none")
-                .value_parser(background)
-                .help("Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]"),
+            option(
+                "background",
+                "COLOUR|none",
+                "Colour behind the drawing, as in CSS [default: none; white in a JPEG, which has no transparency]",
+            )
+            .value_parser(background),
         )
         .after_help(
             "Examples:\n  pathwarp render samples/logo.svg -o logo.png --width 800 --background white\n  pathwarp render \
@@ -67,26 +59,23 @@ pub(super) fn render(m: &ArgMatches) -> Result<Status, Failure> {
     let target = target(m, [file])?;
     let options = arguments::given(m).read()?;
     let format = Choice { what: "a picture is", among: PICTURES }.format(target, options.format)?;
-    let size = if let Some(&w) = m.get_one::<u32>("width") {
-        Size::Width(w)
-    } else if let Some(&h) = m.get_one::<u32>("height") {
-        Size::Height(h)
-    } else {
-        m.get_one::<f32>("scale").map_or(Size::Native, |s| Size::Scale(*s))
+    let side = |name: &str| m.get_one::<u32>(name).copied();
+    let size = match (side("width"), side("height"), m.get_one::<f32>("scale")) {
+        (Some(width), ..) => Size::Width(width),
+        (None, Some(height), _) => Size::Height(height),
+        (None, None, scale) => scale.map_or(Size::Native, |s| Size::Scale(*s)),
     };
     terminal::refuse_terminal(target, "the picture", format.extension())?;
-    let background = match m.get_one::<Background>("background") {
-        Some(Background(None)) if format == Format::Jpeg => {
-            return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
-        }
-        Some(Background(color)) => *color,
-        // JPEG files get a white background when they are encoded.
-        None => None,
-    };
+    let background = m.get_one::<Background>("background");
+    if matches!(background, Some(Background(None))) && format == Format::Jpeg {
+        return Err(Failure::usage("--background none: a JPEG has no transparency; write a .png or .webp"));
+    }
+    // By default, JPEG files get a white background when they are encoded.
+    let background = background.and_then(|b| b.0);
     let bytes = input::bytes(file)?;
     let name = input::display(file);
-    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading))
-        .map_err(|e| input::not_a_drawing(&bytes, file, e.into()))?;
+    let read = usvg_tree::read_tree(&bytes, &name, &input::read_options(file, &options.reading));
+    let read = read.map_err(|e| input::not_a_drawing(&bytes, file, e.into()))?;
     let limits = options.reading.limits.for_input(bytes.len());
     let drawn = RenderOptions { size, background }.render_within(&read.tree, &limits);
     let picture = encode(drawn.map_err(|e| Failure::from(e).about(&name))?, format, options.quality)?;
@@ -126,52 +115,31 @@ pub(super) fn gallery_command(registry: &Registry) -> Command {
             "Write the sheet to this file: .svg, .svgz, .pdf, .png, .jpg or .webp; - or none writes SVG to standard output",
         ))
         .args(some_options(&["format", "quality", "page-width", "page-height", "show-nodes"]))
+        .arg(choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]))
+        .arg(switch(ALL, "The same as --set all").conflicts_with("set"))
         .arg(
-            choice("set", &sets, "The set of presets to draw, or all of them").default_value(sets[0]),
-        )
-        .arg(Arg::new(ALL).long(ALL).action(ArgAction::SetTrue).conflicts_with("set").help("The same as --set all"))
-        .arg(
-            Arg::new(FONTS)
-                .long(FONTS)
-                .value_name("WORDS")
-                .conflicts_with_all(["INPUT", "set", ALL])
-                .help("Draw these words in every installed family that has their letters, and in the bundled ones"),
+            option(FONTS, "WORDS", "Draw these words in every installed family that has their letters, and in the bundled ones")
+                .conflicts_with_all(["INPUT", "set", ALL]),
         )
         .arg(
-            Arg::new("bend")
-                .long("bend")
-                .value_name("NUMBER")
+            option("bend", "NUMBER", "Amount of bend of the presets that bend")
                 .allow_hyphen_values(true)
-                .default_value("50%")
-                .help("Amount of bend of the presets that bend"),
+                .default_value("50%"),
         )
         .arg(
             choice("axis", &["horizontal", "vertical"], "Direction in which artwork runs through the presets")
                 .default_value("horizontal"),
         )
         .arg(
-            Arg::new("columns")
-                .long("columns")
-                .value_name("N")
+            option("columns", "N", "Number of cells per row")
                 .value_parser(value_parser!(u32).range(1..=64))
-                .default_value("4")
-                .help("Number of cells per row"),
+                .default_value("4"),
         )
+        .arg(option("cell", "WxH", "Size of a cell in px").value_parser(cell).default_value("260x190"))
         .arg(
-            Arg::new("cell")
-                .long("cell")
-                .value_name("WxH")
-                .value_parser(cell)
-                .default_value("260x190")
-                .help("Size of a cell in px"),
-        )
-        .arg(
-            Arg::new("scale")
-                .long("scale")
-                .value_name("S")
+            option("scale", "S", "Pixels per px of a sheet that is a picture")
                 .value_parser(value_parser!(f32))
-                .default_value("1")
-                .help("Pixels per px of a sheet that is a picture"),
+                .default_value("1"),
         )
         .args(reading_args())
         .after_help(
@@ -203,7 +171,7 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
         ));
     }
     let file = file.unwrap_or(Path::new("-"));
-    let Content { mut cells, title, left_out } = match fonts {
+    let Contents { mut cells, title, left_out } = match fonts {
         Some(words) => in_fonts(words, &options)?,
         None => under_presets(registry, m, file, &options)?,
     };
@@ -235,16 +203,17 @@ pub(super) fn gallery(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
 }
 
 /// The cells and the title of a sheet, with the reasons for missing cells.
-struct Content {
+struct Contents {
     cells: Vec<Cell>,
     title: String,
     left_out: Vec<String>,
 }
 
 /// Sets words in every installed family that has all their letters.
-fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
+fn in_fonts(words: &str, options: &CommonOptions) -> Result<Contents, Failure> {
     let (read, limits) = (options.reading.read_options(), options.reading.limits.for_input(words.len()));
     let families = families(&read);
+    // The cell, and `true` if the family has all letters.
     let set = |family: &String| -> Result<_, Failure> {
         let file = find_font(family, REGULAR, false, &read)?;
         let text = laid_out(words, &[read_font(family, &file)?], &TextStyle::default(), &limits)?;
@@ -258,7 +227,7 @@ fn in_fonts(words: &str, options: &CommonOptions) -> Result<Content, Failure> {
         return Err(Failure::usage(format!("--{FONTS}: no installed family has all letters of “{words}”")));
     }
     let (shown, all) = (cells.len(), families.len());
-    Ok(Content { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
+    Ok(Contents { cells, title: format!("{words}: {shown} of {all} families have its letters"), left_out: Vec::new() })
 }
 
 /// Bends a drawing by every preset of a set.
@@ -267,18 +236,17 @@ fn under_presets(
     m: &ArgMatches,
     file: &Path,
     options: &CommonOptions,
-) -> Result<Content, Failure> {
+) -> Result<Contents, Failure> {
     let word = |name: &str| m.get_one::<String>(name).map_or("", String::as_str);
     let set = if m.get_flag(ALL) { ALL } else { word("set") };
     let (bend, axis) = (word("bend"), word("axis"));
     let doc = input::document(file, &options.reading)?;
-    let frame = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
-
+    let bounds = doc.seen_box(&Selection::default()).ok_or_else(|| Failure::file(file, "holds nothing to warp"))?;
     let sets: Vec<(&dyn Deformation, Gallery)> = sets(registry).filter(|(_, g)| set == ALL || g.set == set).collect();
-    let presets: Vec<Preset<'_>> =
-        sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis)).collect();
+    let presets = sets.iter().flat_map(|(entry, gallery)| presets(*entry, gallery, bend, axis));
+    let presets: Vec<Preset<'_>> = presets.collect();
     let lettering = doc.lettering(&Selection::default());
-    let frame = Frame::new(frame);
+    let frame = Frame::new(bounds);
     let frame = if lettering.is_level() { frame.with_letters(lettering.letters().into()) } else { frame };
     let draw = |p: &Preset<'_>| {
         let WarpedDocument { svg, skipped, .. } = p.warp(&doc, &frame)?;
@@ -293,7 +261,7 @@ fn under_presets(
         cells.insert(0, Cell { svg, label: "as it is".into() });
     }
     let left_out = skipped.iter().map(|reason| format!("{}: {reason}", input::display(file))).collect();
-    Ok(Content { cells, title: title(file, &sets, bend, axis), left_out })
+    Ok(Contents { cells, title: title(file, &sets, bend, axis), left_out })
 }
 
 /// Lists the first reasons why something is not warped, or is left out, in a cell, and counts the others.
@@ -333,11 +301,8 @@ fn presets<'a>(entry: &'a dyn Deformation, gallery: &Gallery, bend: &str, axis: 
     let names = entry.info().params.iter().find(|p| p.name == gallery.presets).map_or(&[][..], Param::names);
     let preset = |&name: &&'static str| {
         let mut args = Args::from_pairs(&[(gallery.presets, name)]);
-        for (param, value) in [(gallery.bend, bend), (gallery.axis, axis)] {
-            if let Some(param) = param {
-                args.push(param, value);
-            }
-        }
+        gallery.bend.into_iter().for_each(|param| args.push(param, bend));
+        gallery.axis.into_iter().for_each(|param| args.push(param, axis));
         Preset { entry, name, args }
     };
     names.iter().map(preset).collect()
@@ -348,9 +313,7 @@ impl Preset<'_> {
     fn warp(&self, doc: &Document, frame: &Frame) -> Result<WarpedDocument, Failure> {
         let built = self.entry.build_from(&self.args, frame)?;
         let tolerance = TOLERANCE * frame.extent(Axis::Diagonal);
-        let options = WarpOptions::new(
-            refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone()),
-        );
-        Ok(doc.warp(&built.map, &options)?)
+        let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source).with_budget(doc.budget().clone());
+        Ok(doc.warp(&built.map, &WarpOptions::new(refit))?)
     }
 }

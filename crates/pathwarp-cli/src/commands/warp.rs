@@ -1,8 +1,7 @@
 //! Commands that warp files: `pathwarp DEFORMATION …` by a deformation or a chain, `run` by a saved recipe, and the edits `simplify`,
 //! `offset`, `unite`, `contour` and `outline`.
 
-use crate::arguments;
-use crate::arguments::inputs_arg;
+use crate::arguments::{self, inputs_arg};
 use crate::commands::args::{file_arg, given_file, switch};
 use crate::ending::{Ending, Status};
 use crate::steps::{self, ChainPart};
@@ -52,28 +51,26 @@ pub(super) fn deform(
     let mut parts = vec![first];
     parts.extend(steps::parts(registry, later, &arguments::options_without_inputs().collect::<Vec<_>>())?);
     let (recipe, given) = steps::chained(parts)?;
-    mistaken(words, &given)?;
+    check_inputs(words, &given)?;
     let bends = recipe.steps.iter().any(|s| edits::info(&s.deformation).is_none());
-    let of_edits = |name: &&str| OF_EDITS.iter().chain(&SHARED).any(|known| known == name);
-    if let Some(other) = given.names().find(|name| !bends && !of_edits(name)) {
+    let is_for_edits = |name: &&str| EDIT_OPTIONS.iter().chain(&SHARED).any(|known| known == name);
+    if let Some(other) = given.names().find(|name| !bends && !is_for_edits(name)) {
         return Err(Failure::usage(format!("--{other} is for steps that bend; {name} does not")).into());
     }
     Ok(pipeline::run(registry, &recipe, &given, None)?)
 }
 
 /// Refuses inputs that are parts of values, options or names.
-pub(super) fn mistaken(words: &[OsString], given: &Given) -> Result<(), Failure> {
-    mistakes::inputs(words, given.inputs(), given.gives("out") || given.gives("out-dir"))
-        .map_or(Ok(()), |said| Err(Failure::Usage(said)))
+fn check_inputs(words: &[OsString], given: &Given) -> Result<(), Failure> {
+    let problem = mistakes::inputs(words, given.inputs(), given.gives("out") || given.gives("out-dir"));
+    problem.map_or(Ok(()), |problem| Err(Failure::Usage(problem)))
 }
 
 pub(super) fn run_command(registry: &Registry) -> Command {
     Command::new("run")
         .about("Run a recipe file that --write-recipe saved")
         .arg(file_arg("RECIPE", "A recipe (TOML)"))
-        .arg(
-            switch(INVERSE, "Apply the inverse of every step, the last first (give --frame: the source's box)"),
-        )
+        .arg(switch(INVERSE, "Apply the inverse of every step, the last first (give --frame: the source's box)"))
         .args(arguments::args())
         .args(parameters(registry))
         .args_override_self(true)
@@ -87,16 +84,17 @@ pub(super) fn run_command(registry: &Registry) -> Command {
 
 /// Returns the parameters of all deformations, which override the recipe's. They are hidden, since the recipe determines which apply.
 fn parameters(registry: &Registry) -> Vec<Arg> {
+    // Each name, with `true` if it is a switch in every deformation that has it.
     let mut known: BTreeMap<&'static str, bool> = BTreeMap::new();
     for p in registry.entries().iter().flat_map(|e| e.info().params) {
         *known.entry(p.name).or_insert(true) &= p.kind == Kind::Flag;
     }
-    let taken = |name: &str| name == INVERSE || OPTIONS.iter().any(|o| o.name == name);
+    let is_taken = |name: &str| name == INVERSE || OPTIONS.iter().any(|o| o.name == name);
     let arg = |(name, is_flag): (&'static str, bool)| {
         let arg = Arg::new(name).long(name).hide(true);
         if is_flag { arg.action(ArgAction::SetTrue) } else { arg.action(ArgAction::Append).allow_hyphen_values(true) }
     };
-    known.into_iter().filter(|(name, _)| !taken(name)).map(arg).collect()
+    known.into_iter().filter(|(name, _)| !is_taken(name)).map(arg).collect()
 }
 
 /// Sets the parameters given on the command line in the only step that has them.
@@ -106,12 +104,11 @@ fn override_parameters(registry: &Registry, recipe: &mut Recipe, m: &ArgMatches)
         if m.value_source(name) != Some(ValueSource::CommandLine) || OPTIONS.iter().any(|o| o.name == name) {
             continue;
         }
-        let has = |step: &Step| {
-            registry.get(&step.deformation).is_some_and(|e| e.info().params.iter().any(|p| p.name == name))
-        };
-        if !registry.entries().iter().any(|e| e.info().params.iter().any(|p| p.name == name)) {
+        let has_param = |info: &Info| info.params.iter().any(|p| p.name == name);
+        if !registry.entries().iter().any(|e| has_param(e.info())) {
             continue;
         }
+        let has = |step: &Step| registry.get(&step.deformation).is_some_and(|e| has_param(e.info()));
         let mut steps: Vec<&mut Step> = recipe.steps.iter_mut().filter(|s| has(s)).collect();
         let values = || m.get_raw(name).into_iter().flatten().map(|v| v.to_string_lossy().into_owned()).collect();
         match steps.as_mut_slice() {
@@ -131,7 +128,7 @@ pub(super) fn run_recipe(registry: &Registry, m: &ArgMatches, words: &[OsString]
     let mut saved = recipe_file::read(registry, file, arguments::reading(m)?.external)?;
     override_parameters(registry, &mut saved.recipe, m)?;
     let given = saved.options.overridden_by(&arguments::given(m));
-    mistaken(words, &given)?;
+    check_inputs(words, &given)?;
     // The command line has no conflicts by itself, so a conflict found now involves the recipe.
     given.check_conflicts().map_err(|e| Failure::file(file, format!("[options] {e}")))?;
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
@@ -172,11 +169,11 @@ const SHARED: [&str; 29] = [
 ];
 
 /// The options that some edits list beside their parameters.
-const OF_EDITS: [&str; 3] = ["text", "union", "image-dpi"];
+const EDIT_OPTIONS: [&str; 3] = ["text", "union", "image-dpi"];
 
 pub(super) fn caption_command() -> Command {
     let about = "Set words on a drawing";
-    declared("caption", about, &[])
+    edit_command("caption", about, &[])
         .long_about(format!(
             "{about}.\n\nThe words lie above the drawing, as the outlines of their letters, and bend with it. A recipe has them as words. The group \
              of the first caption is called caption-1, and its letters caption-1-1, caption-1-2 and so on, for --select.",
@@ -190,7 +187,7 @@ pub(super) fn caption_command() -> Command {
 
 pub(super) fn simplify_command() -> Command {
     let about = "Give paths the fewest nodes within a distance";
-    declared("simplify", about, &[])
+    edit_command("simplify", about, &[])
         .long_about(format!(
             "{about}.\n\nTraced drawings and those of many small steps get smooth curves with few nodes, each point of which is within \
              --tolerance of the original, and the original of them. Ids, classes, groups and everything else stay as they are; so do \
@@ -205,7 +202,7 @@ pub(super) fn simplify_command() -> Command {
 
 pub(super) fn offset_command() -> Command {
     let about = "Let areas grow or shrink, and lines run beside themselves";
-    declared("offset", about, &["text"])
+    edit_command("offset", about, &["text"])
         .long_about(format!(
             "{about}.\n\nEach point of the result has its distance from the source, within --tolerance. Loops and slivers are removed; what is \
              narrower than the distance vanishes, and a note says so. A path is one area: its outlines unite, those of different paths do \
@@ -222,7 +219,7 @@ pub(super) fn offset_command() -> Command {
 
 pub(super) fn unite_command() -> Command {
     let about = "Make one shape of those that overlap or touch";
-    declared("unite", about, &["text"])
+    edit_command("unite", about, &["text"])
         .long_about(format!(
             "{about}.\n\nLetters of a script, joined Arabic, a word on a bar, a logo of parts: what has a fill becomes one outline, in the place \
              and with the paint of the uppermost shape, which names the others in data-united. Curves stay curves, and gaps narrower than \
@@ -238,7 +235,7 @@ pub(super) fn unite_command() -> Command {
 
 pub(super) fn contour_command() -> Command {
     let about = "Draw one line around all that is visible, for stickers and signs";
-    declared("contour", about, &["text", "image-dpi"])
+    edit_command("contour", about, &["text", "image-dpi"])
         .long_about(format!(
             "{about}.\n\nStrokes count with their width, letters as they are set, pictures by their opacity, and clip paths and masks leave what \
              they leave; filters do not count. The line is round around corners, has the distance everywhere within --tolerance, and lies \
@@ -254,7 +251,7 @@ pub(super) fn contour_command() -> Command {
 
 pub(super) fn outline_command() -> Command {
     let about = "Turn strokes and text into filled outlines";
-    declared("outline", about, &["text", "union"])
+    edit_command("outline", about, &["text", "union"])
         .long_about(format!(
             "{about}.\n\nThe outline of a stroke, with its joins, caps and dashes, is within --tolerance of what the stroke covers. Shapes \
              without a stroke stay as they are.",
@@ -265,10 +262,10 @@ pub(super) fn outline_command() -> Command {
         )
 }
 
-/// Returns the command of an edit. The common options `own` are listed beside its parameters.
-fn declared(name: &'static str, about: &'static str, own: &[&str]) -> Command {
+/// Returns the command of an edit. The common options `listed` stand beside its parameters in the help.
+fn edit_command(name: &'static str, about: &'static str, listed: &[&str]) -> Command {
     let option = |arg: Arg| match OPTIONS.iter().find(|o| arg.get_id() == o.name) {
-        Some(o) if own.contains(&o.name) => arg.help_heading("Options"),
+        Some(o) if listed.contains(&o.name) => arg.help_heading("Options"),
         Some(o) if o.reading => arg.help_heading("Reading"),
         Some(o) => arg.hide(!SHARED.contains(&o.name)),
         None => arg,

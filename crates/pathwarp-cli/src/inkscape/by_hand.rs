@@ -1,13 +1,12 @@
 //! Bends objects by hand: opens the editor on them, and converts its steps to words of a command line.
 
-use super::line::{exclusions, referred, settled};
+use super::line::{exclusions, option_name, referred, with_frame};
 use super::names::{CHAIN, joined, split};
-use super::restoring::{Restoration, as_by_hand, remembering, restored};
+use super::restoring::{Restoration, restore, with_changes_by_hand, with_sources};
 use super::stage::{Scope, Stage, folder};
 use crate::watch;
 use pathwarp::recipe::Recipe;
-use pathwarp_editor::EngineHost;
-use pathwarp_editor::{Options, Purpose, selectors};
+use pathwarp_editor::{EngineHost, Options, Purpose, selectors};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::{Given, OPTIONS};
 use pathwarp_engine::steps::INVERSE;
@@ -17,38 +16,41 @@ use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The options for objects without a warp, as in the dialogs.
+/// The option for objects without a warp, as in the dialogs.
 const USUAL: &str = "--clones=follow";
 
 /// Opens the page, and warps the selected objects by the steps that the user confirms. Returns the drawing, or nothing if there are none.
 pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
-    let whole = stage.call.ids.is_empty();
-    let chosen = |o: &&Object| if whole { o.is_top && !o.is_locked } else { stage.call.ids.contains(&o.id) };
-    let artwork: Vec<String> = all.iter().filter(chosen).map(|o| o.id.clone()).collect();
+    let is_whole_page = stage.call.ids.is_empty();
+    let is_chosen = |o: &&Object| match is_whole_page {
+        true => o.is_top && !o.is_locked,
+        false => stage.call.ids.contains(&o.id),
+    };
+    let artwork: Vec<String> = all.iter().filter(is_chosen).map(|o| o.id.clone()).collect();
     if artwork.is_empty() {
         return Err(Failure::usage("there is nothing to bend in the drawing"));
     }
-    let again = warped_together(&all, &artwork);
+    let earlier = common_recipe(&all, &artwork);
     // Objects whose nodes were moved after their warp are bent as they are, since their sources would lose that.
-    let (Restoration { svg, objects: returned }, again) =
-        match restored(stage, &drawing, if again.is_some() { &artwork } else { &[] }, false) {
-            Ok(restoration) => (restoration, again),
-            Err(_) => (restored(stage, &drawing, &[], false)?, None),
+    let (Restoration { svg, objects: restored }, earlier) =
+        match restore(stage, &drawing, if earlier.is_some() { &artwork } else { &[] }, false) {
+            Ok(restoration) => (restoration, earlier),
+            Err(_) => (restore(stage, &drawing, &[], false)?, None),
         };
 
-    let mut options = again.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
-    if whole && again.is_none() {
+    let mut options = earlier.as_ref().map_or_else(|| vec![USUAL.to_owned()], |line| options_of(line));
+    if is_whole_page && earlier.is_none() {
         options.extend(exclusions(&all));
     }
-    let scope = Scope { ids: if whole { &[] } else { &artwork } };
-    let opened = match &again {
+    let scope = Scope { ids: if is_whole_page { &[] } else { &artwork } };
+    let opened = match &earlier {
         // The editor opens a result that contains its source and recipe with its steps.
         Some(line) => stage.warp(&svg, &[&line[..], &["--embed-recipe".to_owned()]].concat(), &scope, None)?.svg,
         None => svg.clone(),
     };
-    let Some(recipe) = edited(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
+    let Some(recipe) = edit(stage, &opened, &options, &scope)? else { return Ok(String::new()) };
     if recipe.steps.is_empty() {
         return Ok(svg);
     }
@@ -56,13 +58,13 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     let outcome = stage.warp(&svg, &line, &scope, None)?;
     stage.check(&svg, &outcome)?;
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&settled(stage, line, &outcome));
-    let result = remembering(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
-    as_by_hand(stage, &drawing, result, &returned)
+    let recipe = joined(&with_frame(stage, line, &outcome));
+    let result = with_sources(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;
+    with_changes_by_hand(stage, &drawing, result, &restored)
 }
 
 /// Returns the recipe of these objects, if all have the same and its guides still exist.
-fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
+fn common_recipe(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
     let mut recipes = all.iter().filter(|o| ids.contains(&o.id)).map(|o| o.recipe.as_ref());
     let first = recipes.next()??;
     let line = split(first);
@@ -71,12 +73,12 @@ fn warped_together(all: &[Object], ids: &[String]) -> Option<Vec<String>> {
 }
 
 /// Opens the page on a drawing. Returns the steps that the user confirms.
-fn edited(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
+fn edit(stage: &Stage<'_>, svg: &str, options: &[String], scope: &Scope<'_>) -> Result<Option<Recipe>, Failure> {
     let mut given = Given::default();
     let mut set = |name: &str, value: &str| given.set(name, value).map_err(Failure::Usage);
     for word in options {
-        let own = word.trim_start_matches("--");
-        let (name, value) = own.split_once('=').unwrap_or((own, "true"));
+        let option = word.trim_start_matches("--");
+        let (name, value) = option.split_once('=').unwrap_or((option, "true"));
         set(name, value)?;
     }
     for id in scope.ids {
@@ -124,10 +126,7 @@ fn words_of(stage: &Stage<'_>, recipe: &Recipe) -> Vec<String> {
 
 /// Returns the common options among the words of a recipe.
 fn options_of(line: &[String]) -> Vec<String> {
-    let is_option = |word: &&String| {
-        let own = word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name));
-        own.is_some_and(|name| OPTIONS.iter().any(|o| o.name == name))
-    };
+    let is_option = |word: &&String| OPTIONS.iter().any(|o| option_name(word) == Some(o.name));
     line.iter().filter(is_option).cloned().collect()
 }
 

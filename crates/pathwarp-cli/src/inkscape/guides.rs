@@ -1,6 +1,6 @@
 //! Divides the selection into guides and artwork.
 
-use super::line::word;
+use super::line::{option_name, word};
 use super::names::{AUTOMATIC, GUIDES};
 use super::stage::Call;
 use pathwarp::deform::Info;
@@ -29,8 +29,7 @@ impl Sorted {
 
 /// Divides the selection of a call. `given` has the words for the deformation's parameters from the dialog.
 pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[String]) -> Result<Sorted, Failure> {
-    let is_given =
-        |p: &Param| given.iter().any(|w| w.strip_prefix("--").and_then(|w| w.split('=').next()) == Some(p.name));
+    let is_given = |p: &Param| given.iter().any(|word| option_name(word) == Some(p.name));
     let open: Vec<&Param> = info.params.iter().filter(|p| p.kind == Kind::Path && !is_given(p)).collect();
     let selected: Vec<&Object> = objects.iter().filter(|o| call.ids.contains(&o.id)).collect();
     let everything = || objects.iter().filter(|o| o.is_top && !o.is_locked).collect();
@@ -42,10 +41,10 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         Some(n) => Some(n.parse::<usize>().map_err(|_| Failure::usage(format!("`{n}` is no number of guides")))?),
     };
     // A path, a file or points given in the dialog replace guides.
-    let otherwise = || info.params.iter().any(|p| is_alternative(p) && is_given(p));
-    let count = wanted.unwrap_or(if guides.is_empty() && !otherwise() { info.guides.usual } else { 0 });
-    let inside = |o: &&Object| call.ids.is_empty() && !o.is_locked || call.ids.contains(&o.id);
-    let mut paths: Vec<&Object> = objects.iter().filter(|o| o.is_path && inside(o)).collect();
+    let has_alternative = || info.params.iter().any(|p| is_alternative(p) && is_given(p));
+    let count = wanted.unwrap_or(if guides.is_empty() && !has_alternative() { info.guides.usual } else { 0 });
+    let is_selected = |o: &Object| (call.ids.is_empty() && !o.is_locked) || call.ids.contains(&o.id);
+    let mut paths: Vec<&Object> = objects.iter().filter(|o| o.is_path && is_selected(o)).collect();
     paths.retain(|o| !guides.iter().any(|(_, id)| *id == o.id));
     // At least one object must remain to be warped.
     let spare = if call.ids.is_empty() { paths.len() } else { artwork.len() }.saturating_sub(1);
@@ -57,10 +56,10 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
         guides.extend(free.into_iter().zip(topmost.map(|o| o.id.clone())));
     }
     // A deformation that usually has a guide needs one, unless the dialog gives an alternative.
-    let usual = info.guides.params.first().filter(|_| info.guides.usual > 0 && wanted.is_none() && !otherwise());
-    let is_needed = |p: &Param| p.needed || p.default.is_none() && usual == Some(&p.name);
+    let usual = info.guides.params.first().filter(|_| info.guides.usual > 0 && wanted.is_none() && !has_alternative());
+    let is_needed = |p: &Param| p.needed || (p.default.is_none() && usual == Some(&p.name));
     if let Some(p) = open.iter().find(|p| is_needed(p) && !guides.iter().any(|(name, _)| *name == p.name)) {
-        return Err(missing(p, call));
+        return Err(missing_guide(p, call));
     }
     let ids: HashSet<&str> = guides.iter().map(|(_, id)| id.as_str()).collect();
     let artwork = without(objects, &artwork.iter().map(|o| o.id.as_str()).collect::<Vec<_>>(), &ids);
@@ -73,29 +72,30 @@ pub(super) fn sorted(info: &Info, objects: &[Object], call: &Call, given: &[Stri
 /// Finds paths whose label or id is a parameter's name or, for the first guide, one of the general labels. Selected ones take precedence.
 fn labelled(info: &Info, open: &[&Param], objects: &[Object], selected: &[&Object]) -> Vec<(&'static str, String)> {
     let first = info.guides.params.first();
-    let called = |o: &Object, p: &Param| {
-        let is = |name: &str| o.label.as_deref().is_some_and(|l| l.eq_ignore_ascii_case(name)) || o.id == name;
-        is(p.name) || first == Some(&p.name) && LABELS.iter().any(|l| is(l))
+    let is_labelled = |o: &Object, p: &Param| {
+        let has = |name: &str| o.label.as_deref().is_some_and(|l| l.eq_ignore_ascii_case(name)) || o.id == name;
+        has(p.name) || (first == Some(&p.name) && LABELS.iter().any(|label| has(label)))
     };
     let find = |p: &&Param| {
         let mut all = selected.iter().rev().copied().chain(objects.iter().rev());
-        Some((p.name, all.find(|o| o.is_path && called(o, p))?.id.clone()))
+        Some((p.name, all.find(|o| o.is_path && is_labelled(o, p))?.id.clone()))
     };
     open.iter().filter_map(find).collect()
 }
 
 /// Returns `true` for a parameter without a default that gives positions.
 fn is_alternative(p: &Param) -> bool {
-    let says_where = matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_) | Kind::Choice(_));
-    p.default.is_none() && (p.repeat || says_where)
+    let has_positions = matches!(p.kind, Kind::Path | Kind::File | Kind::Point | Kind::Numbers(_) | Kind::Choice(_));
+    p.default.is_none() && (p.repeat || has_positions)
 }
 
-fn missing(p: &Param, call: &Call) -> Failure {
-    let what =
+/// Returns the failure that a parameter lacks its guide.
+fn missing_guide(p: &Param, call: &Call) -> Failure {
+    let advice =
         if call.ids.is_empty() { "put it above the artwork" } else { "select it together with the artwork, above it" };
     let name = p.name;
     let help = p.help.split(". ").next().unwrap_or(p.help).trim_end_matches('.');
-    Failure::usage(format!("this effect needs a path, --{name} ({help}): {what}, or label it `{name}`"))
+    Failure::usage(format!("this effect needs a path, --{name} ({help}): {advice}, or label it `{name}`"))
 }
 
 /// Removes guides from objects; an object that contains a guide is replaced by its other children.

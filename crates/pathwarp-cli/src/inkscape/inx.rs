@@ -74,28 +74,35 @@ fn default(o: &CommonOption) -> &'static str {
     other.or(o.default).unwrap_or_default()
 }
 
+/// Describes an extension, whose parameters and kind are in `body`.
+fn extension(name: &str, id: &str, body: &str, program: &Program) -> String {
+    let Program { location, name: file } = program;
+    let (name, file) = (escaped(name), escaped(file));
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<inkscape-extension \
+         xmlns=\"http://www.inkscape.org/namespace/inkscape/extension\">\n  <name>{name}</name>\n  <id>org.pathwarp.{id}</id>\n  \
+         <dependency type=\"executable\" location=\"{location}\">{file}</dependency>\n{body}\n  <script><command \
+         location=\"{location}\">{file}</command></script>\n</inkscape-extension>\n"
+    )
+}
+
 /// Describes an effect in the menu, in the submenu `group` if given.
 fn effect(
     name: &str,
     id: &str,
     tip: &str,
-    body: &str,
+    params: &str,
     group: Option<&str>,
-    preview: bool,
+    has_preview: bool,
     program: &Program,
 ) -> String {
-    let (name, tip) = (escaped(name), escaped(tip));
-    let inner = group.map_or_else(String::new, |g| format!("<submenu name=\"{}\"/>", escaped(g)));
-    let Program { location, name: file } = program;
-    let file = escaped(file);
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<inkscape-extension \
-         xmlns=\"http://www.inkscape.org/namespace/inkscape/extension\">\n  <name>{name}</name>\n  <id>org.pathwarp.{id}</id>\n  \
-         <dependency type=\"executable\" location=\"{location}\">{file}</dependency>\n{body}  <effect \
-         needs-live-preview=\"{preview}\">\n    <object-type>all</object-type>\n    <menu-tip>{tip}</menu-tip>\n    \
-         <effects-menu><submenu name=\"pathwarp\">{inner}</submenu></effects-menu>\n  </effect>\n  <script><command \
-         location=\"{location}\">{file}</command></script>\n</inkscape-extension>\n"
-    )
+    let tip = escaped(tip);
+    let submenu = group.map_or_else(String::new, |g| format!("<submenu name=\"{}\"/>", escaped(g)));
+    let body = format!(
+        "{params}  <effect needs-live-preview=\"{has_preview}\">\n    <object-type>all</object-type>\n    \
+         <menu-tip>{tip}</menu-tip>\n    <effects-menu><submenu name=\"pathwarp\">{submenu}</submenu></effects-menu>\n  </effect>"
+    );
+    extension(name, id, &body, program)
 }
 
 /// Returns the choice of the number of selected paths that are guides.
@@ -135,9 +142,7 @@ fn again() -> String {
             "Say in a window what was left unchanged or may look wrong. Leave this off for the preview.",
         ),
     ];
-    for (name, label, help) in switches {
-        Widget { name, kind: "bool", more: String::new(), label, help, content: "false".into() }.write(&mut out);
-    }
+    switches.into_iter().for_each(|(name, label, help)| out += &switch(name, label, help));
     out
 }
 
@@ -176,32 +181,24 @@ fn edit_again(program: &Program) -> String {
     let text = "Warps the sources of the selected objects again, with the settings that they were warped with and the changes below. \
                 Guides are taken as they are now.";
     body += &format!("  <label>{text}</label>\n");
-    let widget = |name, kind, more: &str, label, help, content: &str| {
-        let mut out = String::new();
-        Widget { name, kind, more: more.into(), label, help, content: content.into() }.write(&mut out);
-        out
-    };
-    body += &widget(
-        CHANGES,
-        "string",
-        " appearance=\"multiline\"",
-        "Changes, such as bend=30%",
-        "One setting per line, name=value; name= alone gives a setting its default. Nothing here: the same settings.",
-        "",
-    );
-    body += &widget(SHOW, "bool", "", "Only show the settings", "Shows the settings in a window.", "false");
-    body +=
-        &widget(DISCARD, "bool", "", "Give up changes by hand", "Also if nodes were moved since the warp.", "false");
+    let (kind, attributes, content) = ("string", MULTILINE.into(), String::new());
+    let label = "Changes, such as bend=30%";
+    let help =
+        "One setting per line, name=value; name= alone gives a setting its default. Nothing here: the same settings.";
+    body += &Widget { name: CHANGES, kind, attributes, label, help, content }.xml();
+    body += &switch(SHOW, "Only show the settings", "Shows the settings in a window.");
+    body += &switch(DISCARD, "Give up changes by hand", "Also if nodes were moved since the warp.");
     body += &warnings();
     effect("Edit warp again", "edit-again", "Warp the sources of warped objects again", &body, None, true, program)
 }
 
 fn warnings() -> String {
-    let mut out = String::new();
-    let help = "Say in a window what was left out or unchanged.";
-    Widget { name: WARNINGS, kind: "bool", more: String::new(), label: "Show warnings", help, content: "false".into() }
-        .write(&mut out);
-    out
+    switch(WARNINGS, "Show warnings", "Say in a window what was left out or unchanged.")
+}
+
+/// Returns a switch, which is off at first.
+fn switch(name: &str, label: &str, help: &str) -> String {
+    Widget { name, kind: "bool", attributes: String::new(), label, help, content: "false".into() }.xml()
 }
 
 fn release(program: &Program) -> String {
@@ -210,35 +207,21 @@ fn release(program: &Program) -> String {
 }
 
 fn xcf(program: &Program) -> String {
-    let body = action("to-svg");
+    let params = action("to-svg");
     let kind = "<input>\n    <extension>.xcf</extension>\n    <mimetype>image/x-xcf</mimetype>\n    <filetypename>Paths of a GIMP \
                 image (*.xcf)</filetypename>\n    <filetypetooltip>The paths, exactly as GIMP stores them</filetypetooltip>\n  </input>";
-    file_type("Paths of a GIMP image", "xcf", &body, kind, program)
+    extension("Paths of a GIMP image", "xcf", &format!("{params}  {kind}"), program)
 }
 
 fn dxf(program: &Program) -> String {
-    let mut body = action("to-dxf");
-    OPTIONS
-        .iter()
-        .filter(|o| ["dxf-curves", "tolerance"].contains(&o.name))
-        .for_each(|o| body += &of_option(o, o.default.unwrap_or_default()));
-    body += &warnings();
+    let mut params = action("to-dxf");
+    let options = OPTIONS.iter().filter(|o| ["dxf-curves", "tolerance"].contains(&o.name));
+    options.for_each(|o| params += &of_option(o, o.default.unwrap_or_default()));
+    params += &warnings();
     let kind = "<output>\n    <extension>.dxf</extension>\n    <mimetype>image/vnd.dxf</mimetype>\n    <filetypename>Outlines in mm \
                 with true arcs, pathwarp (*.dxf)</filetypename>\n    <filetypetooltip>Circles and arcs stay circles and arcs, curves \
                 are exact splines</filetypetooltip>\n    <dataloss>true</dataloss>\n  </output>";
-    file_type("DXF with true arcs", "dxf", &body, kind, program)
-}
-
-/// Describes a type of files to open or save.
-fn file_type(name: &str, id: &str, body: &str, kind: &str, program: &Program) -> String {
-    let Program { location, name: file } = program;
-    let file = escaped(file);
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<inkscape-extension \
-         xmlns=\"http://www.inkscape.org/namespace/inkscape/extension\">\n  <name>{name}</name>\n  <id>org.pathwarp.{id}</id>\n  \
-         <dependency type=\"executable\" location=\"{location}\">{file}</dependency>\n{body}  {kind}\n  <script><command \
-         location=\"{location}\">{file}</command></script>\n</inkscape-extension>\n"
-    )
+    extension("DXF with true arcs", "dxf", &format!("{params}  {kind}"), program)
 }
 
 /// Limits for unlimited numbers, since Inkscape's default limits are 0 and 10.
@@ -247,25 +230,27 @@ const FAR: f64 = 1e6;
 /// The range of a slider that a parameter does not declare.
 const NO_SLIDER: (f64, f64) = (0.0, 1.0);
 
+/// The attribute of a text field with several lines.
+const MULTILINE: &str = " appearance=\"multiline\"";
+
 /// The attributes and content of a `<param>`.
 struct Widget<'a> {
     name: &'a str,
     kind: &'a str,
     /// Further attributes, each preceded by a space.
-    more: String,
+    attributes: String,
     label: &'a str,
     help: &'a str,
     content: String,
 }
 
 impl Widget<'_> {
-    fn write(&self, out: &mut String) {
-        let Self { name, kind, more, content, .. } = self;
+    fn xml(&self) -> String {
+        let Self { name, kind, attributes, content, .. } = self;
         let (label, help) = (escaped(self.label), escaped(&labelled(self.help)));
-        let _ = writeln!(
-            out,
-            "      <param name=\"{name}\" type=\"{kind}\"{more} gui-text=\"{label}\" gui-description=\"{help}\">{content}</param>"
-        );
+        format!(
+            "      <param name=\"{name}\" type=\"{kind}\"{attributes} gui-text=\"{label}\" gui-description=\"{help}\">{content}</param>\n"
+        )
     }
 }
 
@@ -283,80 +268,69 @@ fn choice<'a>(
         let _ = writeln!(content, "        <option value=\"{}\">{}</option>", escaped(value), escaped(label));
     }
     content += "      ";
-    let mut out = String::new();
-    Widget { name, kind: "optiongroup", more: " appearance=\"combo\"".into(), label: title, help, content }
-        .write(&mut out);
-    out
+    let attributes = " appearance=\"combo\"".into();
+    Widget { name, kind: "optiongroup", attributes, label: title, help, content }.xml()
 }
 
 /// Returns the elements for a parameter of a deformation; none for files that it saves, which previews would write repeatedly.
 fn of_param(p: &Param) -> String {
-    let mut out = String::new();
     let default = p.default.unwrap_or_default();
     let title = label(p.name);
-    let own = title.as_str();
-    let widget = |name, kind, more, label, content| Widget { name, kind, more, label, help: p.help, content };
+    let widget = |name: &str, kind, attributes, label: &str, content: &str| {
+        Widget { name, kind, attributes, label, help: p.help, content: content.into() }.xml()
+    };
     let number = default.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%');
     match p.kind {
-        Kind::Save => {}
-        Kind::Flag if p.help.is_empty() => {}
-        Kind::Flag => widget(p.name, "bool", String::new(), own, "false".into()).write(&mut out),
+        Kind::Save => String::new(),
+        Kind::Flag if p.help.is_empty() => String::new(),
+        Kind::Flag => switch(p.name, &title, p.help),
         Kind::Number if default.ends_with('%') => {
             let name = format!("{}{PERCENT}", p.name);
-            let more = float(p.ui, p.range, 100.0, 1);
-            widget(&name, "float", more, &format!("{title} (%)"), number.into()).write(&mut out);
+            widget(&name, "float", float(p.ui, p.range, 100.0, 1), &format!("{title} (%)"), number)
         }
-        Kind::Number if p.default.is_some() => {
-            widget(p.name, "float", float(p.ui, p.range, 1.0, 3), own, number.into()).write(&mut out);
-        }
+        Kind::Number if p.default.is_some() => widget(p.name, "float", float(p.ui, p.range, 1.0, 3), &title, number),
         Kind::Angle if p.default.is_some() => {
-            widget(p.name, "float", float(p.ui, p.range, 1.0, 1), &format!("{title} (°)"), number.into())
-                .write(&mut out);
+            widget(p.name, "float", float(p.ui, p.range, 1.0, 1), &format!("{title} (°)"), number)
         }
-        Kind::Length(_) if p.default.is_some() => length(p, own, number, &mut out),
+        Kind::Length(_) if p.default.is_some() => length(p, &title, number),
         Kind::Count if p.default.is_some() => {
             let (least, most) = (p.range.0.max(-1e4), p.range.1.min(1e4));
-            widget(p.name, "int", format!(" min=\"{least}\" max=\"{most}\""), own, number.into()).write(&mut out);
+            widget(p.name, "int", format!(" min=\"{least}\" max=\"{most}\""), &title, number)
         }
         Kind::Choice(words) | Kind::NameOrFile(words) => {
-            let none = p.default.is_none() && !p.needed;
-            let first = none.then(|| (NONE, "–".to_owned()));
-            let all = first.into_iter().chain(words.iter().map(|w| (*w, (*w).to_owned())));
-            out += &choice(p.name, own, p.help, all, if none { NONE } else { default });
-            if matches!(p.kind, Kind::NameOrFile(_)) {
-                let name = format!("{}{FILE}", p.name);
-                widget(&name, "path", file("toml,json"), &format!("{title}: a file instead"), String::new())
-                    .write(&mut out);
+            let may_be_none = p.default.is_none() && !p.needed;
+            let none = may_be_none.then(|| (NONE, "–".to_owned()));
+            let all = none.into_iter().chain(words.iter().map(|w| (*w, (*w).to_owned())));
+            let choice = choice(p.name, &title, p.help, all, if may_be_none { NONE } else { default });
+            if matches!(p.kind, Kind::Choice(_)) {
+                return choice;
             }
+            let name = format!("{}{FILE}", p.name);
+            choice + &widget(&name, "path", file("toml,json"), &format!("{title}: a file instead"), "")
         }
-        Kind::File => widget(p.name, "path", file("json,toml,psd,svg"), own, String::new()).write(&mut out),
-        Kind::Path => {
-            widget(p.name, "string", String::new(), &format!("{title} (id or label)"), escaped(default))
-                .write(&mut out);
-        }
+        Kind::File => widget(p.name, "path", file("json,toml,psd,svg"), &title, ""),
+        Kind::Path => widget(p.name, "string", String::new(), &format!("{title} (id or label)"), &escaped(default)),
         _ if p.repeat => {
             let title = format!("{title}: {}, one per line", p.value_name());
-            widget(p.name, "string", " appearance=\"multiline\"".into(), &title, escaped(default)).write(&mut out);
+            widget(p.name, "string", MULTILINE.into(), &title, &escaped(default))
         }
         _ => {
-            let title = if p.default.is_some() { title.clone() } else { format!("{title} ({})", p.value_name()) };
-            widget(p.name, "string", String::new(), &title, escaped(default)).write(&mut out);
+            let title = if p.default.is_some() { title } else { format!("{title} ({})", p.value_name()) };
+            widget(p.name, "string", String::new(), &title, &escaped(default))
         }
     }
-    out
 }
 
-/// Appends a number and its unit.
-fn length(p: &Param, title: &str, number: &str, out: &mut String) {
+/// Returns the elements for a number and its unit.
+fn length(p: &Param, title: &str, number: &str) -> String {
     let least = if p.range.0 >= 0.0 { 0.0 } else { -FAR };
-    let more = format!(" precision=\"3\" min=\"{least}\" max=\"{FAR}\"");
+    let attributes = format!(" precision=\"3\" min=\"{least}\" max=\"{FAR}\"");
     let unit = p.default.unwrap_or_default()[number.len()..].trim();
     let unit = UNITS.iter().find(|(_, u, _)| *u == unit).map_or("user", |(name, ..)| name);
-    out.push_str("      <hbox>\n");
-    Widget { name: p.name, kind: "float", more, label: title, help: p.help, content: number.into() }.write(out);
+    let number = Widget { name: p.name, kind: "float", attributes, label: title, help: p.help, content: number.into() };
     let units = UNITS.iter().map(|(name, _, label)| (*name, (*label).to_owned()));
-    out.push_str(&choice(&format!("{}{UNIT}", p.name), " ", "The unit.", units, unit));
-    out.push_str("      </hbox>\n");
+    let unit = choice(&format!("{}{UNIT}", p.name), " ", "The unit.", units, unit);
+    format!("      <hbox>\n{}{unit}      </hbox>\n", number.xml())
 }
 
 /// Returns the attributes of a float, with a slider if the parameter declares one.
@@ -380,17 +354,8 @@ fn of_option(o: &CommonOption, default: &str) -> String {
             choice(o.name, &title, o.help, words, default)
         }
         _ => {
-            let mut out = String::new();
-            Widget {
-                name: o.name,
-                kind: "string",
-                more: String::new(),
-                label: &title,
-                help: &o.help(),
-                content: String::new(),
-            }
-            .write(&mut out);
-            out
+            let (attributes, content) = (String::new(), String::new());
+            Widget { name: o.name, kind: "string", attributes, label: &title, help: &o.help(), content }.xml()
         }
     }
 }
@@ -411,17 +376,13 @@ fn label(name: &str) -> String {
 pub(crate) fn labelled(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
-    while let Some(i) = rest.find("--") {
-        let (before, after) = (&rest[..i], &rest[i + 2..]);
-        let len = after.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(after.len());
-        out.push_str(before);
-        if len == 0 || before.ends_with(|c: char| c.is_alphanumeric()) {
-            out.push_str("--");
-            rest = after;
-            continue;
-        }
-        let _ = write!(out, "“{}”", label(&after[..len]));
-        rest = &after[len..];
+    while let Some((before, after)) = rest.split_once("--") {
+        let end = after.find(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).unwrap_or(after.len());
+        let is_option = end > 0 && !before.ends_with(char::is_alphanumeric);
+        let (option, behind) = after.split_at(if is_option { end } else { 0 });
+        let shown = if is_option { format!("“{}”", label(option)) } else { "--".to_owned() };
+        out.extend([before, &shown]);
+        rest = behind;
     }
     out + rest
 }

@@ -19,16 +19,16 @@ pub(super) fn exclusions(all: &[Object]) -> impl Iterator<Item = String> {
 }
 
 /// Adds the resulting frame to a recipe, so that the recipe has the same effect on each object alone.
-pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
+pub(super) fn with_frame(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcome) -> Vec<String> {
     let Some([x, y, w, h]) = outcome.frame else { return line };
     line.retain(|word| !word.starts_with("--frame="));
     line.push(format!("--frame={x},{y},{w},{h}"));
     let info = line.first().and_then(|name| stage.registry.get(name)).map(|e| e.info());
-    if let (Some(param), Some(at)) = (info.and_then(|i| i.baseline), outcome.baseline) {
-        let own = format!("--{param}=");
-        let first = line.iter().position(|word| word == CHAIN).unwrap_or(line.len());
-        if !line.iter().take(first).any(|word| word.starts_with(&own)) {
-            line.insert(first, format!("{own}{}", y + h - at));
+    if let (Some(param), Some(baseline)) = (info.and_then(|i| i.baseline), outcome.baseline) {
+        let option = format!("--{param}=");
+        let end_of_step = line.iter().position(|word| word == CHAIN).unwrap_or(line.len());
+        if !line.iter().take(end_of_step).any(|word| word.starts_with(&option)) {
+            line.insert(end_of_step, format!("{option}{}", y + h - baseline));
         }
     }
     line
@@ -36,26 +36,26 @@ pub(super) fn settled(stage: &Stage<'_>, mut line: Vec<String>, outcome: &Outcom
 
 /// Checks a recipe, which may come from somebody else's drawing: it names deformations, sets parameters and options that shape the result,
 /// writes no files, and reads only regular ones.
-pub(super) fn allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
-    line.split(|word| word == CHAIN).try_for_each(|step| step_allowed(stage, step))
+pub(super) fn check_recipe(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
+    line.split(|word| word == CHAIN).try_for_each(|step| check_step(stage, step))
 }
 
-fn step_allowed(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
+fn check_step(stage: &Stage<'_>, line: &[String]) -> Result<(), Failure> {
     let name = line.first().map_or("", String::as_str);
     let known = stage.registry.entries().iter().map(|e| e.info().name);
     let entry = stage.registry.get(name).ok_or_else(|| Failure::usage(advice::unknown("deformation", name, known)))?;
     let params = entry.info().params;
     for word in line.iter().skip(1) {
-        let own = word.strip_prefix("--").unwrap_or_default();
-        let (option, value) = own.split_once('=').unwrap_or((own, ""));
+        let option = option_name(word).unwrap_or_default();
+        let value = word.split_once('=').map_or("", |(_, value)| value);
         let param = params.iter().find(|p| p.name == option && p.kind != Kind::Save);
         if param.is_none() && !OPTIONS.iter().any(|o| o.name == option && o.stored) && option != INVERSE {
             let known: Vec<&str> = params.iter().map(|p| p.name).collect();
             return Err(Failure::usage(format!("{name} has no `{option}`; it has {}", known.join(", "))));
         }
         let is_file = || split_reference(value).0.is_file();
-        let reads =
-            |p: &Param| p.reads_file(value) || p.kind == Kind::Path && references::names_file(value, HERE.as_ref());
+        let names_path = || references::names_file(value, HERE.as_ref());
+        let reads = |p: &Param| p.reads_file(value) || (p.kind == Kind::Path && names_path());
         if param.is_some_and(reads) && !is_file() {
             return Err(Failure::usage(format!("--{option}: there is no file `{value}`")));
         }
@@ -70,17 +70,18 @@ pub(super) fn referred(line: &[String]) -> Vec<String> {
 }
 
 /// Replaces labels of paths in a recipe by their ids, which are unique.
-pub(super) fn by_id(line: Vec<String>, all: &[Object]) -> Vec<String> {
-    let one = |w: String| {
-        let Some((name, label)) = w.split_once("=#").filter(|(_, l)| !all.iter().any(|o| o.id == *l)) else { return w };
-        let named = all.iter().find(|o| o.is_path && o.label.as_deref() == Some(label));
-        named.map_or_else(|| w.clone(), |o| format!("{name}=#{}", o.id))
+pub(super) fn with_ids(line: Vec<String>, all: &[Object]) -> Vec<String> {
+    let by_id = |word: String| {
+        let reference = word.split_once("=#").filter(|(_, name)| !all.iter().any(|o| o.id == *name));
+        let Some((option, label)) = reference else { return word };
+        let path = all.iter().find(|o| o.is_path && o.label.as_deref() == Some(label));
+        path.map_or_else(|| word.clone(), |o| format!("{option}=#{}", o.id))
     };
-    line.into_iter().map(one).collect()
+    line.into_iter().map(by_id).collect()
 }
 
 /// Removes exclusions of objects that the drawing lacks from a recipe.
-pub(super) fn existing(mut line: Vec<String>, all: &[Object]) -> Vec<String> {
+pub(super) fn without_missing(mut line: Vec<String>, all: &[Object]) -> Vec<String> {
     line.retain(|w| {
         let id = w.strip_prefix("--exclude=[id=").and_then(|w| w.strip_suffix(']'));
         id.is_none_or(|id| all.iter().any(|o| o.id == id))
@@ -100,6 +101,11 @@ pub(super) fn words_of_options(call: &Call) -> Vec<String> {
     // In Inkscape, pages stay unless a dialog chooses otherwise.
     let default = |o: &CommonOption| if o.name == "fit" { Some("none") } else { o.default };
     set.filter(|(o, v)| default(o) != Some(*v)).map(|(o, v)| word(o.name, v)).collect()
+}
+
+/// Returns the option's name in a word; `None` for other words.
+pub(super) fn option_name(word: &str) -> Option<&str> {
+    word.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(name, _)| name))
 }
 
 /// Returns the word for an option with its value.
@@ -144,11 +150,12 @@ fn number(text: &str) -> String {
 
 /// Returns `true` for equal texts or numbers.
 fn is_same(default: &str, value: &str) -> bool {
+    // The number and its unit.
     let split = |t: &str| {
-        let end = t.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%').len();
-        t[..end].parse::<f64>().ok().map(|v| (v, t[end..].to_owned()))
+        let (number, unit) = t.split_at(t.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == '%').len());
+        number.parse::<f64>().ok().map(|v| (v, unit.to_owned()))
     };
-    default == value || split(default).is_some() && split(default) == split(value)
+    default == value || (split(default).is_some() && split(default) == split(value))
 }
 
 /// Completes a path reference from a dialog: a name alone refers to a path of the drawing.
@@ -167,22 +174,20 @@ fn lines(text: &str) -> Vec<String> {
 /// Changes a recipe: `bend=30%` sets a value, `bend=` removes it, in the first step that has the setting, or else in the first step.
 ///
 /// # Errors
-/// A message that quotes the first line of another form.
-pub(super) fn changed(words: &mut Vec<String>, changes: &str) -> Result<(), String> {
+/// The message that a line, which it quotes, has another form.
+pub(super) fn change(words: &mut Vec<String>, changes: &str) -> Result<(), String> {
     for line in lines(changes) {
         let (name, value) = line.split_once('=').ok_or_else(|| format!("`{line}` is not of the form name=value"))?;
         let (name, value) = (name.trim().trim_start_matches('-').replace(' ', "-").to_lowercase(), value.trim());
-        let is_it = |w: &String| {
-            let own = w.strip_prefix("--").map(|w| w.split_once('=').map_or(w, |(n, _)| n));
-            own == Some(name.as_str())
-        };
+        let sets_it = |w: &String| option_name(w) == Some(&*name);
         let mut steps: Vec<Vec<String>> = words.split(|w| w == CHAIN).map(<[String]>::to_vec).collect();
-        let found = steps.iter().position(|step| step.iter().any(is_it)).unwrap_or(0);
-        if let Some(step) = steps.get_mut(found) {
-            let at = step.iter().position(is_it).unwrap_or(step.len().min(1));
-            step.retain(|w| !is_it(w));
+        let i = steps.iter().position(|step| step.iter().any(sets_it)).unwrap_or(0);
+        if let Some(step) = steps.get_mut(i) {
+            // A new setting comes first after the deformation's name.
+            let position = step.iter().position(sets_it).unwrap_or(step.len().min(1));
+            step.retain(|w| !sets_it(w));
             if !(value.is_empty() || value == "false") {
-                step.insert(at.min(step.len()), word(&name, value));
+                step.insert(position.min(step.len()), word(&name, value));
             }
         }
         *words = steps.join(&CHAIN.to_owned());
@@ -230,12 +235,12 @@ mod tests {
     #[test]
     fn changes_replace_add_and_remove() {
         let mut words: Vec<String> = ["warp", "--style=flag", "--bend=40%"].map(ToOwned::to_owned).into();
-        changed(&mut words, "bend = 30%\nstyle=\nhorizontal=5%").unwrap();
+        change(&mut words, "bend = 30%\nstyle=\nhorizontal=5%").unwrap();
         assert_eq!(words, ["warp", "--horizontal=5%", "--bend=30%"]);
         let mut chain: Vec<String> =
             ["wave", "+", "warp", "--bend=40%", "--frame=0,0,9,9"].map(ToOwned::to_owned).into();
-        changed(&mut chain, "bend=30%\nheight=2").unwrap();
+        change(&mut chain, "bend=30%\nheight=2").unwrap();
         assert_eq!(chain, ["wave", "--height=2", "+", "warp", "--bend=30%", "--frame=0,0,9,9"]);
-        assert!(changed(&mut words, "bend 30").is_err());
+        assert!(change(&mut words, "bend 30").is_err());
     }
 }

@@ -15,14 +15,17 @@ mod stage;
 use crate::ending::Status;
 use crate::plugins;
 use guides::sorted;
-use line::{allowed, by_id, changed, exclusions, existing, referred, settled, words_of_deformation, words_of_options};
+use line::{
+    change, check_recipe, exclusions, referred, with_frame, with_ids, without_missing, words_of_deformation,
+    words_of_options,
+};
 use names::{ADD, AGAIN, CHAIN, CHANGES, DISCARD, REPLACE, SHOW, is_job, joined, split};
 use pathwarp::deform::Registry;
 use pathwarp_engine::advice::{self, Flags};
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::{output, readable};
 use pathwarp_svg::objects::{self, Guides, Object, objects};
-use restoring::{Restoration, Returned, as_by_hand, remembering, restored};
+use restoring::{Restoration, Restored, restore, with_changes_by_hand, with_sources};
 use stage::{Call, Convert, GuidePaths, Job, Scope, Stage};
 use std::collections::{BTreeMap, HashSet};
 use std::ffi::OsString;
@@ -43,14 +46,14 @@ pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> R
     };
     let (_, plugins) = plugins::load(registry, &["pathwarp".into(), word.into()], &[])?;
     let stage = Stage { registry: &plugins.added_to(registry), convert, call: &call };
-    let done = match &call.job {
+    let result = match &call.job {
         Job::Deformation(name) => warp(&stage, name),
         Job::Edit => edit_again(&stage),
         Job::Release => release(&stage),
         Job::Hand => by_hand::by_hand(&stage),
         Job::Convert(format) => return stage.convert(format).map_err(|f| in_a_window(&stage, &f)),
     };
-    let svg = done.map_err(|f| in_a_window(&stage, &f))?;
+    let svg = result.map_err(|f| in_a_window(&stage, &f))?;
     output::to_stdout(svg.as_bytes())?;
     Ok(Status::Complete)
 }
@@ -73,31 +76,31 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
 
     let mode = call.value(AGAIN).unwrap_or_default();
     let starts_again = |o: &&Object| {
-        let is_same = |r: &String| {
-            let line = split(r);
+        let is_of_this_kind = |recipe: &str| {
+            let line = split(recipe);
             line.first().is_some_and(|w| w == name) && !line.iter().any(|w| w == CHAIN)
         };
-        sorted.artwork.contains(&o.id)
-            && o.recipe.as_ref().is_some_and(|r| mode == REPLACE || mode != ADD && is_same(r))
+        let is_replaced = |recipe: &str| mode == REPLACE || (mode != ADD && is_of_this_kind(recipe));
+        sorted.artwork.contains(&o.id) && o.recipe.as_deref().is_some_and(is_replaced)
     };
     let again: Vec<String> = all.iter().filter(starts_again).map(|o| o.id.clone()).collect();
-    let Restoration { svg, objects: returned } = restored(stage, &drawing, &again, call.is_on(DISCARD))?;
+    let Restoration { svg, objects: restored } = restore(stage, &drawing, &again, call.is_on(DISCARD))?;
 
     let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
-    line = by_id(line, &all);
+    line = with_ids(line, &all);
     line.extend(words_of_options(call));
     // On the whole page, locked objects are excluded.
-    let whole = call.ids.is_empty();
-    if whole {
+    let is_whole_page = call.ids.is_empty();
+    if is_whole_page {
         line.extend(exclusions(&all));
     }
-    let outcome = stage.warp(&svg, &line, &Scope { ids: if whole { &[] } else { &sorted.artwork } }, None)?;
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &sorted.artwork } }, None)?;
     stage.check(&svg, &outcome)?;
 
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
-    let recipe = joined(&settled(stage, line, &outcome));
-    let result = remembering(stage, &svg, &outcome.svg, &sorted.artwork, &recipe, &guides)?;
-    as_by_hand(stage, &drawing, result, &returned)
+    let recipe = joined(&with_frame(stage, line, &outcome));
+    let result = with_sources(stage, &svg, &outcome.svg, &sorted.artwork, &recipe, &guides)?;
+    with_changes_by_hand(stage, &drawing, result, &restored)
 }
 
 /// Replaces the selected objects by their sources. Returns the drawing.
@@ -117,32 +120,31 @@ fn edit_again(stage: &Stage<'_>) -> Result<String, Failure> {
         anstream::eprintln!("{}", readable::message(&settings(&all, &ids)));
         return Ok(String::new());
     }
-    let Restoration { mut svg, objects: returned } = restored(stage, &drawing, &ids, call.is_on(DISCARD))?;
-    let mut runs: BTreeMap<String, Vec<&Returned>> = BTreeMap::new();
-    for r in &returned {
+    let Restoration { mut svg, objects: restored } = restore(stage, &drawing, &ids, call.is_on(DISCARD))?;
+    let mut runs: BTreeMap<String, Vec<&Restored>> = BTreeMap::new();
+    for r in &restored {
         let mut line = split(&r.object.recipe);
-        changed(&mut line, call.value(CHANGES).unwrap_or_default()).map_err(Failure::Usage)?;
-        allowed(stage, &line)?;
+        change(&mut line, call.value(CHANGES).unwrap_or_default()).map_err(Failure::Usage)?;
+        check_recipe(stage, &line)?;
         runs.entry(joined(&line)).or_default().push(r);
     }
     for (line, members) in runs {
-        let line = existing(split(&line), &all);
+        let line = without_missing(split(&line), &all);
         let ids: Vec<String> = members.iter().map(|r| r.object.id.clone()).collect();
         let referred = referred(&line);
         let is_there = |id: &String| all.iter().any(|o| o.id == *id);
         // A missing guide is replaced by the copy that the object stores.
-        let gone = !referred.iter().all(is_there);
         let guides = match members.first() {
-            Some(m) if gone => m.object.guides.clone(),
+            Some(member) if !referred.iter().all(is_there) => member.object.guides.clone(),
             _ => Guides::of(&svg, &referred, &stage.limits())?,
         };
         let copies = GuidePaths { guides: &guides, has: &|id| !all.iter().any(|o| o.id == id) };
         let outcome = stage.warp(&svg, &line, &Scope { ids: &ids }, Some(&copies))?;
         stage.check(&svg, &outcome)?;
-        let recipe = joined(&settled(stage, line, &outcome));
-        svg = remembering(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
+        let recipe = joined(&with_frame(stage, line, &outcome));
+        svg = with_sources(stage, &svg, &outcome.svg, &ids, &recipe, &guides)?;
     }
-    as_by_hand(stage, &drawing, svg, &returned)
+    with_changes_by_hand(stage, &drawing, svg, &restored)
 }
 
 /// Returns the warped objects that a selection concerns: those selected, or else inside it, or else around it.
@@ -153,15 +155,14 @@ fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
         let itself = warped().find(|o| o.id == *id).map(|o| vec![o.id.clone()]);
         // The source of an outer warped object includes the inner ones.
         let inside = || {
-            let outer = warped().filter(|o| o.inside.contains(id));
-            let ids: Vec<String> =
-                outer.filter(|o| !warped().any(|p| o.inside.contains(&p.id))).map(|o| o.id.clone()).collect();
+            let outermost = |o: &&Object| o.inside.contains(id) && !warped().any(|p| o.inside.contains(&p.id));
+            let ids: Vec<String> = warped().filter(outermost).map(|o| o.id.clone()).collect();
             (!ids.is_empty()).then_some(ids)
         };
         let around = || {
-            let own = all.iter().find(|o| o.id == *id)?;
-            let found = own.inside.iter().find(|i| warped().any(|o| o.id == **i))?;
-            Some(vec![found.clone()])
+            let object = all.iter().find(|o| o.id == *id)?;
+            let container = object.inside.iter().find(|i| warped().any(|o| o.id == **i))?;
+            Some(vec![container.clone()])
         };
         out.extend(itself.or_else(inside).or_else(around).unwrap_or_default());
     }
@@ -171,16 +172,16 @@ fn targets(stage: &Stage<'_>, all: &[Object]) -> Result<Vec<String>, Failure> {
     let chosen = out.clone();
     out.retain(|id| !all.iter().any(|o| o.id == *id && o.inside.iter().any(|i| chosen.contains(i))));
     if out.is_empty() {
-        let what =
-            if stage.call.ids.is_empty() { "nothing is selected" } else { "the selected objects were not warped" };
-        return Err(Failure::usage(format!("{what}; select objects that one of these effects has warped")));
+        let is_empty = stage.call.ids.is_empty();
+        let problem = if is_empty { "nothing is selected" } else { "the selected objects were not warped" };
+        return Err(Failure::usage(format!("{problem}; select objects that one of these effects has warped")));
     }
     Ok(out)
 }
 
 /// Returns the settings of warped objects, for display.
 fn settings(all: &[Object], ids: &[String]) -> String {
-    let one = |o: &Object| {
+    let settings = |o: &Object| {
         let line = split(o.recipe.as_deref().unwrap_or_default());
         let (name, rest) = line.split_first().map_or(("", &[][..]), |(n, r)| (n.as_str(), r));
         let values = rest.iter().map(|w| {
@@ -189,5 +190,5 @@ fn settings(all: &[Object], ids: &[String]) -> String {
         });
         format!("{} ({name}):{}\n", o.label.as_ref().unwrap_or(&o.id), values.collect::<String>())
     };
-    all.iter().filter(|o| ids.contains(&o.id)).map(one).collect::<Vec<_>>().join("\n")
+    all.iter().filter(|o| ids.contains(&o.id)).map(settings).collect::<Vec<_>>().join("\n")
 }

@@ -15,6 +15,7 @@ use pathwarp_engine::links::Destination;
 use pathwarp_engine::meter;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::report::FileReport;
+use pathwarp_engine::session::warp_bytes;
 use pathwarp_engine::{input, references};
 use pathwarp_raster::Picture;
 use pathwarp_svg::objects::Guides;
@@ -74,18 +75,17 @@ impl Stage<'_> {
     ) -> Result<Outcome, Failure> {
         let words: Vec<OsString> = words.iter().map(OsString::from).collect();
         let parts: Vec<&[OsString]> = words.split(|w| w == CHAIN).collect();
-        let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>())
-            .map_err(Ending::into_failure)?;
-        let (mut recipe, mut own) = steps::chained(parts)?;
+        let parts = steps::parts(self.registry, &parts, &options_without_inputs().collect::<Vec<_>>());
+        let (mut recipe, mut stored) = steps::chained(parts.map_err(Ending::into_failure)?)?;
         // The recipe's selection applies within this scope.
-        let selected = own.take("select");
+        let selected = stored.take("select");
         recipe.steps.iter_mut().for_each(|step| step.select.extend(selected.iter().cloned()));
         let mut given = Given::default();
         if let Some(folder) = folder() {
             given.set("base-dir", &folder.display().to_string()).map_err(Failure::Usage)?;
         }
         scope.ids.iter().try_for_each(|id| given.set("select", &format!("[id={id}]"))).map_err(Failure::Usage)?;
-        let given = given.overridden_by(&own);
+        let given = given.overridden_by(&stored);
         let reading = given.read()?.reading;
         watch::begin(reading.limits);
         let _watched = watch::InBatch::begin();
@@ -96,9 +96,8 @@ impl Stage<'_> {
         }
         references::resolve_files(self.registry, &mut recipe, &reading)?;
         // The drawing is open with its page, which stays.
-        let place = (&*self.call.file, Destination::Back);
-        let (bytes, warped) =
-            pathwarp_engine::session::warp_bytes(self.registry, &recipe, &given, None, place, svg.as_bytes())?;
+        let path = (&*self.call.file, Destination::Back);
+        let (bytes, warped) = warp_bytes(self.registry, &recipe, &given, None, path, svg.as_bytes())?;
         let FileReport { frame, baseline, warnings, skipped, .. } = warped.report;
         let skipped = skipped.iter().map(ToString::to_string);
         Ok(Outcome {
@@ -135,8 +134,8 @@ impl Stage<'_> {
         if !self.call.is_on(WARNINGS) {
             given.set("quiet", "true").map_err(Failure::Usage)?;
         }
-        let own = self.call.values.iter().filter(|(n, v)| n != WARNINGS && !v.is_empty());
-        own.into_iter().try_for_each(|(name, value)| given.set(name, value)).map_err(Failure::Usage)?;
+        let mut values = self.call.values.iter().filter(|(name, value)| name != WARNINGS && !value.is_empty());
+        values.try_for_each(|(name, value)| given.set(name, value)).map_err(Failure::Usage)?;
         let options = given.read()?;
         watch::begin(options.reading.limits);
         (self.convert)(&self.call.file, None, &options, false, false)
@@ -156,6 +155,7 @@ pub(super) struct GuidePaths<'a> {
 }
 
 impl GuidePaths<'_> {
+    /// Looks up the references of a recipe to these guides.
     fn look_up(&self, stage: &Stage<'_>, recipe: &mut Recipe) -> Result<(), Failure> {
         let copies = LazyCell::new(|| stage.read(&self.guides.file()));
         let look_up = |reference: &str| match reference.strip_prefix('#').filter(|id| (self.has)(id)) {
@@ -238,14 +238,15 @@ impl Call {
     }
 }
 
+/// Parses the value of [`ACTION`].
 fn action(value: &str) -> Result<Job, Failure> {
     match value {
         "edit" => Ok(Job::Edit),
         "release" => Ok(Job::Release),
         "hand" => Ok(Job::Hand),
-        _ => match value.strip_prefix("to-") {
-            Some(format) => Ok(Job::Convert(format.to_owned())),
-            None => Err(Failure::usage(format!("there is no effect `{value}` for Inkscape"))),
-        },
+        _ => {
+            let format = value.strip_prefix("to-").map(|format| Job::Convert(format.to_owned()));
+            format.ok_or_else(|| Failure::usage(format!("there is no effect `{value}` for Inkscape")))
+        }
     }
 }

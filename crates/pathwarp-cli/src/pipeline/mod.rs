@@ -6,9 +6,8 @@ mod plan;
 pub(crate) use plan::{Folders, InputFile, Inputs, Job};
 
 use crate::ending::Status;
-use crate::interruption;
 use crate::report_file::ReportFile;
-use crate::{terminal, watch};
+use crate::{interruption, terminal, watch};
 use indicatif::{ProgressBar, ProgressStyle};
 use pathwarp::deform::Registry;
 use pathwarp::kurbo::Point;
@@ -43,9 +42,8 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
     watch::begin(options.reading.limits);
     let inputs = plan::inputs(&options)?;
     options.reading.check()?;
-    let kind = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
-    let jobs = kind.plan(registry, recipe, &options, from)?;
-    drop(inputs);
+    let inputs = Inputs { files: &inputs, kind: "input", replaceable: true, result: convert::identity };
+    let jobs = inputs.plan(registry, recipe, &options, from)?;
     // The files of a batch belong together, so their pages stay.
     let is_batch = jobs.len() > 1 || options.out_dir.is_some() || options.in_place || options.recursive;
     if options.page == PageFit::Auto && is_batch {
@@ -81,32 +79,31 @@ pub(crate) fn run(registry: &Registry, recipe: &Recipe, given: &Given, from: Opt
 /// A failure of the only input, of any input if the options demand to stop then, or of the recipe.
 fn run_jobs(session: &Session<'_>, jobs: &[Job], collected: &mut Collected<'_>) -> Result<(), Failure> {
     // A single input starts threads only if its work is large enough.
+    let needs_pool = jobs.len() > 1 || session.options.jobs.is_some();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = (jobs.len() > 1 || session.options.jobs.is_some())
-        .then(|| session.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE)));
-    let pool = threads
-        .map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build())
-        .transpose()
-        .map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
-    let at_once = pool.as_ref().map_or(1, |p| p.current_num_threads() * CHUNK_PER_THREAD);
+    // Of 0 threads, rayon makes one per core.
+    let threads = session.options.jobs.map_or(0, |n| n.min(cores * MOST_THREADS_PER_CORE));
+    let pool = needs_pool.then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build()).transpose();
+    let pool = pool.map_err(|e| Failure::usage(format!("--jobs: {e}")))?;
+    let chunk_size = pool.as_ref().map_or(1, |p| p.current_num_threads() * CHUNK_PER_THREAD);
     let bar = progress_bar(jobs.len(), session.options.quiet);
     let stops = jobs.len() == 1 || session.options.on_failure == OnFailure::Stop;
     let (mut rest, flags) = (jobs, collected.flags);
     while !rest.is_empty() {
         // An error in the recipe must appear before any file is written, so inputs are run singly until one succeeds.
-        let size = if collected.is_untried() { 1 } else { at_once };
+        let size = if collected.is_untried() { 1 } else { chunk_size };
         let (chunk, later) = rest.split_at(size.min(rest.len()));
         rest = later;
-        let one = |job: &Job| one(session, flags, job, stops, &bar);
+        let run = |job: &Job| run_job(session, flags, job, stops, &bar);
         let results: Vec<Result<Finished, Failure>> = match &pool {
-            Some(pool) => pool.install(|| chunk.par_iter().map(one).collect()),
-            None => chunk.iter().map(one).collect(),
+            Some(pool) => pool.install(|| chunk.par_iter().map(run).collect()),
+            None => chunk.iter().map(run).collect(),
         };
         for (job, result) in chunk.iter().zip(results) {
             bar.suspend(|| match result {
-                Ok(run) => collected.done(run),
-                Err(failure) if stops || failure.is_of_recipe() && collected.is_untried() => Err(failure),
-                Err(failure) => collected.failed(&job.input, &failure),
+                Ok(finished) => collected.add_finished(finished),
+                Err(failure) if stops || (failure.is_of_recipe() && collected.is_untried()) => Err(failure),
+                Err(failure) => collected.add_failed(&job.input, &failure),
             })?;
         }
     }
@@ -124,7 +121,7 @@ struct Finished {
 }
 
 /// Warps one input; without a target, the result goes to standard output.
-fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, Failure> {
+fn warp_input(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, Failure> {
     let target = job.target.as_deref();
     let mut input = Input::open(&job.input, session.options, target)?;
     let Warped { result, mut report, page, notes, partial, saves, preview, files: others } =
@@ -146,7 +143,7 @@ fn run_job(session: &Session<'_>, flags: &Flags, job: &Job) -> Result<Finished, 
 }
 
 /// Runs one job, and commits its files unless they must wait for the others.
-fn one(
+fn run_job(
     session: &Session<'_>,
     flags: &Flags,
     job: &Job,
@@ -159,16 +156,16 @@ fn one(
         bar.inc(1);
         return Err(Failure::file(&job.input, why));
     }
-    let run = catch_unwind(AssertUnwindSafe(|| run_job(session, flags, job))).unwrap_or_else(|_| {
+    let finished = catch_unwind(AssertUnwindSafe(|| warp_input(session, flags, job))).unwrap_or_else(|_| {
         Err(Failure::Input("the program failed on this input (see the message above); please report it".into()))
     });
     bar.inc(1);
-    let mut run = run.map_err(|f| f.about(&name))?;
+    let mut finished = finished.map_err(|f| f.about(&name))?;
     if !files_wait {
-        PendingFile::commit_all(std::mem::take(&mut run.files))?;
+        PendingFile::commit_all(std::mem::take(&mut finished.files))?;
         interruption::count_finished();
     }
-    Ok(run)
+    Ok(finished)
 }
 
 /// Most failures that are printed; the report contains all.
@@ -185,8 +182,10 @@ struct Collected<'a> {
     pending: Vec<PendingFile>,
     /// The inputs with parts left out.
     partial: Vec<String>,
-    done: usize,
+    /// Numbers of inputs.
+    finished: usize,
     failed: usize,
+    /// The messages to print about failed inputs.
     failures: Vec<String>,
     pages: PageCounts,
 }
@@ -200,7 +199,7 @@ impl<'a> Collected<'a> {
             inputs,
             pending: Vec::new(),
             partial: Vec::new(),
-            done: 0,
+            finished: 0,
             failed: 0,
             failures: Vec::new(),
             pages: PageCounts::default(),
@@ -209,32 +208,31 @@ impl<'a> Collected<'a> {
 
     /// Returns `true` if no input has been warped yet.
     fn is_untried(&self) -> bool {
-        self.done == 0
+        self.finished == 0
     }
 
     /// Adds a warped input: prints its notes and warnings.
-    fn done(&mut self, run: Finished) -> Result<(), Failure> {
+    fn add_finished(&mut self, finished: Finished) -> Result<(), Failure> {
+        let Finished { report, files, page, notes, partial } = finished;
         let several = self.inputs > 1;
-        for note in &run.notes {
-            terminal::note(&if several { format!("{}: {note}", run.report.file) } else { note.clone() });
+        for note in &notes {
+            terminal::note(&if several { format!("{}: {note}", report.file) } else { note.clone() });
         }
         if !self.options.quiet {
-            run.page.note().iter().for_each(|note| terminal::note(note));
-            // The warnings about pages are the last ones.
-            let counted = if several { run.page.warnings().len() } else { 0 };
-            warn(&run.report, run.report.warnings.len() - counted);
+            page.note().iter().for_each(|note| terminal::note(note));
+            // The warnings about pages are the last ones; of several inputs, they are counted and printed at the end.
+            let counted = if several { page.warnings().len() } else { 0 };
+            warn(&report, report.warnings.len() - counted);
         }
-        self.pages.add(&run.page, &run.report.file);
-        self.done += 1;
-        if run.partial {
-            self.partial.push(run.report.file.clone());
-        }
-        self.pending.extend(run.files);
-        self.report.as_mut().map_or(Ok(()), |r| r.add(&run.report))
+        self.pages.add(&page, &report.file);
+        self.finished += 1;
+        self.partial.extend(partial.then(|| report.file.clone()));
+        self.pending.extend(files);
+        self.report.as_mut().map_or(Ok(()), |r| r.add(&report))
     }
 
     /// Adds a failed input. Its message is printed at the end.
-    fn failed(&mut self, input: &Path, failure: &Failure) -> Result<(), Failure> {
+    fn add_failed(&mut self, input: &Path, failure: &Failure) -> Result<(), Failure> {
         let message = failure.message(self.flags);
         self.failed += 1;
         if self.failures.len() < LISTED {
@@ -252,25 +250,26 @@ impl<'a> Collected<'a> {
         if !self.options.quiet {
             self.pages.warnings(self.inputs).iter().filter(|_| self.inputs > 1).for_each(|w| terminal::warning(w));
         }
-        self.summarise();
+        self.warn_of_partial();
+        self.print_failures();
         Ok(Status::partial_if(!self.partial.is_empty() || self.failed > 0 || self.pages.are_blank()))
     }
 
     /// Names the inputs with parts left out, which explain the exit code.
-    fn tell_partial(&self) {
+    fn warn_of_partial(&self) {
         const NAMED: usize = 5;
         if self.partial.is_empty() || self.inputs < 2 || self.options.quiet {
             return;
         }
-        let (n, all, names) = (self.partial.len(), self.inputs, readable::listed(&self.partial, NAMED));
+        let (count, all, names) = (self.partial.len(), self.inputs, readable::listed(&self.partial, NAMED));
         terminal::warning(&format!(
-            "{n} of {all} inputs were not warped in full, so the exit code is 1: {names}; the warnings and --report FILE say what was left"
+            "{count} of {all} inputs were not warped in full, so the exit code is 1: {names}; the warnings and --report FILE say what was \
+             left"
         ));
     }
 
     /// Prints the failures and their number.
-    fn summarise(&self) {
-        self.tell_partial();
+    fn print_failures(&self) {
         if self.failed == 0 {
             return;
         }
@@ -280,7 +279,7 @@ impl<'a> Collected<'a> {
             let advice = if self.options.report.is_some() { "the report lists" } else { "--report FILE lists" };
             terminal::error(&format!("and {more} more; {advice} them all"));
         }
-        let written = match self.done {
+        let written = match self.finished {
             0 => "nothing was written".to_owned(),
             1 => "the result of the other one is written".to_owned(),
             n => format!("the results of the other {n} are written"),

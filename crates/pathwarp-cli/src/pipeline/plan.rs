@@ -75,12 +75,8 @@ impl Inputs<'_> {
             }
         }
         let others = [("into", &options.into), ("report", &options.report), ("write-recipe", &options.write_recipe)];
-        for (option, file) in others {
-            if let Some(file) = file {
-                files.write(file, option)?;
-            }
-        }
-        for (option, file) in files_written(catalogue, recipe) {
+        let others = others.into_iter().filter_map(|(option, file)| Some((option, file.as_deref()?)));
+        for (option, file) in others.chain(files_written(catalogue, recipe)) {
             files.write(file, option)?;
         }
         Ok(jobs)
@@ -94,23 +90,22 @@ impl Inputs<'_> {
         options: &CommonOptions,
     ) -> Result<(), Failure> {
         let kind = self.kind;
-        let own_name = options.out.as_deref().is_some_and(is_pattern);
+        let names_by_pattern = options.out.as_deref().is_some_and(is_pattern);
         if options.into.is_some() {
             return Err(Failure::usage("--into writes one file; give one XCF"));
         }
-        if !(options.out_dir.is_some() || own_name || options.in_place && options.out.is_none()) {
-            let exists =
-                |f: &&InputFile| f.path.as_os_str() == "-" || f.path.exists() || f.path.to_string_lossy().contains('#');
-            if let Some(missing) = self.files.iter().find(|f| !exists(f)) {
-                let e = missing.path.metadata().err().unwrap_or_else(|| std::io::ErrorKind::NotFound.into());
-                return Err(Failure::file(&missing.path, unreadable(&missing.path, &e)));
+        if !(options.out_dir.is_some() || names_by_pattern || (options.in_place && options.out.is_none())) {
+            let exists = |p: &Path| p.as_os_str() == "-" || p.exists() || p.to_string_lossy().contains('#');
+            if let Some(missing) = self.files.iter().map(|f| &*f.path).find(|path| !exists(path)) {
+                let e = missing.metadata().err().unwrap_or_else(|| std::io::ErrorKind::NotFound.into());
+                return Err(Failure::file(missing, unreadable(missing, &e)));
             }
-            let hint = match self.files {
+            let advice = match self.files {
                 [_, to] if options.out.is_none() => format!("; to write to {0}: -o {0}", to.path.display()),
                 _ => String::new(),
             };
             return Err(Failure::usage(format!(
-                "several {kind}s need --out-dir DIR, or -o with {{stem}} in the name; their results cannot share one file{hint}"
+                "several {kind}s need --out-dir DIR, or -o with {{stem}} in the name; their results cannot share one file{advice}"
             )));
         }
         if options.preview.as_deref().is_some_and(|p| !is_pattern(p)) {
@@ -122,15 +117,13 @@ impl Inputs<'_> {
         Ok(())
     }
 
+    /// Returns the outputs of an input.
     fn job(&self, options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
         let InputFile { path, below, refused } = input;
         let unnamed = |option: &str| Failure::usage(format!("{option} needs named {}s", self.kind));
-        let expanded = |pattern: &PathBuf, option: &str| -> Result<PathBuf, Failure> {
-            if is_pattern(pattern) {
-                by_pattern(pattern, path, below).ok_or_else(|| unnamed(option))
-            } else {
-                Ok(pattern.clone())
-            }
+        let expanded = |pattern: &PathBuf, option: &str| {
+            let name = if is_pattern(pattern) { by_pattern(pattern, path, below) } else { Some(pattern.clone()) };
+            name.ok_or_else(|| unnamed(option))
         };
         let target = match (&options.out_dir, &options.out) {
             (Some(dir), _) => {
@@ -140,7 +133,10 @@ impl Inputs<'_> {
             }
             (None, Some(out)) => Some(expanded(out, "{stem}")?),
             (None, None) if options.in_place && options.into.is_none() => {
-                Some(path.clone()).filter(|p| p.as_os_str() != "-").ok_or_else(|| unnamed("--in-place")).map(Some)?
+                if path.as_os_str() == "-" {
+                    return Err(unnamed("--in-place"));
+                }
+                Some(path.clone())
             }
             (None, None) => None,
         };
@@ -152,12 +148,13 @@ impl Inputs<'_> {
 /// Returns the list of `--dry-run`: each step's selection, if they differ, and each input with its output.
 pub(super) fn listing(recipe: &Recipe, options: &CommonOptions, jobs: &[Job]) -> String {
     let mut out = String::new();
-    let selective = recipe.steps.iter().any(Step::is_selective);
-    for (i, step) in recipe.steps.iter().enumerate().filter(|_| selective) {
-        let select = if step.select.is_empty() { "everything".to_owned() } else { step.select.join(", ") };
-        let except =
-            if step.exclude.is_empty() { String::new() } else { format!(" without {}", step.exclude.join(", ")) };
-        let _ = writeln!(out, "step {}, {}: {}", i + 1, step.deformation, readable::name(&(select + &except)));
+    let are_selective = recipe.steps.iter().any(Step::is_selective);
+    for (step, number) in recipe.steps.iter().zip(1..).filter(|_| are_selective) {
+        let mut parts = if step.select.is_empty() { "everything".to_owned() } else { step.select.join(", ") };
+        if !step.exclude.is_empty() {
+            parts += &format!(" without {}", step.exclude.join(", "));
+        }
+        let _ = writeln!(out, "step {number}, {}: {}", step.deformation, readable::name(&parts));
     }
     let name = |path: &Path| readable::name(&path.display().to_string()).into_owned();
     for job in jobs {
@@ -205,9 +202,8 @@ impl InputFile {
 pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure> {
     if options.inputs.is_empty() {
         if std::io::stdin().is_terminal() {
-            return Err(Failure::usage(
-                "no drawing is named: write the file's name after the command; - reads what is typed",
-            ));
+            let advice = "write the file's name after the command; - reads what is typed";
+            return Err(Failure::usage(format!("no drawing is named: {advice}")));
         }
         return Ok(vec![InputFile::named("-")]);
     }
@@ -232,16 +228,14 @@ pub(super) fn inputs(options: &CommonOptions) -> Result<Vec<InputFile>, Failure>
 fn drawings_in(folder: &Path, options: &CommonOptions, out: &mut Vec<InputFile>) -> Result<(), Failure> {
     let results = options.out_dir.as_deref().and_then(|dir| fixed_folder(dir).canonicalize().ok());
     let is_wanted = |entry: &DirEntry| {
-        let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        let is_results = || entry.path().canonicalize().ok() == results;
-        entry.depth() == 0 || !(hidden || entry.file_type().is_dir() && results.is_some() && is_results())
+        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let is_results = || results.is_some() && entry.path().canonicalize().ok() == results;
+        entry.depth() == 0 || !(is_hidden || (entry.file_type().is_dir() && is_results()))
     };
     for entry in WalkDir::new(folder).sort_by_file_name().into_iter().filter_entry(is_wanted) {
         let entry = entry.map_err(|e| Failure::file(e.path().unwrap_or(folder), format!("cannot be read: {e}")))?;
         let path = entry.path();
-        let is_drawing =
-            path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
-        if is_drawing && !path.is_dir() {
+        if matches!(Format::of(path), Some(Format::Svg | Format::Svgz)) && !path.is_dir() {
             let below = path.strip_prefix(folder).ok().and_then(Path::parent).unwrap_or(Path::new(""));
             let refused = refused(&entry, folder, options.reading.external);
             out.push(InputFile { path: path.to_owned(), below: below.to_owned(), refused });
@@ -289,9 +283,9 @@ pub(super) fn fixed_folder(pattern: &Path) -> PathBuf {
 /// Returns the output of `input` by the file name `pattern`. `below` is the input's folder within one given with `--recursive`, which is
 /// repeated. `None` if the input has no name.
 pub(super) fn by_pattern(pattern: &Path, input: &Path, below: &Path) -> Option<PathBuf> {
-    let named = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
-    let file = named.file_name()?;
-    Some(named.parent().unwrap_or(Path::new("")).join(below).join(file))
+    let output = PathBuf::from(pattern.to_string_lossy().replace(STEM, &stem(input)?));
+    let file = output.file_name()?;
+    Some(output.parent().unwrap_or(Path::new("")).join(below).join(file))
 }
 
 /// Returns the output of `input` in the folder `dir`, or by the pattern `dir` of folders or of a file with an extension. In a folder, it
@@ -301,22 +295,21 @@ pub(super) fn in_folder(dir: &Path, input: &Path, below: &Path, extension: Optio
     if is_pattern(Path::new(last)) && dir.extension().is_some() {
         return by_pattern(dir, input, below);
     }
-    let name = own_name(input)?;
+    let name = result_name(input)?;
     let name = extension.map_or(name.clone(), |e| name.with_extension(e));
     let dir = if is_pattern(dir) { dir.to_string_lossy().replace(STEM, &stem(input)?).into() } else { dir.to_owned() };
     Some(dir.join(below).join(name))
 }
 
 /// Returns the file name of an input's result: the input's, or for a GIMP file the name of its SVG.
-fn own_name(input: &Path) -> Option<PathBuf> {
-    if let Some(name) = svg_name(input) {
-        return Some(name.into());
-    }
-    input.file_name().filter(|name| *name != "-").map(PathBuf::from)
+fn result_name(input: &Path) -> Option<PathBuf> {
+    let name_of_input = || input.file_name().filter(|name| *name != "-").map(PathBuf::from);
+    svg_name(input).map(PathBuf::from).or_else(name_of_input)
 }
 
+/// Returns the text for [`STEM`] in the name of an input's output.
 fn stem(input: &Path) -> Option<String> {
-    Some(own_name(input)?.file_stem()?.to_string_lossy().into_owned())
+    Some(result_name(input)?.file_stem()?.to_string_lossy().into_owned())
 }
 
 /// Folders created for the outputs. When this is dropped, empty ones are removed.
@@ -328,31 +321,29 @@ pub(crate) struct Folders {
 impl Folders {
     /// Creates the folders that are missing.
     pub(crate) fn create(options: &CommonOptions, jobs: &[Job]) -> Result<Self, Failure> {
-        let pattern = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_pattern);
-        let own_target = options.out_dir.is_some() || pattern(&options.out);
-        let targets = jobs.iter().filter(|_| own_target).flat_map(|j| &j.target);
-        let previews = jobs.iter().filter(|_| pattern(&options.preview)).flat_map(|j| &j.preview);
+        let has_pattern = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_pattern);
+        let may_create = options.out_dir.is_some() || has_pattern(&options.out);
+        let targets = jobs.iter().filter(|_| may_create).flat_map(|j| &j.target);
+        let previews = jobs.iter().filter(|_| has_pattern(&options.preview)).flat_map(|j| &j.preview);
         Self::of(targets.chain(previews).map(PathBuf::as_path))
     }
 
     /// Creates the folders of files.
     pub(crate) fn of<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<Self, Failure> {
-        let folders: HashSet<&Path> = files.into_iter().filter_map(Path::parent).collect();
-        let mut made = Self { made: Vec::new() };
-        for folder in folders {
-            made.create_one(folder)?;
-        }
-        Ok(made)
+        let parents: HashSet<&Path> = files.into_iter().filter_map(Path::parent).collect();
+        let mut folders = Self { made: Vec::new() };
+        parents.into_iter().try_for_each(|folder| folders.create_one(folder))?;
+        Ok(folders)
     }
 
     fn create_one(&mut self, folder: &Path) -> Result<(), Failure> {
-        let missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
-        let before = self.made.len();
-        self.made.extend(folder.ancestors().take_while(missing).map(Path::to_owned));
-        self.made[before..].reverse();
         if folder.as_os_str().is_empty() {
             return Ok(());
         }
+        let is_missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
+        let count = self.made.len();
+        self.made.extend(folder.ancestors().take_while(is_missing).map(Path::to_owned));
+        self.made[count..].reverse();
         std::fs::create_dir_all(folder).map_err(|e| Failure::output(folder, format!("cannot be created: {e}")))
     }
 }

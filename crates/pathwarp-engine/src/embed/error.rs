@@ -80,7 +80,8 @@ impl Error {
         self
     }
 
-    pub(super) fn of(failure: &Failure, registry: &Registry) -> Self {
+    /// Turns a failure into an error, whose message names parameters without dashes.
+    pub(super) fn from_failure(failure: &Failure, registry: &Registry) -> Self {
         let details = details(failure);
         let kind = match failure {
             _ if details.limit.is_some() => ErrorKind::Limit,
@@ -127,7 +128,7 @@ fn details(failure: &Failure) -> Details {
 /// Calls `work`, and turns failures and panics into errors.
 pub(super) fn guarded<T>(registry: &Registry, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Error> {
     match catch_unwind(AssertUnwindSafe(work)) {
-        Ok(done) => done.map_err(|f| Error::of(&f, registry)),
+        Ok(done) => done.map_err(|failure| Error::from_failure(&failure, registry)),
         Err(panic) => {
             let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
             let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();

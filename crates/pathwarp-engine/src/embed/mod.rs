@@ -1,7 +1,5 @@
-//! pathwarp inside other programs and languages: everything is given as text, as on the command line, and drawings stay in memory.
-//!
-//! A [`Warper`] is a recipe with its options. It maps points, bends paths and warps drawings by the code that the command line runs, so the
-//! numbers are equal. Nothing is printed, and no file is written. Panics become errors.
+//! pathwarp inside other programs and languages: everything is given as text, as on the command line, drawings stay in memory, and the
+//! code is that of the command line, so the numbers are equal.
 
 mod error;
 mod function;
@@ -98,10 +96,10 @@ pub(super) fn check_option(name: &str) -> Result<(), String> {
     if OF_THE_PROGRAM.contains(&name) {
         return Err(format!("{name} is an option of the program: in memory, results are returned"));
     }
-    if !OPTIONS.iter().any(|o| o.name == name || o.alias == Some(name)) {
-        return Err(advice::unknown("option", name, option_names().map(|(name, _)| name)));
+    match CommonOption::named(name) {
+        Some(_) => Ok(()),
+        None => Err(advice::unknown("option", name, option_names().map(|(name, _)| name))),
     }
-    Ok(())
 }
 
 /// Removes the dashes of options and parameters in a message.
@@ -111,16 +109,12 @@ pub(super) fn without_dashes(message: &str, registry: &Registry) -> String {
         |name: &str| name == INVERSE || OPTIONS.iter().any(|o| o.name == name) || params().any(|p| p.name == name);
     let mut out = String::with_capacity(message.len());
     let mut rest = message;
-    while let Some(at) = rest.find("--") {
-        let (before, after) = (&rest[..at], &rest[at + 2..]);
-        let length = after.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(after.len());
+    while let Some((before, after)) = rest.split_once("--") {
+        let (name, behind) = after.split_at(after.find(|c: char| !matches!(c, 'a'..='z' | '-')).unwrap_or(after.len()));
         let starts = before.chars().next_back().map_or(out.is_empty(), |c| c.is_whitespace() || "(`“".contains(c));
-        out.push_str(before);
-        if !(starts && is_known(&after[..length])) {
-            out.push_str("--");
-        }
-        out.push_str(&after[..length]);
-        rest = &after[length..];
+        let dashes = if starts && is_known(name) { "" } else { "--" };
+        out.extend([before, dashes, name]);
+        rest = behind;
     }
     out + rest
 }
@@ -159,7 +153,7 @@ impl PointMap {
     /// Checks the points mapped so far.
     ///
     /// # Errors
-    /// An error if a plug-in or function has failed, so that points became NaN.
+    /// [`ErrorKind::Input`] if a plug-in or function has failed, so that points became NaN.
     pub fn check(&self) -> Result<(), Error> {
         guarded(&self.registry, || self.built.failure().map_or(Ok(()), |e| Err(e.into())))
     }
@@ -177,13 +171,13 @@ impl PointMap {
         }
     }
 
-    /// Computes the two columns of the Jacobian at each of `at`: the derivatives by x and by y.
-    pub fn jacobians(&self, at: &[Point], out: &mut [[Vec2; 2]]) {
-        let mut jets = vec![Jet::default(); at.len()];
-        self.map.jets(at, &mut jets);
-        for ((p, j), out) in at.iter().zip(&jets).zip(out) {
-            let j = if self.creases.defined_at(*p) { j } else { &Jet::UNDEFINED };
-            *out = [j.dx, j.dy];
+    /// Computes the two columns of the Jacobian at each point: the derivatives by x and by y.
+    pub fn jacobians(&self, points: &[Point], out: &mut [[Vec2; 2]]) {
+        let mut jets = vec![Jet::default(); points.len()];
+        self.map.jets(points, &mut jets);
+        for ((p, jet), columns) in points.iter().zip(&jets).zip(out) {
+            let jet = if self.creases.defined_at(*p) { jet } else { &Jet::UNDEFINED };
+            *columns = [jet.dx, jet.dy];
         }
     }
 }

@@ -9,8 +9,8 @@ use crate::input::{PlainArtwork, hatching, planned};
 use crate::links::Destination;
 use crate::options::{CommonOptions, FrameChoice, Given, Reading};
 use crate::report::Fold;
-use crate::session::{Session, warp_bytes};
-use crate::steps::{self, in_lower_case};
+use crate::session::{Session, check_maps, warp_bytes};
+use crate::steps::{self, as_known_name};
 use crate::{advice, recipe_file, references};
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
@@ -99,24 +99,21 @@ impl Warper {
                 return Err(Error::usage(format!("{param}: `{name}` is one already")));
             }
         }
-        typed(name, info.params, values, &mut args)?;
-        check_values(registry, info, &args)?;
-        let made = Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())?;
-        made.check_names()?;
-        Ok(made)
+        let warper = Self::from_step(registry, name, info, args, values)?;
+        warper.check_names()?;
+        Ok(warper)
     }
 
     /// Checks the names of presets by building the deformation, which knows all their spellings.
     fn check_names(&self) -> Result<(), Error> {
-        let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
         for step in &self.resolved.steps {
             let Some(entry) = self.registry.get(&step.deformation) else { continue };
-            let is_name = |param: &str| {
+            let takes_names = |param: &str| {
                 entry.info().params.iter().any(|p| p.name == param && matches!(p.kind, Kind::NameOrFile(_)))
             };
-            if step.args.iter().any(|(param, _)| is_name(param))
-                && let Err(error @ pathwarp::Error::Usage { .. }) = entry.build_from(&step.args, &frame)
-                && matches!(&error, pathwarp::Error::Usage { param, .. } if is_name(param))
+            if step.args.iter().any(|(param, _)| takes_names(param))
+                && let Err(error) = entry.build_from(&step.args, &check::frame())
+                && matches!(&error, pathwarp::Error::Usage { param, .. } if takes_names(param))
             {
                 return guarded(&self.registry, || Err(error.into()));
             }
@@ -140,11 +137,7 @@ impl Warper {
     /// [`Usage`](super::ErrorKind::Usage) for an unknown edit or parameter.
     pub fn edit(registry: &Registry, name: &str, values: &[(impl AsRef<str>, impl AsRef<str>)]) -> Result<Self, Error> {
         let missing = || Error::usage(advice::unknown("edit", name, EDITS.iter().map(|e| e.name)));
-        let info = edits::info(name).ok_or_else(missing)?;
-        let mut args = Args::new();
-        typed(name, info.params, values, &mut args)?;
-        check_values(registry, info, &args)?;
-        Self::of(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
+        Self::from_step(registry, name, edits::info(name).ok_or_else(missing)?, Args::new(), values)
     }
 
     /// Creates a warper from the text of a recipe file. Paths in it refer to `folder`; absolute ones are allowed only if `external`.
@@ -156,10 +149,36 @@ impl Warper {
             let parsed = recipe_file::from_text(registry, text, folder, external);
             parsed.map_err(|e| Failure::Input(format!("the recipe: {e}")))
         })?;
-        Self::of(registry, saved.recipe, saved.options)
+        Self::from_typed(registry, saved.recipe, saved.options)
     }
 
-    fn of(registry: &Registry, typed: Recipe, given: Given) -> Result<Self, Error> {
+    /// Creates a warper from a deformation or edit that the caller calls `name`, with `args` and the values typed.
+    fn from_step(
+        registry: &Registry,
+        name: &str,
+        info: &Info,
+        mut args: Args,
+        values: &[(impl AsRef<str>, impl AsRef<str>)],
+    ) -> Result<Self, Error> {
+        for (param, value) in values {
+            let (param, value) = (param.as_ref(), value.as_ref());
+            let Some(declared) = info.params.iter().find(|p| p.name == param) else {
+                return Err(Error::usage(format!("{name}: {}", unknown(info.params, param))).about(param, value));
+            };
+            if declared.kind == Kind::Save {
+                return Err(Error::usage(format!("{param} writes a file, which only the program does")));
+            }
+            if !(declared.kind == Kind::Flag && value == "false") {
+                args.push(param, as_known_name(declared, value));
+            }
+        }
+        // Values are checked as far as possible without the artwork.
+        guarded(registry, || Ok(Settings::new(info.params, &args, &check::frame())?.check_values()?))?;
+        Self::from_typed(registry, Recipe { steps: vec![Step::new(info.name, args)] }, Given::default())
+    }
+
+    /// Creates a warper from steps and options with their values as typed.
+    fn from_typed(registry: &Registry, typed: Recipe, given: Given) -> Result<Self, Error> {
         let mut resolved = typed.clone();
         guarded(registry, || references::resolve_files(registry, &mut resolved, &Reading::default()))?;
         Ok(Self { registry: registry.clone(), typed, resolved, given, inverted: false, stop: None })
@@ -182,15 +201,15 @@ impl Warper {
     /// Returns the chain of this recipe and a later one. Later options take precedence; if both recipes select, each keeps its selection.
     #[must_use]
     pub fn then(&self, later: &Self) -> Self {
-        let joined = |a: &Recipe, b: &Recipe| {
+        let chain = |a: &Recipe, b: &Recipe| {
             let mut steps = [&a.steps[..], &b.steps[..]].concat();
             let (first, second) = steps.split_at_mut(a.steps.len());
-            let (mut of_first, mut of_second) = (self.given.clone(), later.given.clone());
-            steps::assign([(first, &mut of_first), (second, &mut of_second)]);
-            (Recipe { steps }, of_first.overridden_by(&of_second))
+            let (mut given_first, mut given_second) = (self.given.clone(), later.given.clone());
+            steps::assign([(first, &mut given_first), (second, &mut given_second)]);
+            (Recipe { steps }, given_first.overridden_by(&given_second))
         };
-        let (typed, given) = joined(&self.typed, &later.typed);
-        let (resolved, _) = joined(&self.resolved, &later.resolved);
+        let (typed, given) = chain(&self.typed, &later.typed);
+        let (resolved, _) = chain(&self.resolved, &later.resolved);
         let registry = self.registry.joined(&later.registry);
         Self { registry, typed, resolved, given, inverted: self.inverted || later.inverted, ..self.clone() }
     }
@@ -226,7 +245,8 @@ impl Warper {
     /// Returns the text of a recipe file for `folder`.
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) if a step is a function of this program; an error if the current folder cannot be read.
+    /// [`Usage`](super::ErrorKind::Usage) if a step is a function of this program, [`Input`](super::ErrorKind::Input) if the current folder
+    /// cannot be read.
     pub fn to_recipe(&self, folder: &FilePath) -> Result<String, Error> {
         if self.steps().any(is_function) {
             return Err(Error::usage("a recipe file cannot hold a function of this program; write it as a plug-in"));
@@ -252,16 +272,15 @@ impl Warper {
                 _ => Rect::ZERO,
             };
             let frame = plain_frame(&options, || Some(bounds))?;
-            let alone = self.typed.steps.len() == 1 && !self.typed.steps.iter().any(|s| s.inverse);
-            let outline = if alone { Outline::default() } else { artwork(frame.rect) };
+            let needs_no_artwork = self.typed.steps.len() == 1 && !self.typed.steps[0].inverse;
+            let outline = if needs_no_artwork { Outline::default() } else { artwork(frame.rect) };
             let built_in =
                 |frame: &Frame| self.build(&options, frame, &outline, &Arc::new(Budget::new(options.reading.limits)));
             let built = built_in(&frame).map_err(|failure| {
                 // If the recipe builds in a larger box, the size is what is missing.
-                let roomy = Frame::new(bounds.inflate(1.0, 1.0));
-                let flat = frame.rect.is_zero_area();
-                let lacks = flat && !matches!(options.frame, FrameChoice::Rect(_)) && built_in(&roomy).is_ok();
-                if lacks {
+                let larger = Frame::new(bounds.inflate(1.0, 1.0));
+                let is_typed = matches!(options.frame, FrameChoice::Rect(_));
+                if frame.rect.is_zero_area() && !is_typed && built_in(&larger).is_ok() {
                     Failure::usage(format!("the box of the points has no size, {NEEDS_FRAME}"))
                 } else {
                     failure
@@ -275,7 +294,8 @@ impl Warper {
     /// Checks the map over the option `frame`, or else over the box 0,0,100,100, by [`pathwarp::check::map`].
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) for a wrong value; an error if the map cannot be built, or a plug-in or function fails.
+    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if no map results, and
+    /// [`Input`](super::ErrorKind::Input) if a plug-in or function fails.
     pub fn check(&self) -> Result<Vec<Check>, Error> {
         guarded(&self.registry, || {
             let options = self.options()?;
@@ -283,16 +303,16 @@ impl Warper {
             let budget = Arc::new(Budget::new(options.reading.limits));
             let whole = self.build(&options, &frame, &hatching(frame.rect), &budget)?;
             let mut checks = Vec::new();
-            check::map(&whole.as_one(), frame.rect, |done| checks.push(done));
-            whole.failure().map_or(Ok(checks), |e| Err(Failure::of_recipe(e)))
+            check::map(&whole.as_one(), frame.rect, |check| checks.push(check));
+            check_maps(&whole).map(|()| checks)
         })
     }
 
     /// Bends a path, given as SVG path data.
     ///
     /// # Errors
-    /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path;
-    /// an error for malformed data.
+    /// [`Input`](super::ErrorKind::Input) for malformed data, [`Usage`](super::ErrorKind::Usage) for a wrong value,
+    /// [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_path(&self, data: &str) -> Result<Path, Error> {
         let outline = guarded(&self.registry, || Ok(Outline::from_svg(data).map_err(pathwarp::Error::from)?))?;
         self.warp_outline(&outline)
@@ -303,7 +323,7 @@ impl Warper {
     /// # Errors
     /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_outline(&self, outline: &Outline) -> Result<Path, Error> {
-        self.bent(outline, 1.0)
+        self.bend(outline, 1.0)
     }
 
     /// Bends an outline to lines and quadratics, as in TrueType. Half of the tolerance is for fitting cubics, half for replacing them.
@@ -311,12 +331,12 @@ impl Warper {
     /// # Errors
     /// [`Usage`](super::ErrorKind::Usage) for a wrong value, [`Geometry`](super::ErrorKind::Geometry) if the map does not suit the path.
     pub fn warp_outline_to_quadratics(&self, outline: &Outline) -> Result<Path, Error> {
-        let mut bent = self.bent(outline, 0.5)?;
-        let cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
-        if bent.path.path.elements().iter().any(cubic) {
+        let mut bent = self.bend(outline, 0.5)?;
+        let is_cubic = |el: &PathEl| matches!(el, PathEl::CurveTo(..));
+        if bent.path.path.elements().iter().any(is_cubic) {
             // Nodes at extremes of the cubics stay points of the curve.
-            let placed = self.options().is_ok_and(|o| o.nodes.are_placed());
-            let nodes = if placed { fit::Nodes::Auto } else { fit::Nodes::Fewest };
+            let are_placed = self.options().is_ok_and(|o| o.nodes.are_placed());
+            let nodes = if are_placed { fit::Nodes::Auto } else { fit::Nodes::Fewest };
             // The joints of the cubics are either smooth or corners: there is no noise to smooth.
             let options = fit::Options::new(bent.tolerance).with_degree(Degree::Quadratic).with_nodes(nodes);
             let options = options.with_corner(fit::parts::SMOOTH_JOINT);
@@ -332,7 +352,7 @@ impl Warper {
     }
 
     /// Bends an outline, using a share of the tolerance.
-    fn bent(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
+    fn bend(&self, outline: &Outline, share: f64) -> Result<Path, Error> {
         guarded(&self.registry, || {
             if let Some(other) = self.given.names().find(|name| !PATH_OPTIONS.contains(name)) {
                 let known = PATH_OPTIONS.join(", ");
@@ -354,19 +374,18 @@ impl Warper {
             let refit = refit.with_suited(edit.as_ref().map_or(options.tolerance.is_none(), |planned| planned.suited));
             let copies = &built.placement.copies;
             let repeated = if copies.is_empty() { outline.clone() } else { outline.repeated(copies) };
-            let (refit, digits) = (refit.with_budget(budget), options.precision);
+            let (refit, decimals) = (refit.with_budget(budget), options.precision);
             let path = match edit.map(|planned| planned.edit) {
-                None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, digits),
+                None => pathwarp_svg::warp_path(&repeated, &built.map, &refit, decimals),
                 Some(Edit::Outline) => return Err(Failure::usage("a path has no stroke that could become an outline")),
-                Some(edit) => pathwarp_svg::engine::edit_path(outline, edit, &refit, digits),
+                Some(edit) => pathwarp_svg::engine::edit_path(outline, edit, &refit, decimals),
             };
-            // Numbers of a map that has failed are meaningless, so its failure is reported first.
-            built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
+            check_maps(&built)?;
             let path = path.map_err(pathwarp::Error::from)?;
             let survey = Survey::new(&built.map, repeated.bounding_box(), repeated.segs().count());
             let orientation = survey.orientation_of_copies(outline, copies, true);
             let folds = Fold::of(&orientation, &orientation).count;
-            built.failure().map_or(Ok(()), |e| Err(Failure::of_recipe(e)))?;
+            check_maps(&built)?;
             let warnings = built.steps.into_iter().flat_map(|s| s.explanation.warnings).collect();
             Ok(Path { path, folds, warnings, tolerance })
         })
@@ -382,10 +401,10 @@ impl Warper {
         guarded(&self.registry, || {
             self.options()?;
             self.given.check_conflicts().map_err(Failure::Usage)?;
-            let place = (name.unwrap_or(FilePath::new("")), Destination::Anywhere);
-            let (bytes, done) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, place, bytes)?;
-            let report = serde_json::to_string(&done.report).map_err(|e| Failure::Output(e.to_string()))?;
-            Ok(Drawing { bytes, report, warnings: done.report.warnings, notes: done.notes })
+            let path = (name.unwrap_or(FilePath::new("")), Destination::Anywhere);
+            let (bytes, warped) = warp_bytes(&self.registry, &self.resolved, &self.given, self.stop, path, bytes)?;
+            let report = serde_json::to_string(&warped.report).map_err(|e| Failure::Output(e.to_string()))?;
+            Ok(Drawing { bytes, report, warnings: warped.report.warnings, notes: warped.notes })
         })
     }
 
@@ -412,34 +431,6 @@ impl Warper {
         let ready = session.ready(&mut PlainArtwork { outlines: vec![outline], frame, budget }, None)?;
         Ok(ready.built.whole)
     }
-}
-
-/// Adds values for the parameters of the deformation or edit `name`.
-fn typed(
-    name: &str,
-    params: &[Param],
-    values: &[(impl AsRef<str>, impl AsRef<str>)],
-    args: &mut Args,
-) -> Result<(), Error> {
-    for (param, value) in values {
-        let (param, value) = (param.as_ref(), value.as_ref());
-        let Some(declared) = params.iter().find(|p| p.name == param) else {
-            return Err(Error::usage(format!("{name}: {}", unknown(params, param))).about(param, value));
-        };
-        if declared.kind == Kind::Save {
-            return Err(Error::usage(format!("{param} writes a file, which only the program does")));
-        }
-        if !(declared.kind == Kind::Flag && value == "false") {
-            args.push(param, in_lower_case(declared, value));
-        }
-    }
-    Ok(())
-}
-
-/// Checks values as far as possible without the artwork.
-fn check_values(registry: &Registry, info: &Info, args: &Args) -> Result<(), Error> {
-    let frame = Frame::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-    guarded(registry, || Ok(Settings::new(info.params, args, &frame)?.check_values()?))
 }
 
 /// Describes an unknown parameter. The name may be that of an option.

@@ -38,12 +38,12 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     let engraved = engraved(doc, &plot, &options.engrave)?;
     let unites = |i: usize| options.union || (options.kerf.is_some() && !engraved[i]);
     let mut lines = Vec::new();
-    for (of, s) in plot.shapes.iter().enumerate() {
-        let rule = s.even_odd.filter(|_| unites(of));
+    for (shape, s) in plot.shapes.iter().enumerate() {
+        let rule = s.even_odd.filter(|_| unites(shape));
         let united = rule.map(|even_odd| united(&s.outline, even_odd, tolerance)).transpose();
         let united = united.map_err(pathwarp::Error::from)?.flatten();
         let outline = united.as_ref().unwrap_or(&s.outline).transformed(to_mm);
-        lines.extend(outline.subpaths.into_iter().map(|path| Contour { of, path }));
+        lines.extend(outline.subpaths.into_iter().map(|path| Contour { shape, path }));
     }
     let mut warnings = lost_in_dxf(&plot);
     let frame = Frame::new(doc.view_box()).with_units_per_px(units_per_px(doc));
@@ -56,7 +56,7 @@ pub(super) fn write(doc: &Document, options: &CommonOptions, tolerance: Option<f
     };
     let (lines, kerf) = followed(doc, &plot, lines, &machine, &mut warnings)?;
     let mut cuts = vec![Outline::default(); plot.shapes.len()];
-    lines.into_iter().for_each(|c| cuts[c.of].subpaths.push(c.path));
+    lines.into_iter().for_each(|c| cuts[c.shape].subpaths.push(c.path));
     let shapes = plot.shapes.iter().zip(&cuts);
     let shapes: Vec<Shape<'_>> = shapes
         .map(|(s, outline)| Shape { layer: s.layer.as_deref().unwrap_or_default(), color: s.color, outline })
@@ -87,7 +87,7 @@ struct Machine<'a> {
 fn followed(
     doc: &Document,
     plot: &Plot,
-    lines: Vec<Contour>,
+    mut lines: Vec<Contour>,
     machine: &Machine<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<(Vec<Contour>, Option<KerfReport>), Failure> {
@@ -95,33 +95,32 @@ fn followed(
     let limit = |e| pathwarp::Error::limit(doc.name(), "comparing what a machine follows takes", e);
     let pen = |i: usize| (&plot.shapes[i].layer, plot.shapes[i].color);
     // With a kerf, lines are compared across layers and colours, but cut ones never with engraved ones.
-    let among = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
-    let mut lines = lines;
+    let kind = |i: usize| if machine.kerf.is_some() { Err(machine.engraved[i]) } else { Ok(pen(i)) };
     if machine.kerf.is_some() {
-        let (cut, engraved): (Vec<Contour>, Vec<Contour>) = lines.into_iter().partition(|c| !machine.engraved[c.of]);
+        let (cut, engraved): (Vec<Contour>, Vec<Contour>) = lines.into_iter().partition(|c| !machine.engraved[c.shape]);
         lines = contours::chained(&cut, pen, near);
         lines.extend(engraved);
     }
-    let mut same = contours::same(&lines, among, near, doc.budget()).map_err(limit)?;
+    let mut equals = contours::equal_earlier(&lines, kind, near, doc.budget()).map_err(limit)?;
     if !machine.keep_duplicates {
-        let twice = same.iter().flatten().count();
-        let mut only = same.iter().map(Option::is_none);
-        lines.retain(|_| only.next().unwrap_or(true));
-        let segments = contours::leave_out_lines(&mut lines, among, near);
-        same = vec![None; lines.len()];
-        let several = [(twice, "contour", "contours"), (segments, "open line", "open lines")];
-        let said: Vec<String> = several.iter().filter(|s| s.0 > 0).map(|s| counted(s.0, s.1, s.2)).collect();
-        if !said.is_empty() {
-            warnings.push(format!("drawn twice, and cut once: {} (--duplicates keep)", said.join(" and ")));
+        let contours = equals.iter().flatten().count();
+        let mut are_first = equals.iter().map(Option::is_none);
+        lines.retain(|_| are_first.next().unwrap_or(true));
+        let segments = contours::leave_out_lines(&mut lines, kind, near);
+        equals = vec![None; lines.len()];
+        let counts = [(contours, "contour", "contours"), (segments, "open line", "open lines")];
+        let repeated: Vec<String> = counts.iter().filter(|c| c.0 > 0).map(|c| counted(c.0, c.1, c.2)).collect();
+        if !repeated.is_empty() {
+            warnings.push(format!("drawn twice, and cut once: {} (--duplicates keep)", repeated.join(" and ")));
         }
     }
     let Some(by) = machine.kerf else { return Ok((lines, None)) };
     let spend = |n: f64| doc.budget().spend(cost::COMPARISON * n).map_err(limit);
     let kerf = Kerf { by, near, refit: machine.refit, spend: &spend };
-    let cut = |c: &Contour| !machine.engraved[c.of];
-    let name = |of: usize| doc.shapes()[plot.shapes[of].shape].id.clone();
-    let (mut lines, report) = kerf::widen(lines, &same, cut, &kerf, name)?;
-    lines.sort_by_key(|c| c.of);
+    let is_cut = |c: &Contour| !machine.engraved[c.shape];
+    let name = |i: usize| doc.shapes()[plot.shapes[i].shape].id.clone();
+    let (mut lines, report) = kerf::compensate(lines, &equals, is_cut, &kerf, name)?;
+    lines.sort_by_key(|c| c.shape);
     warnings.extend(report.warnings());
     Ok((lines, Some(report)))
 }
@@ -149,12 +148,12 @@ fn engraved(doc: &Document, plot: &Plot, named: &[String]) -> Result<Vec<bool>, 
 fn lost_in_dxf(plot: &Plot) -> Vec<String> {
     let mut out = Vec::new();
     let lost = &plot.lost;
-    let kinds = [
+    let counts = [
         (lost.bitmaps, "bitmap", "bitmaps"),
         (lost.patterns, "pattern", "patterns"),
         (lost.filters, "filter", "filters"),
     ];
-    let left_out: Vec<String> = kinds.iter().filter(|k| k.0 > 0).map(|k| counted(k.0, k.1, k.2)).collect();
+    let left_out: Vec<String> = counts.iter().filter(|c| c.0 > 0).map(|c| counted(c.0, c.1, c.2)).collect();
     if !left_out.is_empty() {
         out.push(format!("a DXF holds outlines only: left out {}", left_out.join(", ")));
     }

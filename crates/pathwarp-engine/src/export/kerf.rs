@@ -31,11 +31,11 @@ const NAMED: usize = 6;
 impl KerfReport {
     /// Returns a sentence about the contours that grew and those that shrank.
     pub fn note(&self) -> String {
-        let said = |names: &[String], done: &str| {
+        let clause = |names: &[String], verb: &str| {
             let contours = counted(names.len(), "contour", "contours");
-            if names.is_empty() { format!("no contour {done}") } else { format!("{contours} {done}: {}", named(names)) }
+            if names.is_empty() { format!("no contour {verb}") } else { format!("{contours} {verb}: {}", list(names)) }
         };
-        format!("--kerf: {}; {}", said(&self.grew, "grew"), said(&self.shrank, "shrank"))
+        format!("--kerf: {}; {}", clause(&self.grew, "grew"), clause(&self.shrank, "shrank"))
     }
 
     /// Returns `true` if open lines were left as they are, because their inside is unknown.
@@ -49,15 +49,15 @@ impl KerfReport {
         if !self.undecided.is_empty() {
             out.push(format!(
                 "--kerf cannot tell in from out at open lines that enclose something, which stay: {}; close them, or name them with --engrave",
-                named(&self.undecided)
+                list(&self.undecided)
             ));
         }
         if !self.crossing.is_empty() {
-            out.push(format!("contours that cross each other are no holes to --kerf: {}", named(&self.crossing)));
+            out.push(format!("contours that cross each other are no holes to --kerf: {}", list(&self.crossing)));
         }
         if !self.lost.is_empty() {
             let contours = counted(self.lost.len(), "contour", "contours");
-            let names = named(&self.lost);
+            let names = list(&self.lost);
             out.push(format!(
                 "--kerf leaves {contours} fewer, as narrow ones close and those that meet unite: {names}"
             ));
@@ -66,7 +66,8 @@ impl KerfReport {
     }
 }
 
-fn named(names: &[String]) -> String {
+/// Lists the first of some names; neighbours that are equal count once.
+fn list(names: &[String]) -> String {
     let mut different: Vec<&String> = names.iter().collect();
     different.dedup();
     listed(&different, NAMED)
@@ -83,40 +84,41 @@ pub(super) struct Kerf<'a> {
     pub(super) spend: &'a dyn Fn(f64) -> Result<(), pathwarp::Error>,
 }
 
-/// Moves closed contours by half the kerf, away from the material they enclose; open lines stay. A contour is a hole if an odd number of
-/// other contours is around it; equal ones (`same`) count once.
-pub(super) fn widen(
+/// Moves closed contours by half the kerf, outwards if they bound a part and inwards if they bound a hole; open lines stay. A contour is a
+/// hole if an odd number of other contours is around it; those that equal an earlier one (`equals`) do not count.
+pub(super) fn compensate(
     all: Vec<Contour>,
-    same: &[Option<usize>],
+    equals: &[Option<usize>],
     is_cut: impl Fn(&Contour) -> bool,
     kerf: &Kerf<'_>,
     name: impl Fn(usize) -> String,
 ) -> Result<(Vec<Contour>, KerfReport), pathwarp::Error> {
     let mut report = KerfReport::default();
     let loops: Vec<Loop> = all.iter().map(Loop::new).collect();
-    let counts = |i: &usize| all[*i].path.closed && is_cut(&all[*i]) && same[*i].is_none();
-    let depths =
-        depths(&loops, (0..all.len()).filter(counts).collect(), kerf, |i| report.crossing.push(name(all[i].of)))?;
+    let counts = |i: &usize| all[*i].path.closed && is_cut(&all[*i]) && equals[*i].is_none();
+    let candidates: Vec<usize> = (0..all.len()).filter(counts).collect();
+    let depths = depths(&loops, candidates.clone(), kerf, |i| report.crossing.push(name(all[i].shape)))?;
     let open: Vec<Contour> = all.iter().filter(|c| !c.path.closed && is_cut(c)).cloned().collect();
     for chain in contours::closed_roughly(&open, kerf.near) {
         let rough = Loop::new(&chain.contour);
         (kerf.spend)(all.len() as f64)?;
-        let is_around = || (0..all.len()).filter(counts).any(|i| rough.places(&loops[i])[0] > 0);
+        let is_around = || candidates.iter().any(|i| rough.points_inside_and_outside(&loops[*i])[0] > 0);
         if rough.area() > kerf.near.powi(2) && (chain.gap <= 2.0 * kerf.by || is_around()) {
-            report.undecided.extend(chain.members.iter().map(|k| name(open[*k].of)));
+            report.undecided.extend(chain.members.iter().map(|member| name(open[*member].shape)));
         }
     }
     let mut out: Vec<Contour> = Vec::with_capacity(all.len());
+    // Contours of one shape and depth move together, so that those that meet unite.
     let mut groups: Vec<(usize, usize, Vec<Subpath>)> = Vec::new();
     for (i, c) in all.into_iter().enumerate() {
-        let depth = depths[same[i].unwrap_or(i)];
-        match groups.iter_mut().rev().take_while(|g| g.0 == c.of).find(|g| g.1 == depth) {
+        let depth = depths[equals[i].unwrap_or(i)];
+        match groups.iter_mut().rev().take_while(|g| g.0 == c.shape).find(|g| g.1 == depth) {
             _ if !c.path.closed || !is_cut(&c) => out.push(c),
-            Some(group) => group.2.push(c.path),
-            None => groups.push((c.of, depth, vec![c.path])),
+            Some((.., subpaths)) => subpaths.push(c.path),
+            None => groups.push((c.shape, depth, vec![c.path])),
         }
     }
-    for (of, depth, subpaths) in groups {
+    for (shape, depth, subpaths) in groups {
         let (side, moves) = match depth % 2 {
             0 => (Side::Outside, &mut report.grew),
             _ => (Side::Inside, &mut report.shrank),
@@ -125,38 +127,38 @@ pub(super) fn widen(
         let count = subpaths.len();
         let mut to = moved(&Outline { subpaths }, &offset, kerf.refit, &[])?.outline.subpaths;
         to.retain(|s| s.diagonal() > kerf.near);
-        moves.extend(to.iter().map(|_| name(of)));
-        report.lost.extend((to.len()..count).map(|_| name(of)));
-        out.extend(to.into_iter().map(|path| Contour { of, path }));
+        moves.extend(to.iter().map(|_| name(shape)));
+        report.lost.extend((to.len()..count).map(|_| name(shape)));
+        out.extend(to.into_iter().map(|path| Contour { shape, path }));
     }
     Ok((out, report))
 }
 
-/// For each contour, the number of others (`among`) around it. Calls `crosses` for those that cross another.
+/// Returns, for each contour, the number of `candidates` around it. Calls `crosses` for those that cross another.
 fn depths(
     loops: &[Loop],
-    mut among: Vec<usize>,
+    mut candidates: Vec<usize>,
     kerf: &Kerf<'_>,
-    mut crosses: impl FnMut(usize),
+    crosses: impl FnMut(usize),
 ) -> Result<Vec<usize>, pathwarp::Error> {
     let mut depths = vec![0; loops.len()];
     let mut crossing = BTreeSet::new();
-    among.sort_by(|a, b| loops[*a].bounds.x0.total_cmp(&loops[*b].bounds.x0));
-    // Contours that extend as far to the right as the next one's left side.
-    let mut beside: Vec<usize> = Vec::new();
-    for i in among {
-        beside.retain(|k| loops[*k].bounds.x1 >= loops[i].bounds.x0);
-        (kerf.spend)(beside.len() as f64)?;
-        for (inner, outer) in beside.iter().flat_map(|k| [(i, *k), (*k, i)]) {
-            match loops[outer].places(&loops[inner]) {
+    // A sweep from left to right: `open` holds the contours whose right side it has not passed.
+    candidates.sort_by(|a, b| loops[*a].bounds.x0.total_cmp(&loops[*b].bounds.x0));
+    let mut open: Vec<usize> = Vec::new();
+    for i in candidates {
+        open.retain(|other| loops[*other].bounds.x1 >= loops[i].bounds.x0);
+        (kerf.spend)(open.len() as f64)?;
+        for (inner, outer) in open.iter().flat_map(|other| [(i, *other), (*other, i)]) {
+            match loops[outer].points_inside_and_outside(&loops[inner]) {
                 [_, 0] => depths[inner] += 1,
                 [0, _] => {}
                 _ => drop(crossing.insert(inner)),
             }
         }
-        beside.push(i);
+        open.push(i);
     }
-    crossing.into_iter().for_each(&mut crosses);
+    crossing.into_iter().for_each(crosses);
     Ok(depths)
 }
 
@@ -172,7 +174,7 @@ impl Loop {
     fn new(c: &Contour) -> Self {
         /// Most segments that get points, and the parameters of the points.
         const MOST: usize = 8;
-        const AT: [f64; 3] = [0.2, 0.5, 0.8];
+        const PARAMETERS: [f64; 3] = [0.2, 0.5, 0.8];
         /// Distance of the points from the contour, as a share of its size; larger than the error of arcs as cubics.
         const BESIDE: f64 = 1e-4;
         let size = c.path.diagonal();
@@ -183,12 +185,12 @@ impl Loop {
             let along = s.deriv(t);
             s.eval(t) + along.turn_90() * (inwards / along.hypot().max(f64::MIN_POSITIVE))
         };
-        let points = segs.flat_map(|s| AT.map(|t| beside(s, t))).collect();
+        let points = segs.flat_map(|s| PARAMETERS.map(|t| beside(s, t))).collect();
         Self { path, bounds: c.path.bounding_box(), points }
     }
 
     /// Returns the numbers of points of another contour that lie inside of this one and outside.
-    fn places(&self, other: &Self) -> [usize; 2] {
+    fn points_inside_and_outside(&self, other: &Self) -> [usize; 2] {
         if self.bounds.intersect(other.bounds).is_zero_area() {
             return [0, other.points.len()];
         }

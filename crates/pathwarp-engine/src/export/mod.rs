@@ -74,12 +74,12 @@ pub fn drawing(
         }
         return Ok(svg.into_bytes().into());
     };
-    // PDF and its readers use single precision.
-    let there = parsed(&svg)?;
-    let there = there.moved_to_origin()?.map_or(Ok(there), |near| parsed(&near))?;
+    let doc = parsed(&svg)?;
+    // Coordinates far from the origin suffer from the single precision of PDF and its readers.
+    let doc = doc.moved_to_origin()?.map_or(Ok(doc), |moved| parsed(&moved))?;
     // A DXF is made from the document's outlines, a PDF from usvg's tree.
-    let resolved = if format == Format::Dxf { None } else { there.resolved()? };
-    write(&resolved.map_or(Ok(there), |plain| parsed(&plain))?, options, tolerance)
+    let resolved = if format == Format::Dxf { None } else { doc.resolved()? };
+    write(&resolved.map_or(Ok(doc), |resolved| parsed(&resolved))?, options, tolerance)
 }
 
 /// Writes GIMP's paths in a format. Sizes are in px. The lines of a DXF follow curves within `tolerance`.
@@ -90,17 +90,19 @@ pub fn paths(
     options: &CommonOptions,
     tolerance: Option<f64>,
 ) -> Result<Exported, Failure> {
+    /// Largest side of an image that GIMP opens, in pixels.
+    const LARGEST_SIDE: f64 = 524_288.0;
     if !matches!(format, Format::PointList | Format::Xcf) {
-        let there = (format, &Destination::Back);
-        return drawing(to_svg(canvas, paths, None), there, &ReadOptions::default(), options, tolerance);
+        let svg = to_svg(canvas, paths, None);
+        return drawing(svg, (format, &Destination::Back), &ReadOptions::default(), options, tolerance);
     }
     let scale = options.page_scale(Size::new(canvas[0], canvas[1])).map_or(1.0, |scale| scale.by);
-    let larger = |p: &[f64; 2]| p.map(|v| v * scale);
-    let stroke = |s: &Stroke| Stroke { closed: s.closed, points: s.points.iter().map(larger).collect() };
+    let scaled = |p: &[f64; 2]| p.map(|v| v * scale);
+    let stroke = |s: &Stroke| Stroke { closed: s.closed, points: s.points.iter().map(scaled).collect() };
     let path = |p: &GimpPath| GimpPath { strokes: p.strokes.iter().map(stroke).collect(), ..p.clone() };
-    let (canvas, paths) = (larger(&canvas), paths.iter().map(path).collect::<Vec<_>>());
+    let (canvas, paths) = (scaled(&canvas), paths.iter().map(path).collect::<Vec<_>>());
     let bytes = match format {
-        Format::Xcf => new_xcf(canvas.map(|v| v.ceil().clamp(1.0, 524_288.0) as u32), &paths),
+        Format::Xcf => new_xcf(canvas.map(|v| v.ceil().clamp(1.0, LARGEST_SIDE) as u32), &paths),
         _ => to_json(Some(canvas), &paths).into_bytes(),
     };
     Ok(bytes.into())

@@ -175,17 +175,17 @@ pub struct WarpRequest<'a> {
     pub built: &'a BuiltParts,
     /// The options as read.
     pub options: &'a CommonOptions,
-    /// In user units.
+    /// The tolerance in user units.
     pub tolerance: f64,
-    /// Use smaller tolerances for small contours; see [`suited`](pathwarp::refit::suited).
+    /// `true` to use smaller tolerances for small contours; see [`suited`](pathwarp::refit::suited).
     pub suited: bool,
     /// The edit to do instead of bending.
     pub edit: Option<Edit>,
-    /// The line of a contour in the result.
+    /// The line that the edit `contour` draws.
     pub line: CutLine,
     /// The recipe file's text, to be embedded in the result.
     pub embedded_recipe: Option<String>,
-    /// Show the result on the source's page.
+    /// `true` to show the result on the source's page.
     pub same_view: bool,
 }
 
@@ -223,15 +223,15 @@ pub enum WarpedResult {
 /// Returns the warning that the shape `id` folds at `at`, with the letters in it that fold.
 pub(super) fn fold_warning(id: &str, letters: &[String], at: Point) -> String {
     const NAMED: usize = 8;
-    let place = format!("near {:.4},{:.4}: the map reverses orientation there", at.x, at.y);
+    let position = format!("near {:.4},{:.4}: the map reverses orientation there", at.x, at.y);
     match letters {
+        [] => format!("{id} folds over {position}"),
         // The id of an outlined letter contains its name.
-        [] => format!("{id} folds over {place}"),
-        [one] if id.contains(one.as_str()) => format!("{id} folds over {place}"),
-        [one] => format!("{id}: the letter “{one}” folds over {place}"),
+        [one] if id.contains(one.as_str()) => format!("{id} folds over {position}"),
+        [one] => format!("{id}: the letter “{one}” folds over {position}"),
         _ => {
             let quoted: Vec<String> = letters.iter().map(|l| format!("“{l}”")).collect();
-            format!("{id}: the letters {} fold over, first {place}", listed(&quoted, NAMED))
+            format!("{id}: the letters {} fold over, first {position}", listed(&quoted, NAMED))
         }
     }
 }
@@ -247,8 +247,8 @@ pub(super) fn letters_by_shape<'a>(
     let starting: HashMap<[u64; 2], &Letter> = starting.collect();
     let mut out: HashMap<&str, Vec<&Letter>> = HashMap::new();
     for (id, outline) in shapes {
-        let own = outline.subpaths.iter().filter_map(|s| starting.get(&bits(s.start)));
-        own.for_each(|l| out.entry(id).or_default().push(l));
+        let letters = outline.subpaths.iter().filter_map(|s| starting.get(&bits(s.start)));
+        letters.for_each(|l| out.entry(id).or_default().push(l));
     }
     out
 }

@@ -11,7 +11,7 @@ use pathwarp::budget::Budget;
 use pathwarp::edit::{Contour, Offset, OpenPaths, Side};
 use pathwarp::kurbo::{Affine, Join, Rect};
 use pathwarp::map::AffineMap;
-use pathwarp::param::{Frame, Length, Settings};
+use pathwarp::param::{Frame, Settings};
 use pathwarp::recipe::Step;
 use pathwarp::refit;
 use pathwarp_svg::engine::CutLine;
@@ -26,11 +26,11 @@ const SIMPLIFY_DISTANCE: f64 = 5e-4;
 #[derive(Debug, Clone)]
 pub(crate) struct Planned {
     pub(crate) edit: Edit,
-    /// The line of a contour in the result.
+    /// The line that the edit `contour` draws.
     pub(crate) line: CutLine,
-    /// In user units.
+    /// The tolerance in user units.
     pub(crate) tolerance: f64,
-    /// Use smaller tolerances for small contours.
+    /// `true` to use smaller tolerances for small contours.
     pub(crate) suited: bool,
 }
 
@@ -44,20 +44,20 @@ pub(crate) fn planned(
 ) -> Result<Planned, Failure> {
     let known = edits::info(&step.deformation).map_or(&[][..], |info| info.params);
     let s = Settings::new(known, &step.args, frame)?;
-    let held =
-        |given: Option<Length>, share| Ok::<_, Failure>((distance(given, share, painted, frame)?, given.is_none()));
+    let tolerance = || distance(options.tolerance, TOLERANCE_OF_DIAGONAL, painted, frame);
+    let suited = options.tolerance.is_none();
     let mut line = CutLine::default();
     let (edit, (tolerance, suited)) = match &*step.deformation {
         "simplify" => {
             let corner = s.number_if("corners")?.map(f64::to_radians);
-            let held = match s.number_if("within")? {
-                Some(within) => {
-                    measurable("simplify", within, painted)?;
-                    (within, false)
-                }
-                None => held(options.tolerance.filter(|_| is_last), SIMPLIFY_DISTANCE)?,
-            };
-            (Edit::Simplify { corner }, held)
+            if let Some(within) = s.number_if("within")? {
+                measurable("simplify", within, painted)?;
+                (Edit::Simplify { corner }, (within, false))
+            } else {
+                let given = options.tolerance.filter(|_| is_last);
+                let tolerance = distance(given, SIMPLIFY_DISTANCE, painted, frame)?;
+                (Edit::Simplify { corner }, (tolerance, given.is_none()))
+            }
         }
         "offset" => {
             let join = match s.choice("join")? {
@@ -73,22 +73,18 @@ pub(crate) fn planned(
             let by = s.number("by")?;
             measurable(if is_last { "by" } else { "outset" }, by, painted)?;
             let open = if s.flag("lines")? { OpenPaths::Move } else { OpenPaths::Stay };
-            (
-                Edit::Offset(Offset { by, join, side, even_odd: false, open }),
-                held(options.tolerance, TOLERANCE_OF_DIAGONAL)?,
-            )
+            (Edit::Offset(Offset { by, join, side, even_odd: false, open }), (tolerance()?, suited))
         }
         "contour" => {
             line = cut_line(&s)?;
             let (by, holes) = (s.number("by")?, s.choice("holes")? == "keep");
             let contour = Contour { by, holes, join: s.flag("join")? };
-            (Edit::Contour(contour), held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
+            (Edit::Contour(contour), (tolerance()?, suited))
         }
         "caption" => return Err(Failure::usage("a caption is set on a drawing, which a path is not")),
-        "unite" => {
-            (Edit::Unite { by_fill: s.choice("by")? == "fill" }, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?)
-        }
-        _ => (Edit::Outline, held(options.tolerance, TOLERANCE_OF_DIAGONAL)?),
+        "unite" => (Edit::Unite { by_fill: s.choice("by")? == "fill" }, (tolerance()?, suited)),
+        // The edit `outline`.
+        _ => (Edit::Outline, (tolerance()?, suited)),
     };
     Ok(Planned { edit, line, tolerance, suited })
 }
@@ -111,7 +107,7 @@ fn cut_line(s: &Settings<'_>) -> Result<CutLine, Failure> {
 fn spot_name(name: &str) -> Result<String, Failure> {
     /// Most bytes of a name.
     const LONGEST: usize = 127;
-    let why = match name.trim() {
+    let needed = match name.trim() {
         "" => "a name of at least one letter",
         n if n.len() > LONGEST => "a name of at most 127 bytes",
         n if n.chars().any(char::is_control) => "a name without control characters",
@@ -120,7 +116,7 @@ fn spot_name(name: &str) -> Result<String, Failure> {
         }
         n => return Ok(n.to_owned()),
     };
-    Err(Failure::usage(format!("--spot `{name}`: a PDF needs {why}")))
+    Err(Failure::usage(format!("--spot `{name}`: a PDF needs {needed}")))
 }
 
 /// Returns the painter that reads the opacity of pictures and continues their edges.
@@ -130,18 +126,19 @@ fn painter(budget: &Arc<Budget>) -> Painter {
 
 /// The edits of a drawing, and the selections that they depend on.
 #[derive(Debug, PartialEq)]
-pub(super) struct Wanted {
-    edits: Vec<Step>,
+pub(super) struct Edits {
+    pub(super) edits: Vec<Step>,
     /// The selection of everything that is bent.
-    whole: Selection,
+    pub(super) whole: Selection,
     /// The selection of each step; empty if all steps bend everything.
-    steps: Vec<Selection>,
+    pub(super) steps: Vec<Selection>,
 }
 
 /// A drawing as it was read, kept while an edited one replaces it.
 pub(super) struct Original {
     pub(super) document: Document,
-    pub(super) wanted: Wanted,
+    /// The edits that made the other one.
+    pub(super) edits: Edits,
     /// The page that the edits need, if it is larger.
     pub(super) grown: Option<Rect>,
     pub(super) warnings: Vec<String>,
@@ -155,41 +152,32 @@ pub(super) struct Edited {
     pub(super) warnings: Vec<String>,
 }
 
-impl Wanted {
-    pub(super) fn new(edits: &[Step], whole: Selection, steps: Vec<Selection>) -> Self {
-        Self { edits: edits.to_vec(), whole, steps }
-    }
-
-    /// Returns the selection of everything that is bent.
-    pub(super) fn whole(&self) -> &Selection {
-        &self.whole
-    }
-
+impl Edits {
     /// Returns the selection of shapes that an edit changes: the edit's, or else the union of the bending steps'.
-    fn concerned(&self, document: &Document, edit: &Step) -> Selection {
+    fn selection(&self, document: &Document, edit: &Step) -> Selection {
         let exclude = [&self.whole.exclude[..], &edit.exclude].concat();
         let all = Selection { exclude, ..self.whole.clone() };
-        let own = [Selection { select: edit.select.clone(), guides: all.guides.clone(), ..Selection::default() }];
-        let steps = if edit.select.is_empty() { &self.steps[..] } else { &own };
-        let whole = steps.len();
+        let of_edit = [Selection { select: edit.select.clone(), guides: all.guides.clone(), ..Selection::default() }];
+        let selections = if edit.select.is_empty() { &self.steps[..] } else { &of_edit };
+        let whole = selections.len();
         if whole == 0 {
             return all;
         }
-        let all: Vec<Selection> = steps.iter().chain([&all]).cloned().collect();
-        let mut parts = document.divide(&all);
+        // Keep the parts in `all`, whose index is `whole`, and in one of the others.
+        let mut parts = document.divide(&[selections, &[all]].concat());
         parts.retain(|p| p.among.len() > 1 && p.among.last() == Some(&whole));
         document.united(parts.iter().map(|p| &p.selection))
     }
 
     /// Returns `true` if a selector names an element without an id by its position.
-    fn names_places(&self) -> bool {
-        let selectors = |s: &Selection| s.select.iter().chain(&s.exclude).any(|name| is_place(name));
-        let of_edits = self.edits.iter().flat_map(|s| s.select.iter().chain(&s.exclude)).any(|name| is_place(name));
-        of_edits || self.steps.iter().chain([&self.whole]).any(selectors)
+    fn use_positions(&self) -> bool {
+        let of_edits = self.edits.iter().flat_map(|s| s.select.iter().chain(&s.exclude));
+        let of_steps = self.steps.iter().chain([&self.whole]).flat_map(|s| s.select.iter().chain(&s.exclude));
+        of_edits.chain(of_steps).any(|name| is_position(name))
     }
 
     /// Returns the drawing with its edits. All selectors match the same elements as in the source.
-    pub(super) fn done(
+    pub(super) fn apply(
         &self,
         source: &Document,
         name: &str,
@@ -198,21 +186,21 @@ impl Wanted {
     ) -> Result<Edited, Failure> {
         let (mut warnings, mut grown) = (Vec::new(), None);
         // Edits shift the positions of elements.
-        let named =
-            self.names_places().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
+        let with_ids =
+            self.use_positions().then(|| Document::read(source.with_ids().as_bytes(), name, read)).transpose()?;
         let (captions, edits): (Vec<Step>, Vec<Step>) = self.edits.iter().cloned().partition(is_caption);
-        let mut document = match named {
-            named if !captions.is_empty() => {
-                let (document, lacking) = captioned(named.as_ref().unwrap_or(source), &captions, read, options)?;
+        let mut document = match with_ids {
+            with_ids if !captions.is_empty() => {
+                let (document, lacking) = captioned(with_ids.as_ref().unwrap_or(source), &captions, read, options)?;
                 warnings.extend(lacking);
                 document
             }
-            Some(named) => named,
+            Some(with_ids) => with_ids,
             None => Document::read(source.source(), name, read)?,
         };
         self.steps.iter().chain([&self.whole]).try_for_each(|s| document.check_selection(s))?;
         for step in &edits {
-            let selection = self.concerned(&document, step);
+            let selection = self.selection(&document, step);
             let bounds = document.seen_box(&selection).unwrap_or_else(|| document.view_box());
             let frame = Frame::new(bounds).with_units_per_px(units_per_px(&document));
             let painted = document.painted_box(&selection);
@@ -245,26 +233,26 @@ impl Wanted {
 impl Original {
     /// Removes the ids from a result that the edits have added.
     pub(super) fn without_ids(&self, svg: &str) -> String {
-        let own: HashSet<&str> = ids(self.document.text()).map(|(_, id)| id).collect();
+        let known: HashSet<&str> = ids(self.document.text()).map(|(_, id)| id).collect();
         let (mut out, mut done) = (String::with_capacity(svg.len()), 0);
-        for (at, id) in ids(svg).filter(|(_, id)| is_place(id) && !own.contains(id)) {
-            out.push_str(&svg[done..at]);
-            done = at + ID.len() + id.len() + 1;
+        for (start, id) in ids(svg).filter(|(_, id)| is_position(id) && !known.contains(id)) {
+            out.push_str(&svg[done..start]);
+            done = start + ID.len() + id.len() + 1;
         }
-        out.push_str(&svg[done..]);
-        out
+        out + &svg[done..]
     }
 }
 
+/// The beginning of an attribute that holds an id.
 const ID: &str = " id=\"";
 
 /// Finds the ids in a text, with the offsets of their attributes.
 fn ids(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    text.match_indices(ID).filter_map(|(at, _)| Some((at, text[at + ID.len()..].split_once('"')?.0)))
+    text.match_indices(ID).filter_map(|(start, _)| Some((start, text[start + ID.len()..].split_once('"')?.0)))
 }
 
-/// Returns `true` for the name of an element without an id, which is its position.
-fn is_place(id: &str) -> bool {
-    let numbers = id.rsplit_once(" at ").and_then(|(_, place)| place.split_once(':'));
+/// Returns `true` for the name of an element without an id, which ends with its position, such as `path at 3:5`.
+fn is_position(id: &str) -> bool {
+    let numbers = id.rsplit_once(" at ").and_then(|(_, position)| position.split_once(':'));
     numbers.is_some_and(|(line, column)| [line, column].iter().all(|n| n.parse::<usize>().is_ok()))
 }

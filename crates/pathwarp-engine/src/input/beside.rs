@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::format::{Choice, PICTURES};
 use crate::options::CommonOptions;
 use pathwarp::Outline;
-use pathwarp::deform::{Built, Role};
+use pathwarp::deform::Role;
 use pathwarp::engine::BuiltParts;
 use pathwarp::kurbo::{Affine, BezPath, Point};
 use pathwarp::map::{Map, RationalBezier, exact_images};
@@ -49,8 +49,8 @@ pub(super) fn preview(
     let whole = &built.whole;
     // Guides would cover the nodes.
     for (i, step) in whole.steps.iter().enumerate().filter(|_| !options.show_nodes) {
-        let at = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
-        let (is_first, is_last) = (at(<[usize]>::first), at(<[usize]>::last));
+        let is_end = |end: fn(&[usize]) -> Option<&usize>| built.parts.iter().any(|p| end(&p.indices) == Some(&i));
+        let (is_first, is_last) = (is_end(<[usize]>::first), is_end(<[usize]>::last));
         let has_target = step.explanation.overlays.iter().any(|o| o.role == Role::Target);
         for o in &step.explanation.overlays {
             // Neither panel shows the plane of a middle step's guides. A cage whose result goes to a target belongs to the source.
@@ -65,8 +65,8 @@ pub(super) fn preview(
         }
     }
     if !options.show_polygons.is_empty() {
-        right = right
-            .with(PreviewOverlay::new(OverlayKind::Target, back * polygons(doc, &options.show_polygons, &whole.map)?));
+        let polygons = back * polygons(doc, &options.show_polygons, &whole.map)?;
+        right = right.with(PreviewOverlay::new(OverlayKind::Target, polygons));
     }
     let preview = Preview::new(left, right);
     let preview = if options.show_nodes { preview.panel_size(NODES_PANEL) } else { preview };
@@ -80,8 +80,8 @@ fn polygons(doc: &Document, selectors: &[String], map: &dyn Map) -> Result<BezPa
     let mut count = 0;
     for shape in doc.selected(&selection) {
         for seg in shape.outline.segs() {
-            let hulls =
-                exact_images(map, seg).and_then(|c| c.iter().map(RationalBezier::hull).collect::<Option<Vec<_>>>());
+            let images = exact_images(map, seg);
+            let hulls = images.and_then(|images| images.iter().map(RationalBezier::hull).collect::<Option<Vec<_>>>());
             let problem = || format!("--show-polygons: the image of {} is no Bézier curve without poles", shape.id);
             for hull in hulls.ok_or_else(|| Failure::usage(problem()))? {
                 count += 1;
@@ -98,18 +98,17 @@ fn polygons(doc: &Document, selectors: &[String], map: &dyn Map) -> Result<BezPa
 
 /// Refuses a file of one surface if other steps have bent parts of the artwork in different ways.
 pub(super) fn check_surface(built: &BuiltParts) -> Result<(), Failure> {
-    let asks = |(i, step): (usize, &Built)| {
-        let file = step.space.as_ref()?.files.first()?;
+    for (i, step) in built.whole.steps.iter().enumerate() {
         let parts = built.parts.iter().filter(|p| p.indices.contains(&i)).count();
-        (parts > 1).then_some((file.param, i))
-    };
-    match built.whole.steps.iter().enumerate().find_map(asks) {
-        Some((param, i)) => Err(Failure::usage(format!(
-            "--{param} writes one surface, but step {} holds for parts that other steps bend in different ways; run it by itself",
-            i + 1
-        ))),
-        None => Ok(()),
+        if let Some(file) = step.space.as_ref().and_then(|space| space.files.first()).filter(|_| parts > 1) {
+            return Err(Failure::usage(format!(
+                "--{} writes one surface, but step {} holds for parts that other steps bend in different ways; run it by itself",
+                file.param,
+                i + 1
+            )));
+        }
     }
+    Ok(())
 }
 
 /// Returns the files that the recipe's steps ask for, with their texts.
@@ -121,21 +120,22 @@ pub(super) fn surface_files(
     let mut out = Vec::new();
     for (i, step) in built.steps.iter().enumerate() {
         let Some(space) = &step.space else { continue };
-        let before = &built.steps[..i];
-        let place = |p: Point| (space.place)(before.iter().fold(p, |q, s| s.map.point(q)));
+        let steps_before = &built.steps[..i];
+        let place = |p: Point| (space.place)(steps_before.iter().fold(p, |q, s| s.map.point(q)));
         let shapes: Vec<_> = doc.selected(&options.selection).collect();
         for file in &space.files {
             let wanted = shapes.iter().filter(|s| s.filled || !file.filled);
             let wanted: Vec<NamedShape<'_>> =
                 wanted.map(|s| NamedShape { name: &s.id, outline: &s.outline, even_odd: s.even_odd }).collect();
-            let made = if file.filled {
-                let own = space.besides.iter().map(|(name, area, place)| {
+            let text = if file.filled {
+                // Further surfaces show an area of the plane, or the artwork again.
+                let surfaces = space.besides.iter().map(|(name, area, place)| {
                     let outline = area.map(|r| Outline::from_points(&Frame::new(r).corners(), true));
-                    (*name, outline, move |p: Point| place(before.iter().fold(p, |q, s| s.map.point(q))), place)
+                    (*name, outline, move |p: Point| place(steps_before.iter().fold(p, |q, s| s.map.point(q))), place)
                 });
-                let own: Vec<_> = own.collect();
+                let surfaces: Vec<_> = surfaces.collect();
                 let mut groups: Vec<(Vec<NamedShape<'_>>, &artwork::SurfaceFn<'_>)> = vec![(wanted, &place)];
-                for (name, outline, of_artwork, place) in &own {
+                for (name, outline, of_artwork, place) in &surfaces {
                     groups.push(match outline {
                         Some(outline) => (vec![NamedShape { name, outline, even_odd: false }], &***place),
                         None => (groups[0].0.clone(), of_artwork),
@@ -145,7 +145,7 @@ pub(super) fn surface_files(
             } else {
                 artwork::outlines(&wanted, &place, options.refit.tolerance, doc.budget())
             };
-            let text = made.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
+            let text = text.map_err(|e| Failure::Geometry(format!("--{}: {}", file.param, advice::surface(&e))))?;
             out.push((PathBuf::from(&file.name), text));
         }
     }

@@ -21,7 +21,7 @@ pub(super) struct Crop {
 /// The frame in the photograph, before it is straightened.
 pub(super) struct Source {
     pub(super) outline: Outline,
-    /// Its mean width and height.
+    /// The means of its two widths and of its two heights.
     size: (f64, f64),
     /// Its corners, counterclockwise from the lower left, if a camera would see a rectangle like that.
     corners: Option<[Point; 4]>,
@@ -61,22 +61,21 @@ impl Crop {
         let step = (0..built.steps.len()).find(straightens).unwrap_or(0);
         let (role, first) = if is_inverse(step) { (Role::Target, step + 1) } else { (Role::Base, step) };
         let quad = quad(&built.steps[step], role).unwrap_or_else(|| frame(step));
-        let image: Vec<Point> =
-            ring(quad).map(|p| built.steps[first..].iter().fold(p, |p, s| s.map.point(p))).collect();
-        let is_finite = image.iter().all(|p| p.is_finite());
-        let bounds = image.iter().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b));
-        let bounds = bounds.filter(|b| is_finite && b.width() > 0.0 && b.height() > 0.0);
-        let bounds =
-            bounds.ok_or_else(|| Failure::Geometry("--crop: the map is undefined on part of the frame".into()))?;
+        let image = side_points(quad).map(|p| built.steps[first..].iter().fold(p, |p, s| s.map.point(p)));
+        let image: Vec<Point> = image.collect();
+        let bounds = image.iter().map(|p| Rect::from_points(*p, *p)).reduce(|a, b| a.union(b)).unwrap_or_default();
+        if !(image.iter().all(|p| p.is_finite()) && bounds.width() > 0.0 && bounds.height() > 0.0) {
+            return Err(Failure::Geometry("--crop: the map is undefined on part of the frame".into()));
+        }
         Ok(Self { bounds, is_straight: is_box(&image, bounds) })
     }
 
     /// Returns the frame in the photograph, if its image is a rectangle along the axes.
     pub(super) fn source(&self, inverse: &dyn Map) -> Option<Source> {
-        let points: Vec<Point> = ring(corners(self.bounds)).map(|p| inverse.point(p)).collect();
+        let points: Vec<Point> = side_points(corners(self.bounds)).map(|p| inverse.point(p)).collect();
         let length = |side: usize| {
-            let at = |i: usize| points[(side * SAMPLES + i) % points.len()];
-            (0..SAMPLES).map(|i| at(i).distance(at(i + 1))).sum::<f64>()
+            let point = |i: usize| points[((side * SAMPLES) + i) % points.len()];
+            (0..SAMPLES).map(|i| point(i).distance(point(i + 1))).sum::<f64>()
         };
         let mean = |a: usize, b: usize| 0.5 * (length(a) + length(b));
         let size = (mean(0, 2), mean(1, 3));
@@ -94,7 +93,7 @@ fn perspective(bounds: Rect, points: &[Point]) -> Option<[Point; 4]> {
     const SAME: f64 = 0.05;
     let quad = [0, 1, 2, 3].map(|side| points[side * SAMPLES]);
     let map = Projective::new(corners(bounds), quad).build().ok()?.map;
-    ring(corners(bounds)).zip(points).all(|(p, q)| map.point(p).distance(*q) < SAME).then_some(quad)
+    side_points(corners(bounds)).zip(points).all(|(p, q)| map.point(p).distance(*q) < SAME).then_some(quad)
 }
 
 /// Returns the corners of a box, counterclockwise from the lower left, the order of anchors.
@@ -102,8 +101,8 @@ fn corners(r: Rect) -> [Point; 4] {
     [(r.x0, r.y1), (r.x1, r.y1), (r.x1, r.y0), (r.x0, r.y0)].map(Point::from)
 }
 
-/// Returns points along the sides of a quadrilateral.
-fn ring(quad: [Point; 4]) -> impl Iterator<Item = Point> {
+/// Returns points along the sides of a quadrilateral, of which each [`SAMPLES`]-th is a corner.
+fn side_points(quad: [Point; 4]) -> impl Iterator<Item = Point> {
     let side = move |i: usize| (0..SAMPLES).map(move |k| quad[i].lerp(quad[(i + 1) % 4], k as f64 / SAMPLES as f64));
     (0..4).flat_map(side)
 }
@@ -131,10 +130,10 @@ fn is_box(image: &[Point], bounds: Rect) -> bool {
     /// The largest distance that counts as zero, as a share of the box's diagonal.
     const SAME: f64 = 2e-3;
     let near = SAME * bounds.width().hypot(bounds.height());
-    let off = |p: Point| {
+    let edge_distance = |p: Point| {
         let [left, top] = [p.x - bounds.x0, p.y - bounds.y0];
         [left, bounds.width() - left, top, bounds.height() - top].into_iter().fold(f64::INFINITY, f64::min)
     };
-    let is_corner = |c: &Point| image.iter().step_by(SAMPLES).any(|p| p.distance(*c) <= near);
-    image.iter().all(|p| off(*p) <= near) && corners(bounds).iter().all(is_corner)
+    let is_image = |corner: &Point| image.iter().step_by(SAMPLES).any(|p| p.distance(*corner) <= near);
+    image.iter().all(|p| edge_distance(*p) <= near) && corners(bounds).iter().all(is_image)
 }

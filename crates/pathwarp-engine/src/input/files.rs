@@ -4,6 +4,7 @@ use super::gimp;
 use crate::failure::Failure;
 use crate::meter;
 use crate::options::Reading;
+use crate::output::folder;
 use pathwarp::Error;
 use pathwarp_svg::{Document, ReadOptions};
 use std::fmt::Display;
@@ -94,12 +95,9 @@ pub fn not_a_drawing(bytes: &[u8], input: &Path, failure: Failure) -> Failure {
 
 /// Returns options for reading `input` as SVG: linked images are looked up relative to the folder `reading.base`, or else to its own.
 pub fn read_options(input: &Path, reading: &Reading) -> ReadOptions {
-    let own = || match input.parent() {
-        Some(p) if p.as_os_str().is_empty() => Some(PathBuf::from(".")),
-        other => other.map(Path::to_path_buf),
-    };
-    let folder = reading.base.clone().or_else(own);
-    reading.read_options().with_base_dir(folder)
+    // A drawing in memory may have neither name nor folder.
+    let folder_of_input = || input.parent().map(|_| folder(input).to_path_buf());
+    reading.read_options().with_base_dir(reading.base.clone().or_else(folder_of_input))
 }
 
 /// Advice on what to do with files that are not SVG.
@@ -163,10 +161,10 @@ const MAGIC: [(usize, &[u8], &str, &str); 39] = [
 pub fn described(bytes: &[u8], name: &Path) -> Option<String> {
     let extension = name.extension().map(|e| e.to_ascii_lowercase().to_string_lossy().into_owned());
     let extension = extension.as_deref().unwrap_or_default();
-    let starts = |at: usize, magic: &[u8]| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
+    let has = |offset: usize, magic: &[u8]| bytes.get(offset..).is_some_and(|rest| rest.starts_with(magic));
     // Documents of drawing programs contain PDF or archives.
     let known =
-        MAGIC.iter().find(|(at, magic, ..)| starts(*at, magic)).map(|(_, magic, what, advice)| match extension {
+        MAGIC.iter().find(|(offset, magic, ..)| has(*offset, magic)).map(|(_, magic, what, advice)| match extension {
             "ai" if magic.starts_with(b"%") => ("an Illustrator document", PDF),
             "cdr" | "sketch" | "odg" | "odt" | "docx" | "pptx" | "xd" | "kra" | "afdesign" | "fig"
                 if magic.starts_with(b"PK") =>
@@ -220,15 +218,15 @@ pub fn unreadable(name: &Path, e: &io::Error) -> String {
     if e.kind() != ErrorKind::NotFound {
         return format!("cannot be read: {e}");
     }
-    "there is no such file".to_owned() + &absent(name).map(|advice| format!("; {advice}")).unwrap_or_default()
+    "there is no such file".to_owned() + &likely_meaning(name).map(|advice| format!("; {advice}")).unwrap_or_default()
 }
 
 /// Guesses what a name that is no file was meant to be.
-fn absent(name: &Path) -> Option<String> {
+fn likely_meaning(name: &Path) -> Option<String> {
     let text = name.to_str()?;
     let lower = text.to_lowercase();
-    if let Some(path) = lower.starts_with("file://").then(|| &text["file://".len()..]) {
-        return Some(format!("write the path itself: {}", path.replace("%20", " ")));
+    if lower.starts_with("file://") {
+        return Some(format!("write the path itself: {}", text["file://".len()..].replace("%20", " ")));
     }
     if ["http:", "https:", "ftp:"].iter().any(|s| lower.starts_with(s)) || lower.starts_with("www.") {
         return Some(format!("it is an address; download the drawing first: curl -O '{}'", address(text)));
@@ -236,14 +234,12 @@ fn absent(name: &Path) -> Option<String> {
     if text.starts_with("~/") {
         return Some("the shell replaces ~ only outside of quotes; write \"$HOME/…\"".to_owned());
     }
-    if text.starts_with('%') && text[1..].contains('%') || text.starts_with("$env:") || text.starts_with('$') {
+    if text.starts_with('$') || (text.starts_with('%') && text[1..].contains('%')) {
         return Some("the variable in it was not replaced; this shell may write it in another way".to_owned());
     }
-    let drive = text.as_bytes().get(1) == Some(&b':') && text.as_bytes()[0].is_ascii_alphabetic();
-    if !cfg!(windows) && drive {
-        let rest = text[2..].replace('\\', "/");
-        let below = lower.chars().next().unwrap_or('c');
-        return Some(format!("it is a path of Windows, which WSL calls /mnt/{below}{rest}"));
+    if let (false, [letter @ (b'a'..=b'z' | b'A'..=b'Z'), b':', ..]) = (cfg!(windows), text.as_bytes()) {
+        let (drive, rest) = (char::from(letter.to_ascii_lowercase()), text[2..].replace('\\', "/"));
+        return Some(format!("it is a path of Windows, which WSL calls /mnt/{drive}{rest}"));
     }
     let slashes = text.replace('\\', "/");
     if slashes != text && Path::new(&slashes).exists() {
@@ -252,7 +248,7 @@ fn absent(name: &Path) -> Option<String> {
     if text.contains(['*', '?']) {
         return Some("no file matches the pattern, or quotes keep the shell from replacing it; -r takes all drawings of a folder".to_owned());
     }
-    near(name)
+    similar_file(name)
 }
 
 /// Restores the scheme of an address that MSYS or a shell has squeezed.
@@ -261,25 +257,25 @@ fn address(text: &str) -> String {
 }
 
 /// Finds a file beside `name` that differs in case, extension or a letter.
-fn near(name: &Path) -> Option<String> {
+fn similar_file(name: &Path) -> Option<String> {
     /// Most entries of a folder that are compared.
     const MOST: usize = 2000;
-    /// Least similarity of names.
-    const LIKELY: f64 = 0.9;
+    /// Least similarity of names, from 0 to 1.
+    const LEAST: f64 = 0.9;
     let wanted = name.file_name()?.to_string_lossy().to_lowercase();
-    let folder = name.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder(name);
     if !folder.is_dir() {
         return Some(format!("the folder {} does not exist either", folder.display()));
     }
     let names = std::fs::read_dir(folder).ok()?.take(MOST).filter_map(|e| e.ok()?.file_name().into_string().ok());
     let stem = |name: &str| Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let likeness = |n: &str| {
-        let n = n.to_lowercase();
-        if stem(&n) == stem(&wanted) { 1.0 } else { strsim::jaro_winkler(&n, &wanted) }
+    let similarity = |name: &str| {
+        let name = name.to_lowercase();
+        if stem(&name) == stem(&wanted) { 1.0 } else { strsim::jaro_winkler(&name, &wanted) }
     };
-    let mut all: Vec<(f64, String)> = names.filter(|n| !n.starts_with('.')).map(|n| (likeness(&n), n)).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
-    let (_, best) = all.into_iter().next().filter(|(likeness, _)| *likeness >= LIKELY)?;
+    let all = names.filter(|n| !n.starts_with('.')).map(|n| (similarity(&n), n));
+    let best = all.min_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+    let (_, best) = best.filter(|(similarity, _)| *similarity >= LEAST)?;
     Some(format!("did you mean {}?", name.with_file_name(best).display()))
 }
 

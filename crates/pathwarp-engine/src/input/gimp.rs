@@ -18,7 +18,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 /// Warnings, and the changes made by `--kerf`.
-type Told = (Vec<String>, Option<KerfReport>);
+type Notices = (Vec<String>, Option<KerfReport>);
 
 pub(super) use pathwarp_gimp::{HEAD, may_begin};
 
@@ -52,12 +52,12 @@ impl GimpPaths {
         let (select, exclude) = (&options.select, &options.exclude);
         let name = |selector: &String| selector.strip_prefix('#').unwrap_or(selector).to_owned();
         select.iter().chain(exclude).try_for_each(|s| file.path_named(&name(s)).map(|_| ()))?;
-        let named = |list: &[String], p: &GimpPath| list.iter().any(|s| name(s) == p.name);
+        let is_among = |p: &GimpPath, list: &[String]| list.iter().any(|s| name(s) == p.name);
         let is_chosen = |p: &GimpPath| {
             !p.strokes.is_empty()
                 && file.only.as_ref().is_none_or(|only| *only == p.name)
-                && (select.is_empty() || named(select, p))
-                && !named(exclude, p)
+                && (select.is_empty() || is_among(p, select))
+                && !is_among(p, exclude)
         };
         let all = file.file.paths.iter().enumerate();
         let chosen = all.filter(|(_, p)| is_chosen(p)).map(|(i, _)| i).collect();
@@ -93,14 +93,14 @@ impl GimpPaths {
         Ok(all.map(path).collect())
     }
 
-    /// Writes the paths of a result: without `guides` in a format, or all into a copy of the XCF. Also returns warnings; a copy has none.
+    /// Writes the paths of a result: without `guides` in a format, or all into a copy of the XCF, which raises no warnings.
     pub(super) fn written(
         &self,
         svg: &str,
         guides: &[String],
         (format, options, tolerance): (Format, &CommonOptions, f64),
         shapes: &mut [ReportedShape],
-    ) -> Result<(WarpedResult, Told), Failure> {
+    ) -> Result<(WarpedResult, Notices), Failure> {
         let mut paths = self.warped(svg)?;
         let Some(copy) = &options.into else {
             paths.retain(|p| !guides.contains(&p.name));
@@ -112,9 +112,9 @@ impl GimpPaths {
             let strokes = paths.iter().filter(|p| p.name == s.shape.id).flat_map(|p| &p.strokes);
             s.shape.path.max_error += strokes.map(single_precision_error).fold(0.0, f64::max);
         }
-        let all: Vec<(usize, Vec<Stroke>)> =
-            self.chosen.iter().copied().zip(paths.into_iter().map(|p| p.strokes)).collect();
-        Ok((WarpedResult::File(copy_with_paths(&self.file.path, copy, &all)?), Told::default()))
+        let strokes = self.chosen.iter().copied().zip(paths.into_iter().map(|p| p.strokes));
+        let copy = copy_with_paths(&self.file.path, copy, &strokes.collect::<Vec<_>>())?;
+        Ok((WarpedResult::File(copy), Notices::default()))
     }
 }
 
@@ -130,8 +130,8 @@ fn copy_with_paths(from: &Path, copy: &Path, strokes: &[(usize, Vec<Stroke>)]) -
 
 /// Returns the largest distance by which rounding to single precision, which an XCF uses, moves a point of the stroke.
 fn single_precision_error(s: &Stroke) -> f64 {
-    let off = |v: f64| f64::from(v as f32) - v;
-    s.points.iter().map(|&[x, y]| off(x).hypot(off(y))).fold(0.0, f64::max)
+    let error = |v: f64| f64::from(v as f32) - v;
+    s.points.iter().map(|&[x, y]| error(x).hypot(error(y))).fold(0.0, f64::max)
 }
 
 /// The formats of GIMP paths.
@@ -143,9 +143,8 @@ pub(crate) const PATHS: &[Format] = &[Format::Svg, Format::Svgz, Format::Pdf, Fo
 /// [`Failure::Usage`] if this file cannot be written as the options ask.
 fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> Result<Format, Failure> {
     if options.embed_recipe {
-        return Err(Failure::usage(
-            "--embed-recipe is for SVG files; --write-recipe saves the recipe beside the result",
-        ));
+        let advice = "--write-recipe saves the recipe beside the result";
+        return Err(Failure::usage(format!("--embed-recipe is for SVG files; {advice}")));
     }
     if let Some(copy) = &options.into {
         check_into(input, copy)?;
@@ -159,6 +158,7 @@ fn format(options: &CommonOptions, input: &GimpFile, target: Option<&Path>) -> R
     }
     Choice { what: "GIMP paths are", among: PATHS }.format(target, options.format)
 }
+
 /// Checks that the paths of `input` can be written into its copy.
 fn check_into(input: &GimpFile, copy: &Path) -> Result<(), Failure> {
     let problem = match input.file.kind {

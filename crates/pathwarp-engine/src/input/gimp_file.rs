@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct GimpFile {
     pub(crate) path: PathBuf,
     pub(crate) file: pathwarp_gimp::PathFile,
-    /// The name in `FILE#NAME`; `None` selects all paths.
+    /// The name of the only path to take, from `FILE#NAME`; `None` selects all paths.
     pub(crate) only: Option<String>,
     /// A warning of the damage before which reading stopped.
     pub damage: Option<String>,
@@ -47,22 +47,22 @@ impl GimpFile {
         if !sniff(open()?) && !is_named_xcf(path) {
             return Ok(None);
         }
-        let at_byte = |e: pathwarp_gimp::Error, hint: &str| Error::Input {
+        let at_byte = |e: pathwarp_gimp::Error, advice: &str| Error::Input {
             place: format!("{name}, byte {}", e.offset),
-            problem: e.problem + hint,
+            problem: e.problem + advice,
             limit: e.limit,
         };
         let found = pathwarp_gimp::salvage_within(open()?, limits).map_err(|e| at_byte(e, ""))?;
         let damage = match found.damage {
             Some(e) if !salvage => {
-                let hint = match found.file.paths.len() {
+                let advice = match found.file.paths.len() {
                     0 => "; there is no path before the damage".to_owned(),
                     1 => "; --salvage reads the path before the damage".to_owned(),
                     n => format!("; --salvage reads the {n} paths before the damage"),
                 };
-                return Err(at_byte(e, &hint));
+                return Err(at_byte(e, &advice));
             }
-            other => other.map(|e| format!("damaged; only the paths before the damage were read: {e}")),
+            damage => damage.map(|e| format!("damaged; only the paths before the damage were read: {e}")),
         };
         Ok(Some(Self { path: path.to_owned(), file: found.file, only: None, damage }))
     }
@@ -88,6 +88,7 @@ impl GimpFile {
         }
     }
 
+    /// Lists the names of the paths.
     fn names(&self) -> String {
         /// Number of names that fit in two lines.
         const SHOWN: usize = 12;

@@ -18,8 +18,7 @@ pub use files::{
     bytes, described, display, document, document_of, no_document, not_a_drawing, read_data_file, read_options,
     split_reference, unreadable,
 };
-pub use gimp::file_name;
-pub use gimp::{outline, svg_name};
+pub use gimp::{file_name, outline, svg_name};
 pub use gimp_file::GimpFile;
 pub(crate) use proportions::Proportions;
 pub use svg::SvgArtwork;
@@ -60,7 +59,9 @@ impl Input {
         if Picture::sniff(bytes) {
             return Ok(Self(Box::new(PictureArtwork::read(bytes, input, options, target)?)));
         }
-        Ok(Self(Box::new(SvgArtwork::read(bytes, input, options, target)?.going(destination))))
+        let mut drawing = SvgArtwork::read(bytes, input, options, target)?;
+        drawing.destination = destination;
+        Ok(Self(Box::new(drawing)))
     }
 
     /// Returns the artwork in the file.

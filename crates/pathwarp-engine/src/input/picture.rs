@@ -94,24 +94,23 @@ impl PictureArtwork {
     /// Returns the size of a straightened frame: at `--ratio`, in its true proportions if they are reliable, or else by its mean sides.
     fn natural_size(&self, frame: Option<&Source>, options: &CommonOptions) -> Result<Natural, Failure> {
         let area = self.area();
-        let Some(frame) = frame else {
-            return match options.ratio {
-                Some(_) => Err(Failure::usage(
-                    "--ratio is for a frame that is straightened to an upright rectangle; with --crop, --size sets the size of others",
-                )),
-                None => Ok((None, None)),
-            };
-        };
-        if let Some(sides) = options.ratio {
-            if matches!(options.image_size, Some((_, Some(_)))) {
-                return Err(Failure::usage(
-                    "--ratio and --size WxH both set the proportions; give --size a width alone",
-                ));
+        let (frame, sides) = match (frame, options.ratio) {
+            (Some(frame), Some(sides)) => (frame, sides),
+            (Some(frame), None) => {
+                let seen = frame.proportions(area);
+                return Ok((Some(frame.size_at(seen.map(|p| p.ratio))), seen));
             }
-            return Ok((Some(frame.size_at(Some(frame.oriented(sides, area)))), None));
+            (None, Some(_)) => {
+                let advice = "with --crop, --size sets the size of others";
+                let problem = "--ratio is for a frame that is straightened to an upright rectangle";
+                return Err(Failure::usage(format!("{problem}; {advice}")));
+            }
+            (None, None) => return Ok((None, None)),
+        };
+        if matches!(options.image_size, Some((_, Some(_)))) {
+            return Err(Failure::usage("--ratio and --size WxH both set the proportions; give --size a width alone"));
         }
-        let seen = frame.proportions(area);
-        Ok((Some(frame.size_at(seen.map(|p| p.ratio))), seen))
+        Ok((Some(frame.size_at(Some(frame.oriented(sides, area)))), None))
     }
 }
 
@@ -167,9 +166,8 @@ impl FileArtwork for PictureArtwork {
             return Err(Failure::usage(advice::NO_PATHS_TO_EDIT));
         }
         if !built.placement.copies.is_empty() {
-            return Err(Failure::usage(
-                "the deformation repeats the artwork, which works for drawings only, not for pictures",
-            ));
+            let problem = "the deformation repeats the artwork, which works for drawings only, not for pictures";
+            return Err(Failure::usage(problem));
         }
         let area = self.area();
         let map: Arc<dyn Map> = Arc::new(built.map.clone());
@@ -201,8 +199,8 @@ impl FileArtwork for PictureArtwork {
         };
         let pixmap = warp_image(&warp)?;
         self.budget.exceeded().map_or(Ok(()), |e| Err(too_much(e)))?;
-        let is_seen = |p: &Pixmap| p.pixels().iter().any(|c| c.alpha() > 0);
-        if is_seen(&self.picture.pixmap) && !is_seen(&pixmap) {
+        let is_visible = |p: &Pixmap| p.pixels().iter().any(|c| c.alpha() > 0);
+        if is_visible(&self.picture.pixmap) && !is_visible(&pixmap) {
             warnings.push("nothing of the picture is in the result".to_owned());
         }
         let warped = self.picture.remade(pixmap, options.keep_location);

@@ -39,34 +39,36 @@ impl Proportions {
         let k3 = twice_area(m1, m4, m2) / twice_area(m3, m4, m2);
         let (n2, n2z) = (k2 * m2 - m1, k2 - 1.0);
         let (n3, n3z) = (k3 * m3 - m1, k3 - 1.0);
-        let squared = -n2.dot(n3) / (n2z * n3z);
-        let length = |n: Vec2, z: f64| (n.hypot2() / squared + z * z).sqrt();
+        let f_squared = -n2.dot(n3) / (n2z * n3z);
+        let length = |n: Vec2, z: f64| (n.hypot2() / f_squared + z * z).sqrt();
         let ratio = length(n2, n2z) / length(n3, n3z);
-        let focal_length = squared.sqrt() / picture.width().hypot(picture.height());
+        let focal_length = f_squared.sqrt() / picture.width().hypot(picture.height());
         (ratio.is_normal() && focal_length.is_normal()).then_some(Self { ratio, focal_length })
     }
 
     /// Returns `true` if the focal length is a camera's, and one pixel at a corner hardly changes the ratio.
     pub(super) fn is_sound(&self, corners: [Point; 4], picture: Rect) -> bool {
-        let moved = |corner: usize, by: Vec2| {
+        // The logarithm of the ratio, relative to this one, if a corner is shifted.
+        let log_ratio = |corner: usize, shift: Vec2| {
             let mut corners = corners;
-            corners[corner] += by;
+            corners[corner] += shift;
             Self::seen(corners, picture).map_or(f64::INFINITY, |p| (p.ratio / self.ratio).ln())
         };
+        // Its derivative by the corner, as a difference over one pixel.
         let change = |corner: usize| {
-            let along = |d: Vec2| moved(corner, 0.5 * d) - moved(corner, -0.5 * d);
+            let along = |pixel: Vec2| log_ratio(corner, 0.5 * pixel) - log_ratio(corner, -0.5 * pixel);
             along(Vec2::new(1.0, 0.0)).hypot(along(Vec2::new(0.0, 1.0)))
         };
         LENSES.contains(&self.focal_length) && (0..4).all(|corner| change(corner) < SENSITIVITY)
     }
 
-    /// Reports the ratio and the focal length in a line.
+    /// Reports the ratio, with 1 for the shorter side, and the focal length in a line.
     pub(crate) fn note(&self) -> String {
-        let part = |v: f64| three_figures(v.max(1.0));
+        let term = |v: f64| three_figures(v.max(1.0));
         format!(
             "--crop: width to height is {} : {}, as seen with a focal length of {} mm on 35 mm film; --ratio says otherwise",
-            part(self.ratio),
-            part(1.0 / self.ratio),
+            term(self.ratio),
+            term(1.0 / self.ratio),
             three_figures(FILM * self.focal_length)
         )
     }

@@ -1,7 +1,7 @@
 //! SVG drawings as artwork.
 
 use super::artwork::{self, Artwork, Baseline, FileArtwork, WarpRequest, WarpedArtwork, WarpedResult, Which};
-use super::before::{Edited, Original, Wanted};
+use super::before::{Edited, Edits, Original};
 use super::beside;
 use super::files::{display, not_a_drawing, read_options};
 use super::gimp::GimpPaths;
@@ -61,7 +61,7 @@ pub struct SvgArtwork {
     parts: Vec<Selection>,
     /// The format of the result, and where it goes.
     format: Format,
-    destination: Destination,
+    pub(super) destination: Destination,
     /// The drawing as it was read, if `doc` has been edited.
     original: Option<Original>,
     /// The GIMP paths that the drawing was made from; such a drawing has neither page nor strokes.
@@ -83,17 +83,17 @@ impl SvgArtwork {
         }
         let doc = Document::read(bytes, &name, &bending(&read)).map_err(|e| not_a_drawing(bytes, input, e.into()))?;
         meter::count_pixels(doc.budget().taken(Limit::Pixels));
-        Ok(Self::of(doc, name, read, selection(options), format, None))
+        Ok(Self::new(doc, name, read, selection(&options.select, &options.exclude), format, None))
     }
 
     /// Creates the drawing of GIMP's paths.
     pub(super) fn of_paths(paths: GimpPaths, format: Format, options: &CommonOptions) -> Result<Self, Failure> {
         let (name, read) = (paths.name(), options.reading.read_options());
         let doc = Document::read(paths.drawing().as_bytes(), &name, &read)?;
-        Ok(Self::of(doc, name, read, Selection::default(), format, Some(paths)))
+        Ok(Self::new(doc, name, read, Selection::default(), format, Some(paths)))
     }
 
-    fn of(
+    fn new(
         doc: Document,
         name: String,
         read: ReadOptions,
@@ -115,7 +115,8 @@ impl SvgArtwork {
 
     /// Undoes a division into parts.
     pub fn restore(&mut self, options: &CommonOptions) {
-        (self.selection, self.steps, self.parts) = (selection(options), Vec::new(), Vec::new());
+        self.selection = selection(&options.select, &options.exclude);
+        (self.steps, self.parts) = (Vec::new(), Vec::new());
     }
 
     /// Returns the drawing as it was read.
@@ -127,14 +128,15 @@ impl SvgArtwork {
     pub fn edited(&self) -> Option<[usize; 2]> {
         let count = |d: &Document, s: &Selection| d.selected(s).map(|s| s.outline.segs().count()).sum();
         let original = self.original.as_ref()?;
-        Some([count(&original.document, original.wanted.whole()), count(&self.doc, &self.selection)])
+        Some([count(&original.document, &original.edits.whole), count(&self.doc, &self.selection)])
     }
 
     /// Returns a preview while something is dragged, and its page if that changes: within the tolerance, but with the source's nodes,
     /// affine fits of gradients and coarse bitmaps.
     pub fn draft(&self, request: &WarpRequest<'_>) -> Result<(String, Option<Rect>), Failure> {
-        let draft = |k: usize, built: &BuiltRecipe| {
-            let mut options = self.warp_options(request, k, built).with_gradients(Gradients::Fit).with_overhang(false);
+        let draft = |part: usize, built: &BuiltRecipe| {
+            let mut options =
+                self.warp_options(request, part, built).with_gradients(Gradients::Fit).with_overhang(false);
             options.filters = Filters::Affine;
             let nodes = if request.edit.is_some() { options.refit.nodes } else { Nodes::Source };
             options.refit = options.refit.with_nodes(nodes);
@@ -144,13 +146,13 @@ impl SvgArtwork {
             }
             options
         };
-        let warped = self.bent(&request.built.parts, draft)?.1;
+        let (_, warped) = self.warp_parts(&request.built.parts, draft)?;
         Ok((warped.svg, warped.page.map(|[_, after]| after)))
     }
 
     /// Returns the result in its format, without looking for folds.
     pub fn written(&self, request: &WarpRequest<'_>) -> Result<export::Exported, Failure> {
-        let (_, warped, tolerance) = self.warped(request)?;
+        let (_, warped, tolerance) = self.warp_for(request)?;
         self.exported(warped.svg, request.options, tolerance)
     }
 
@@ -163,11 +165,6 @@ impl SvgArtwork {
         (self.format, self.destination) = (format, destination);
     }
 
-    /// Sets the destination of the result.
-    pub(super) fn going(self, destination: Destination) -> Self {
-        Self { destination, ..self }
-    }
-
     /// Returns the options that the drawing was read with.
     pub fn reading(&self) -> &ReadOptions {
         &self.read
@@ -175,26 +172,25 @@ impl SvgArtwork {
 
     /// Returns the selection that `which` means.
     fn selection(&self, which: Which) -> &Selection {
-        let own = match which {
+        let selection = match which {
             Which::All => None,
             Which::Step(i) => self.steps.get(i),
-            Which::Part(k) => self.parts.get(k),
+            Which::Part(i) => self.parts.get(i),
         };
-        own.unwrap_or(&self.selection)
+        selection.unwrap_or(&self.selection)
     }
 
     /// Bends every part of the drawing. Also returns the options for each part.
-    fn bent(
+    fn warp_parts(
         &self,
         parts: &[BuiltRecipe],
         options: impl Fn(usize, &BuiltRecipe) -> WarpOptions,
     ) -> Result<(Vec<WarpOptions>, WarpedDocument), Error> {
-        let options: Vec<WarpOptions> = parts.iter().enumerate().map(|(k, built)| options(k, built)).collect();
-        let bends: Vec<(&dyn Map, &WarpOptions)> =
-            parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options)).collect();
-        let mut warped = self.doc.warp_each(&bends)?;
-        if let (Some(back), Some(own)) = (warped.back, options.first()) {
-            warped.svg = self.moved(&warped.svg, back, own)?;
+        let options: Vec<WarpOptions> = parts.iter().enumerate().map(|(i, built)| options(i, built)).collect();
+        let bends = parts.iter().zip(&options).map(|(built, options)| (&built.map as &dyn Map, options));
+        let mut warped = self.doc.warp_each(&bends.collect::<Vec<_>>())?;
+        if let (Some(back), Some(options)) = (warped.back, options.first()) {
+            warped.svg = self.transformed(&warped.svg, back, options)?;
         }
         if let Some(original) = &self.original {
             warped.svg = original.without_ids(&warped.svg);
@@ -202,29 +198,28 @@ impl SvgArtwork {
         Ok((options, warped))
     }
 
-    /// Scales and moves a whole result.
-    fn moved(&self, svg: &str, to: Affine, own: &WarpOptions) -> Result<String, Error> {
+    /// Scales and moves a whole result, which was warped with the options `warped`.
+    fn transformed(&self, svg: &str, to: Affine, warped: &WarpOptions) -> Result<String, Error> {
         let doc = Document::read(svg.as_bytes(), &self.name, &bending(&self.read))?;
-        let refit =
-            refit::Options::new(own.refit.tolerance).with_nodes(Nodes::Source).with_budget(doc.budget().clone());
-        let options = WarpOptions::new(refit).with_precision(own.precision).with_text(own.text);
-        let options = options.with_structure(own.structure).with_clones(own.clones);
+        let refit = refit::Options::new(warped.refit.tolerance).with_nodes(Nodes::Source);
+        let options = WarpOptions::new(refit.with_budget(doc.budget().clone())).with_precision(warped.precision);
+        let options = options.with_text(warped.text).with_structure(warped.structure).with_clones(warped.clones);
         Ok(doc.warp(&AffineMap(to), &options)?.svg)
     }
 
     /// Bends the drawing and embeds the recipe. The tolerance may be a length on the result's page. Also returns the options for each part
     /// and the tolerance in user units.
-    fn warped(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
+    fn warp_for(&self, request: &WarpRequest<'_>) -> Result<(Vec<WarpOptions>, WarpedDocument, f64), Failure> {
         let WarpRequest { built, options: common, mut tolerance, .. } = *request;
         if let Some(first) = advice::unread(&self.doc.unread_images()).first()
             && common.on_failure == OnFailure::Stop
         {
             return Err(Failure::Input(format!("{}: {first}; --on-error continue goes on without it", self.name)));
         }
-        let (mut options, mut warped) = self.bent(&built.parts, |k, part| self.warp_options(request, k, part))?;
-        let boxes = warped.warnings.iter().find(|w| matches!(w, Warning::MissingLetters(_)));
-        if let Some(boxes) = boxes.filter(|_| common.on_failure == OnFailure::Stop) {
-            return Err(Failure::Input(boxes.to_string()));
+        let (mut options, mut warped) = self.warp_parts(&built.parts, |i, part| self.warp_options(request, i, part))?;
+        let missing = warped.warnings.iter().find(|w| matches!(w, Warning::MissingLetters(_)));
+        if let Some(missing) = missing.filter(|_| common.on_failure == OnFailure::Stop) {
+            return Err(Failure::Input(missing.to_string()));
         }
         // The scale of the result's page is known only after bending.
         if common.has_tolerance_of_result()
@@ -234,7 +229,7 @@ impl SvgArtwork {
             tolerance /= scale.by;
             let line = request.line.clone();
             let finer = WarpRequest { tolerance, line, embedded_recipe: None, ..*request };
-            (options, warped) = self.bent(&built.parts, |k, part| self.warp_options(&finer, k, part))?;
+            (options, warped) = self.warp_parts(&built.parts, |i, part| self.warp_options(&finer, i, part))?;
         }
         if let Some(recipe) = &request.embedded_recipe {
             let source = self.destination.source(self.document(), &self.read)?;
@@ -245,7 +240,7 @@ impl SvgArtwork {
     }
 
     /// Returns the options for a part of the drawing.
-    fn warp_options(&self, request: &WarpRequest<'_>, k: usize, built: &BuiltRecipe) -> WarpOptions {
+    fn warp_options(&self, request: &WarpRequest<'_>, part: usize, built: &BuiltRecipe) -> WarpOptions {
         let WarpRequest { options, tolerance, .. } = request;
         let bender = Bender::new(Arc::new(built.map.clone()), options.image_dpi).with_budget(self.doc.budget().clone());
         let bender = Arc::new(bender);
@@ -271,7 +266,7 @@ impl SvgArtwork {
             .with_union(options.union)
             .with_text(options.text)
             .with_structure(options.structure)
-            .with_selection(self.selection(Which::Part(k)).clone())
+            .with_selection(self.selection(Which::Part(part)).clone())
             .with_on_error(options.on_failure.of_shapes())
             .with_gradients(gradients)
             .with_filters(filters)
@@ -284,7 +279,7 @@ impl SvgArtwork {
             .with_copies(built.placement.copies.clone())
             .with_letters(letters)
             .with_images(if options.warp_images { Images::Warp(bender) } else { Images::Keep });
-        let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| k == 0);
+        let sight = built.steps.last().and_then(|s| s.sight.as_deref().cloned()).filter(|_| part == 0);
         let hidden = built.hidden(HIDDEN * tolerance).and_then(|o| Area::of(&o, true, HIDDEN * tolerance).ok());
         let warp = warp.with_line(request.line.clone()).with_sight(sight).with_hidden(hidden.map(Arc::new));
         let warp = request.edit.map_or(warp.clone(), |e| warp.editing(e));
@@ -298,37 +293,35 @@ impl SvgArtwork {
 
     /// Returns the selection of each step.
     fn selections(&self, steps: &[Step]) -> Vec<Selection> {
-        let own = |s: &Step| Selection {
-            select: s.select.clone(),
-            exclude: s.exclude.clone(),
-            guides: self.selection.guides.clone(),
-            ..Selection::default()
-        };
-        steps.iter().map(own).collect()
+        let guides = || self.selection.guides.clone();
+        let selection = |s: &Step| Selection { guides: guides(), ..selection(&s.select, &s.exclude) };
+        steps.iter().map(selection).collect()
     }
 
-    /// Returns the size of the result's page in px: the source's, or `after` instead of `before` in its units.
+    /// Returns the size of the result's page in px; `page` is the page before and after in user units, if it changes.
     fn size_px(&self, page: Option<[Rect; 2]>) -> Size {
-        let Size { width, height } = self.doc.size_px();
-        page.map_or(Size { width, height }, |[before, after]| {
-            Size::new(width * after.width() / before.width(), height * after.height() / before.height())
+        let size = self.doc.size_px();
+        page.map_or(size, |[before, after]| {
+            Size::new(size.width * after.width() / before.width(), size.height * after.height() / before.height())
         })
     }
 
     /// Returns the reason why the page stays although it could grow.
     fn stays(&self, request: &WarpRequest<'_>) -> Option<&'static str> {
-        let may_grow = request.options.page == PageFit::Auto;
-        may_grow.then(|| page::stays(&self.doc, request.options, request.recipe)).flatten()
+        if request.options.page != PageFit::Auto {
+            return None;
+        }
+        page::stays(&self.doc, request.options, request.recipe)
     }
 
     /// Returns the orientation of every shape of a part under the map.
     fn orientations(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
     ) -> Result<Vec<(&str, Orientation)>, Error> {
-        let bounds = self.bounding_box(Which::Part(k));
+        let bounds = self.bounding_box(Which::Part(part));
         let copies = &built.placement.copies;
         let shapes: Vec<_> = self.doc.selected(&options.selection).collect();
         let segments: usize = shapes.iter().map(|s| s.outline.segs().count()).sum();
@@ -341,14 +334,14 @@ impl SvgArtwork {
         survey.spend(filled, segments, copies.len(), self.doc.budget())?;
         // A letter placed by itself can fold only in a later step.
         let placed = self.doc.placed(options);
-        let orientation = |(s, placed): (&'_ pathwarp_svg::Shape, &Option<Outline>)| match placed {
+        let orientation = |(s, placed): (&&pathwarp_svg::Shape, &Option<Outline>)| match placed {
             Some(outline) => fold::orientation(outline, s.filled, &built.after),
             None => survey.orientation_of_copies(&s.outline, copies, s.filled),
         };
         let all: Vec<Orientation> = if survey.samples() && segments >= WORTH_THREADS {
-            shapes.par_iter().map(|s| *s).zip(&placed).map(orientation).collect()
+            shapes.par_iter().zip(&placed).map(orientation).collect()
         } else {
-            shapes.iter().copied().zip(&placed).map(orientation).collect()
+            shapes.iter().zip(&placed).map(orientation).collect()
         };
         Ok(shapes.iter().map(|s| s.id.as_str()).zip(all).collect())
     }
@@ -356,7 +349,7 @@ impl SvgArtwork {
     /// Returns the orientation of every picture of a part under the map.
     fn picture_orientations(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
     ) -> Result<Vec<(String, Orientation)>, Error> {
@@ -364,7 +357,7 @@ impl SvgArtwork {
         if pictures.is_empty() || matches!(options.images, Images::Keep) {
             return Ok(Vec::new());
         }
-        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(k)), 4 * pictures.len());
+        let survey = Survey::new(&built.map, self.bounding_box(Which::Part(part)), 4 * pictures.len());
         survey.spend(pictures.len(), 4 * pictures.len(), 1, self.doc.budget())?;
         let orientation = |o: &Outline| survey.orientation_of_copies(o, &built.placement.copies, true);
         Ok(pictures.into_iter().map(|(name, edge)| (name, orientation(&edge))).collect())
@@ -373,7 +366,7 @@ impl SvgArtwork {
     /// Finds the folds of the shapes and pictures of a part. Returns those of shapes by id, and the warnings.
     fn folds(
         &self,
-        k: usize,
+        part: usize,
         built: &BuiltRecipe,
         options: &WarpOptions,
         warped: &WarpedDocument,
@@ -384,21 +377,21 @@ impl SvgArtwork {
         // Parts of a text or `use` share an id and count as one shape in the report.
         let mut by_id: HashMap<&str, Orientation> = HashMap::new();
         let mut all = Orientation::default();
-        for (id, o) in self.orientations(k, built, options)? {
+        for (id, o) in self.orientations(part, built, options)? {
             all = all.and(&o);
             let sum = by_id.entry(id).or_default();
             *sum = sum.and(&o);
         }
-        let pictures = self.picture_orientations(k, built, options)?;
+        let pictures = self.picture_orientations(part, built, options)?;
         all = pictures.iter().fold(all, |all, (_, o)| all.and(o));
-        all = self.bounding_box(Which::Part(k)).map_or(all, |bounds| all.usual(&built.map, bounds));
+        all = self.bounding_box(Which::Part(part)).map_or(all, |bounds| all.usual(&built.map, bounds));
         let (mut out, mut warnings) = (HashMap::new(), Vec::new());
-        let places = &built.placement;
+        let placement = &built.placement;
         let survey = LazyCell::new(|| Survey::new(&built.map, None, 1));
         let lettering = LazyCell::new(|| self.doc.lettering(&options.selection));
         let letters = LazyCell::new(|| {
             // Letters placed one by one do not follow the map.
-            let letters = if places.letters.is_empty() { lettering.letters() } else { &[] };
+            let letters = if placement.letters.is_empty() { lettering.letters() } else { &[] };
             artwork::letters_by_shape(self.doc.selected(&options.selection).map(|s| (&*s.id, &*s.outline)), letters)
         });
         for (name, o) in &pictures {
@@ -410,7 +403,7 @@ impl SvgArtwork {
             };
             let fold = Fold::of(o, &all);
             if let Some(at) = fold.at {
-                let orientation = |o: &Outline| survey.orientation_of_copies(o, &places.copies, true);
+                let orientation = |o: &Outline| survey.orientation_of_copies(o, &placement.copies, true);
                 let letters = artwork::folded(letters.get(id), &all, orientation);
                 warnings.push(artwork::fold_warning(id, &letters, at));
             }
@@ -427,16 +420,16 @@ impl SvgArtwork {
         warped: &WarpedDocument,
     ) -> Result<(Vec<ReportedShape>, Vec<String>), Error> {
         let (mut folds, mut warnings) = (Vec::new(), Vec::new());
-        for (k, (built, options)) in parts.iter().zip(options).enumerate() {
-            let (of_part, warned) = self.folds(k, built, options, warped)?;
-            folds.push(of_part);
-            warnings.extend(warned);
+        for (part, (built, options)) in parts.iter().zip(options).enumerate() {
+            let (folds_of_part, warnings_of_part) = self.folds(part, built, options, warped)?;
+            folds.push(folds_of_part);
+            warnings.extend(warnings_of_part);
         }
         let report = |s: &ShapeReport| {
-            let own = folds.iter().enumerate().find_map(|(k, folds)| Some((k, folds.get(s.id.as_str())?)));
-            let steps =
-                own.filter(|_| !self.parts.is_empty()).map(|(k, _)| parts[k].indices.iter().map(|i| i + 1).collect());
-            let fold = own.map_or(Fold { count: 0, at: None }, |(_, fold)| fold.clone());
+            let found = folds.iter().enumerate().find_map(|(part, folds)| Some((part, folds.get(s.id.as_str())?)));
+            let steps = found.filter(|_| !self.parts.is_empty());
+            let steps = steps.map(|(part, _)| parts[part].indices.iter().map(|i| i + 1).collect());
+            let fold = found.map_or(Fold { count: 0, at: None }, |(_, fold)| fold.clone());
             ReportedShape { shape: s.clone(), steps, fold }
         };
         Ok((warped.shapes.iter().map(report).collect(), warnings))
@@ -448,16 +441,16 @@ fn bending(read: &ReadOptions) -> ReadOptions {
     read.clone().with_turned(Some(Picture::sized))
 }
 
-/// Returns the selection common to all steps.
-fn selection(options: &CommonOptions) -> Selection {
-    Selection { select: options.select.clone(), exclude: options.exclude.clone(), ..Selection::default() }
+/// Returns the selection of what is named in `select`, or else of everything, except what is named in `exclude`.
+fn selection(select: &[String], exclude: &[String]) -> Selection {
+    Selection { select: select.to_vec(), exclude: exclude.to_vec(), ..Selection::default() }
 }
 
 /// Returns the format of the result. An unknown extension that is also the input's means SVG.
 fn format(options: &CommonOptions, input: &Path, target: Option<&Path>) -> Result<Format, Failure> {
-    let is_own = |t: &&Path| Format::of(t).is_none() && t.extension() == input.extension();
-    let named = if target.as_ref().is_some_and(is_own) { None } else { target };
-    let format = Choice { what: "a drawing is", among: DRAWINGS }.format(named, options.format)?;
+    let is_of_input = |t: &&Path| Format::of(t).is_none() && t.extension() == input.extension();
+    let known = target.filter(|t| !is_of_input(t));
+    let format = Choice { what: "a drawing is", among: DRAWINGS }.format(known, options.format)?;
     if options.embed_recipe && !matches!(format, Format::Svg | Format::Svgz) {
         let word = format.extension();
         return Err(Failure::usage(format!("--embed-recipe is for SVG files; a .{word} has no place for the source")));
@@ -488,15 +481,15 @@ impl Artwork for SvgArtwork {
         if self.paths.is_some() && edits.iter().any(is_caption) {
             return Err(Failure::usage("GIMP's paths have no fills; caption is for drawings"));
         }
-        let wanted = Wanted::new(edits, self.selection.clone(), steps);
-        if self.original.as_ref().is_some_and(|o| o.wanted == wanted) {
+        let edits = Edits { edits: edits.to_vec(), whole: self.selection.clone(), steps };
+        if self.original.as_ref().is_some_and(|o| o.edits == edits) {
             return Ok(());
         }
-        let Edited { document: doc, grown, warnings } =
-            wanted.done(self.document(), &self.name, &bending(&self.read), options)?;
-        let edited = std::mem::replace(&mut self.doc, doc);
-        let document = self.original.take().map_or(edited, |o| o.document);
-        self.original = Some(Original { document, wanted, grown, warnings });
+        let Edited { document: edited, grown, warnings } =
+            edits.apply(self.document(), &self.name, &bending(&self.read), options)?;
+        let before = std::mem::replace(&mut self.doc, edited);
+        let document = self.original.take().map_or(before, |o| o.document);
+        self.original = Some(Original { document, edits, grown, warnings });
         Ok(())
     }
 
@@ -508,13 +501,12 @@ impl Artwork for SvgArtwork {
         all.push(self.selection.clone());
         let mut divisions = self.doc.divide(&all);
         divisions.retain_mut(|d| d.among.pop_if(|last| *last == whole).is_some() && !d.among.is_empty());
-        let of_step =
-            |i: usize| self.doc.united(divisions.iter().filter(|d| d.among.contains(&i)).map(|d| &d.selection));
-        self.steps = (0..whole).map(of_step).collect();
-        let (among, parts) = divisions.into_iter().map(|d| (d.among, d.selection)).unzip();
+        let parts_of = |step: usize| divisions.iter().filter(move |d| d.among.contains(&step)).map(|d| &d.selection);
+        self.steps = (0..whole).map(|step| self.doc.united(parts_of(step))).collect();
+        let (steps_of_parts, parts) = divisions.into_iter().map(|d| (d.among, d.selection)).unzip();
         self.parts = parts;
         self.selection = self.doc.united(self.parts.iter());
-        Ok(among)
+        Ok(steps_of_parts)
     }
 
     fn bounding_box(&self, which: Which) -> Option<Rect> {
@@ -584,12 +576,11 @@ fn unmeasured(doc: &Document, request: &WarpRequest<'_>) -> Option<String> {
     const UNITS: [&str; 6] = ["mm", "cm", "in", "pt", "pc", "q"];
     let Some(Edit::Contour(_)) = request.edit else { return None };
     let args = &request.recipe.steps.last()?.args;
-    let given = ["by", "bleed"].iter().flat_map(|name| args.get(name));
-    let one = given.into_iter().find(|v| UNITS.iter().any(|u| v.to_lowercase().ends_with(u)))?;
-    let sized = doc.is_measured() || request.options.page_width.or(request.options.page_height).is_some();
-    (!sized).then(|| {
-        format!("the page has no unit: {one} is taken as 96 px an inch have it; --page-width gives the page its size")
-    })
+    let mut lengths = ["by", "bleed"].iter().flat_map(|name| args.get(name));
+    let length = lengths.find(|v| UNITS.iter().any(|unit| v.to_lowercase().ends_with(unit)))?;
+    let has_size = doc.is_measured() || request.options.page_width.or(request.options.page_height).is_some();
+    let advice = "--page-width gives the page its size";
+    (!has_size).then(|| format!("the page has no unit: {length} is taken as 96 px an inch have it; {advice}"))
 }
 
 /// Warns of gradients that became pictures.
@@ -617,16 +608,16 @@ impl FileArtwork for SvgArtwork {
             }
             _ => {}
         }
-        let (options, mut warped, tolerance) = self.warped(request)?;
-        let page = PageNews::of(&mut warped, common.page, self.stays(request));
+        let (options, mut warped, tolerance) = self.warp_for(request)?;
+        let page = PageNews::take(&mut warped, common.page, self.stays(request));
         let (mut shapes, folds) = self.shape_reports(&built.parts, &options, &warped)?;
         let mut warnings: Vec<String> = warped.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(self.original.iter().flat_map(|o| &o.warnings).cloned());
         let damage = self.paths.as_ref().and_then(|p| p.file.damage.clone());
         let is_damaged = damage.is_some();
         warnings.extend(damage);
-        let empty = !self.doc.has_artwork(&self.selection);
-        if empty {
+        let is_empty = !self.doc.has_artwork(&self.selection);
+        if is_empty {
             warnings.push("there is nothing to warp: no shapes, text or images; the drawing stays as it is".into());
         }
         warnings.extend(unmeasured(&self.doc, request));
@@ -645,9 +636,9 @@ impl FileArtwork for SvgArtwork {
         let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?.concat();
         let files = surfaces.iter().map(|(file, text)| PendingFile::new(file, text.as_bytes()));
         let files = files.collect::<Result<_, _>>()?;
+        let result = (warped.svg.as_str(), warped.back.unwrap_or_default());
         let preview = common.preview.as_deref();
-        let shown = (warped.svg.as_str(), warped.back.unwrap_or_default());
-        let preview = preview.map(|file| beside::preview(&self.doc, shown, built, &self.read, (file, common)));
+        let preview = preview.map(|file| beside::preview(&self.doc, result, built, &self.read, (file, common)));
         let (result, (lost, kerf)) = match &self.paths {
             Some(paths) => {
                 let guides = &self.selection.guides;
@@ -666,7 +657,7 @@ impl FileArtwork for SvgArtwork {
             warnings,
             files,
             preview: preview.transpose()?,
-            partial: empty || is_damaged || !unread.is_empty() || kerf.as_ref().is_some_and(KerfReport::is_partial),
+            partial: is_empty || is_damaged || !unread.is_empty() || kerf.as_ref().is_some_and(KerfReport::is_partial),
             kerf,
             proportions: None,
             page,

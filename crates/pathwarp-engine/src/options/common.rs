@@ -138,6 +138,22 @@ impl CommonOptions {
     pub fn tolerance_for(&self, artwork: Option<Rect>, frame: &Frame) -> Result<f64, Failure> {
         distance(self.tolerance, TOLERANCE_OF_DIAGONAL, artwork, frame)
     }
+
+    /// Returns the scale that fits a page of this size in px into `--page-width` and `--page-height`, if any is given.
+    pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
+        let sides = [(self.page_width, page.width), (self.page_height, page.height)];
+        let scales = sides.into_iter().filter_map(|(given, side)| {
+            let Length { value, unit, .. } = given?;
+            Some(PageScale { by: value * unit.px().unwrap_or(1.0) / side, unit })
+        });
+        scales.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
+    }
+
+    /// Returns `true` if the tolerance is a length on the result's page, which differs in scale from the source's.
+    pub(crate) fn has_tolerance_of_result(&self) -> bool {
+        let resizes = self.page_width.is_some() || self.page_height.is_some();
+        resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
+    }
 }
 
 /// Returns a tolerance in user units; if none is given, a share of the diagonal of the artwork's bounding box.
@@ -147,10 +163,11 @@ pub(crate) fn distance(
     artwork: Option<Rect>,
     frame: &Frame,
 ) -> Result<f64, Failure> {
+    if let Some(tolerance) = given.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0) {
+        return measurable("tolerance", tolerance, artwork).map(|()| tolerance);
+    }
     let diagonal = artwork.map_or(0.0, |r| r.width().hypot(r.height()));
-    let given = given.map(|d| d.in_units(Axis::Diagonal, frame)).filter(|d| *d > 0.0);
-    given.map_or(Ok(()), |d| measurable("tolerance", d, artwork))?;
-    Ok(given.unwrap_or(if diagonal > 0.0 { diagonal * share } else { share }))
+    Ok(if diagonal > 0.0 { diagonal * share } else { share })
 }
 
 /// Refuses a distance that is finer than the rounding of the artwork's coordinates.
@@ -171,23 +188,6 @@ pub(crate) struct PageScale {
     pub(crate) by: f64,
     /// The unit of the size given.
     pub(crate) unit: LengthUnit,
-}
-
-impl CommonOptions {
-    /// Returns the scale that fits a page of this size in px into `--page-width` and `--page-height`, if any is given.
-    pub(crate) fn page_scale(&self, page: Size) -> Option<PageScale> {
-        let scale = |given: Option<Length>, side: f64| {
-            given.map(|l| PageScale { by: l.value * l.unit.px().unwrap_or(1.0) / side, unit: l.unit })
-        };
-        let both = scale(self.page_width, page.width).into_iter().chain(scale(self.page_height, page.height));
-        both.filter(|s| s.by > 0.0 && s.by.is_finite()).reduce(|a, b| if b.by < a.by { b } else { a })
-    }
-
-    /// Returns `true` if the tolerance is a length on the result's page, which differs in scale from the source's.
-    pub(crate) fn has_tolerance_of_result(&self) -> bool {
-        let resizes = self.page_width.is_some() || self.page_height.is_some();
-        resizes && self.tolerance.is_some_and(|t| t.unit.px().is_some())
-    }
 }
 
 /// The options of every command that reads drawings.
@@ -289,7 +289,7 @@ fn some_length(text: &str) -> Result<Option<Length>, String> {
 }
 
 /// Parses the distance of `--simplify` as an edit; `None` if it is zero.
-pub(super) fn simplifying(text: &str) -> Result<Option<Step>, String> {
+pub(super) fn simplify_step(text: &str) -> Result<Option<Step>, String> {
     let length = some_length(text)?;
     if length.is_some_and(|l| l.value < 0.0) {
         return Err(format!("`{text}` is below zero"));
@@ -297,8 +297,8 @@ pub(super) fn simplifying(text: &str) -> Result<Option<Step>, String> {
     Ok(length.map(|_| Step::new("simplify", Args::from_pairs(&[("within", text)]))))
 }
 
-/// Parses the distance of `--outset` as an edit; areas shrink if it is negative.
-pub(super) fn growing(text: &str) -> Result<Option<Step>, String> {
+/// Parses the distance of `--outset` as an edit; `None` if it is zero. Areas shrink if it is negative.
+pub(super) fn outset_step(text: &str) -> Result<Option<Step>, String> {
     let args = match text.trim().strip_prefix('-') {
         Some(by) => Args::from_pairs(&[("by", by), ("side", "inside")]),
         None => Args::from_pairs(&[("by", text)]),
@@ -320,8 +320,8 @@ pub(super) fn ratio(text: &str) -> Result<f64, String> {
         "a4" | "A4" => Some((210.0, 297.0)),
         _ => text.split_once(':').and_then(|(w, h)| w.trim().parse().ok().zip(h.trim().parse::<f64>().ok())),
     };
-    let ratio = sides.map(|(w, h)| if w > 0.0 && h > 0.0 { w / h } else { f64::NAN });
-    let ratio = ratio.filter(|r: &f64| (1e-3..=1e3).contains(r));
+    let ratio = sides.filter(|(w, h)| *w > 0.0 && *h > 0.0).map(|(w, h): (f64, f64)| w / h);
+    let ratio = ratio.filter(|r| (1e-3..=1e3).contains(r));
     ratio.ok_or_else(|| format!("`{text}` is neither a ratio of sides such as 210:297 nor a4, letter or square"))
 }
 
@@ -352,18 +352,16 @@ pub(super) fn frame(text: &str) -> Result<FrameChoice, String> {
 /// Parses a box, `X,Y,W,H`.
 pub fn rect(text: &str) -> Result<TypedBox, String> {
     let lengths: Result<Vec<Length>, _> = text.split(',').map(str::parse).collect();
+    let lengths = lengths.ok().filter(|all| all.iter().all(|l| l.unit != LengthUnit::Percent));
     match lengths.as_deref() {
-        Ok(&[x, y, w, h])
-            if w.value > 0.0 && h.value > 0.0 && [x, y, w, h].iter().all(|l| l.unit != LengthUnit::Percent) =>
-        {
-            Ok(TypedBox([x, y, w, h]))
-        }
+        Some(&[x, y, w, h]) if w.value > 0.0 && h.value > 0.0 => Ok(TypedBox([x, y, w, h])),
         _ => Err(format!(
             "`{text}` is not one of artwork, viewbox, X,Y,W,H (lengths; W and H positive) or, for lettering, \
              baseline-ascent, baseline-capheight, baseline-xheight, ascent-descent, ink"
         )),
     }
 }
+
 /// Parses a family's name.
 pub(super) fn family_name(text: &str) -> Result<String, String> {
     let name = text.trim().trim_matches(['"', '\'']);

@@ -22,32 +22,29 @@ impl Given {
 
     /// Adds the value of an option named in a recipe. Of several values for an option that does not repeat, the last wins.
     pub(crate) fn push(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let option = OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name)).ok_or_else(|| unknown(name))?;
-        if !option.stored {
-            return Err(format!(
-                "{name} is not for recipes, which describe the deformation only; give it on the command line"
-            ));
+        if !CommonOption::named(name).ok_or_else(|| unknown(name))?.stored {
+            let advice = "which describe the deformation only; give it on the command line";
+            return Err(format!("{name} is not for recipes, {advice}"));
         }
         self.set(name, value)
     }
 
     /// Adds the value of any option. Of several values for an option that does not repeat, the last wins.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let option = OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name)).ok_or_else(|| unknown(name))?;
+        let option = CommonOption::named(name).ok_or_else(|| unknown(name))?;
         option.check(value).map_err(|e| format!("{name}: {e}"))?;
         match self.values.iter_mut().find(|(o, _)| o.name == option.name) {
             Some((_, values)) if option.repeats() => values.push(value.into()),
             Some((_, values)) => *values = vec![value.into()],
             None => {
-                let place = |o: &CommonOption| OPTIONS.iter().position(|other| other.name == o.name);
                 self.values.push((option, vec![value.into()]));
-                self.values.sort_by_key(|(o, _)| place(o));
+                self.values.sort_by_key(|(o, _)| OPTIONS.iter().position(|other| other.name == o.name));
             }
         }
         Ok(())
     }
 
-    /// Sets `fit` to leave pages as they are, unless it is given: for programs with open drawings.
+    /// Leaves pages as they are unless `fit` is given: for programs with open drawings.
     pub fn keeping_pages(&self) -> Self {
         let mut kept = Self::default();
         // Cannot fail: the option and its value are in the table.
@@ -55,7 +52,7 @@ impl Given {
         kept.overridden_by(self)
     }
 
-    /// The files to read.
+    /// Returns the files to read.
     pub fn inputs(&self) -> &[PathBuf] {
         &self.inputs
     }
@@ -81,12 +78,9 @@ impl Given {
     /// # Errors
     /// [`Failure::Usage`] if both parts have an option that does not repeat, or two options conflict.
     pub fn joined(&self, other: &Self) -> Result<Self, Failure> {
-        let has = |option: &CommonOption| self.values.iter().any(|(o, _)| o.name == option.name);
-        if let Some((twice, _)) = other.values.iter().find(|(o, _)| !o.repeats() && has(o)) {
-            let name = twice.name;
-            return Err(Failure::usage(format!(
-                "--{name} cannot be used multiple times: give it in one part of the chain"
-            )));
+        if let Some((twice, _)) = other.values.iter().find(|(o, _)| !o.repeats() && self.gives(o.name)) {
+            let problem = "cannot be used multiple times: give it in one part of the chain";
+            return Err(Failure::usage(format!("--{} {problem}", twice.name)));
         }
         let merged = self.overridden_by(other);
         merged.check_conflicts().map_err(Failure::Usage)?;
@@ -101,13 +95,9 @@ impl Given {
             if option.repeats() { values.flatten().collect() } else { values.next_back().unwrap_or_default() }
         };
         let merge = |option: &'static CommonOption| {
-            let (mut mine, others) = (find(self, option), find(other, option));
-            if option.repeats() || others.is_empty() {
-                mine.extend(others);
-                (option, mine)
-            } else {
-                (option, others)
-            }
+            let (first, later) = (find(self, option), find(other, option));
+            let replaces = !option.repeats() && !later.is_empty();
+            (option, if replaces { later } else { [first, later].concat() })
         };
         let values = OPTIONS.iter().map(merge).filter(|(_, v)| !v.is_empty()).collect();
         let inputs = self.inputs.iter().chain(&other.inputs).cloned().collect();
@@ -139,8 +129,8 @@ impl Given {
         options.inputs.clone_from(&self.inputs);
         for (option, values) in &self.values {
             for value in values {
-                apply(option, value, &mut options)
-                    .map_err(|problem| Failure::usage(format!("--{}: {problem}", option.name)))?;
+                let set = set_from(option, value, &mut options);
+                set.map_err(|problem| Failure::usage(format!("--{}: {problem}", option.name)))?;
             }
         }
         Ok(options)
@@ -161,7 +151,7 @@ fn defaults() -> CommonOptions {
 }
 
 /// Sets an option from one value.
-fn apply(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> Result<(), String> {
+fn set_from(option: &CommonOption, value: &OsStr, options: &mut CommonOptions) -> Result<(), String> {
     let text = value.to_string_lossy();
     option.check(&text)?;
     match &option.value {

@@ -1,8 +1,8 @@
 //! The table that declares all common options.
 
 use super::common::{
-    CommonOptions, OnFailure, family_name, frame, growing, image_size, limit, positive, positive_length, ratio,
-    side_of_page, simplifying,
+    CommonOptions, OnFailure, family_name, frame, image_size, limit, outset_step, positive, positive_length, ratio,
+    side_of_page, simplify_step,
 };
 use crate::format::Format;
 use pathwarp::refit::Nodes;
@@ -30,14 +30,14 @@ const fn of_the_run(name: &'static str, value: OptionValue, help: &'static str) 
     CommonOption { stored: false, ..stored(name, value, help) }
 }
 
+/// Text that `set` parses; `name` stands for it in help.
+const fn text(name: &'static str, minus: LeadingMinus, set: SetText) -> OptionValue {
+    OptionValue::Text { name, minus, set }
+}
+
 /// An option that names the family for one of CSS's generic names.
-const fn family(
-    name: &'static str,
-    set: fn(&mut CommonOptions, &str) -> Result<(), String>,
-    help: &'static str,
-) -> CommonOption {
-    let value = OptionValue::Text { name: "FAMILY", minus: LeadingMinus::No, set };
-    CommonOption { reading: true, ..stored(name, value, help) }
+const fn family(name: &'static str, set: SetText, help: &'static str) -> CommonOption {
+    CommonOption { reading: true, ..stored(name, text("FAMILY", LeadingMinus::No, set), help) }
 }
 
 /// An option that names fonts besides the installed ones. `value` stands for its value in help.
@@ -129,32 +129,20 @@ pub static OPTIONS: &[CommonOption] = &[
     ),
     stored(
         "simplify",
-        OptionValue::Text {
-            name: "D",
-            minus: LeadingMinus::Any,
-            set: |o, text| simplifying(text).map(|step| drop(o.edits.splice(0..0, step))),
-        },
+        text("D", LeadingMinus::Any, |o, text| simplify_step(text).map(|step| drop(o.edits.splice(0..0, step)))),
         "Before bending, give paths the fewest nodes within this distance, such as 0.2mm or 0.1% (of the artwork's diagonal), as \
          `pathwarp simplify` does",
     ),
     stored(
         "outset",
-        OptionValue::Text {
-            name: "D",
-            minus: LeadingMinus::Any,
-            set: |o, text| growing(text).map(|step| o.edits.extend(step)),
-        },
+        text("D", LeadingMinus::Any, |o, text| outset_step(text).map(|step| o.edits.extend(step))),
         "Before bending, let areas grow by this distance, as `pathwarp offset` does; below zero, they shrink",
     ),
     CommonOption {
         default: Some("1e-4 of the artwork's diagonal, and for small contours 2e-3 of their own"),
         ..stored(
             "tolerance",
-            OptionValue::Text {
-                name: "D",
-                minus: LeadingMinus::Number,
-                set: |o, text| positive_length(text).map(|d| o.tolerance = Some(d)),
-            },
+            text("D", LeadingMinus::Number, |o, text| positive_length(text).map(|d| o.tolerance = Some(d))),
             "Largest distance between the exact curve and the output: user units, or a length such as 0.05mm. If it is given, it holds for \
              all contours alike",
         )
@@ -185,11 +173,9 @@ pub static OPTIONS: &[CommonOption] = &[
         default: Some("artwork; baseline-ascent if a deformation with a baseline gets only lettering"),
         ..stored(
             "frame",
-            OptionValue::Text {
-                name: "artwork|viewbox|baseline-ascent|baseline-capheight|…|X,Y,W,H",
-                minus: LeadingMinus::Any,
-                set: |o, text| frame(text).map(|f| o.frame = f),
-            },
+            text("artwork|viewbox|baseline-ascent|baseline-capheight|…|X,Y,W,H", LeadingMinus::Any, |o, text| {
+                frame(text).map(|f| o.frame = f)
+            }),
             "Box that percentages and defaults refer to. For lettering (text, or output of `pathwarp text`) also \
              baseline-ascent, baseline-capheight, baseline-xheight (from the baseline up, between the ends of the \
              lines), ascent-descent, or ink (the bounding box of the letters). X, Y, W and H may have units, such as 20mm",
@@ -357,21 +343,13 @@ pub static OPTIONS: &[CommonOption] = &[
     },
     stored(
         "page-width",
-        OptionValue::Text {
-            name: "LENGTH",
-            minus: LeadingMinus::Any,
-            set: |o, text| side_of_page(text).map(|l| o.page_width = Some(l)),
-        },
+        text("LENGTH", LeadingMinus::Any, |o, text| side_of_page(text).map(|l| o.page_width = Some(l))),
         "Width of the result's page, such as 80mm; its height is in proportion. A --tolerance and --kerf with units are lengths of the result \
          then, while lengths in parameters are those of the source",
     ),
     stored(
         "page-height",
-        OptionValue::Text {
-            name: "LENGTH",
-            minus: LeadingMinus::Any,
-            set: |o, text| side_of_page(text).map(|l| o.page_height = Some(l)),
-        },
+        text("LENGTH", LeadingMinus::Any, |o, text| side_of_page(text).map(|l| o.page_height = Some(l))),
         "Height of the result's page; with --page-width, the page is as large as fits inside both",
     ),
     CommonOption {
@@ -408,11 +386,7 @@ pub static OPTIONS: &[CommonOption] = &[
         default: Some("high enough to keep every detail"),
         ..stored(
             "image-dpi",
-            OptionValue::Text {
-                name: "N",
-                minus: LeadingMinus::No,
-                set: |o, text| positive(text).map(|dpi| o.image_dpi = Some(dpi)),
-            },
+            text("N", LeadingMinus::No, |o, text| positive(text).map(|dpi| o.image_dpi = Some(dpi))),
             "Resolution of the warped bitmaps in a drawing, in pixels per inch of the drawing; also of what filters draw in \
              a PDF (there 300 by default)",
         )
@@ -429,11 +403,7 @@ pub static OPTIONS: &[CommonOption] = &[
     },
     stored(
         "ratio",
-        OptionValue::Text {
-            name: "W:H",
-            minus: LeadingMinus::No,
-            set: |o, text| ratio(text).map(|r| o.ratio = Some(r)),
-        },
+        text("W:H", LeadingMinus::No, |o, text| ratio(text).map(|r| o.ratio = Some(r))),
         "Proportions of what --crop cuts out: 210:297, a4, letter or square; the longer side is the one that is longer in the photograph",
     ),
     CommonOption {
@@ -441,11 +411,7 @@ pub static OPTIONS: &[CommonOption] = &[
         default: Some("the size of the warped picture"),
         ..stored(
             "image-size",
-            OptionValue::Text {
-                name: "W[xH]",
-                minus: LeadingMinus::No,
-                set: |o, text| image_size(text).map(|size| o.image_size = Some(size)),
-            },
+            text("W[xH]", LeadingMinus::No, |o, text| image_size(text).map(|size| o.image_size = Some(size))),
             "Size in pixels of a warped PNG, JPEG or WebP",
         )
     },
@@ -465,11 +431,7 @@ pub static OPTIONS: &[CommonOption] = &[
     },
     stored(
         "kerf",
-        OptionValue::Text {
-            name: "D",
-            minus: LeadingMinus::Any,
-            set: |o, text| positive_length(text).map(|d| o.kerf = Some(d)),
-        },
+        text("D", LeadingMinus::Any, |o, text| positive_length(text).map(|d| o.kerf = Some(d))),
         "Width of the cut, such as 0.2mm: the outer contours of a DXF grow by half of it and holes shrink, so that parts have \
          their size. Lines whose ends meet are one contour; other open lines stay",
     ),
@@ -622,6 +584,8 @@ pub struct CommonOption {
 
 /// Sets an option whose value needs no parsing.
 pub(crate) type Set = fn(&mut CommonOptions);
+/// Parses the value of an option and sets it.
+pub(crate) type SetText = fn(&mut CommonOptions, &str) -> Result<(), String>;
 
 /// The kind of value an option takes, the `name` that stands for the value in help, and the function that updates [`CommonOptions`].
 #[expect(missing_docs, reason = "names, ranges and setters")]
@@ -633,9 +597,9 @@ pub enum OptionValue {
     /// A whole number in a range.
     Whole { name: &'static str, range: RangeInclusive<u16>, set: fn(&mut CommonOptions, u16) },
     /// Text with a syntax. The function's error describes the fault and does not name the option.
-    Text { name: &'static str, minus: LeadingMinus, set: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    Text { name: &'static str, minus: LeadingMinus, set: SetText },
     /// Text; may be given several times.
-    List { name: &'static str, push: fn(&mut CommonOptions, &str) -> Result<(), String> },
+    List { name: &'static str, push: SetText },
     /// A file or folder.
     File { name: &'static str, set: fn(&mut CommonOptions, PathBuf) },
 }
@@ -651,6 +615,11 @@ pub enum LeadingMinus {
 }
 
 impl CommonOption {
+    /// Finds an option by its long name or alias.
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        OPTIONS.iter().find(|o| o.name == name || o.alias == Some(name))
+    }
+
     /// Returns the help text with the default.
     pub fn help(&self) -> String {
         match self.default {

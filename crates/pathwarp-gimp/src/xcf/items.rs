@@ -6,7 +6,6 @@ use super::vectors;
 use crate::error::Error;
 use crate::path::GimpPath;
 use crate::source::ByteSource;
-use std::collections::HashMap;
 
 const PROP_VISIBLE: u32 = 8;
 
@@ -19,33 +18,26 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
     // Read in the order of the file, so that compressed data is unpacked once; list in the order of the table.
     let mut order: Vec<usize> = (0..pointers.len()).collect();
     order.sort_by_key(|&i| pointers[i].1);
-    let mut found: HashMap<usize, PathRecord> = HashMap::new();
-    let mut damage = None;
-    let mut free = tables_end;
-    for &i in &order {
-        let (pointer_at, to) = pointers[i];
-        let record = if to < free {
-            let what = if to < tables_end { "the file's head" } else { "another path" };
-            Err(Error::damaged(pointer_at, format!("a path pointer points to byte {to}, inside {what}")))
-        } else {
-            input
-                .seek(to, "a path pointer")
-                .map_err(|e| Error { offset: pointer_at, ..e })
-                .and_then(|()| item(input, pointer_at))
-        };
-        match record {
-            Ok(record) => {
-                free = record.span.end;
-                found.insert(i, record);
+    let mut records: Vec<Option<PathRecord>> = pointers.iter().map(|_| None).collect();
+    let mut used_end = tables_end;
+    let read_all = || {
+        for i in order {
+            let (pointer_at, to) = pointers[i];
+            if to < used_end {
+                let part = if to < tables_end { "the file's head" } else { "another path" };
+                let problem = format!("a path pointer points to byte {to}, inside {part}");
+                return Err(Error::damaged(pointer_at, problem));
             }
-            Err(e) => {
-                damage = Some(e);
-                break;
-            }
+            input.seek(to, "a path pointer").map_err(|e| Error { offset: pointer_at, ..e })?;
+            let record = item(input, pointer_at)?;
+            used_end = record.span.end;
+            records[i] = Some(record);
         }
-    }
-    xcf.records.extend((0..pointers.len()).filter_map(|i| found.remove(&i)));
-    damage.map_or(Ok(()), Err)
+        Ok(())
+    };
+    let result = read_all();
+    xcf.records.extend(records.into_iter().flatten());
+    result
 }
 
 /// Reads a table of pointers up to its zero. Returns the offset and the target of each.
@@ -74,11 +66,7 @@ fn item(input: &mut ByteSource<'_>, pointer_at: u64) -> Result<PathRecord, Error
     let size = u64::from(input.u32("a path")?);
     input.need(size, size_at, || format!("a path needs {size} bytes"))?;
     let end = input.offset() + size;
-    let file_end = std::mem::replace(&mut input.end, end);
-    let read = content(input);
-    input.end = file_end;
-    let (visible, count_at, strokes) =
-        read.map_err(|e| if end < file_end { e.limited_by(size, &format!("the path `{name}`")) } else { e })?;
+    let (visible, count_at, strokes) = input.limited(size, &format!("the path `{name}`"), content)?;
     if input.offset() != end {
         let (found, name) = (input.offset() - size_at - 4, &name);
         let problem = format!("the path `{name}` takes {found} bytes, but its size word says {size}");

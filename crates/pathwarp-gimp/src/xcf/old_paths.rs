@@ -1,9 +1,9 @@
 //! Reads and encodes `PROP_PATHS`, the paths of GIMP 1.
 
 use super::model::{PathLayout, PathRecord, Xcf};
-use super::primitives::{coordinate, count, string};
+use super::primitives::{coordinate, count, push_point, push_words, string};
 use crate::error::Error;
-use crate::old_strokes::{ANCHOR, NEW_STROKE, TypedPoint, listed, strokes};
+use crate::old_strokes::{ANCHOR, NEW_STROKE, TypedPoint, list_points, split_strokes};
 use crate::path::{GimpPath, Stroke};
 use crate::source::ByteSource;
 
@@ -22,6 +22,7 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
     for _ in 0..count(input, MIN_PATH, "paths")? {
         let start = input.offset();
         let name = string(input, "a path's name")?;
+        // The lock, then the state, which the next flag repeats.
         input.u32("a path")?;
         let state_at = input.offset();
         input.u8("a path")?;
@@ -30,28 +31,22 @@ pub(super) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
         let n = count(input, POINT, "points of a path")?;
         let at = input.offset();
         let format = input.u32("a path")?;
-        let mut tattoo = None;
-        match format {
-            1 => {}
-            2 => drop(input.u32("a path")?),
-            3 => {
-                input.u32("a path")?;
-                tattoo = Some(input.u32("a path")?);
-            }
-            other => {
-                return Err(Error::unsupported(
-                    at,
-                    format!("a path of format {other} is unknown; 1, 2 and 3 are known"),
-                ));
-            }
+        if !(1..=3).contains(&format) {
+            let problem = format!("a path of format {format} is unknown; 1, 2 and 3 are known");
+            return Err(Error::unsupported(at, problem));
         }
+        // Formats 2 and 3 have a word that is always 1, and format 3 the tattoo.
+        if format > 1 {
+            input.u32("a path")?;
+        }
+        let tattoo = if format == 3 { Some(input.u32("a path")?) } else { None };
         let points_at = input.offset();
         let size = u64::from(n) * POINT;
         input.need(size, count_at, || format!("{n} points of a path need {size} bytes"))?;
         let points = points(input, n, format == 1)?;
         // GIMP stops at a path without points, but later paths are sound.
         if !points.is_empty() {
-            let strokes = strokes(&points, closed, &|i| points_at + i as u64 * POINT)?;
+            let strokes = split_strokes(&points, closed, &|i| points_at + (i as u64 * POINT))?;
             xcf.records.push(PathRecord {
                 path: GimpPath { name, visible: false, strokes },
                 span: start..input.offset(),
@@ -69,10 +64,8 @@ fn points(input: &mut ByteSource<'_>, n: u32, whole: bool) -> Result<Vec<TypedPo
         let at = input.offset();
         let kind = input.u32("a path's points")?;
         if !(ANCHOR..=NEW_STROKE).contains(&kind) {
-            return Err(Error::damaged(
-                at,
-                format!("a point has type {kind}; it must be 1 (anchor), 2 (handle) or 3 (new stroke)"),
-            ));
+            let problem = format!("a point has type {kind}; it must be 1 (anchor), 2 (handle) or 3 (new stroke)");
+            return Err(Error::damaged(at, problem));
         }
         let mut read = |at: u64| {
             let w = input.u32("a path's points")?.to_be_bytes();
@@ -86,20 +79,14 @@ fn points(input: &mut ByteSource<'_>, n: u32, whole: bool) -> Result<Vec<TypedPo
 /// Encodes a path, from its state byte to its last point, in a format that keeps fractions.
 pub(super) fn encode(strokes: &[Stroke], tattoo: Option<u32>) -> Vec<u8> {
     let closed = strokes.last().is_none_or(|s| s.closed);
-    let listed: Vec<TypedPoint> = strokes.iter().flat_map(listed).collect();
+    let points: Vec<TypedPoint> = strokes.iter().flat_map(list_points).collect();
     let mut out = vec![if closed { CLOSED } else { OPEN }];
-    out.extend(u32::from(closed).to_be_bytes());
-    out.extend((listed.len() as u32).to_be_bytes());
-    // The format, a word that is always 1, and in format 3 the tattoo.
-    let format: u32 = if tattoo.is_some() { 3 } else { 2 };
-    for word in [format, 1].into_iter().chain(tattoo) {
-        out.extend(word.to_be_bytes());
-    }
-    for (i, (kind, [x, y])) in listed.iter().enumerate() {
-        let kind = if i == 0 { ANCHOR } else { *kind };
-        out.extend(kind.to_be_bytes());
-        out.extend((*x as f32).to_be_bytes());
-        out.extend((*y as f32).to_be_bytes());
+    let format = if tattoo.is_some() { 3 } else { 2 };
+    // After the format, a word that is always 1, and in format 3 the tattoo.
+    push_words(&mut out, &[u32::from(closed), points.len() as u32, format, 1]);
+    push_words(&mut out, tattoo.as_slice());
+    for (i, (kind, point)) in points.iter().enumerate() {
+        push_point(&mut out, if i == 0 { ANCHOR } else { *kind }, *point);
     }
     out
 }

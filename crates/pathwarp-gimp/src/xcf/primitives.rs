@@ -1,4 +1,4 @@
-//! Reads strings, counts and coordinates.
+//! Reads strings, counts and coordinates, and writes words and points.
 
 use crate::error::Error;
 use crate::source::ByteSource;
@@ -43,9 +43,11 @@ pub(super) fn coordinate(bytes: [u8; 4], at: u64) -> Result<f64, Error> {
     }
 }
 
-/// Returns the four bytes at `i`; the caller has checked the length.
-pub(super) fn word(bytes: &[u8], i: usize) -> [u8; 4] {
-    let mut w = [0; 4];
-    w.copy_from_slice(&bytes[i..i + 4]);
-    w
+pub(super) fn push_words(out: &mut Vec<u8>, words: &[u32]) {
+    words.iter().for_each(|w| out.extend(w.to_be_bytes()));
+}
+
+/// Appends a point's type and its coordinates, rounded to single precision.
+pub(super) fn push_point(out: &mut Vec<u8>, kind: u32, [x, y]: [f64; 2]) {
+    push_words(out, &[kind, (x as f32).to_bits(), (y as f32).to_bits()]);
 }

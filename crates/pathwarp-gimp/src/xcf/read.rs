@@ -20,9 +20,9 @@ pub(crate) fn read(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Erro
 }
 
 fn header(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
-    let mut magic = [0; 14];
-    input.bytes(&mut magic, "the header")?;
-    let version = &magic[MAGIC.len()..13];
+    let start: [u8; 14] = input.array("the header")?;
+    // The last byte is a zero.
+    let version = &start[MAGIC.len()..13];
     xcf.version = if version == b"file" {
         0
     } else {
@@ -31,20 +31,16 @@ fn header(input: &mut ByteSource<'_>, xcf: &mut Xcf) -> Result<(), Error> {
         number.ok_or_else(|| Error::damaged(9, format!("`{}` is not an XCF version", version.escape_ascii())))?
     };
     if xcf.version > LAST_VERSION {
-        return Err(Error::unsupported(
-            9,
-            format!("XCF version {} is unknown; versions 0 to {LAST_VERSION} are known", xcf.version),
-        ));
+        let problem = format!("XCF version {} is unknown; versions 0 to {LAST_VERSION} are known", xcf.version);
+        return Err(Error::unsupported(9, problem));
     }
     xcf.width = input.u32("the header")?;
     xcf.height = input.u32("the header")?;
     let at = input.offset();
     let base = input.u32("the header")?;
     if base > 2 {
-        return Err(Error::damaged(
-            at,
-            format!("base type {base} is unknown; it must be 0 (RGB), 1 (grey) or 2 (indexed)"),
-        ));
+        let problem = format!("base type {base} is unknown; it must be 0 (RGB), 1 (grey) or 2 (indexed)");
+        return Err(Error::damaged(at, problem));
     }
     if xcf.version >= WITH_PRECISION {
         input.u32("the header")?;

@@ -7,6 +7,7 @@ use crate::source::{ByteSource, ReadSeek};
 use crate::xcf::model::{
     MAGIC, PATH_ITEMS, PROP_END, PROP_PATHS, PROP_VECTORS, PathBlock, PathLayout, PathRecord, Xcf,
 };
+use crate::xcf::primitives::push_words;
 use crate::xcf::{old_paths, read::read, vectors};
 use pathwarp::budget::Limits;
 use std::collections::{BTreeMap, HashSet};
@@ -65,8 +66,8 @@ fn edits(input: &mut ByteSource<'_>, xcf: &Xcf, strokes: &[(usize, Vec<Stroke>)]
             }
             PathLayout::Item { pointer_at, size_at, count_at } => {
                 let strokes = vectors::encode(new);
-                let head = count_at + 4 - size_at - 4;
-                let size = head + strokes.len() as u64;
+                // The size counts from behind its word, and the strokes begin behind their number's word.
+                let size = (count_at - size_at) + strokes.len() as u64;
                 let fits = record.span.end - size_at - 4 >= size;
                 if fits {
                     edits.push(ByteEdit { span: size_at..size_at + 4, bytes: word(size as usize) });
@@ -103,8 +104,8 @@ fn word(n: usize) -> Vec<u8> {
     (n as u32).to_be_bytes().to_vec()
 }
 
-/// The growth of the file by the edits before `offset`, in bytes.
-fn shift(edits: &[ByteEdit], offset: u64) -> i64 {
+/// Returns the growth of the file by the edits before `offset`, in bytes.
+fn growth(edits: &[ByteEdit], offset: u64) -> i64 {
     let before = edits.iter().filter(|e| e.span.end <= offset);
     before.map(|e| e.bytes.len() as i64 - (e.span.end - e.span.start) as i64).sum()
 }
@@ -112,7 +113,7 @@ fn shift(edits: &[ByteEdit], offset: u64) -> i64 {
 /// Adds edits for the length words of changed properties.
 fn update_lengths(xcf: &Xcf, edits: &mut Vec<ByteEdit>) {
     for PathBlock { span, property } in &xcf.blocks {
-        let grown = shift(edits, span.end) - shift(edits, span.start);
+        let grown = growth(edits, span.end) - growth(edits, span.start);
         let changed = xcf.records.iter().any(|PathRecord { span: r, .. }| {
             r.start >= span.start && r.end <= span.end && edits.iter().any(|e| r.contains(&e.span.start))
         });
@@ -139,17 +140,15 @@ fn with_pointers(input: &mut ByteSource<'_>, xcf: &Xcf, mut edits: Vec<ByteEdit>
         return Err(Error::unsupported(0, problem));
     }
     // All targets of pointers are after the property list and move by the same amount.
-    let by = shift(&edits, xcf.properties_end);
+    let by = growth(&edits, xcf.properties_end);
     let mut adjusted = Vec::new();
     for (at, target) in pointers(input, xcf)? {
         let new = target.saturating_add_signed(by);
+        let too_large = |_| Error::new(ErrorKind::TooLarge, at, "the file would exceed its 32-bit pointers");
         let bytes = if xcf.wide() {
             new.to_be_bytes().to_vec()
         } else {
-            let new = u32::try_from(new);
-            new.map_err(|_| Error::new(ErrorKind::TooLarge, at, "the file would exceed its 32-bit pointers"))?
-                .to_be_bytes()
-                .to_vec()
+            u32::try_from(new).map_err(too_large)?.to_be_bytes().to_vec()
         };
         adjusted.push(ByteEdit { span: at..at + bytes.len() as u64, bytes });
     }
@@ -179,7 +178,7 @@ fn copy(from: &mut (impl Read + Seek), to: &mut dyn Write, edits: &[ByteEdit], e
 /// The targets of pointers by their offsets.
 type Pointers = BTreeMap<u64, u64>;
 
-/// A property whose whole content is a pointer.
+/// A property whose content is a pointer.
 const PROP_FLOATING_SELECTION: u32 = 5;
 /// Size of a property without content.
 const MIN_PROPERTY: u64 = 8;
@@ -199,11 +198,11 @@ struct PointerWalk<'i, 'a> {
     wide: bool,
     found: Pointers,
     /// Maximum number of further pointers. Sound structures do not overlap, so they fit into the file.
-    left: u64,
+    pointers_left: u64,
     /// Maximum number of further properties.
     properties_left: u64,
     /// Lowest valid target.
-    first: u64,
+    lowest: u64,
     /// Structures still to visit.
     pending: Vec<(u64, PointerTarget)>,
     visited: HashSet<u64>,
@@ -212,16 +211,15 @@ struct PointerWalk<'i, 'a> {
 /// Collects all pointers of the file that `xcf` was read from.
 fn pointers(input: &mut ByteSource<'_>, xcf: &Xcf) -> Result<Pointers, Error> {
     input.seek(xcf.properties_end, "the property list")?;
-    let input_end = input.end;
     let mut walk = PointerWalk {
         wide: xcf.wide(),
-        input,
         found: Pointers::new(),
-        left: input_end / if xcf.wide() { 8 } else { 4 },
-        properties_left: input_end / MIN_PROPERTY,
-        first: xcf.properties_end,
+        pointers_left: input.end / if xcf.wide() { 8 } else { 4 },
+        properties_left: input.end / MIN_PROPERTY,
+        lowest: xcf.properties_end,
         pending: Vec::new(),
         visited: HashSet::new(),
+        input,
     };
     walk.table(Some(PointerTarget::Layer))?;
     walk.table(Some(PointerTarget::Channel))?;
@@ -275,16 +273,14 @@ impl PointerWalk<'_, '_> {
         }
         if target >= self.input.end {
             let end = self.input.end;
-            return Err(Error::damaged(
-                at,
-                format!("a pointer points to byte {target}, outside the file of {end} bytes"),
-            ));
+            let problem = format!("a pointer points to byte {target}, outside the file of {end} bytes");
+            return Err(Error::damaged(at, problem));
         }
-        if target < self.first {
+        if target < self.lowest {
             return Err(Error::damaged(at, format!("a pointer points to byte {target}, inside the file's head")));
         }
-        self.left = self
-            .left
+        self.pointers_left = self
+            .pointers_left
             .checked_sub(1)
             .ok_or_else(|| Error::damaged(at, "the tables of pointers overlap or have no end"))?;
         self.found.insert(at, target);
@@ -324,25 +320,25 @@ pub fn new_xcf(size: [u32; 2], paths: &[GimpPath]) -> Vec<u8> {
     const PROP_RESOLUTION: u32 = 19;
     const PIXELS_PER_INCH: f32 = 72.0;
     let mut out = MAGIC.to_vec();
-    let push = |out: &mut Vec<u8>, words: &[u32]| words.iter().for_each(|w| out.extend(w.to_be_bytes()));
     out.extend(b"v001\0");
-    push(&mut out, &[size[0], size[1], BASE_TYPE, PROP_RESOLUTION, 8]);
-    push(&mut out, &[PIXELS_PER_INCH.to_bits(); 2]);
+    push_words(&mut out, &[size[0], size[1], BASE_TYPE, PROP_RESOLUTION, 8]);
+    push_words(&mut out, &[PIXELS_PER_INCH.to_bits(); 2]);
     let mut block = Vec::new();
     // Paths in memory have far fewer points than a word counts.
     let count = |n: usize| n as u32;
-    push(&mut block, &[1, 0, count(paths.len())]);
+    // Version, active path, number of paths.
+    push_words(&mut block, &[1, 0, count(paths.len())]);
     for (i, p) in paths.iter().enumerate() {
-        push(&mut block, &[count(p.name.len() + 1)]);
+        push_words(&mut block, &[count(p.name.len() + 1)]);
         block.extend(p.name.bytes());
         block.push(0);
         // Tattoo, visible, linked, parasites, strokes.
-        push(&mut block, &[count(i + 1), u32::from(p.visible), 0, 0, count(p.strokes.len())]);
+        push_words(&mut block, &[count(i + 1), u32::from(p.visible), 0, 0, count(p.strokes.len())]);
         block.extend(vectors::encode(&p.strokes));
     }
-    push(&mut out, &[PROP_VECTORS, count(block.len())]);
+    push_words(&mut out, &[PROP_VECTORS, count(block.len())]);
     out.extend(block);
-    // The end of the properties, no layers, no channels.
-    push(&mut out, &[PROP_END, 0, 0, 0]);
+    // The end of the properties, whose content has length 0, no layers, no channels.
+    push_words(&mut out, &[PROP_END, 0, 0, 0]);
     out
 }

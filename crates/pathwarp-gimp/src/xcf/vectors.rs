@@ -1,7 +1,7 @@
 //! Reads `PROP_VECTORS`, the paths of GIMP 2, and encodes strokes, also for path items.
 
 use super::model::{PathLayout, PathRecord, Xcf};
-use super::primitives::{coordinate, count, string, word};
+use super::primitives::{coordinate, count, push_point, push_words, string};
 use crate::error::Error;
 use crate::path::{GimpPath, Stroke};
 use crate::source::ByteSource;
@@ -23,15 +23,11 @@ const CHUNK: u32 = 4096;
 
 /// Reads the property. GIMP checks its length word.
 pub(super) fn read(input: &mut ByteSource<'_>, length: u64, xcf: &mut Xcf) -> Result<(), Error> {
-    let (start, file_end) = (input.offset(), input.end);
-    // A property that claims to extend past the file is read up to the file's end, so that the paths before it are salvaged.
-    let end = start.saturating_add(length);
-    input.end = end.min(file_end);
-    let read = paths(input, xcf);
-    input.end = file_end;
-    read.map_err(|e| if end < file_end { e.limited_by(length, "PROP_VECTORS") } else { e })?;
-    if input.offset() != end {
-        let found = input.offset() - start;
+    let start = input.offset();
+    // A property that claims to extend past the file is read up to the file's end, so that its first paths are salvaged.
+    input.limited(length, "PROP_VECTORS", |input| paths(input, xcf))?;
+    let found = input.offset() - start;
+    if found != length {
         let problem = format!("PROP_VECTORS holds {found} bytes of paths, but its length word says {length}");
         return Err(Error::damaged(start.saturating_sub(4), problem));
     }
@@ -89,10 +85,8 @@ pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>,
         let at = input.offset();
         let kind = input.u32("a stroke")?;
         if kind != BEZIER {
-            return Err(Error::damaged(
-                at,
-                format!("a stroke of type {kind} is unknown; Bézier strokes have type {BEZIER}"),
-            ));
+            let problem = format!("a stroke of type {kind} is unknown; Bézier strokes have type {BEZIER}");
+            return Err(Error::damaged(at, problem));
         }
         let closed = input.u32("a stroke")? != 0;
         let at = input.offset();
@@ -116,6 +110,7 @@ pub(super) fn strokes(input: &mut ByteSource<'_>, n: u32) -> Result<Vec<Stroke>,
     Ok(out)
 }
 
+/// Reads `n` points of `size` bytes: a type, x, y, and other axes such as pressure, which are skipped.
 fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>, Error> {
     let mut out: Vec<[f64; 2]> = Vec::new();
     let mut left = n;
@@ -125,13 +120,14 @@ fn points(input: &mut ByteSource<'_>, n: u32, size: u64) -> Result<Vec<[f64; 2]>
         let bytes = input.vec(u64::from(now) * size, "a stroke's points")?;
         for (i, p) in bytes.chunks_exact(size as usize).enumerate() {
             let at = start + i as u64 * size;
-            let kind = u32::from_be_bytes(word(p, 0));
+            let words = p.as_chunks().0;
+            let kind = u32::from_be_bytes(words[0]);
             let expected = if out.len() % 3 == 1 { ANCHOR } else { CONTROL };
             if kind != expected {
                 let problem = format!("point {} of a stroke has type {kind} instead of {expected}", out.len() + 1);
                 return Err(Error::damaged(at, problem));
             }
-            out.push([coordinate(word(p, 4), at + 4)?, coordinate(word(p, 8), at + 8)?]);
+            out.push([coordinate(words[1], at + 4)?, coordinate(words[2], at + 8)?]);
         }
         left -= now;
     }
@@ -143,15 +139,9 @@ pub(super) fn encode(strokes: &[Stroke]) -> Vec<u8> {
     let mut out = Vec::new();
     for s in strokes {
         // Points read from a file were counted in 32 bits, and refitting makes far fewer.
-        let n = s.points.len() as u32;
-        for word in [BEZIER, u32::from(s.closed), 2, n] {
-            out.extend(word.to_be_bytes());
-        }
-        for (i, [x, y]) in s.points.iter().enumerate() {
-            let kind = if i % 3 == 1 { ANCHOR } else { CONTROL };
-            out.extend(kind.to_be_bytes());
-            out.extend((*x as f32).to_be_bytes());
-            out.extend((*y as f32).to_be_bytes());
+        push_words(&mut out, &[BEZIER, u32::from(s.closed), 2, s.points.len() as u32]);
+        for (i, point) in s.points.iter().enumerate() {
+            push_point(&mut out, if i % 3 == 1 { ANCHOR } else { CONTROL }, *point);
         }
     }
     out

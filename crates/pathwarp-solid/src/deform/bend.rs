@@ -101,8 +101,8 @@ impl Bend3 {
     /// Builds the map.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a flat box, a wrong number of points, legs without length, and handles that do not exist, vanish, or differ on both
-    /// sides of a joint.
+    /// [`Error::Usage`] for a flat box, a wrong number of points, legs without length, and handles that do not exist, vanish, or differ
+    /// on both sides of a joint.
     pub fn build(&self) -> Result<Built3, Error> {
         let size = self.bounds.size()[self.axis];
         if !(size > 0.0 && size.is_finite()) {
@@ -115,10 +115,9 @@ impl Bend3 {
             return Err(Error::usage(param_of(h), h.index.to_string(), problem));
         }
         let (pieces, knots) = self.pieces(through)?;
-        let mut skeleton = Vec::new();
-        for piece in &pieces {
-            skeleton.extend((0..=16).map(|i| piece.stand(f64::from(i) / 16.0).at[0]));
-        }
+        // The polyline for guides, with 16 segments for each piece.
+        let points = pieces.iter().flat_map(|p| (0..=16).map(|i| p.curves_at(f64::from(i) / 16.0).values[0]));
+        let skeleton: Vec<DVec3> = points.collect();
         let count = pieces.len();
         let [from, to] = [self.bounds.min, self.bounds.max].map(|p| p - through);
         let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
@@ -126,25 +125,17 @@ impl Bend3 {
         let first_level: Vec<_> = pieces.iter().flat_map(|p| p.first_level(corners)).collect();
         // Compares derivatives on both sides of a joint, along the skeleton and along the four edges of the box.
         let joint = |i: usize| {
-            let ends =
-                [(pieces[i - 1].stand(1.0), knots[i] - knots[i - 1]), (pieces[i].stand(0.0), knots[i + 1] - knots[i])];
-            let line = |(v, w)| ends.map(|(s, width)| (s.along(v, w) / width).to_array());
-            let DVec3 { x, y, z } = ends[1].0.at[0];
-            Joint::new(
-                format!("{x:.6},{y:.6},{z:.6}"),
-                &[(0.0, 0.0)].into_iter().chain(corners).map(line).collect::<Vec<_>>(),
-            )
+            let before = (pieces[i - 1].curves_at(1.0), knots[i] - knots[i - 1]);
+            let after = (pieces[i].curves_at(0.0), knots[i + 1] - knots[i]);
+            let slopes = |(v, w)| [before, after].map(|(curves, width)| (curves.slope(v, w) / width).to_array());
+            let DVec3 { x, y, z } = after.0.values[0];
+            let lines: Vec<_> = [(0.0, 0.0)].into_iter().chain(corners).map(slopes).collect();
+            Joint::new(format!("{x:.6},{y:.6},{z:.6}"), &lines)
         };
         let joints: Vec<Joint> = (1..count).map(joint).collect();
         let (axis, start) = (self.axis, self.bounds.min[self.axis]);
-        let mut built = Built3::new(Arc::new(BendMap3 {
-            pieces: pieces.into(),
-            knots: knots.into(),
-            axis,
-            start,
-            length: size,
-            through,
-        }));
+        let (pieces, knots) = (pieces.into(), knots.into());
+        let mut built = Built3::new(Arc::new(BendMap3 { pieces, knots, axis, start, length: size, through }));
         let length: f64 = skeleton.windows(2).map(|w| w[0].distance(w[1])).sum();
         built.note(format!("skeleton: {count} pieces, {length:.6} long; the model is {size:.6} long along it"));
         built.notes.extend(joints.iter().map(Joint::described));
@@ -155,7 +146,7 @@ impl Bend3 {
     }
 
     /// Returns the pieces and their ends, which are given as fractions of the model's length.
-    fn pieces(&self, through: DVec3) -> Result<(Vec<Strip>, Vec<f64>), Error> {
+    fn pieces(&self, through: DVec3) -> Result<(Vec<Piece>, Vec<f64>), Error> {
         let mut from = through;
         from[self.axis] = self.bounds.min[self.axis];
         let along = DVec3::AXES[self.axis] * self.bounds.size()[self.axis];
@@ -163,138 +154,126 @@ impl Bend3 {
         let straight = |length: f64, sizes: &[f64]| {
             let n = sizes.len() - 1;
             let points = (0..=n).map(|i| from + along * (length * i as f64 / n as f64)).collect();
-            Strip::ribbon(points, vec![sizes.iter().map(|k| sides.map(|s| s * *k)).collect()])
+            Piece::skeleton(points, vec![sizes.iter().map(|k| sides.map(|s| s * *k)).collect()])
         };
         let preset = match &self.spine {
-            Spine3::Twist(angle) => Strip::Twist { from, along, sides, angle: *angle },
+            Spine3::Twist(angle) => Piece::Twist { from, along, sides, angle: *angle },
             // An arc with no turn is straight.
-            Spine3::Arc(angle) if angle.abs() < 1e-12 => Strip::Twist { from, along, sides, angle: 0.0 },
-            Spine3::Arc(angle) => Strip::Arc { from, along, sides, angle: *angle },
+            Spine3::Arc(angle) if angle.abs() < 1e-12 => Piece::Twist { from, along, sides, angle: 0.0 },
+            Spine3::Arc(angle) => Piece::Arc { from, along, sides, angle: *angle },
             Spine3::Taper(factor) => straight(1.0, &[1.0, *factor]),
             Spine3::Stretch(factor) => straight(*factor, &[1.0, 1.0]),
             // The middle of the quadratic (1, m, 1) is (1 + m)/2.
             Spine3::Swell(factor) => straight(1.0, &[1.0, 2.0 * factor - 1.0, 1.0]),
             Spine3::Bezier(points, degree) => {
-                let pieces = self.ribbons(points, *degree)?;
-                let knots = (0..=pieces.len()).map(|i| i as f64 / pieces.len() as f64).collect();
+                let pieces = self.bezier_pieces(points, *degree)?;
+                let knots = even_knots(pieces.len());
                 return Ok((pieces, knots));
             }
             Spine3::Spline(points, degree) => return self.spline(points, *degree),
             Spine3::Through(points) => return self.interpolated(points),
         };
         match self.handles.first() {
-            Some(h) => Err(Error::usage(
-                param_of(h),
-                h.index.to_string(),
-                "is a handle, and only a skeleton of points takes handles",
-            )),
+            Some(h) => {
+                let problem = "is a handle, and only a skeleton of points takes handles";
+                Err(Error::usage(param_of(h), h.index.to_string(), problem))
+            }
             None => Ok((vec![preset], vec![0.0, 1.0])),
         }
     }
 
     /// Makes the pieces of a B-spline of this degree, whose points and handles together are control points in nine dimensions.
-    fn spline(&self, points: &[DVec3], degree: usize) -> Result<(Vec<Strip>, Vec<f64>), Error> {
-        let n = points.len();
-        if n <= degree || !(1..=MAX_DEGREE).contains(&degree) {
-            let problem = format!(
-                "has too few points: a spline of degree {degree}, 1 to {MAX_DEGREE}, needs {} or more",
-                degree + 1
-            );
-            return Err(Error::usage("skeleton", "", problem));
+    fn spline(&self, points: &[DVec3], degree: usize) -> Result<(Vec<Piece>, Vec<f64>), Error> {
+        if points.len() <= degree || !(1..=MAX_DEGREE).contains(&degree) {
+            let needed = degree + 1;
+            let needs = format!("a spline of degree {degree}, 1 to {MAX_DEGREE}, needs {needed} or more");
+            return Err(Error::usage("skeleton", "", format!("has too few points: {needs}")));
         }
-        let handles = self.at_points(mitres(&self.turning_least(&directions(points)?)))?;
-        let frame = |(p, [s, t]): (&DVec3, &[DVec3; 2])| {
-            let all = [p, s, t].map(DVec3::to_array);
-            std::array::from_fn(|k| all[k / 3][k % 3])
-        };
-        let frames: Vec<[f64; 9]> = points.iter().zip(&handles).map(frame).collect();
+        let handles = self.handles_at_points(mitres(&self.least_turning(&directions(points)?)))?;
+        let frames: Vec<[f64; 9]> = points.iter().zip(&handles).map(|(p, [s, t])| flat([*p, *s, *t])).collect();
         let part = |f: &[f64; 9], k: usize| DVec3::new(f[3 * k], f[3 * k + 1], f[3 * k + 2]);
-        let ribbon = |f: Vec<[f64; 9]>| {
-            let sides = f.iter().map(|f| [part(f, 1), part(f, 2)]).collect();
-            Strip::ribbon(f.iter().map(|f| part(f, 0)).collect(), vec![sides])
+        let piece = |f: Vec<[f64; 9]>| {
+            let handles = f.iter().map(|f| [part(f, 1), part(f, 2)]).collect();
+            Piece::skeleton(f.iter().map(|f| part(f, 0)).collect(), vec![handles])
         };
-        let pieces: Vec<Strip> = bspline::pieces(degree, &frames, false).into_iter().map(ribbon).collect();
-        let knots = (0..=pieces.len()).map(|i| i as f64 / pieces.len() as f64).collect();
+        let pieces: Vec<Piece> = bspline::pieces(degree, &frames, false).into_iter().map(piece).collect();
+        let knots = even_knots(pieces.len());
         Ok((pieces, knots))
     }
 
     /// Makes the pieces of a cubic spline through points. Between them, S is the C¹ cubic whose derivative at the points is
     /// S' = −(S·C″)/|C'|²·C', which keeps S perpendicular to C without turning it about C; T is alike.
-    fn interpolated(&self, points: &[DVec3]) -> Result<(Vec<Strip>, Vec<f64>), Error> {
+    fn interpolated(&self, points: &[DVec3]) -> Result<(Vec<Piece>, Vec<f64>), Error> {
         directions(points)?;
         let distances: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
         // Their sum is 1, so the last knot is 1.
         let widths = bspline::centripetal(&distances);
-        let flat: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
-        let pieces: Vec<Vec<DVec3>> = bspline::through(&flat, &widths, false)
-            .into_iter()
-            .map(|p| p.into_iter().map(DVec3::from).collect())
-            .collect();
+        let coordinates: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
+        let pieces = bspline::through(&coordinates, &widths, false).into_iter();
+        let pieces: Vec<Vec<DVec3>> = pieces.map(|p| p.into_iter().map(DVec3::from).collect()).collect();
         let tangent =
             |p: &[DVec3], end: usize| (p[end + 1] - p[end]).try_normalize().unwrap_or((p[3] - p[0]).normalize());
         let mut tangents: Vec<DVec3> = pieces.iter().map(|p| tangent(p, 0)).collect();
         tangents.extend(pieces.last().map(|p| tangent(p, 2)));
-        let handles = self.at_points(self.turning_least(&tangents).into_iter().map(|(_, pair)| pair).collect())?;
-        let ribbon = |(i, p): (usize, Vec<DVec3>)| {
+        let handles = self.least_turning(&tangents).into_iter().map(|leg| leg.handles).collect();
+        let handles = self.handles_at_points(handles)?;
+        let piece = |(i, p): (usize, Vec<DVec3>)| {
             let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
-            let eased = |pair: [DVec3; 2], a: DVec3| {
+            // The inner coefficients, from the derivatives S' and T' at the end next to them. The bound stands in for a leg `a` of no length.
+            let inner = |pair: [DVec3; 2], a: DVec3| {
                 pair.map(|h| h - a * (h.dot(b - a) / (1.5 * a.length_squared()).max(1e-18 * b.length_squared())))
             };
             let (g, h) = (handles[i], handles[i + 1]);
-            Strip::ribbon(p, vec![vec![g, eased(g, a), eased(h, c), h]])
+            Piece::skeleton(p, vec![vec![g, inner(g, a), inner(h, c), h]])
         };
         let mut knots = vec![0.0];
         widths.iter().for_each(|w| knots.push(knots[knots.len() - 1] + w));
-        Ok((pieces.into_iter().enumerate().map(ribbon).collect(), knots))
+        Ok((pieces.into_iter().enumerate().map(piece).collect(), knots))
     }
 
-    /// Returns the handles at the points of a spline: `own`, replaced by the handles that are set.
-    fn at_points(&self, mut own: Vec<[DVec3; 2]>) -> Result<Vec<[DVec3; 2]>, Error> {
-        let last = own.len() - 1;
+    /// Returns the handles at the points of a spline: `defaults`, replaced by the handles that are set.
+    fn handles_at_points(&self, mut defaults: Vec<[DVec3; 2]>) -> Result<Vec<[DVec3; 2]>, Error> {
+        let last = defaults.len() - 1;
         for h in &self.handles {
-            let Some(pair) = own.get_mut(h.index).filter(|_| h.level == 1) else {
+            let Some(pair) = defaults.get_mut(h.index).filter(|_| h.level == 1) else {
                 let problem =
                     format!("is not a handle: a spline has them at its points, 0 to {last}, and no deeper level");
                 return Err(Error::usage(param_of(h), format!("{},{}", h.level, h.index), problem));
             };
             *pair = [h.side.unwrap_or(pair[0]), h.up.unwrap_or(pair[1])];
         }
-        Ok(own)
+        Ok(defaults)
     }
 
     /// Makes Bézier pieces, with handles on their legs if any are set or there is one piece, and else at their points.
-    fn ribbons(&self, points: &[DVec3], degree: usize) -> Result<Vec<Strip>, Error> {
-        let wrong = |problem: String| Error::usage("skeleton", "", problem);
+    fn bezier_pieces(&self, points: &[DVec3], degree: usize) -> Result<Vec<Piece>, Error> {
         if points.len() < 2 || !(1..=MAX_DEGREE).contains(&degree) || !(points.len() - 1).is_multiple_of(degree) {
-            let (n, k) = (points.len(), degree);
-            return Err(wrong(format!(
-                "has {n} points; pieces of degree {k}, 1 to {MAX_DEGREE}, that share their ends need {}, {}, {} …",
-                k + 1,
-                2 * k + 1,
-                3 * k + 1
-            )));
+            let (n, [one, two, three]) = (points.len(), [1, 2, 3].map(|pieces| pieces * degree + 1));
+            let needs = format!("1 to {MAX_DEGREE}, that share their ends need {one}, {two}, {three} …");
+            let problem = format!("has {n} points; pieces of degree {degree}, {needs}");
+            return Err(Error::usage("skeleton", "", problem));
         }
         let pieces = (points.len() - 1) / degree;
-        let legs = self.turning_least(&directions(points)?);
+        let legs = self.least_turning(&directions(points)?);
         if pieces > 1 && self.handles.is_empty() {
             // One point cannot have the mitres of both ends of a quadratic that turns by more than a right angle.
-            if degree == 2 && legs.chunks(2).any(|l| l[0].0.dot(l[1].0) < 0.0) {
+            if degree == 2 && legs.chunks(2).any(|l| l[0].direction.dot(l[1].direction) < 0.0) {
                 let mut raised = vec![points[0]];
                 let raise = |p: &[DVec3]| [p[0].lerp(p[1], 2.0 / 3.0), p[2].lerp(p[1], 2.0 / 3.0), p[2]];
                 raised.extend(points.windows(3).step_by(2).flat_map(raise));
-                return self.ribbons(&raised, 3);
+                return self.bezier_pieces(&raised, 3);
             }
-            let mut all = mitres(&legs);
+            let mut handles = mitres(&legs);
             for i in (0..pieces).map(|i| i * degree).filter(|_| degree > 1) {
                 // At both ends of a piece, S' and T' must be parallel to C', or lines along it would kink at smooth joints. Between mitres
                 // within a right angle they are, as in quadratics that are not raised; else the inner mitre moves.
                 for (end, inner, leg) in [(i, i + 1, i), (i + degree, i + degree - 1, i + degree - 1)] {
-                    let d = legs[leg].0;
-                    all[inner] = std::array::from_fn(|k| all[end][k] + d * d.dot(all[inner][k] - all[end][k]));
+                    let (d, from, to) = (legs[leg].direction, handles[end], handles[inner]);
+                    handles[inner] = [0, 1].map(|k| from[k] + d * d.dot(to[k] - from[k]));
                 }
             }
             let part = |i: usize| i * degree..=(i + 1) * degree;
-            let piece = |i: usize| Strip::ribbon(points[part(i)].to_vec(), vec![all[part(i)].to_vec()]);
+            let piece = |i: usize| Piece::skeleton(points[part(i)].to_vec(), vec![handles[part(i)].to_vec()]);
             return Ok((0..pieces).map(piece).collect());
         }
         let mut levels: Vec<Vec<[Option<DVec3>; 2]>> =
@@ -321,16 +300,16 @@ impl Bend3 {
             }
         }
         let handle = |j: usize, i: usize| -> [DVec3; 2] {
-            let own = if j == 0 { legs[i].1 } else { [DVec3::ZERO; 2] };
-            std::array::from_fn(|k| levels[j][i][k].unwrap_or(own[k]))
+            let default = if j == 0 { legs[i].handles } else { [DVec3::ZERO; 2] };
+            std::array::from_fn(|k| levels[j][i][k].unwrap_or(default[k]))
         };
         let piece = |i: usize| {
             let level = |j: usize| (i * (degree - j)..(i + 1) * (degree - j)).map(|n| handle(j, n)).collect();
-            Strip::ribbon(points[i * degree..=(i + 1) * degree].to_vec(), (0..deepest).map(level).collect())
+            Piece::skeleton(points[i * degree..=(i + 1) * degree].to_vec(), (0..deepest).map(level).collect())
         };
-        let out: Vec<Strip> = (0..pieces).map(piece).collect();
+        let out: Vec<Piece> = (0..pieces).map(piece).collect();
         for (i, p) in out.windows(2).enumerate() {
-            let (a, b) = (p[0].stand(1.0).at, p[1].stand(0.0).at);
+            let (a, b) = (p[0].curves_at(1.0).values, p[1].curves_at(0.0).values);
             if let Some(k) = (1..3).find(|k| (a[*k] - b[*k]).length() > 1e-6 * (a[*k].length() + b[*k].length())) {
                 let problem = format!("differs on both sides of the end of piece {i}: the model would tear");
                 return Err(Error::usage(["side", "up"][k - 1], (i * degree + degree - 1).to_string(), problem));
@@ -340,16 +319,28 @@ impl Bend3 {
     }
 
     /// Returns for each direction two handles perpendicular to it, which turn as little as possible from one direction to the next.
-    fn turning_least(&self, directions: &[DVec3]) -> Vec<(DVec3, [DVec3; 2])> {
+    fn least_turning(&self, directions: &[DVec3]) -> Vec<Leg> {
         let mut previous = DVec3::AXES[self.axis];
         let mut side = DVec3::AXES[(self.axis + 1) % 3];
-        let turned = directions.iter().map(|d| {
-            side = (DQuat::from_rotation_arc(previous, *d) * side).reject_from_normalized(*d).normalize();
-            previous = *d;
-            (*d, [side, d.cross(side)])
-        });
-        turned.collect()
+        let leg = |direction: &DVec3| {
+            let turn = DQuat::from_rotation_arc(previous, *direction);
+            side = (turn * side).reject_from_normalized(*direction).normalize();
+            previous = *direction;
+            Leg { direction: *direction, handles: [side, direction.cross(side)] }
+        };
+        directions.iter().map(leg).collect()
     }
+}
+
+/// A leg of a skeleton's polygon, or a tangent, with its handles s and t.
+struct Leg {
+    direction: DVec3,
+    handles: [DVec3; 2],
+}
+
+/// Returns the ends of pieces of equal length, as fractions of the whole.
+fn even_knots(pieces: usize) -> Vec<f64> {
+    (0..=pieces).map(|i| i as f64 / pieces as f64).collect()
 }
 
 /// The highest degree of a skeleton.
@@ -366,23 +357,25 @@ fn directions(points: &[DVec3]) -> Result<Vec<DVec3>, Error> {
 
 /// Returns the handles at the points of a polygon from the directions and handles of its legs. They are mitres: lines between
 /// them at constant v and w are parallel to the leg. Beyond a turn by a right angle, they stay as long as there.
-fn mitres(legs: &[(DVec3, [DVec3; 2])]) -> Vec<[DVec3; 2]> {
+fn mitres(legs: &[Leg]) -> Vec<[DVec3; 2]> {
     let inner = legs.windows(2).map(|l| {
-        let ((d, a), (e, b)) = (l[0], l[1]);
-        let c = 1.0 + d.dot(e);
+        let [Leg { direction: d, handles: a }, Leg { direction: e, handles: b }] = l else { return legs[0].handles };
+        let c = 1.0 + d.dot(*e);
         let inwards = (e - d).normalize_or_zero();
-        let grow = 2.0 / c.max(c.sqrt()) - 1.0;
+        let growth = 2.0 / c.max(c.sqrt()) - 1.0;
+        // The skeleton turns back.
         if c < 1e-9 {
-            return a;
+            return *a;
         }
         std::array::from_fn(|k| {
             let mean = a[k].midpoint(b[k]);
-            mean + inwards * (grow * mean.dot(inwards))
+            mean + inwards * (growth * mean.dot(inwards))
         })
     });
-    std::iter::once(legs[0].1).chain(inner).chain([legs[legs.len() - 1].1]).collect()
+    std::iter::once(legs[0].handles).chain(inner).chain([legs[legs.len() - 1].handles]).collect()
 }
 
+/// Returns the name of the parameter that sets a handle.
 fn param_of(h: &Handle3) -> &'static str {
     match (h.level, h.side) {
         (1, Some(_)) => "side",
@@ -395,7 +388,7 @@ fn param_of(h: &Handle3) -> &'static str {
 /// w are measured from `through` along the two axes that follow `axis` in cyclic order.
 #[derive(Debug, Clone, PartialEq)]
 struct BendMap3 {
-    pieces: Arc<[Strip]>,
+    pieces: Arc<[Piece]>,
     knots: Arc<[f64]>,
     axis: usize,
     start: f64,
@@ -415,8 +408,7 @@ impl BendMap3 {
 
     /// Returns the index of the piece that applies to a whole box, if there is just one.
     fn piece_on(&self, on: &Box3) -> Option<usize> {
-        let place = |at: f64| (at - self.start) / self.length;
-        let [from, to] = [on.min, on.max].map(|p| place(p[self.axis]));
+        let [from, to] = [on.min, on.max].map(|p| (p[self.axis] - self.start) / self.length);
         // Rounding may put a joint on either side of the box's end.
         let slack = 1e-9 * (1.0 / self.pieces.len() as f64 + to.abs());
         let (from, to) = (self.piece(from + slack), self.piece(to - slack));
@@ -424,29 +416,29 @@ impl BendMap3 {
         (from >= to).then_some(from)
     }
 
-    /// Returns the curves at a point, v, w, and the number of pieces per unit along the axis.
-    fn stand(&self, p: DVec3) -> (Stand, f64, f64, f64) {
+    /// Returns the curves at a point, v, w, and the derivative of u along the axis.
+    fn curves_at(&self, p: DVec3) -> (Curves, f64, f64, f64) {
         let s = (p[self.axis] - self.start) / self.length;
         let i = self.piece(s);
         let width = self.knots[i + 1] - self.knots[i];
         let [b, c] = self.sides();
-        let stand = self.pieces[i].stand((s - self.knots[i]) / width);
-        (stand, p[b] - self.through[b], p[c] - self.through[c], 1.0 / (self.length * width))
+        let curves = self.pieces[i].curves_at((s - self.knots[i]) / width);
+        (curves, p[b] - self.through[b], p[c] - self.through[c], 1.0 / (self.length * width))
     }
 }
 
 impl Map3 for BendMap3 {
     fn jet(&self, p: DVec3) -> Jet3 {
-        let (stand, v, w, rate) = self.stand(p);
-        let (at, mut columns) = (stand.at, [DVec3::ZERO; 3]);
+        let (curves, v, w, rate) = self.curves_at(p);
+        let mut columns = [DVec3::ZERO; 3];
         let [b, c] = self.sides();
-        columns[self.axis] = stand.along(v, w) * rate;
-        (columns[b], columns[c]) = (at[1], at[2]);
-        Jet3 { p: at[0] + at[1] * v + at[2] * w, d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
+        columns[self.axis] = curves.slope(v, w) * rate;
+        (columns[b], columns[c]) = (curves.values[1], curves.values[2]);
+        Jet3 { p: curves.value(v, w), d: DMat3::from_cols(columns[0], columns[1], columns[2]) }
     }
 
     fn points(&self, ps: &mut [DVec3]) {
-        let [Strip::Ribbon { curves: tensor, .. }] = &*self.pieces else {
+        let [Piece::Skeleton { curves: tensor, .. }] = &*self.pieces else {
             ps.iter_mut().for_each(|p| *p = self.point(*p));
             return;
         };
@@ -458,17 +450,17 @@ impl Map3 for BendMap3 {
     }
 
     fn point(&self, p: DVec3) -> DVec3 {
-        let (Stand { at, .. }, v, w, _) = self.stand(p);
-        at[0] + at[1] * v + at[2] * w
+        let (curves, v, w, _) = self.curves_at(p);
+        curves.value(v, w)
     }
 
-    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
-        let (chart, from) = (Chart::on(on), self.piece_on(on)?);
-        let Strip::Ribbon { points, first, curves } = &self.pieces[from] else { return None };
-        if first.len().max(points.len() - 1) > most {
+    fn fraction(&self, on: &Box3, max: usize) -> Option<Fraction3> {
+        let (chart, piece) = (Chart::on(on), self.piece_on(on)?);
+        let Piece::Skeleton { points, handles, curves } = &self.pieces[piece] else { return None };
+        if handles.len().max(points.len() - 1) > max {
             return None;
         }
-        let (knot, width) = (self.knots[from], self.knots[from + 1] - self.knots[from]);
+        let (knot, width) = (self.knots[piece], self.knots[piece + 1] - self.knots[piece]);
         let axis = DVec3::AXES[self.axis] * (2.0 / (self.length * width));
         let x = chart.linear(axis.extend(-2.0 * (self.start / self.length + knot) / width - 1.0));
         let [v, w] = self.sides().map(|a| chart.linear(DVec3::AXES[a].extend(-self.through[a])));
@@ -495,13 +487,13 @@ impl Map3 for BendMap3 {
 
 /// A piece of a bend, F(u, v, w) = C(u) + v·S(u) + w·T(u), with u from 0 to 1.
 #[derive(Debug, Clone, PartialEq)]
-enum Strip {
+enum Piece {
     /// The generalised algorithm of de Casteljau, each step of which is an affine map with the handles s and t of its level.
-    Ribbon {
+    Skeleton {
         /// Control points.
         points: Vec<DVec3>,
-        /// Pairs s, t of handles: on each leg of the polygon, or at each control point.
-        first: Vec<[DVec3; 2]>,
+        /// Pairs s, t of handles on the first level: on each leg of the polygon, or at each control point.
+        handles: Vec<[DVec3; 2]>,
         /// C, S and T, in x = 2u − 1.
         curves: Tensor<9>,
     },
@@ -511,48 +503,58 @@ enum Strip {
     Arc { from: DVec3, along: DVec3, sides: [DVec3; 2], angle: f64 },
 }
 
-/// Three curves at a parameter, with their derivatives.
+/// The three curves at a parameter, with their derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Stand {
+struct Curves {
     /// C, S and T.
-    at: [DVec3; 3],
+    values: [DVec3; 3],
     /// C', S' and T'.
-    slope: [DVec3; 3],
+    slopes: [DVec3; 3],
 }
 
-impl Stand {
+impl Curves {
+    /// Returns F.
+    fn value(&self, v: f64, w: f64) -> DVec3 {
+        self.values[0] + self.values[1] * v + self.values[2] * w
+    }
+
     /// Returns ∂F/∂u.
-    fn along(&self, v: f64, w: f64) -> DVec3 {
-        self.slope[0] + self.slope[1] * v + self.slope[2] * w
+    fn slope(&self, v: f64, w: f64) -> DVec3 {
+        self.slopes[0] + self.slopes[1] * v + self.slopes[2] * w
     }
 }
 
-impl Strip {
+/// Lists the coordinates of three vectors.
+fn flat(v: [DVec3; 3]) -> [f64; 9] {
+    std::array::from_fn(|k| v[k / 3][k % 3])
+}
+
+impl Piece {
     /// Makes a piece with pairs of handles by level: n on the first, n − 1 on the second, and so on; the last levels may be omitted. A
     /// single level may instead have a pair at every control point.
-    fn ribbon(points: Vec<DVec3>, levels: Vec<Vec<[DVec3; 2]>>) -> Self {
-        let flat = |v: [DVec3; 3]| std::array::from_fn(|k| v[k / 3][k % 3]);
+    fn skeleton(points: Vec<DVec3>, levels: Vec<Vec<[DVec3; 2]>>) -> Self {
         let n = points.len();
         let mut sum: Vec<[f64; 9]> = points.iter().map(|p| flat([*p, DVec3::ZERO, DVec3::ZERO])).collect();
         for level in &levels {
             let curve = level.iter().map(|[s, t]| flat([DVec3::ZERO, *s, *t])).collect();
-            sum.iter_mut().zip(elevated(curve, n)).for_each(|(o, p)| *o = std::array::from_fn(|k| o[k] + p[k]));
+            sum.iter_mut().zip(elevate(curve, n)).for_each(|(o, p)| *o = std::array::from_fn(|k| o[k] + p[k]));
         }
         let degree = levels[0].len() - 1;
         // The degree of S and T; their higher coefficients are rounding errors.
         let curves = Tensor::bernstein([n, 1, 1], sum).without(degree, 3);
-        Self::Ribbon { points, first: levels.into_iter().next().unwrap_or_default(), curves }
+        Self::Skeleton { points, handles: levels.into_iter().next().unwrap_or_default(), curves }
     }
 
     /// Returns polylines of the first level of the algorithm, which takes the model's box to every leg as in the paper's figure 1c.
     /// `corners` are the corners of the box across the skeleton.
     fn first_level(&self, corners: [(f64, f64); 4]) -> Vec<Vec<DVec3>> {
-        let Self::Ribbon { points, first, .. } = self else { return Vec::new() };
-        let at_points = usize::from(first.len() == points.len());
+        let Self::Skeleton { points, handles, .. } = self else { return Vec::new() };
+        // 1 if the handles are at the points, 0 if they are on the legs.
+        let at_points = usize::from(handles.len() == points.len());
         let mut out = vec![points.clone()];
         for leg in 0..points.len() - 1 {
             let ends = [0, 1].map(|end| {
-                let [s, t] = first[leg + end * at_points];
+                let [s, t] = handles[leg + end * at_points];
                 corners.map(|(v, w)| points[leg + end] + s * v + t * w)
             });
             out.extend(ends.map(|[a, b, c, d]| vec![a, b, c, d, a]));
@@ -562,17 +564,17 @@ impl Strip {
     }
 
     /// Returns the curves at `u`.
-    fn stand(&self, u: f64) -> Stand {
+    fn curves_at(&self, u: f64) -> Curves {
         match self {
-            Self::Ribbon { curves, .. } => {
+            Self::Skeleton { curves, .. } => {
                 let jets = curves.jet(DVec3::new(2.0 * u - 1.0, 0.0, 0.0));
                 let part = |k: usize, d: usize| DVec3::from_array(std::array::from_fn(|a| jets[3 * k + a][d]));
-                Stand { at: [0, 1, 2].map(|k| part(k, 0)), slope: [0, 1, 2].map(|k| part(k, 1) * 2.0) }
+                Curves { values: [0, 1, 2].map(|k| part(k, 0)), slopes: [0, 1, 2].map(|k| part(k, 1) * 2.0) }
             }
             Self::Twist { from, along, sides: [s, t], angle } => {
                 let (sin, cos) = (angle * u).sin_cos();
                 let (side, up) = (*s * cos + *t * sin, *t * cos - *s * sin);
-                Stand { at: [*from + *along * u, side, up], slope: [*along, up * *angle, -side * *angle] }
+                Curves { values: [*from + *along * u, side, up], slopes: [*along, up * *angle, -side * *angle] }
             }
             Self::Arc { from, along, sides: [s, t], angle } => {
                 let (sin, cos) = (angle * u).sin_cos();
@@ -581,14 +583,15 @@ impl Strip {
                 let rise = 2.0 * (0.5 * angle * u).sin().powi(2);
                 let center = *from + (direction * sin + *s * rise) * radius;
                 let (tangent, side) = (direction * cos + *s * sin, *s * cos - direction * sin);
-                Stand { at: [center, side, *t], slope: [tangent * along.length(), -tangent * *angle, DVec3::ZERO] }
+                let slopes = [tangent * along.length(), -tangent * *angle, DVec3::ZERO];
+                Curves { values: [center, side, *t], slopes }
             }
         }
     }
 }
 
 /// Raises the degree of a curve until it has `n` control points.
-fn elevated(mut curve: Vec<[f64; 9]>, n: usize) -> Vec<[f64; 9]> {
+fn elevate(mut curve: Vec<[f64; 9]>, n: usize) -> Vec<[f64; 9]> {
     while curve.len() < n {
         let k = curve.len() as f64;
         let between = |i: usize, a: f64| std::array::from_fn(|c| a * curve[i - 1][c] + (1.0 - a) * curve[i][c]);
@@ -727,14 +730,9 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
 
 fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
     if s.flat().given("preset") {
-        for name in ["skeleton", "spline", "interpolate", "degree"] {
-            if s.flat().given(name) {
-                return Err(Error::usage(
-                    name,
-                    s.words(name).join(" "),
-                    "cannot go with `preset`, which has its own skeleton",
-                ));
-            }
+        if let Some(name) = ["skeleton", "spline", "interpolate", "degree"].into_iter().find(|n| s.flat().given(n)) {
+            let problem = "cannot go with `preset`, which has its own skeleton";
+            return Err(Error::usage(name, s.words(name).join(" "), problem));
         }
         let angle = s.flat().number("angle")?.to_radians();
         let factor = s.flat().number_if("factor")?;
@@ -746,13 +744,10 @@ fn spine(s: &Settings3<'_>) -> Result<Spine3, Error> {
             _ => Spine3::Arc(angle),
         });
     }
-    for name in ["angle", "factor"] {
-        if s.flat().given(name) {
-            return Err(Error::usage(name, s.words(name).join(" "), "is for a `preset`"));
-        }
+    if let Some(name) = ["angle", "factor"].into_iter().find(|n| s.flat().given(n)) {
+        return Err(Error::usage(name, s.words(name).join(" "), "is for a `preset`"));
     }
-    let words = s.words("skeleton").into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
-    let points: Vec<DVec3> = words.map(|w| s.point_in("skeleton", w)).collect::<Result<_, _>>()?;
+    let points = s.listed_points("skeleton")?;
     if points.len() < 2 {
         return Err(Error::missing("skeleton", "two or more points X,Y,Z, unless there is a `preset`"));
     }
@@ -813,7 +808,7 @@ mod tests {
             });
             assert_eq!(counts, [published, published, 0], "degree {n}");
             let points = (0..=n).map(|i| DVec3::new(i as f64, 1.0, 0.0)).collect();
-            let Strip::Ribbon { curves: tensor, .. } = Strip::ribbon(points, vec![vec![[DVec3::Y, DVec3::Z]; n]])
+            let Piece::Skeleton { curves: tensor, .. } = Piece::skeleton(points, vec![vec![[DVec3::Y, DVec3::Z]; n]])
             else {
                 panic!()
             };

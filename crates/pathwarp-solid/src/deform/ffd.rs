@@ -122,34 +122,29 @@ impl Ffd3 {
             return Err(Error::usage("freeze", format!("{}:{}", FACES[f], self.frozen[f]), problem));
         }
         let mut warnings = Vec::new();
-        let held: Vec<_> = lattice.nodes().filter(|n| self.holds(*n) && lattice.is_changed(*n)).collect();
-        if !held.is_empty() {
-            warnings.push(format!("frozen control points are put back in place: {}", names(&held)));
-            for node in held {
+        let put_back: Vec<_> = lattice.nodes().filter(|n| self.is_frozen(*n) && lattice.is_changed(*n)).collect();
+        if !put_back.is_empty() {
+            warnings.push(format!("frozen control points are put back in place: {}", names(&put_back)));
+            for node in put_back {
                 lattice.place(node, lattice.regular_point(node));
                 lattice.set_weight(node, 1.0);
             }
         }
         self.apply_changes(&mut lattice)?;
-        self.pull(&mut lattice, &mut warnings)?;
+        self.apply_pins(&mut lattice, &mut warnings)?;
         let mut built = Built3::new(Arc::new(LatticeMap3::new(&lattice, self.extended)));
         built.warnings = warnings;
         let [l, m, n] = lattice.size();
         let [a, b, c] = lattice.degree();
-        let Box3 { min, max } = region;
-        built.note(format!(
-            "grid: {l} by {m} by {n} control points of degree {a}x{b}x{c} over {} to {}",
-            show(min),
-            show(max)
-        ));
-        built
-            .note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
-        built.guides = net(&lattice);
+        let (min, max) = (show(region.min), show(region.max));
+        built.note(format!("grid: {l} by {m} by {n} control points of degree {a}x{b}x{c} over {min} to {max}"));
+        let outside = if self.extended { "the map continues" } else { "nothing moves" };
+        built.note(format!("outside the region: {outside}"));
+        built.guides = control_net(&lattice);
         Ok((built, lattice))
     }
 
-    /// Returns `true` if a control point is frozen.
-    fn holds(&self, node: [usize; 3]) -> bool {
+    fn is_frozen(&self, node: [usize; 3]) -> bool {
         let size = self.lattice.size();
         (0..3).any(|a| node[a] < self.frozen[2 * a] || node[a] + self.frozen[2 * a + 1] >= size[a])
     }
@@ -159,11 +154,10 @@ impl Ffd3 {
             let wrong = |problem: String| Error::usage(change.param(), names(&[node]), problem);
             if !lattice.has(node) {
                 let [l, m, n] = lattice.size().map(|n| n - 1);
-                return Err(wrong(format!(
-                    "is not a control point: i goes from 0 to {l}, j from 0 to {m}, k from 0 to {n}"
-                )));
+                let range = format!("i goes from 0 to {l}, j from 0 to {m}, k from 0 to {n}");
+                return Err(wrong(format!("is not a control point: {range}")));
             }
-            if self.holds(node) {
+            if self.is_frozen(node) {
                 return Err(wrong("is a control point that `freeze` keeps in place".into()));
             }
             match change {
@@ -175,13 +169,14 @@ impl Ffd3 {
         Ok(())
     }
 
-    fn pull(&self, lattice: &mut Lattice3, warnings: &mut Vec<String>) -> Result<(), Error> {
+    fn apply_pins(&self, lattice: &mut Lattice3, warnings: &mut Vec<String>) -> Result<(), Error> {
         let shown = |(p, q): &(DVec3, DVec3)| format!("{}:{}", show(*p), show(*q));
         if let Some(extra) = self.pins.get(MAX_PINS) {
             return Err(Error::usage("pin", shown(extra), format!("is one too many: {MAX_PINS} pins at most")));
         }
         let region = lattice.region();
-        let (mut rows, mut want) = (Vec::new(), Vec::new());
+        // For each pin, the influences of the control points that may move, and the displacement that they have to add up to.
+        let (mut rows, mut wanted) = (Vec::new(), Vec::new());
         for pin in &self.pins {
             let (from, to) = *pin;
             if !self.extended && !region.contains(from) {
@@ -191,23 +186,21 @@ impl Ffd3 {
             let mut image = DVec3::ZERO;
             for (node, r) in lattice.influence(from) {
                 image += lattice.point(node) * r;
-                if !self.holds(node) {
+                if !self.is_frozen(node) {
                     row[lattice.index(node)] = r;
                 }
             }
             rows.push(row);
-            want.push((to - image).to_array());
+            wanted.push((to - image).to_array());
         }
-        let change = smallest_change(&rows, &want);
+        let change = smallest_change(&rows, &wanted);
         for (node, v) in lattice.nodes().zip(&change).filter(|(_, v)| **v != [0.0; 3]) {
             lattice.shift(node, DVec3::from_array(*v));
         }
-        for (pin, off) in self.pins.iter().zip(misses(&rows, &want, &change)) {
-            if off > 1e-9 * region.diagonal() {
-                warnings.push(format!(
-                    "the pin {} is missed by {off:.6}: the grid has too few control points that may move; raise `degree` or freeze fewer",
-                    shown(pin)
-                ));
+        for (pin, miss) in self.pins.iter().zip(misses(&rows, &wanted, &change)) {
+            if miss > 1e-9 * region.diagonal() {
+                let reason = "the grid has too few control points that may move; raise `degree` or freeze fewer";
+                warnings.push(format!("the pin {} is missed by {miss:.6}: {reason}", shown(pin)));
             }
         }
         Ok(())
@@ -225,20 +218,16 @@ fn names(nodes: &[[usize; 3]]) -> String {
 }
 
 /// Returns the lines of control points along all three axes as polylines.
-fn net(lattice: &Lattice3) -> Vec<Vec<DVec3>> {
-    let size = lattice.size();
-    let mut out = Vec::new();
-    for axis in 0..3 {
-        for start in lattice.nodes().filter(|n| n[axis] == 0) {
-            let mut along = start;
-            let line = (0..size[axis]).map(|i| {
-                along[axis] = i;
-                lattice.point(along)
-            });
-            out.push(line.collect());
-        }
-    }
-    out
+fn control_net(lattice: &Lattice3) -> Vec<Vec<DVec3>> {
+    let line = |mut node: [usize; 3], axis: usize| {
+        let points = (0..lattice.size()[axis]).map(|i| {
+            node[axis] = i;
+            lattice.point(node)
+        });
+        points.collect()
+    };
+    let lines_along = |axis: usize| lattice.nodes().filter(move |n| n[axis] == 0).map(move |n| line(n, axis));
+    (0..3).flat_map(lines_along).collect()
 }
 
 /// A lattice in space as JSON.
@@ -294,9 +283,8 @@ pub(super) fn read(name: &str, text: &str, frame: Box3) -> Result<(Lattice3, boo
     let [nx, ny, nz] = lattice.size();
     let fits = file.points.len() == nz && file.points.iter().all(|l| l.len() == ny && l.iter().all(|r| r.len() == nx));
     if !fits {
-        return Err(wrong(format!(
-            "its points are not {nz} layers of {ny} rows of {nx}, as its degree and cells ask for"
-        )));
+        let problem = format!("its points are not {nz} layers of {ny} rows of {nx}, as its degree and cells ask for");
+        return Err(wrong(problem));
     }
     for node in lattice.nodes() {
         let [i, j, k] = node;
@@ -432,7 +420,7 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     let hull = hull(s, &["degree", "region", "lattice", "spline", "cells", "pin", "freeze", "extend"])?;
     let (lattice, from_file) = hull.clone().map_or_else(|| lattice(s), |hull| Ok((hull, true)))?;
     let extended = s.flat().flag("extend")? || (s.box_if("region")?.is_none() && !from_file);
-    let mut ffd = Ffd3::new(lattice).freeze(frozen(s)?).extend(extended);
+    let mut ffd = Ffd3::new(lattice).freeze(frozen_layers(s)?).extend(extended);
     for (node, change) in changes(s)? {
         ffd = ffd.change(node, change);
     }
@@ -454,12 +442,12 @@ pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
 /// Reads the lattice that `hull` names, if any. It is an error if one of the parameters `others` is given too.
 pub(super) fn hull(s: &Settings3<'_>, others: &[&str]) -> Result<Option<Lattice3>, Error> {
     let Some(named) = s.file_if("hull")? else { return Ok(None) };
-    alone(s, "hull", others)?;
+    refuse(s, "hull", others)?;
     Ok(Some(read(&named.name, &named.text, s.bounds())?.0))
 }
 
 /// Refuses the parameters `others` beside a file with a whole lattice.
-fn alone(s: &Settings3<'_>, file: &str, others: &[&str]) -> Result<(), Error> {
+fn refuse(s: &Settings3<'_>, file: &str, others: &[&str]) -> Result<(), Error> {
     let Some(name) = others.iter().find(|n| s.flat().given(n)) else { return Ok(()) };
     let problem = format!("cannot go with `{file}`, which is a whole box of points");
     Err(Error::usage(name, s.words(name).join(" "), problem))
@@ -470,7 +458,7 @@ fn lattice(s: &Settings3<'_>) -> Result<(Lattice3, bool), Error> {
     let region = s.box_if("region")?;
     let frame = s.bounds();
     if let Some(named) = s.file_if("lattice")? {
-        alone(s, "lattice", &["degree", "spline", "cells"])?;
+        refuse(s, "lattice", &["degree", "spline", "cells"])?;
         let (lattice, has_region) = read(&named.name, &named.text, region.unwrap_or(frame))?;
         return Ok(match region {
             Some(r) => (lattice.on(r), true),
@@ -504,7 +492,7 @@ fn changes(s: &Settings3<'_>) -> Result<Vec<([usize; 3], Change3)>, Error> {
     Ok(out)
 }
 
-fn frozen(s: &Settings3<'_>) -> Result<[usize; 6], Error> {
+fn frozen_layers(s: &Settings3<'_>) -> Result<[usize; 6], Error> {
     let mut counts = [0; 6];
     for word in s.words("freeze").into_iter().flat_map(|t| t.split(',')).filter(|w| !w.is_empty()) {
         let (face, count) = word.split_once(':').unwrap_or((word, "1"));

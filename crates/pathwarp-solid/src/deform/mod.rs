@@ -34,14 +34,8 @@ impl Registry3 {
     /// Returns the deformations of this crate.
     #[must_use]
     pub fn builtin() -> Self {
-        Self {
-            entries: vec![
-                Arc::new(ffd::ENTRY),
-                Arc::new(anamorph::ENTRY),
-                Arc::new(bend::ENTRY),
-                Arc::new(wrap::ENTRY),
-            ],
-        }
+        let entries = [ffd::ENTRY, anamorph::ENTRY, bend::ENTRY, wrap::ENTRY];
+        Self { entries: entries.map(|e| Arc::new(e) as Arc<dyn Deformation3>).to_vec() }
     }
 
     /// Adds an entry, replacing any of the same name.

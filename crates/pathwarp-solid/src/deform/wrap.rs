@@ -36,6 +36,7 @@ pub struct Wrap3 {
     radius: f64,
     level: bool,
     surface: Option<f64>,
+    /// The other radius of a cone.
     far: Option<f64>,
 }
 
@@ -78,37 +79,29 @@ impl Wrap3 {
             let height = self.bounds.size()[1 - across];
             let sine = (far - self.radius) / height;
             if sine.is_nan() || sine.abs() >= 1.0 {
-                let problem = format!(
-                    "differs from the other radius by more than the model's side is long, {} mm",
-                    trimmed(height, 3)
-                );
-                return Err(Error::usage("top-radius", show(far), problem));
+                let problem = "differs from the other radius by more than the model's side is long";
+                return Err(Error::usage("top-radius", show(far), format!("{problem}, {} mm", trimmed(height, 3))));
             }
             let mut chain = Chain3::default();
-            chain.push(Arc::new(Collineation::new(turn(1 - across, middle[1 - across], surface, sine))));
+            chain.push(Arc::new(Collineation::new(slope(1 - across, middle[1 - across], surface, sine))));
             chain.push(Arc::new(cylinder));
             Arc::new(chain)
         };
-        let (length, around) = (self.bounds.size()[across], std::f64::consts::TAU * radius);
+        let (length, circumference) = (self.bounds.size()[across], std::f64::consts::TAU * radius);
         let mut built = Built3::new(map);
-        built.note(format!(
-            "wrapped through {:.4}°, on a circumference of {} mm",
-            (length / radius).to_degrees(),
-            trimmed(around, 3)
-        ));
-        if length > around {
-            built.warn(format!(
-                "the model is {} mm long and the circumference {} mm: its ends overlap; use a larger `radius`",
-                trimmed(length, 3),
-                trimmed(around, 3)
-            ));
+        let angle = (length / radius).to_degrees();
+        let [mm, around] = [length, circumference].map(|v| trimmed(v, 3));
+        built.note(format!("wrapped through {angle:.4}°, on a circumference of {around} mm"));
+        if length > circumference {
+            let advice = "its ends overlap; use a larger `radius`";
+            built.warn(format!("the model is {mm} mm long and the circumference {around} mm: {advice}"));
         }
         Ok(built)
     }
 }
 
 /// Returns the matrix that turns an axis of the model to the slope of a cone's side, about the line through the axis's middle at the back.
-fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
+fn slope(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
     let cosine = (1.0 - sine * sine).sqrt();
     let (side, depth) = (DVec3::AXES[axis], DVec3::Z);
     let mut columns = DVec3::AXES;
@@ -124,7 +117,9 @@ fn turn(axis: usize, middle: f64, surface: f64, sine: f64) -> DMat4 {
 struct Cylinder {
     /// The axis along which the model is wrapped: 0 or 1.
     across: usize,
+    /// The coordinate along `across` that stays.
     middle: f64,
+    /// The z that comes to lie on the cylinder.
     surface: f64,
     radius: f64,
 }
@@ -151,8 +146,8 @@ impl Map3 for Cylinder {
     }
 
     fn creases(&self, out: &mut Creases3) {
-        let own = *self;
-        out.edge(move |p| own.rho(p));
+        let map = *self;
+        out.edge(move |p| map.rho(p));
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map3>> {

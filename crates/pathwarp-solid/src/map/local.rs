@@ -10,6 +10,10 @@ pub(crate) struct Local {
 }
 
 impl Local {
+    pub(crate) fn coordinates(&self, p: DVec3) -> DVec3 {
+        (p - self.middle) * self.scale
+    }
+
     /// Converts a batch of points.
     #[inline(always)]
     pub(crate) fn lanes(&self, p: &[Lane; 3]) -> [Lane; 3] {

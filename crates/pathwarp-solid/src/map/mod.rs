@@ -249,11 +249,8 @@ impl fmt::Debug for Chain3 {
 impl Chain3 {
     /// Appends a map.
     pub fn push(&mut self, map: Arc<dyn Map3>) {
-        let folded = match (self.steps.last().and_then(|m| m.collineation()), map.collineation()) {
-            (Some(last), Some(next)) => Some(last.then(next)),
-            _ => None,
-        };
-        match folded {
+        let last = self.steps.last().and_then(|m| m.collineation());
+        match last.zip(map.collineation()).map(|(last, next)| last.then(next)) {
             Some(both) => {
                 self.steps.pop();
                 self.steps.push(Arc::new(both));
@@ -294,11 +291,11 @@ impl Map3 for Chain3 {
     fn creases(&self, out: &mut Creases3) {
         let mut before = Self::default();
         for s in &self.steps {
-            let mut own = Creases3::default();
-            s.creases(&mut own);
-            for Crease3 { level, kind } in own.items().iter().cloned() {
-                let first = before.clone();
-                out.push(Crease3 { level: Arc::new(move |p| level(first.point(p))), kind });
+            let mut creases = Creases3::default();
+            s.creases(&mut creases);
+            for Crease3 { level, kind } in creases.items {
+                let before = before.clone();
+                out.push(Crease3 { level: Arc::new(move |p| level(before.point(p))), kind });
             }
             before.steps.push(Arc::clone(s));
         }

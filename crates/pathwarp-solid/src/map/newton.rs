@@ -11,7 +11,7 @@
 //! take precedence; outside the core, only those with the orientation of the core's middle count, and of them the nearest.
 
 use crate::map::{Jet3, Map3};
-use crate::settings::Box3;
+use crate::settings::{Box3, grid};
 use glam::{DMat3, DVec3};
 use pathwarp::budget::{Budget, Search, is_over};
 use std::fmt;
@@ -40,13 +40,16 @@ pub struct NewtonInverse3 {
     core: Box3,
     /// The sign of the determinant in the middle of the core.
     orientation: f64,
+    /// Distance outside the domain up to which answers are accepted.
     reach: f64,
     /// Starting points with their images.
     starts: Arc<[(DVec3, DVec3)]>,
-    /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
+    /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`, the images' box.
     buckets: Arc<[Vec<u32>]>,
     bounds: Box3,
+    /// Number of buckets along each axis.
     side: usize,
+    /// Lipschitz bound of the Jacobian.
     lipschitz: f64,
     /// Rounding error of an image coordinate.
     rounding: f64,
@@ -73,11 +76,8 @@ impl NewtonInverse3 {
     pub(crate) fn with_core(map: Arc<dyn Map3>, core: Box3, domain: Box3, reach: f64, pieces: [usize; 3]) -> Self {
         let n = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
         let cell = domain.size() / DVec3::from_array(n.map(|n| n as f64));
-        let at = |i: usize, j: usize, k: usize| {
-            domain.min + cell * DVec3::new(i as f64 + 0.5, j as f64 + 0.5, k as f64 + 0.5)
-        };
-        let centers: Vec<DVec3> =
-            (0..n[2]).flat_map(|k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| at(i, j, k)))).collect();
+        let center = |node: [usize; 3]| domain.min + cell * DVec3::from_array(node.map(|i| i as f64 + 0.5));
+        let centers: Vec<DVec3> = grid(n).map(center).collect();
         let mut jets = vec![Jet3::default(); centers.len()];
         map.jets(&centers, &mut jets);
 
@@ -119,12 +119,9 @@ impl NewtonInverse3 {
         let mut buckets = vec![Vec::new(); side * side * side];
         for (s, b) in boxes.iter().enumerate() {
             let (from, to) = (out.bucket(b.min), out.bucket(b.max));
-            for k in from[2]..=to[2] {
-                for j in from[1]..=to[1] {
-                    for i in from[0]..=to[0] {
-                        buckets[(k * side + j) * side + i].push(u32::try_from(s).unwrap_or(0));
-                    }
-                }
+            for [i, j, k] in grid([0, 1, 2].map(|a| (to[a] + 1).saturating_sub(from[a]))) {
+                let bucket = ((from[2] + k) * side + from[1] + j) * side + from[0] + i;
+                buckets[bucket].push(u32::try_from(s).unwrap_or(0));
             }
         }
         out.buckets = buckets.into();
@@ -161,30 +158,30 @@ impl NewtonInverse3 {
         }
         let [i, j, k] = self.bucket(q);
         let near = &self.buckets[(k * self.side + j) * self.side + i];
-        let off = |s: usize| (!self.core.contains(self.starts[s].0), self.starts[s].1.distance_squared(q), s);
-        let less = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {
+        // Starting points in the core come first, then those with nearer images.
+        let rank = |s: usize| (!self.core.contains(self.starts[s].0), self.starts[s].1.distance_squared(q), s);
+        let compare = |a: &(bool, f64, usize), b: &(bool, f64, usize)| {
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
         };
-        let mut order: Vec<(bool, f64, usize)> = near.iter().map(|s| off(*s as usize)).collect();
-        if order.is_empty() {
+        let mut ranked: Vec<(bool, f64, usize)> = near.iter().map(|s| rank(*s as usize)).collect();
+        if ranked.is_empty() {
             search.starts += self.starts.len();
-            order.extend((0..self.starts.len()).map(off).min_by(|a, b| a.1.total_cmp(&b.1)));
+            ranked.extend((0..self.starts.len()).map(rank).min_by(|a, b| a.1.total_cmp(&b.1)));
         }
-        search.starts += SELECTING * order.len();
-        if order.len() > MAX_TRIES {
-            order.select_nth_unstable_by(MAX_TRIES, less);
-            order.truncate(MAX_TRIES);
+        search.starts += SELECTING * ranked.len();
+        if ranked.len() > MAX_TRIES {
+            ranked.select_nth_unstable_by(MAX_TRIES, compare);
+            ranked.truncate(MAX_TRIES);
         }
-        order.sort_by(less);
+        ranked.sort_by(compare);
         let mut best: Option<(f64, Jet3)> = None;
-        for (_, _, s) in &order {
+        for (_, _, s) in &ranked {
             let Some(found) = self.newton(self.starts[*s].0, q, search) else { continue };
             let distance = self.distance_from_core(found.p);
             if distance <= self.reach {
                 return Some(found);
             }
-            let counts = found.det().signum() == self.orientation;
-            if counts && best.is_none_or(|(least, _)| distance < least) {
+            if found.det().signum() == self.orientation && best.is_none_or(|(least, _)| distance < least) {
                 best = Some((distance, found));
             }
         }
@@ -198,7 +195,7 @@ impl NewtonInverse3 {
 
     /// Runs Newton's method from one starting point.
     fn newton(&self, start: DVec3, q: DVec3, search: &mut Search) -> Option<Jet3> {
-        let room = self.domain.inflate(0.25 * self.domain.size());
+        let allowed = self.domain.inflate(0.25 * self.domain.size());
         let mut x = start;
         let mut jet = self.map.jet(x);
         search.jets += 1;
@@ -212,7 +209,7 @@ impl NewtonInverse3 {
             let mut damping = 1.0;
             let (mut to, mut at, mut r) = (x, jet, residual);
             while damping > MIN_DAMPING {
-                to = (x + step * damping).clamp(room.min, room.max);
+                to = (x + step * damping).clamp(allowed.min, allowed.max);
                 at = self.map.jet(to);
                 search.jets += 1;
                 r = q - at.p;
@@ -225,22 +222,22 @@ impl NewtonInverse3 {
             if better || r.length() <= self.rounding {
                 (x, jet, residual) = (to, at, r);
             }
-            let still = moved <= 4.0 * f64::EPSILON * (x.abs().max_element() + self.domain.diagonal());
-            if residual == DVec3::ZERO || still || !better {
-                return self.accepted(x, &jet, residual);
+            let is_still = moved <= 4.0 * f64::EPSILON * (x.abs().max_element() + self.domain.diagonal());
+            if residual == DVec3::ZERO || is_still || !better {
+                return self.certify(x, &jet, residual);
             }
         }
         None
     }
 
     /// Returns the jet of the inverse if an answer meets the three conditions in the module's text.
-    fn accepted(&self, x: DVec3, jet: &Jet3, residual: DVec3) -> Option<Jet3> {
+    fn certify(&self, x: DVec3, jet: &Jet3, residual: DVec3) -> Option<Jet3> {
         let back = jet.d.inverse();
         let eta = (back * residual).length();
-        let sound = residual.length() <= self.rounding
+        let is_certain = residual.length() <= self.rounding
             && self.domain.inflate(DVec3::splat(self.reach)).contains(x)
             && frobenius(back) * self.lipschitz * eta <= 0.5;
-        sound.then_some(Jet3 { p: x, d: back })
+        is_certain.then_some(Jet3 { p: x, d: back })
     }
 }
 

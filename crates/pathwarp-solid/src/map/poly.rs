@@ -115,7 +115,7 @@ impl Chart {
     }
 
     /// Returns x, y and z as polynomials in the coordinates.
-    pub(crate) fn place(&self) -> [Poly3; 3] {
+    pub(crate) fn xyz(&self) -> [Poly3; 3] {
         [0, 1, 2].map(|a| self.linear(DVec3::AXES[a].extend(0.0)))
     }
 
@@ -140,13 +140,13 @@ impl Fraction3 {
     /// Makes the identity.
     #[must_use]
     pub fn identity(chart: Chart) -> Self {
-        let [x, y, z] = chart.place();
+        let [x, y, z] = chart.xyz();
         Self { chart, parts: [x, y, z, Poly3::constant(1.0)] }
     }
 
     /// Makes the map O + (p − O)·`common`/`divisor`, with the point O = `eye`.
     pub(crate) fn radial(chart: Chart, eye: DVec3, divisor: Poly3, common: &Poly3) -> Self {
-        let [x, y, z] = chart.place();
+        let [x, y, z] = chart.xyz();
         let part = |p: Poly3, o: f64| p.plus(-o, &Poly3::constant(1.0)).times(common).plus(o, &divisor);
         Self { chart, parts: [part(x, eye.x), part(y, eye.y), part(z, eye.z), divisor] }
     }
@@ -154,7 +154,7 @@ impl Fraction3 {
     /// Makes the map p + `along`·(`divisor`/`common` − 1).
     pub(crate) fn shifted(chart: Chart, along: DVec3, divisor: &Poly3, common: Poly3) -> Self {
         let by = divisor.plus(-1.0, &common);
-        let [x, y, z] = chart.place();
+        let [x, y, z] = chart.xyz();
         let part = |p: Poly3, v: f64| p.times(&common).plus(v, &by);
         Self { chart, parts: [part(x, along.x), part(y, along.y), part(z, along.z), common] }
     }

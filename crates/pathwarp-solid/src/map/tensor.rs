@@ -23,7 +23,7 @@ impl<const C: usize> Tensor<C> {
     pub(crate) fn bernstein(size: [usize; 3], mut c: Vec<[f64; C]>) -> Self {
         let strides = [1, size[0], size[0] * size[1]];
         for (n, stride) in size.iter().zip(strides) {
-            let matrix = powers(n - 1);
+            let matrix = power_matrix(n - 1);
             let starts = (0..c.len()).filter(|s| (s / stride) % n == 0);
             for start in starts {
                 let column: Vec<[f64; C]> = (0..*n).map(|i| c[start + i * stride]).collect();
@@ -47,7 +47,7 @@ impl<const C: usize> Tensor<C> {
     /// Iterates over the terms, as powers and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = ([usize; 3], &[f64; C])> {
         let [nx, ny, _] = self.size;
-        self.c.iter().enumerate().map(move |(n, c)| ([n % nx, n / nx % ny, n / (nx * ny)], c))
+        self.c.iter().enumerate().map(move |(n, c)| ([n % nx, (n / nx) % ny, n / (nx * ny)], c))
     }
 
     /// Returns the degrees along x, y and z.
@@ -74,14 +74,10 @@ impl<const C: usize> Tensor<C> {
         out
     }
 
-    /// Returns the values of the polynomials.
-    pub(crate) fn at(&self, t: DVec3) -> [f64; C] {
-        self.value(t.to_array())
-    }
-
-    /// Returns the values for any kind of number.
+    /// Returns the values of the polynomials, for any kind of number.
     pub(crate) fn value<S: Real>(&self, t: [S; 3]) -> [S; C] {
         let [nx, ny, _] = self.size;
+        // A step of Horner's rule; the first one takes its coefficient as it is.
         let plus = |a: Option<[S; C]>, t: S, b: [S; C]| match a {
             Some(a) => Some(std::array::from_fn(|k| a[k] * t + b[k])),
             None => Some(b),
@@ -172,7 +168,7 @@ fn times_plus(a: &mut Lane, t: &Lane, b: &Lane) {
 
 /// Returns the matrix from Bernstein coefficients over [−1, 1] to powers: row p holds the coefficients of tᵖ in
 /// C(n,i)·(1+t)ⁱ(1−t)ⁿ⁻ⁱ/2ⁿ.
-fn powers(n: usize) -> Vec<Vec<f64>> {
+fn power_matrix(n: usize) -> Vec<Vec<f64>> {
     let mut out = vec![vec![0.0; n + 1]; n + 1];
     let mut binomial = 1.0;
     for i in 0..=n {
@@ -436,7 +432,7 @@ mod tests {
                 bezier(&layers, t.z)
             };
             for t in [DVec3::new(0.3, -0.7, 0.1), DVec3::new(-1.0, 1.0, 0.9), DVec3::ZERO] {
-                let (v, j, truth) = (tensor.at(t), tensor.jet(t), slow(t));
+                let (v, j, truth) = (tensor.value(t.to_array()), tensor.jet(t), slow(t));
                 let lanes = tensor.lanes(&t.to_array().map(|v| [v; WIDTH]));
                 for k in 0..2 {
                     assert!((v[k] - truth[k]).abs() < 1e-12, "{size:?} {t}: {v:?} {truth:?}");

@@ -1,6 +1,6 @@
 //! Deforms meshes: maps vertices, turns normals by the cofactors of the Jacobian, and subdivides faces that the map bends.
 
-use super::{Corner, Mark, Mesh, MeshError, NONE, PolygonKind};
+use super::{Corner, Mesh, MeshError, NONE, PolygonKind, fan, index32, polygon_sides};
 use crate::map::{Creases3, Jet3, Map3};
 use crate::settings::Box3;
 use glam::DVec3;
@@ -52,8 +52,8 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
     let undefined =
         mesh.positions.par_chunks_mut(CHUNK).zip(before.par_chunks(CHUNK)).enumerate().map(|(n, (to, from))| {
             map.points(to);
-            let bad = |(p, q): (&DVec3, &DVec3)| !q.is_finite() || bounded && !creases.defined_at(*p);
-            from.iter().zip(to.iter()).position(bad).map(|i| n * CHUNK + i)
+            let is_undefined = |(p, q): (&DVec3, &DVec3)| !q.is_finite() || (bounded && !creases.defined_at(*p));
+            from.iter().zip(to.iter()).position(is_undefined).map(|i| n * CHUNK + i)
         });
     if let Some(vertex) = undefined.min_by_key(|v| v.unwrap_or(usize::MAX)).flatten() {
         return Err(Undefined3 { vertex, at: before[vertex] });
@@ -70,9 +70,9 @@ pub fn deform(mesh: &mut Mesh, map: &dyn Map3) -> Result<Deformed, Undefined3> {
             .filter_map(|ps| {
                 let mut jets = vec![Jet3::default(); ps.len()];
                 map.jets(ps, &mut jets);
-                let mut all = ps.iter().zip(&jets).filter(|(_, j)| j.det() < 0.0).map(|(p, _)| *p);
-                let first = all.next()?;
-                Some((1 + all.count(), first))
+                let mut inverted = ps.iter().zip(&jets).filter(|(_, j)| j.det() < 0.0).map(|(p, _)| *p);
+                let first = inverted.next()?;
+                Some((1 + inverted.count(), first))
             })
             .collect();
         out.folded = folded.iter().map(|f| f.0).sum();
@@ -90,12 +90,10 @@ fn bulge(mesh: &Mesh, before: &[DVec3], map: &dyn Map3) -> f64 {
     /// Limit on the polygons to examine.
     const MAX_POLYGONS: usize = 10_000;
     let every = mesh.polygons.len().div_ceil(MAX_POLYGONS).max(1);
-    let edges = mesh.polygons().step_by(every).flat_map(|(_, corners)| {
-        (0..corners.len()).map(move |i| (corners[i].vertex as usize, corners[(i + 1) % corners.len()].vertex as usize))
-    });
-    let off = edges
-        .map(|(a, b)| map.point(before[a].midpoint(before[b])).distance(mesh.positions[a].midpoint(mesh.positions[b])));
-    off.filter(|d| d.is_finite()).fold(0.0, f64::max)
+    let edges = mesh.polygons().step_by(every).flat_map(|(_, corners)| polygon_sides(corners));
+    let middle = |points: &[DVec3], (a, b): (u32, u32)| points[a as usize].midpoint(points[b as usize]);
+    let distances = edges.map(|e| map.point(middle(before, e)).distance(middle(&mesh.positions, e)));
+    distances.filter(|d| d.is_finite()).fold(0.0, f64::max)
 }
 
 /// Counts the edges of polygons that cross a crease at which the map jumps, and returns a point of the first.
@@ -104,15 +102,18 @@ fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (
     const VISIBLE: f64 = 1e-6;
     /// Distance from the crease at which to compare the map, as a fraction of the edge.
     const BESIDE: f64 = 1e-9;
+    // Bit k of a mask is set on the positive side of crease k; more than 64 creases are not examined.
     let kinks: Vec<_> = creases.items().iter().filter(|c| c.kind == CreaseKind::Kink).take(64).collect();
     if kinks.is_empty() {
         return (0, None);
     }
-    let sides = |p: &DVec3| kinks.iter().enumerate().fold(0u64, |m, (k, c)| m | u64::from((c.level)(*p) > 0.0) << k);
-    let sides: Vec<u64> = before.par_iter().map(sides).collect();
+    let mask = |p: &DVec3| kinks.iter().enumerate().fold(0u64, |m, (k, c)| m | (u64::from((c.level)(*p) > 0.0) << k));
+    let masks: Vec<u64> = before.par_iter().map(mask).collect();
     let size = Box3::around(before.iter().copied()).map_or(0.0, |b| b.diagonal());
+    // Returns the point at which an edge crosses a crease, if the map jumps there.
     let jump = |a: DVec3, b: DVec3, level: &dyn Fn(DVec3) -> f64| {
         let (mut from, mut to, up) = (0.0, 1.0, level(b) > 0.0);
+        // Bisection down to rounding.
         for _ in 0..60 {
             let t = 0.5 * (from + to);
             if (level(a.lerp(b, t)) > 0.0) == up { to = t } else { from = t }
@@ -122,9 +123,8 @@ fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (
     };
     let (mut count, mut first) = (0, None);
     for (_, corners) in mesh.polygons() {
-        for (i, c) in corners.iter().enumerate() {
-            let (a, b) = (c.vertex as usize, corners[(i + 1) % corners.len()].vertex as usize);
-            let mut crossed = (0..kinks.len()).filter(|k| (sides[a] ^ sides[b]) >> k & 1 == 1);
+        for (a, b) in polygon_sides(corners).map(|(a, b)| (a as usize, b as usize)) {
+            let mut crossed = (0..kinks.len()).filter(|k| ((masks[a] ^ masks[b]) >> k) & 1 == 1);
             if let Some(at) = crossed.find_map(|k| jump(before[a], before[b], &*kinks[k].level)) {
                 count += 1;
                 first = first.or(Some(at));
@@ -137,9 +137,9 @@ fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (
 /// Turns the normals with the surface.
 fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
     // Make one normal for each pair of a vertex and a normal. Most files pair them one to one.
-    let paired = mesh.corners.par_iter().all(|c| c.normal == NONE || c.normal == c.vertex);
-    let pairs: Vec<(u32, u32)> = if paired && mesh.normals.len() <= before.len() {
-        (0..u32::try_from(mesh.normals.len()).unwrap_or(NONE)).map(|n| (n, n)).collect()
+    let are_paired = mesh.corners.par_iter().all(|c| c.normal == NONE || c.normal == c.vertex);
+    let pairs: Vec<(u32, u32)> = if are_paired && mesh.normals.len() <= before.len() {
+        (0..index32(mesh.normals.len())).map(|n| (n, n)).collect()
     } else {
         let mut index: HashMap<(u32, u32), u32> = HashMap::new();
         let mut pairs = Vec::new();
@@ -147,7 +147,7 @@ fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
             let pair = (*vertex, *normal);
             *normal = *index.entry(pair).or_insert_with(|| {
                 pairs.push(pair);
-                u32::try_from(pairs.len() - 1).unwrap_or(NONE)
+                index32(pairs.len() - 1)
             });
         }
         pairs
@@ -180,15 +180,15 @@ const MAX_ROUNDS: usize = 16;
 /// # Errors
 /// [`MeshFault::Limit`](super::MeshFault::Limit) when the evaluations of the map or the number of edges exceed the budget.
 pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
-    let mut work = Refining { images: mesh.positions.clone(), map, tolerance, budget, close: HashSet::new() };
-    work.map.points(&mut work.images);
+    let mut refiner = Refiner { images: mesh.positions.clone(), map, tolerance, budget, fine: HashSet::new() };
+    refiner.map.points(&mut refiner.images);
     for _ in 0..MAX_ROUNDS {
-        let split = work.edges_to_split(mesh)?;
-        if split.is_empty() {
+        let to_split = refiner.edges_to_split(mesh)?;
+        if to_split.is_empty() {
             break;
         }
-        budget.spend(cost::SEGMENT * (PER_SPLIT * halved(mesh, &split)) as f64)?;
-        work.split(mesh, &split);
+        budget.spend(cost::SEGMENT * (PER_SPLIT * sides_to_halve(mesh, &to_split)) as f64)?;
+        refiner.split(mesh, &to_split);
     }
     Ok(())
 }
@@ -198,13 +198,12 @@ const PER_SPLIT: u64 = 2;
 
 /// Returns the number of polygon sides to halve; an edge may belong to any number of polygons. A face that is cut becomes triangles,
 /// whose sides count as well.
-fn halved(mesh: &Mesh, split: &HashSet<Edge>) -> u64 {
-    let of = |corners: &[Corner]| {
-        let next = corners.iter().cycle().skip(1);
-        let sides = corners.iter().zip(next).filter(|(a, b)| split.contains(&edge(a.vertex, b.vertex))).count();
+fn sides_to_halve(mesh: &Mesh, to_split: &HashSet<Edge>) -> u64 {
+    let in_polygon = |corners: &[Corner]| {
+        let sides = polygon_edges(corners).filter(|e| to_split.contains(e)).count();
         if sides > 0 { sides + corners.len().saturating_sub(3) } else { 0 }
     };
-    mesh.polygons().map(|(_, corners)| of(corners) as u64).sum()
+    mesh.polygons().map(|(_, corners)| in_polygon(corners) as u64).sum()
 }
 
 /// An edge, whatever its direction: the smaller index first.
@@ -214,51 +213,54 @@ pub(crate) fn edge(a: u32, b: u32) -> Edge {
     (a.min(b), a.max(b))
 }
 
-struct Refining<'a> {
+fn polygon_edges(corners: &[Corner]) -> impl Iterator<Item = Edge> {
+    polygon_sides(corners).map(|(a, b)| edge(a, b))
+}
+
+struct Refiner<'a> {
     /// The images of the vertices.
     images: Vec<DVec3>,
     map: &'a dyn Map3,
     tolerance: f64,
     budget: &'a Budget,
     /// Edges whose images are within the tolerance.
-    close: HashSet<Edge>,
+    fine: HashSet<Edge>,
 }
 
-impl Refining<'_> {
+impl Refiner<'_> {
     /// Returns the edges that are too far from their images.
     fn edges_to_split(&mut self, mesh: &Mesh) -> Result<HashSet<Edge>, MeshError> {
-        let mut split = HashSet::new();
+        let mut to_split = HashSet::new();
         for (kind, corners) in mesh.polygons() {
-            let edges = match kind {
+            let count = match kind {
                 PolygonKind::Face => corners.len(),
                 PolygonKind::Line => corners.len().saturating_sub(1),
                 PolygonKind::Points => 0,
             };
-            for i in 0..edges {
-                let e = edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex);
-                if e.0 == e.1 || split.contains(&e) || self.close.contains(&e) {
+            for e in polygon_edges(corners).take(count) {
+                if e.0 == e.1 || to_split.contains(&e) || self.fine.contains(&e) {
                     continue;
                 }
-                if self.bends(mesh, e)? {
-                    split.insert(e);
+                if self.is_bent(mesh, e)? {
+                    to_split.insert(e);
                 } else {
-                    self.close.insert(e);
+                    self.fine.insert(e);
                 }
             }
         }
         // A bulge only matters if no edge of the face is split.
         let mut bulging = Vec::new();
         for corners in mesh.faces() {
-            let edges = || (0..corners.len()).map(|i| edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
-            if edges().all(|e| !split.contains(&e)) && self.bulges(mesh, corners)? {
-                bulging.extend(edges());
+            if polygon_edges(corners).all(|e| !to_split.contains(&e)) && self.is_bulging(mesh, corners)? {
+                bulging.extend(polygon_edges(corners));
             }
         }
-        split.extend(bulging);
-        Ok(split)
+        to_split.extend(bulging);
+        Ok(to_split)
     }
 
-    fn bends(&self, mesh: &Mesh, (i, j): Edge) -> Result<bool, MeshError> {
+    /// Returns `true` if the image of an edge is further from its chord than the tolerance.
+    fn is_bent(&self, mesh: &Mesh, (i, j): Edge) -> Result<bool, MeshError> {
         let ends = [mesh.positions[i as usize], mesh.positions[j as usize]];
         // Evaluate every copy of an edge in the same order.
         let swap = ends[0].to_array().partial_cmp(&ends[1].to_array()) == Some(std::cmp::Ordering::Greater);
@@ -268,17 +270,19 @@ impl Refining<'_> {
         Ok([0.25, 0.5, 0.75].iter().any(|t| from_chord(p, q, self.map.point(a.lerp(b, *t))) > self.tolerance))
     }
 
-    fn bulges(&self, mesh: &Mesh, corners: &[Corner]) -> Result<bool, MeshError> {
+    /// Returns `true` if the image of a face's middle is further than the tolerance, along the normal, from the middle of the image.
+    fn is_bulging(&self, mesh: &Mesh, corners: &[Corner]) -> Result<bool, MeshError> {
         self.budget.spend(1.0)?;
         let n = corners.len() as f64;
-        let mean = |of: &[DVec3]| corners.iter().map(|c| of[c.vertex as usize]).sum::<DVec3>() / n;
+        let mean = |points: &[DVec3]| corners.iter().map(|c| points[c.vertex as usize]).sum::<DVec3>() / n;
         let (middle, image) = (mean(&mesh.positions), mean(&self.images));
         let at = |c: &Corner| self.images[c.vertex as usize];
         let normal = corners.windows(2).map(|w| (at(&w[0]) - image).cross(at(&w[1]) - image)).sum::<DVec3>();
         Ok((self.map.point(middle) - image).dot(normal.normalize_or_zero()).abs() > self.tolerance)
     }
 
-    fn split(&mut self, mesh: &mut Mesh, split: &HashSet<Edge>) {
+    /// Halves edges of a mesh.
+    fn split(&mut self, mesh: &mut Mesh, to_split: &HashSet<Edge>) {
         let mut out = Mesh {
             positions: std::mem::take(&mut mesh.positions),
             colors: std::mem::take(&mut mesh.colors),
@@ -293,23 +297,22 @@ impl Refining<'_> {
         let mut marks = std::mem::take(&mut mesh.marks).into_iter().peekable();
         for (n, (kind, corners)) in mesh.polygons().enumerate() {
             while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
-                push_mark(&mut out, mark);
+                out.mark(mark);
             }
-            let is_split = |i: usize| split.contains(&edge(corners[i].vertex, corners[(i + 1) % corners.len()].vertex));
+            let is_split = |a: Corner, b: Corner| to_split.contains(&edge(a.vertex, b.vertex));
             match kind {
-                PolygonKind::Face if (0..corners.len()).any(is_split) => {
+                PolygonKind::Face if polygon_edges(corners).any(|e| to_split.contains(&e)) => {
                     for t in self.triangles(corners) {
-                        let marked: [bool; 3] =
-                            std::array::from_fn(|i| split.contains(&edge(t[i].vertex, t[(i + 1) % 3].vertex)));
-                        triangle(&mut out, &mut halves, t, marked);
+                        let halved = std::array::from_fn(|i| is_split(t[i], t[(i + 1) % 3]));
+                        add_triangle(&mut out, &mut halves, t, halved);
                     }
                 }
                 PolygonKind::Line => {
                     let mut line = Vec::with_capacity(2 * corners.len());
                     for (i, c) in corners.iter().enumerate() {
                         line.push(*c);
-                        if i + 1 < corners.len() && is_split(i) {
-                            line.push(halves.middle(&mut out, *c, corners[i + 1]));
+                        if let Some(next) = corners.get(i + 1).filter(|next| is_split(*c, **next)) {
+                            line.push(halves.middle(&mut out, *c, *next));
                         }
                     }
                     out.push(kind, line);
@@ -317,7 +320,7 @@ impl Refining<'_> {
                 _ => out.push(kind, corners.iter().copied()),
             }
         }
-        marks.for_each(|(_, mark)| push_mark(&mut out, mark));
+        marks.for_each(|(_, mark)| out.mark(mark));
         let mut images = out.positions[old..].to_vec();
         self.map.points(&mut images);
         self.images.append(&mut images);
@@ -332,12 +335,8 @@ impl Refining<'_> {
         {
             return vec![[b, c, d], [b, d, a]];
         }
-        corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]]).collect()
+        fan(corners).collect()
     }
-}
-
-fn push_mark(mesh: &mut Mesh, mark: Mark) {
-    mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
 }
 
 /// Caches the middles of edges by pairs of indices.
@@ -351,32 +350,28 @@ struct Halves {
 impl Halves {
     /// Returns the corner in the middle between two.
     fn middle(&mut self, mesh: &mut Mesh, a: Corner, b: Corner) -> Corner {
-        let colored = mesh.colors.len() == mesh.positions.len();
         let vertex = *self.vertices.entry(edge(a.vertex, b.vertex)).or_insert_with(|| {
             let (i, j) = (a.vertex as usize, b.vertex as usize);
-            if colored {
+            if mesh.is_colored() {
                 let (p, q) = (mesh.colors[i], mesh.colors[j]);
                 mesh.colors.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
             }
             let middle = 0.5 * (mesh.positions[i] + mesh.positions[j]);
             push(&mut mesh.positions, middle)
         });
-        let between = |i: u32, j: u32| i != NONE && j != NONE;
-        let uv = if between(a.uv, b.uv) {
-            *self.uvs.entry(edge(a.uv, b.uv)).or_insert_with(|| {
-                let (p, q) = (mesh.uvs[a.uv as usize], mesh.uvs[b.uv as usize]);
+        let uv = match (a.uv, b.uv) {
+            (NONE, _) | (_, NONE) => NONE,
+            (i, j) => *self.uvs.entry(edge(i, j)).or_insert_with(|| {
+                let (p, q) = (mesh.uvs[i as usize], mesh.uvs[j as usize]);
                 push(&mut mesh.uvs, std::array::from_fn(|k| 0.5 * (p[k] + q[k])))
-            })
-        } else {
-            NONE
+            }),
         };
-        let normal = if between(a.normal, b.normal) {
-            *self.normals.entry(edge(a.normal, b.normal)).or_insert_with(|| {
-                let (p, q) = (mesh.normals[a.normal as usize], mesh.normals[b.normal as usize]);
+        let normal = match (a.normal, b.normal) {
+            (NONE, _) | (_, NONE) => NONE,
+            (i, j) => *self.normals.entry(edge(i, j)).or_insert_with(|| {
+                let (p, q) = (mesh.normals[i as usize], mesh.normals[j as usize]);
                 push(&mut mesh.normals, (p + q).try_normalize().unwrap_or(p))
-            })
-        } else {
-            NONE
+            }),
         };
         Corner { vertex, uv, normal }
     }
@@ -385,40 +380,34 @@ impl Halves {
 /// Appends a value, and returns its index.
 fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
     list.push(value);
-    u32::try_from(list.len() - 1).unwrap_or(NONE)
+    index32(list.len() - 1)
 }
 
-/// Appends a triangle, of which the marked edges, each from a corner to the next, are halved.
-fn triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], marked: [bool; 3]) {
-    // Rotate the corners so that a lone marked edge is the first, and a lone unmarked one the last.
-    let count = marked.iter().filter(|m| **m).count();
-    let turn = match count {
-        1 => marked.iter().position(|m| *m),
-        2 => marked.iter().position(|m| !*m).map(|i| i + 1),
-        _ => None,
-    };
-    let turn = turn.unwrap_or(0);
-    let [a, b, c] = std::array::from_fn(|i| t[(i + turn) % 3]);
-    let add = |corners: [Corner; 3], mesh: &mut Mesh| mesh.push(PolygonKind::Face, corners);
-    match count {
-        0 => add([a, b, c], mesh),
-        1 => {
-            let ab = halves.middle(mesh, a, b);
-            add([a, ab, c], mesh);
-            add([ab, b, c], mesh);
-        }
-        2 => {
-            let (ab, bc) = (halves.middle(mesh, a, b), halves.middle(mesh, b, c));
-            add([ab, b, bc], mesh);
-            add([a, ab, bc], mesh);
-            add([a, bc, c], mesh);
-        }
-        _ => {
-            let (ab, bc, ca) = (halves.middle(mesh, a, b), halves.middle(mesh, b, c), halves.middle(mesh, c, a));
-            for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-                add(corners, mesh);
-            }
-        }
+/// Appends a triangle, some sides of which, each from a corner to the next, are halved.
+fn add_triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], halved: [bool; 3]) {
+    let mut corners = [t[0], t[1], t[2], t[0], t[1], t[2]];
+    // Middles are numbered along the triangle, from the end of a side that stays whole.
+    let start = halved.iter().position(|h| !h).map_or(0, |i| i + 1);
+    for i in (start..start + 3).map(|i| i % 3).filter(|i| halved[*i]) {
+        corners[3 + i] = halves.middle(mesh, t[i], t[(i + 1) % 3]);
+    }
+    for part in parts_of_halved(halved) {
+        mesh.push(PolygonKind::Face, part.map(|k| corners[k]));
+    }
+}
+
+/// Returns the parts of a triangle some sides of which are halved. Its corners are 0, 1 and 2; 3, 4 and 5 are the middles of the sides
+/// from each corner to the next.
+pub(crate) fn parts_of_halved(sides: [bool; 3]) -> &'static [[usize; 3]] {
+    match sides {
+        [false, false, false] => &[[0, 1, 2]],
+        [true, false, false] => &[[0, 3, 2], [3, 1, 2]],
+        [false, true, false] => &[[1, 4, 0], [4, 2, 0]],
+        [false, false, true] => &[[2, 5, 1], [5, 0, 1]],
+        [true, true, false] => &[[3, 1, 4], [0, 3, 4], [0, 4, 2]],
+        [false, true, true] => &[[4, 2, 5], [1, 4, 5], [1, 5, 0]],
+        [true, false, true] => &[[5, 0, 3], [2, 5, 3], [2, 3, 1]],
+        [true, true, true] => &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
     }
 }
 

@@ -3,7 +3,7 @@
 //! Before extrusion, a shape is changed so that no two vertices coincide and the outline does not touch itself. Walls of the solid would
 //! otherwise share an edge there.
 
-use super::{Corner, Mark, Mesh, NONE, PolygonKind};
+use super::{Corner, Mark, Mesh, NONE, PolygonKind, index32};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -19,26 +19,25 @@ pub struct FlatShape {
 }
 
 /// Distance between vertices, as a fraction of the largest coordinate, below which they would coincide in a single-precision file.
-const SAME: f64 = 1e-6;
+const COINCIDENT: f64 = 1e-6;
 /// Least distance by which such vertices are moved, as a fraction of the largest coordinate.
 const APART: f64 = 1e-5;
 
 impl FlatShape {
     /// Returns twice the area, negative if the triangles are clockwise.
-    fn area(&self) -> f64 {
-        let twice = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| self.at(i));
+    fn doubled_area(&self) -> f64 {
+        let doubled = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| self.point(i));
             (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         };
-        self.triangles.iter().map(twice).sum()
+        self.triangles.iter().map(doubled).sum()
     }
 
-    fn at(&self, i: u32) -> [f64; 2] {
+    fn point(&self, i: u32) -> [f64; 2] {
         self.points[i as usize]
     }
 
-    /// Returns the largest absolute coordinate.
-    fn reach(&self) -> f64 {
+    fn largest_coordinate(&self) -> f64 {
         self.points.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()))
     }
 
@@ -51,27 +50,24 @@ impl FlatShape {
 
     /// Returns the shape with counter-clockwise triangles, without triangles that repeat a vertex. Triangles without area stay: they hold
     /// the shape together.
-    fn turned(&self) -> Self {
-        let turned = self.area() < 0.0;
-        let own = |[a, b, c]: [u32; 3]| if turned { [a, c, b] } else { [a, b, c] };
-        let triangles =
-            self.triangles.iter().copied().map(own).filter(|[a, b, c]| a != b && b != c && c != a).collect();
-        Self { triangles, ..self.clone() }
+    fn counter_clockwise(&self) -> Self {
+        let is_clockwise = self.doubled_area() < 0.0;
+        let triangles = self.triangles.iter().map(|&[a, b, c]| if is_clockwise { [a, c, b] } else { [a, b, c] });
+        Self { triangles: triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect(), ..self.clone() }
     }
 
     /// Returns the shape with coinciding vertices moved apart, each towards the middle of the triangles around it.
     fn separated(mut self) -> Self {
-        let step = SAME * self.reach();
-        let cell = |p: &[f64; 2]| p.map(|v| (v / step).floor() as i64);
+        let step = COINCIDENT * self.largest_coordinate();
+        // The first vertex in each cell of a grid; only vertices in adjacent cells can coincide.
         let mut first: HashMap<[i64; 2], u32> = HashMap::new();
         // Each coinciding vertex, with its number among those at its position, and its triangles.
         let mut crowded: BTreeMap<u32, (u32, Vec<usize>)> = BTreeMap::new();
         let mut counts: HashMap<u32, u32> = HashMap::new();
         for (i, p) in (0u32..).zip(&self.points) {
-            let [x, y] = cell(p);
-            let near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [x.saturating_add(a), y.saturating_add(b)]));
-            let other = near.filter_map(|c| first.get(&c).copied()).next();
-            if let Some(other) = other {
+            let [x, y] = p.map(|v| (v / step).floor() as i64);
+            let mut near = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [x.saturating_add(a), y.saturating_add(b)]));
+            if let Some(other) = near.find_map(|c| first.get(&c).copied()) {
                 let count = counts.entry(other).or_default();
                 *count += 1;
                 crowded.entry(other).or_default();
@@ -87,20 +83,20 @@ impl FlatShape {
                 }
             }
         }
-        let (old, by) = (self.clone(), APART * self.reach());
+        let (old, distance) = (self.clone(), APART * self.largest_coordinate());
         for (vertex, (number, fan)) in crowded {
             // Move by 1 to 16.5 times the distance, since the triangles of two vertices may lie on one side.
-            let by = by * (1.0 + 0.5 * f64::from(number % 32));
-            self.points[vertex as usize] = drawn_back(&old, vertex, &fan, by);
+            let distance = distance * (1.0 + 0.5 * f64::from(number % 32));
+            self.points[vertex as usize] = moved_inwards(&old, vertex, &fan, distance);
         }
         self
     }
 
     /// Returns the shape in which parts that meet at a single vertex have a vertex each, moved apart.
     fn unpinched(mut self) -> Self {
-        let all: HashSet<(u32, u32)> = sides(&self.triangles).collect();
+        // The ends of the outline's sides, by the vertex at which they start.
         let mut starts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (a, b) in sides(&self.triangles).filter(|(a, b)| !all.contains(&(*b, *a))) {
+        for (a, b) in outline_sides(&self.triangles) {
             starts.entry(a).or_default().push(b);
         }
         starts.retain(|_, next| next.len() > 1);
@@ -110,21 +106,20 @@ impl FlatShape {
             let corners = (0..3).map(|k| (t[k], t[(k + 1) % 3])).filter(|(a, _)| starts.contains_key(a));
             corners.for_each(|side| _ = after.insert(side, n));
         }
-        let (old, by) = (self.clone(), APART * self.reach());
+        let (old, distance) = (self.clone(), APART * self.largest_coordinate());
         for (vertex, parts) in starts {
             for (k, first) in parts.into_iter().enumerate() {
-                let fan = fan(&old, &after, vertex, first);
-                let at = drawn_back(&old, vertex, &fan, by);
-                let own = if k == 0 {
-                    self.points[vertex as usize] = at;
-                    vertex
+                let fan = triangles_round(&old, &after, vertex, first);
+                let point = moved_inwards(&old, vertex, &fan, distance);
+                let new = if k == 0 { vertex } else { self.points.len() as u32 };
+                if k == 0 {
+                    self.points[vertex as usize] = point;
                 } else {
-                    self.points.push(at);
-                    self.points.len() as u32 - 1
-                };
+                    self.points.push(point);
+                }
                 for n in fan {
                     let corner = old.triangles[n].iter().position(|i| *i == vertex).unwrap_or_default();
-                    self.triangles[n][corner] = own;
+                    self.triangles[n][corner] = new;
                 }
             }
         }
@@ -136,8 +131,14 @@ pub(crate) fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> 
     triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
 }
 
+/// Iterates over the sides that no triangle passes in reverse. They form the outline, with the shape to its left.
+fn outline_sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = (u32, u32)> {
+    let all: HashSet<(u32, u32)> = sides(triangles).collect();
+    sides(triangles).filter(move |(a, b)| !all.contains(&(*b, *a)))
+}
+
 /// Returns the triangles round a vertex, from the side to `first` as far as the next side of the outline.
-fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first: u32) -> Vec<usize> {
+fn triangles_round(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first: u32) -> Vec<usize> {
     let mut out: Vec<usize> = Vec::new();
     let mut next = first;
     // Where several triangles claim a side, this could go round for ever.
@@ -153,18 +154,18 @@ fn fan(shape: &FlatShape, after: &HashMap<(u32, u32), usize>, vertex: u32, first
     out
 }
 
-/// Returns the position of a vertex after a move by `by` towards the middle of its triangles.
-fn drawn_back(shape: &FlatShape, vertex: u32, fan: &[usize], by: f64) -> [f64; 2] {
-    let at = shape.at(vertex);
+/// Returns the position of a vertex after a move by `distance` towards the middle of its triangles.
+fn moved_inwards(shape: &FlatShape, vertex: u32, fan: &[usize], distance: f64) -> [f64; 2] {
+    let from = shape.point(vertex);
     let others = fan.iter().flat_map(|n| shape.triangles[*n]).filter(|i| *i != vertex);
     let mut sum = [0.0; 2];
-    for p in others.map(|i| shape.at(i)) {
+    for p in others.map(|i| shape.point(i)) {
         // A corner at the same point gives NaN, and the vertex stays.
-        let length = (p[0] - at[0]).hypot(p[1] - at[1]);
-        (0..2).for_each(|a| sum[a] += (p[a] - at[a]) / length);
+        let length = (p[0] - from[0]).hypot(p[1] - from[1]);
+        (0..2).for_each(|a| sum[a] += (p[a] - from[a]) / length);
     }
     let length = sum[0].hypot(sum[1]);
-    if length > 0.0 { [0, 1].map(|a| at[a] + by * sum[a] / length) } else { at }
+    if length > 0.0 { [0, 1].map(|a| from[a] + distance * sum[a] / length) } else { from }
 }
 
 /// Appends shapes as objects: flat at z = 0 if `depth` is 0, closed solids from z = 0 to `depth` if it is larger, with a front, a back and
@@ -174,13 +175,13 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut all = FlatShape::default();
     let mut ends = Vec::with_capacity(shapes.len());
     for shape in shapes {
-        all.append(&shape.turned());
+        all.append(&shape.counter_clockwise());
         ends.push(all.triangles.len());
     }
     let all = if depth == 0.0 { all } else { all.unpinched().separated() };
-    let count = u32::try_from(all.points.len()).unwrap_or(NONE);
-    let back = u32::try_from(mesh.positions.len()).unwrap_or(NONE);
-    let front = back.saturating_add(count);
+    // The first vertices at z = 0 and at z = `depth`.
+    let back = index32(mesh.positions.len());
+    let front = back.saturating_add(index32(all.points.len()));
     let layer = |z: f64| all.points.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
     mesh.positions.extend(layer(0.0));
     if depth != 0.0 {
@@ -190,7 +191,7 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
     let mut from = 0;
     for (shape, to) in shapes.iter().zip(ends) {
         let triangles = &all.triangles[std::mem::replace(&mut from, to)..to];
-        mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), Mark::Object(shape.name.clone())));
+        mesh.mark(Mark::Object(shape.name.clone()));
         if depth == 0.0 {
             triangles.iter().for_each(|t| mesh.push(PolygonKind::Face, t.map(|i| corner(back, i))));
             continue;
@@ -199,9 +200,7 @@ pub fn extrude(mesh: &mut Mesh, shapes: &[FlatShape], depth: f64) {
             mesh.push(PolygonKind::Face, [*a, *b, *c].map(|i| corner(front, i)));
             mesh.push(PolygonKind::Face, [*a, *c, *b].map(|i| corner(back, i)));
         }
-        let own: HashSet<(u32, u32)> = sides(triangles).collect();
-        // A side that no triangle passes in reverse belongs to the outline, with the shape to its left.
-        for (a, b) in sides(triangles).filter(|(a, b)| !own.contains(&(*b, *a))) {
+        for (a, b) in outline_sides(triangles) {
             mesh.push(PolygonKind::Face, [corner(back, a), corner(back, b), corner(front, b), corner(front, a)]);
         }
     }

@@ -12,14 +12,13 @@ use glam::DVec3;
 use pathwarp::budget::Exceeded;
 use serde_json::{Map, Value};
 use std::collections::HashMap;
-use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
 
 pub use deform::{Deformed, Undefined3, deform, refine};
 pub use flat::{FlatShape, extrude};
 
-pub(crate) use deform::{Edge, edge, from_chord};
+pub(crate) use deform::{Edge, edge, from_chord, parts_of_halved};
 pub(crate) use flat::sides;
 
 /// Stands for a missing index.
@@ -111,9 +110,9 @@ impl Mesh {
     pub fn polygons(&self) -> impl Iterator<Item = (PolygonKind, &[Corner])> {
         let mut start = 0;
         self.polygons.iter().map(move |p| {
-            let own = start..p.end as usize;
-            start = own.end;
-            (p.kind, self.corners.get(own).unwrap_or_default())
+            let range = start..p.end as usize;
+            start = range.end;
+            (p.kind, self.corners.get(range).unwrap_or_default())
         })
     }
 
@@ -125,12 +124,21 @@ impl Mesh {
     /// Appends a polygon.
     pub fn push(&mut self, kind: PolygonKind, corners: impl IntoIterator<Item = Corner>) {
         self.corners.extend(corners);
-        self.polygons.push(Polygon { end: u32::try_from(self.corners.len()).unwrap_or(NONE), kind });
+        self.polygons.push(Polygon { end: index32(self.corners.len()), kind });
     }
 
     /// Iterates over the faces as triangles, in fans from their first corners.
     pub fn triangles(&self) -> impl Iterator<Item = [Corner; 3]> {
-        self.faces().flat_map(|f| f.windows(2).skip(1).map(|w| [f[0], w[0], w[1]]))
+        self.faces().flat_map(fan)
+    }
+
+    /// Adds a mark that holds from the next polygon onwards.
+    pub(crate) fn mark(&mut self, mark: Mark) {
+        self.marks.push((index32(self.polygons.len()), mark));
+    }
+
+    fn is_colored(&self) -> bool {
+        !self.colors.is_empty() && self.colors.len() == self.positions.len()
     }
 
     /// Returns the name of the object or group that a polygon belongs to; empty if there is none.
@@ -143,6 +151,21 @@ impl Mesh {
         });
         name.last().unwrap_or_default()
     }
+}
+
+/// Converts an index. One that needs more than 32 bits becomes [`NONE`].
+pub(crate) fn index32(i: usize) -> u32 {
+    u32::try_from(i).unwrap_or(NONE)
+}
+
+/// Returns a polygon as triangles, in a fan from its first corner.
+pub(crate) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
+    corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]])
+}
+
+/// Returns the vertices at the ends of each side of a polygon, in its direction.
+fn polygon_sides(corners: &[Corner]) -> impl Iterator<Item = (u32, u32)> {
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| (a.vertex, b.vertex))
 }
 
 /// The topology of a mesh's faces, with their volume and area.
@@ -183,28 +206,24 @@ impl Topology {
 pub fn topology(mesh: &Mesh) -> Topology {
     // Adding 0 turns −0 into 0.
     let key = |p: &DVec3| (*p + 0.0).to_array().map(f64::to_bits);
-    let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.positions.len());
-    let place: Vec<u32> = mesh
-        .positions
-        .iter()
-        .map(|p| {
-            let next = places.len() as u32;
-            *places.entry(key(p)).or_insert(next)
-        })
-        .collect();
-    let mut used = vec![false; places.len()];
+    let mut numbers: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.positions.len());
+    let number = |p: &DVec3| {
+        let next = numbers.len() as u32;
+        *numbers.entry(key(p)).or_insert(next)
+    };
+    let by_vertex: Vec<u32> = mesh.positions.iter().map(number).collect();
+    let mut used = vec![false; numbers.len()];
     // Numbers of faces that run along each edge forwards and backwards.
-    let mut edges: HashMap<(u32, u32), [u32; 2]> = HashMap::new();
+    let mut edges: HashMap<Edge, [u32; 2]> = HashMap::new();
     let (mut faces, mut volume, mut area) = (0, 0.0, 0.0);
     let origin = mesh.bounds().map_or(DVec3::ZERO, |b| b.center());
     for face in mesh.faces() {
         faces += 1;
-        for (i, c) in face.iter().enumerate() {
-            let next = face[(i + 1) % face.len()];
-            let (a, b) = (place[c.vertex as usize], place[next.vertex as usize]);
+        for (v, w) in polygon_sides(face) {
+            let (a, b) = (by_vertex[v as usize], by_vertex[w as usize]);
             used[a as usize] = true;
             if a != b {
-                edges.entry((a.min(b), a.max(b))).or_default()[usize::from(a > b)] += 1;
+                edges.entry(edge(a, b)).or_default()[usize::from(a > b)] += 1;
             }
         }
     }
@@ -234,7 +253,7 @@ struct Unified {
 
 /// Numbers the distinct corners. The first corner of a vertex gets the number of the vertex; vertices without a polygon keep theirs.
 fn unify(mesh: &Mesh) -> Unified {
-    let bare = |v: usize| Corner { vertex: u32::try_from(v).unwrap_or(NONE), uv: NONE, normal: NONE };
+    let bare = |v: usize| Corner { vertex: index32(v), uv: NONE, normal: NONE };
     let mut corners: Vec<Corner> = (0..mesh.positions.len()).map(bare).collect();
     let mut taken = vec![false; corners.len()];
     let mut others: HashMap<Corner, u32> = HashMap::new();
@@ -251,7 +270,7 @@ fn unify(mesh: &Mesh) -> Unified {
         } else {
             *others.entry(*c).or_insert_with(|| {
                 corners.push(*c);
-                u32::try_from(corners.len() - 1).unwrap_or(NONE)
+                index32(corners.len() - 1)
             })
         });
     }
@@ -280,7 +299,7 @@ impl Assets {
     }
 
     /// Takes the assets from a file's JSON.
-    fn of(root: &Value) -> Self {
+    fn from_json(root: &Value) -> Self {
         let mut out = Self::default();
         for key in KEPT {
             if let Some(v) = root.get(key) {
@@ -300,7 +319,7 @@ impl Assets {
 
 /// An error that prevents reading a file as a mesh or writing it, and its position in the file.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{}{problem}", self.place())]
+#[error("{}{problem}", self.prefix())]
 pub struct MeshError {
     /// The line, counted from 1, if one is known.
     pub line: Option<usize>,
@@ -309,27 +328,20 @@ pub struct MeshError {
 }
 
 /// A fault in a mesh file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MeshFault {
     /// Description of the fault.
+    #[error("{0}")]
     Text(String),
     /// Reading takes more work than a limit allows.
+    #[error("the mesh takes {0}")]
     Limit(Exceeded),
-}
-
-impl fmt::Display for MeshFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Text(t) => f.write_str(t),
-            Self::Limit(e) => write!(f, "the mesh takes {e}"),
-        }
-    }
 }
 
 impl MeshError {
     /// Makes an error at a line.
-    pub(crate) fn at(line: usize, problem: impl Into<String>) -> Self {
+    pub(crate) fn at_line(line: usize, problem: impl Into<String>) -> Self {
         Self { line: Some(line), problem: MeshFault::Text(problem.into()) }
     }
 
@@ -338,7 +350,7 @@ impl MeshError {
         Self { line: None, problem: MeshFault::Text(problem.into()) }
     }
 
-    fn place(&self) -> String {
+    fn prefix(&self) -> String {
         self.line.map_or_else(String::new, |n| format!("line {n}: "))
     }
 }

@@ -4,9 +4,10 @@
 //! polylines or the order of objects, so none is used here. Long files are read and written on all threads; the result does not depend
 //! on their number.
 
-use super::{Corner, Mark, Mesh, MeshError, NONE, Polygon, PolygonKind};
+use super::{Corner, Mark, Mesh, MeshError, NONE, Polygon, PolygonKind, index32};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The text is cut at line ends into parts of about this many bytes, which are read in parallel and joined.
@@ -18,27 +19,21 @@ const PART: usize = 1 << 20;
 /// # Errors
 /// [`MeshFault::Text`](super::MeshFault::Text) with the line that is damaged or has an index out of range.
 pub fn read(text: &[u8]) -> Result<Mesh, MeshError> {
-    let joined;
-    let text = if has_continuation(text) {
-        joined = join_lines(text);
-        &joined[..]
-    } else {
-        text
-    };
+    let text: Cow<'_, [u8]> = if has_continuation(text) { join_lines(text).into() } else { text.into() };
     if text.iter().take(1024).any(|b| *b == 0) {
         return Err(MeshError::whole("is not an OBJ file: it holds bytes that are not text"));
     }
-    let parts: Vec<&[u8]> = split(text);
-    let read: Vec<Result<Part, (usize, String)>> = parts.par_iter().map(|p| part(p)).collect();
+    let parts: Vec<&[u8]> = split_at_lines(&text);
+    let read: Vec<Result<Part, (usize, String)>> = parts.par_iter().map(|p| read_part(p)).collect();
     let mut mesh = Mesh::default();
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
-    let mut lines = 0;
+    let mut lines_before = 0;
     for (part, text) in read.into_iter().zip(&parts) {
-        let part = part.map_err(|(line, problem)| MeshError::at(lines + line, problem))?;
-        join(&mut mesh, part, &mut skipped);
-        lines += text.iter().filter(|b| **b == b'\n').count();
+        let part = part.map_err(|(line, problem)| MeshError::at_line(lines_before + line, problem))?;
+        append(&mut mesh, part, &mut skipped);
+        lines_before += text.iter().filter(|b| **b == b'\n').count();
     }
-    check(&mesh, text)?;
+    check_indices(&mesh, &text)?;
     if mesh.positions.is_empty() {
         return Err(MeshError::whole("holds no vertices (lines `v x y z`); models are read as OBJ, STL, PLY and glTF"));
     }
@@ -68,7 +63,7 @@ fn join_lines(text: &[u8]) -> Vec<u8> {
     out
 }
 
-fn split(mut text: &[u8]) -> Vec<&[u8]> {
+fn split_at_lines(mut text: &[u8]) -> Vec<&[u8]> {
     let mut out = Vec::new();
     while text.len() > PART {
         let end = text[PART..].iter().position(|b| *b == b'\n').map_or(text.len(), |i| PART + i + 1);
@@ -91,18 +86,18 @@ struct Part {
 }
 
 /// Reads a part. An error holds the line within the part, counted from 1.
-fn part(text: &[u8]) -> Result<Part, (usize, String)> {
+fn read_part(text: &[u8]) -> Result<Part, (usize, String)> {
     let mut out = Part::default();
     for (n, line) in text.split(|b| *b == b'\n').enumerate() {
-        statement(line, &mut out).map_err(|problem| (n + 1, problem))?;
+        read_line(line, &mut out).map_err(|problem| (n + 1, problem))?;
     }
     Ok(out)
 }
 
-fn statement(line: &[u8], out: &mut Part) -> Result<(), String> {
+fn read_line(line: &[u8], out: &mut Part) -> Result<(), String> {
     let mut rest = words(line);
     let Some(keyword) = rest.next() else { return Ok(()) };
-    let damaged = |what: &str| format!("`{}` is not {what}", shown(line));
+    let damaged = |what: &str| format!("`{}` is not {what}", beginning(line));
     let mesh = &mut out.mesh;
     match keyword {
         b"v" => {
@@ -119,21 +114,17 @@ fn statement(line: &[u8], out: &mut Part) -> Result<(), String> {
             let uv = uv.filter(|uv| !uv.is_empty()).ok_or_else(|| damaged("texture coordinates `vt u v`"))?;
             mesh.uvs.push(std::array::from_fn(|k| uv.get(k).copied().unwrap_or(0.0)));
         }
-        b"f" => polygon(PolygonKind::Face, 3, rest, out).map_err(|what| damaged(&what))?,
-        b"l" => polygon(PolygonKind::Line, 2, rest, out).map_err(|what| damaged(&what))?,
-        b"p" => polygon(PolygonKind::Points, 1, rest, out).map_err(|what| damaged(&what))?,
-        b"o" => add_mark(mesh, Mark::Object(text_after(line, keyword))),
-        b"g" => add_mark(mesh, Mark::Group(text_after(line, keyword))),
-        b"usemtl" => add_mark(mesh, Mark::Material(text_after(line, keyword))),
-        b"s" => add_mark(mesh, Mark::Smoothing(text_after(line, keyword))),
-        b"mtllib" => add_mark(mesh, Mark::Library(text_after(line, keyword))),
-        _ => *out.skipped.entry(shown(keyword)).or_default() += 1,
+        b"f" => read_polygon(PolygonKind::Face, 3, rest, out).map_err(|what| damaged(&what))?,
+        b"l" => read_polygon(PolygonKind::Line, 2, rest, out).map_err(|what| damaged(&what))?,
+        b"p" => read_polygon(PolygonKind::Points, 1, rest, out).map_err(|what| damaged(&what))?,
+        b"o" => mesh.mark(Mark::Object(text_after(line, keyword))),
+        b"g" => mesh.mark(Mark::Group(text_after(line, keyword))),
+        b"usemtl" => mesh.mark(Mark::Material(text_after(line, keyword))),
+        b"s" => mesh.mark(Mark::Smoothing(text_after(line, keyword))),
+        b"mtllib" => mesh.mark(Mark::Library(text_after(line, keyword))),
+        _ => *out.skipped.entry(beginning(keyword)).or_default() += 1,
     }
     Ok(())
-}
-
-fn add_mark(mesh: &mut Mesh, mark: Mark) {
-    mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
 }
 
 fn text_after(line: &[u8], keyword: &[u8]) -> String {
@@ -141,7 +132,7 @@ fn text_after(line: &[u8], keyword: &[u8]) -> String {
 }
 
 /// Reads a polygon of corners `v`, `v/uv`, `v//n` or `v/uv/n`. The error describes a correct line.
-fn polygon<'a>(
+fn read_polygon<'a>(
     kind: PolygonKind,
     min: usize,
     words: impl Iterator<Item = &'a [u8]>,
@@ -169,57 +160,49 @@ fn polygon<'a>(
     if out.mesh.corners.len() - first < min {
         return Err(format!("a polygon of at least {min} corners"));
     }
-    out.mesh.polygons.push(Polygon { end: u32::try_from(out.mesh.corners.len()).unwrap_or(NONE), kind });
+    out.mesh.polygons.push(Polygon { end: index32(out.mesh.corners.len()), kind });
     Ok(())
 }
 
 /// Appends a part to the mesh.
-fn join(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
-    let base = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
-    let (corners, polygons) = (mesh.corners.len(), mesh.polygons.len());
-    let mut own = part.mesh;
-    for (field, corner, i) in part.relative {
-        let i = i64::try_from(base[field]).unwrap_or(i64::MAX) + i;
-        let c = &mut own.corners[corner];
-        let slot = [&mut c.vertex, &mut c.uv, &mut c.normal];
-        if let Some(slot) = slot.into_iter().nth(field) {
-            // Out of range, but not the index that stands for a missing one.
-            *slot = u32::try_from(i).unwrap_or(NONE - 1);
-        }
+fn append(mesh: &mut Mesh, part: Part, skipped: &mut BTreeMap<String, usize>) {
+    let before = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
+    let Part { mesh: mut added, relative, skipped: added_skipped } = part;
+    for (field, corner, i) in relative {
+        let i = i64::try_from(before[field]).unwrap_or(i64::MAX) + i;
+        let c = &mut added.corners[corner];
+        // Out of range, but not the index that stands for a missing one.
+        *[&mut c.vertex, &mut c.uv, &mut c.normal][field] = u32::try_from(i).unwrap_or(NONE - 1);
     }
-    if !own.colors.is_empty() || !mesh.colors.is_empty() {
-        mesh.colors.resize(base[0], [1.0; 4]);
-        own.colors.resize(own.positions.len(), [1.0; 4]);
-        mesh.colors.append(&mut own.colors);
+    if !added.colors.is_empty() || !mesh.colors.is_empty() {
+        mesh.colors.resize(before[0], [1.0; 4]);
+        added.colors.resize(added.positions.len(), [1.0; 4]);
+        mesh.colors.append(&mut added.colors);
     }
-    mesh.positions.append(&mut own.positions);
-    mesh.uvs.append(&mut own.uvs);
-    mesh.normals.append(&mut own.normals);
-    mesh.corners.append(&mut own.corners);
-    let shift = u32::try_from(corners).unwrap_or(NONE);
-    mesh.polygons.extend(own.polygons.iter().map(|p| Polygon { end: p.end.saturating_add(shift), ..*p }));
-    let shift = u32::try_from(polygons).unwrap_or(NONE);
-    mesh.marks.extend(own.marks.into_iter().map(|(first, m)| (first.saturating_add(shift), m)));
-    for (what, n) in part.skipped {
+    let (corners, polygons) = (index32(mesh.corners.len()), index32(mesh.polygons.len()));
+    mesh.positions.append(&mut added.positions);
+    mesh.uvs.append(&mut added.uvs);
+    mesh.normals.append(&mut added.normals);
+    mesh.corners.append(&mut added.corners);
+    mesh.polygons.extend(added.polygons.iter().map(|p| Polygon { end: p.end.saturating_add(corners), ..*p }));
+    mesh.marks.extend(added.marks.into_iter().map(|(first, m)| (first.saturating_add(polygons), m)));
+    for (what, n) in added_skipped {
         *skipped.entry(what).or_default() += n;
     }
 }
 
-/// Checks that every index is in range.
-fn check(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
-    let counts = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
-    let bad = |c: &Corner| {
-        let optional = |i: u32, n: usize| i == NONE || (i as usize) < n;
-        (c.vertex as usize) >= counts[0] || !optional(c.uv, counts[1]) || !optional(c.normal, counts[2])
+fn check_indices(mesh: &Mesh, text: &[u8]) -> Result<(), MeshError> {
+    let [vertices, uvs, normals] = [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()];
+    let is_out_of_range = |c: &Corner| {
+        let is_sound = |i: u32, n: usize| i == NONE || (i as usize) < n;
+        (c.vertex as usize) >= vertices || !is_sound(c.uv, uvs) || !is_sound(c.normal, normals)
     };
-    let Some(at) = mesh.corners.par_iter().position_first(bad) else { return Ok(()) };
-    let polygon = mesh.polygons.partition_point(|p| p.end as usize <= at);
-    let problem = format!(
-        "an index is out of range: there are {} vertices, {} texture coordinates and {} normals",
-        counts[0], counts[1], counts[2]
-    );
+    let Some(corner) = mesh.corners.par_iter().position_first(is_out_of_range) else { return Ok(()) };
+    let polygon = mesh.polygons.partition_point(|p| p.end as usize <= corner);
+    let counts = format!("{vertices} vertices, {uvs} texture coordinates and {normals} normals");
+    let problem = format!("an index is out of range: there are {counts}");
     Err(match line_of(text, polygon) {
-        Some(line) => MeshError::at(line, problem),
+        Some(line) => MeshError::at_line(line, problem),
         None => MeshError::whole(problem),
     })
 }
@@ -251,25 +234,15 @@ fn vector<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<DVec3> {
 
 /// Reads an index, which counts from 1, or from the end if negative.
 fn index(word: &[u8]) -> Option<i64> {
-    let (sign, digits) = match word.strip_prefix(b"-") {
-        Some(rest) => (-1, rest),
-        None => (1, word),
-    };
-    if digits.is_empty() || digits.len() > 10 {
+    let digits = word.strip_prefix(b"-").unwrap_or(word);
+    if digits.len() > 10 || !digits.iter().all(u8::is_ascii_digit) {
         return None;
     }
-    let mut n: i64 = 0;
-    for d in digits {
-        if !d.is_ascii_digit() {
-            return None;
-        }
-        n = 10 * n + i64::from(d - b'0');
-    }
-    (n != 0).then_some(sign * n)
+    std::str::from_utf8(word).ok()?.parse().ok().filter(|n| *n != 0)
 }
 
 /// Returns the beginning of a text, for messages.
-fn shown(text: &[u8]) -> String {
+fn beginning(text: &[u8]) -> String {
     const MAX_CHARS: usize = 40;
     String::from_utf8_lossy(text).trim().chars().take(MAX_CHARS).collect()
 }
@@ -277,7 +250,7 @@ fn shown(text: &[u8]) -> String {
 /// Lines in each of the parts in which text is written in parallel.
 const LINES: usize = 1 << 14;
 /// The number 2⁵³, up to which every integer is a floating-point number.
-const EXACT: f64 = 9_007_199_254_740_992.0;
+const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Writes a mesh; coordinates get `decimals` decimals.
 #[must_use]
@@ -285,41 +258,40 @@ pub fn write(mesh: &Mesh, decimals: u8) -> Vec<u8> {
     let scale = 10f64.powi(i32::from(decimals));
     let mut out = b"# pathwarp: x right, y up, z towards the viewer\n".to_vec();
     let libraries = mesh.marks.iter().filter(|(_, m)| matches!(m, Mark::Library(_)));
-    libraries.for_each(|(_, m)| mark_line(&mut out, m));
-    let colored = mesh.colors.len() == mesh.positions.len();
-    lines(&mut out, mesh.positions.len(), |i, out| {
+    libraries.for_each(|(_, m)| push_mark(&mut out, m));
+    push_lines(&mut out, mesh.positions.len(), |i, out| {
         out.push(b'v');
-        numbers(out, &mesh.positions[i].to_array(), scale);
-        if colored {
-            numbers(out, &mesh.colors[i][..3], COLORS);
+        push_numbers(out, &mesh.positions[i].to_array(), scale);
+        if mesh.is_colored() {
+            push_numbers(out, &mesh.colors[i][..3], COLOR_SCALE);
         }
     });
-    lines(&mut out, mesh.uvs.len(), |i, out| {
+    push_lines(&mut out, mesh.uvs.len(), |i, out| {
         out.extend_from_slice(b"vt");
         let uv = &mesh.uvs[i];
-        numbers(out, if uv[2] == 0.0 { &uv[..2] } else { uv }, DIRECTIONS);
+        push_numbers(out, if uv[2] == 0.0 { &uv[..2] } else { uv }, SCALE);
     });
-    lines(&mut out, mesh.normals.len(), |i, out| {
+    push_lines(&mut out, mesh.normals.len(), |i, out| {
         out.extend_from_slice(b"vn");
-        numbers(out, &mesh.normals[i].to_array(), DIRECTIONS);
+        push_numbers(out, &mesh.normals[i].to_array(), SCALE);
     });
     let mut from = 0;
     for (first, m) in mesh.marks.iter().filter(|(_, m)| !matches!(m, Mark::Library(_))) {
         let first = (*first as usize).min(mesh.polygons.len());
-        polygons(&mut out, mesh, from..first);
+        push_polygons(&mut out, mesh, from..first);
         from = first;
-        mark_line(&mut out, m);
+        push_mark(&mut out, m);
     }
-    polygons(&mut out, mesh, from..mesh.polygons.len());
+    push_polygons(&mut out, mesh, from..mesh.polygons.len());
     out
 }
 
 /// Scale of colours, with eight decimals; texture coordinates and normals have nine, since single precision has seven significant digits.
-const COLORS: f64 = 1e8;
-const DIRECTIONS: f64 = 1e9;
+const COLOR_SCALE: f64 = 1e8;
+const SCALE: f64 = 1e9;
 
 /// Appends `n` lines.
-fn lines(out: &mut Vec<u8>, n: usize, line: impl Fn(usize, &mut Vec<u8>) + Sync) {
+fn push_lines(out: &mut Vec<u8>, n: usize, line: impl Fn(usize, &mut Vec<u8>) + Sync) {
     let part = |k: usize| {
         let mut text = Vec::with_capacity(LINES * 40);
         for i in k * LINES..((k + 1) * LINES).min(n) {
@@ -333,8 +305,8 @@ fn lines(out: &mut Vec<u8>, n: usize, line: impl Fn(usize, &mut Vec<u8>) + Sync)
     parts.iter().for_each(|p| out.extend_from_slice(p));
 }
 
-fn polygons(out: &mut Vec<u8>, mesh: &Mesh, range: std::ops::Range<usize>) {
-    lines(out, range.len(), |i, out| {
+fn push_polygons(out: &mut Vec<u8>, mesh: &Mesh, range: std::ops::Range<usize>) {
+    push_lines(out, range.len(), |i, out| {
         let i = range.start + i;
         let start = if i == 0 { 0 } else { mesh.polygons[i - 1].end as usize };
         let polygon = mesh.polygons[i];
@@ -344,28 +316,28 @@ fn polygons(out: &mut Vec<u8>, mesh: &Mesh, range: std::ops::Range<usize>) {
             PolygonKind::Points => b'p',
         });
         for c in &mesh.corners[start..polygon.end as usize] {
-            corner(out, c);
+            push_corner(out, c);
         }
     });
 }
 
-fn corner(out: &mut Vec<u8>, c: &Corner) {
+fn push_corner(out: &mut Vec<u8>, c: &Corner) {
     out.push(b' ');
-    whole(out, u64::from(c.vertex) + 1);
+    push_whole(out, u64::from(c.vertex) + 1);
     if c.uv == NONE && c.normal == NONE {
         return;
     }
     out.push(b'/');
     if c.uv != NONE {
-        whole(out, u64::from(c.uv) + 1);
+        push_whole(out, u64::from(c.uv) + 1);
     }
     if c.normal != NONE {
         out.push(b'/');
-        whole(out, u64::from(c.normal) + 1);
+        push_whole(out, u64::from(c.normal) + 1);
     }
 }
 
-fn mark_line(out: &mut Vec<u8>, mark: &Mark) {
+fn push_mark(out: &mut Vec<u8>, mark: &Mark) {
     let (keyword, text) = match mark {
         Mark::Object(t) => ("o", t),
         Mark::Group(t) => ("g", t),
@@ -380,12 +352,12 @@ fn mark_line(out: &mut Vec<u8>, mark: &Mark) {
 }
 
 /// Appends numbers, rounded to multiples of 1/`scale`.
-fn numbers(out: &mut Vec<u8>, values: &[f64], scale: f64) {
+fn push_numbers(out: &mut Vec<u8>, values: &[f64], scale: f64) {
     for v in values {
         out.push(b' ');
         let steps = (v * scale).round();
-        if steps.abs() < EXACT {
-            decimal(out, steps as i64, scale as u64);
+        if steps.abs() < MAX_EXACT {
+            push_decimal(out, steps as i64, scale as u64);
         } else {
             out.extend_from_slice(ryu::Buffer::new().format(*v).as_bytes());
         }
@@ -393,12 +365,12 @@ fn numbers(out: &mut Vec<u8>, values: &[f64], scale: f64) {
 }
 
 /// Appends `steps`/`scale` without trailing zeros; `scale` is a power of ten.
-fn decimal(out: &mut Vec<u8>, steps: i64, scale: u64) {
+fn push_decimal(out: &mut Vec<u8>, steps: i64, scale: u64) {
     if steps < 0 {
         out.push(b'-');
     }
     let (integer, mut rest) = (steps.unsigned_abs() / scale, steps.unsigned_abs() % scale);
-    whole(out, integer);
+    push_whole(out, integer);
     if rest > 0 {
         out.push(b'.');
         let mut unit = scale / 10;
@@ -410,18 +382,19 @@ fn decimal(out: &mut Vec<u8>, steps: i64, scale: u64) {
     }
 }
 
-fn whole(out: &mut Vec<u8>, mut v: u64) {
+/// Appends a whole number, without a formatter, since most of a file are indices.
+fn push_whole(out: &mut Vec<u8>, mut v: u64) {
     let mut digits = [0u8; 20];
-    let mut at = digits.len();
+    let mut start = digits.len();
     loop {
-        at -= 1;
-        digits[at] = b'0' + u8::try_from(v % 10).unwrap_or(0);
+        start -= 1;
+        digits[start] = b'0' + u8::try_from(v % 10).unwrap_or(0);
         v /= 10;
         if v == 0 {
             break;
         }
     }
-    out.extend_from_slice(&digits[at..]);
+    out.extend_from_slice(&digits[start..]);
 }
 
 #[cfg(test)]

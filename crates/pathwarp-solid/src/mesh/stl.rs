@@ -3,8 +3,9 @@
 //! STL has triangles without shared vertices, in single precision; corners at one position become one vertex. The number of triangles
 //! is checked against the length of the file before it is read.
 
-use super::{Corner, Mesh, MeshError, NONE, PolygonKind};
+use super::{Corner, Mesh, MeshError, NONE, PolygonKind, index32};
 use glam::DVec3;
+use std::borrow::Cow;
 use std::io::Cursor;
 use stl_io::{Normal, Triangle, Vertex};
 
@@ -16,7 +17,11 @@ const TRIANGLE: usize = 50;
 /// Returns `true` for an STL file: a binary one of the right length, or text that starts like one.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
-    announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE) || is_text(bytes)
+    is_binary(bytes) || is_text(bytes)
+}
+
+fn is_binary(bytes: &[u8]) -> bool {
+    announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE)
 }
 
 /// Returns the number of triangles that a binary file announces.
@@ -36,27 +41,21 @@ fn is_text(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`MeshFault::Text`](super::MeshFault::Text) when the length does not fit the number of triangles, or a number is not finite.
 pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
-    let binary = announced(bytes).is_some_and(|n| bytes.len() == HEAD + n * TRIANGLE);
-    let mut own;
-    let mut bytes = bytes;
-    if !binary && !is_text(bytes) {
+    if !sniff(bytes) {
         let n = announced(bytes).unwrap_or(0);
-        return Err(MeshError::whole(format!(
-            "has a wrong length for an STL file: {n} triangles take {} bytes, and it has {}",
-            HEAD + n * TRIANGLE,
-            bytes.len()
-        )));
+        let (length, needed) = (bytes.len(), HEAD + n * TRIANGLE);
+        let problem = "has a wrong length for an STL file";
+        return Err(MeshError::whole(format!("{problem}: {n} triangles take {needed} bytes, and it has {length}")));
     }
-    if binary && bytes.starts_with(b"solid") {
-        // Some programs start the header of a binary file like a text file.
-        own = bytes.to_vec();
-        own[0] = b'S';
-        bytes = &own[..];
-    } else if !binary {
+    let bytes: Cow<'_, [u8]> = if !is_binary(bytes) {
         // stl_io knows keywords in lower case only.
-        own = bytes.to_ascii_lowercase();
-        bytes = &own[..];
-    }
+        bytes.to_ascii_lowercase().into()
+    } else if let Some(rest) = bytes.strip_prefix(b"solid") {
+        // Some programs start the header of a binary file like a text file.
+        [b"Solid", rest].concat().into()
+    } else {
+        bytes.into()
+    };
     let read = stl_io::read_stl(&mut Cursor::new(bytes))
         .map_err(|e| MeshError::whole(format!("is a damaged STL file: {e}")))?;
     let mut mesh = Mesh::default();
@@ -68,7 +67,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         mesh.positions.push(p);
     }
     for face in &read.faces {
-        let corner = |v: usize| Corner { vertex: u32::try_from(v).unwrap_or(NONE), uv: NONE, normal: NONE };
+        let corner = |v: usize| Corner { vertex: index32(v), uv: NONE, normal: NONE };
         mesh.push(PolygonKind::Face, face.vertices.map(corner));
     }
     if mesh.polygons.is_empty() {

@@ -19,7 +19,7 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     for n in 1..=count[0] {
         let (degree, line) = whole_numbers::<2>(lines.next(), &format!("the degrees of patch {n} of {}", count[0]))?;
         if degree.iter().any(|d| !(1..=MAX_DEGREE).contains(d)) {
-            return Err(MeshError::at(line, format!("degrees are 1 to {MAX_DEGREE}")));
+            return Err(MeshError::at_line(line, format!("degrees are 1 to {MAX_DEGREE}")));
         }
         let [rows, columns] = degree.map(|d| d + 1);
         let mut points = Vec::with_capacity(rows * columns);
@@ -27,12 +27,12 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
             points.push(point(lines.next(), n)?);
         }
         // In [`Surface`], the first index runs fastest.
-        let turned = (0..points.len()).map(|k| points[k % rows * columns + k / rows]).collect();
-        out.push(Surface::bezier("", degree, turned));
+        let transposed = (0..points.len()).map(|k| points[(k % rows) * columns + (k / rows)]).collect();
+        out.push(Surface::bezier("", degree, transposed));
     }
     if let Some((line, text)) = lines.next() {
-        let problem = format!("`{}` follows the {} patches that the file announces", shown(text), count[0]);
-        return Err(MeshError::at(line, problem));
+        let problem = format!("`{}` follows the {} patches that the file announces", beginning(text), count[0]);
+        return Err(MeshError::at_line(line, problem));
     }
     if out.is_empty() {
         return Err(MeshError::whole("holds no patches"));
@@ -40,7 +40,8 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     Ok(out)
 }
 
-fn shown(text: &str) -> String {
+/// Returns the beginning of a line, for messages.
+fn beginning(text: &str) -> String {
     text.trim().chars().take(40).collect()
 }
 
@@ -48,7 +49,7 @@ fn whole_numbers<const N: usize>(line: Option<(usize, &str)>, what: &str) -> Res
     let (line, text) = line.ok_or_else(|| MeshError::whole(format!("ends before {what}")))?;
     let numbers: Option<Vec<usize>> = text.split_whitespace().map(|w| w.parse().ok()).collect();
     let numbers = numbers.and_then(|n| n.try_into().ok());
-    numbers.map(|n| (n, line)).ok_or_else(|| MeshError::at(line, format!("`{}` is not {what}", shown(text))))
+    numbers.map(|n| (n, line)).ok_or_else(|| MeshError::at_line(line, format!("`{}` is not {what}", beginning(text))))
 }
 
 fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> {
@@ -56,7 +57,10 @@ fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> 
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|w| w.parse().ok()).collect();
     match numbers.as_deref() {
         Some([x, y, z]) if [x, y, z].iter().all(|v| v.abs() < 1e100) => Ok(DVec3::new(*x, *y, *z)),
-        _ => Err(MeshError::at(line, format!("`{}` is not a control point `x y z` with finite numbers", shown(text)))),
+        _ => {
+            let problem = format!("`{}` is not a control point `x y z` with finite numbers", beginning(text));
+            Err(MeshError::at_line(line, problem))
+        }
     }
 }
 
@@ -65,17 +69,12 @@ fn point(line: Option<(usize, &str)>, patch: usize) -> Result<DVec3, MeshError> 
 /// # Errors
 /// A message when a surface has weights or trimming curves, which the format cannot express.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
-    let bad = |what: &str, s: &Surface| {
-        let name = if s.name.is_empty() { String::new() } else { format!(" `{}`", s.name) };
-        format!("surface{name} has {what}, and .bpt files have no room for them; write .json")
-    };
     let mut patches = Vec::new();
     for s in surfaces {
-        if s.is_rational() {
-            return Err(bad("weights", s));
-        }
-        if !s.trims.is_empty() {
-            return Err(bad("trimming curves", s));
+        if let Some(extra) = s.is_rational().then_some("weights").or((!s.trims.is_empty()).then_some("trimming curves"))
+        {
+            let name = if s.name.is_empty() { String::new() } else { format!(" `{}`", s.name) };
+            return Err(format!("surface{name} has {extra}, and .bpt files have no room for them; write .json"));
         }
         patches.extend(s.pieces().0);
     }
@@ -84,7 +83,7 @@ pub fn write(surfaces: &[Surface]) -> Result<String, String> {
         let [m, n] = p.degree;
         let _ = writeln!(out, "{m} {n}");
         for k in 0..p.points.len() {
-            let q = p.points[k % (n + 1) * (m + 1) + k / (n + 1)];
+            let q = p.points[(k % (n + 1)) * (m + 1) + (k / (n + 1))];
             let _ = writeln!(out, "{} {} {}", q.x / q.w, q.y / q.w, q.z / q.w);
         }
     }

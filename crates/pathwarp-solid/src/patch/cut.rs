@@ -5,8 +5,8 @@
 //! if it has one. Trimming loops are cut along with the parts, and parts outside them are omitted.
 
 use super::crossing::{Graphs, Searched};
-use super::part::Sided;
-use super::refit::{Cells, Corner, INSIDE, MAX_CELLS};
+use super::part::LocalMap;
+use super::refit::{Cells, Corner, INSET, MAX_CELLS};
 use super::surface::{BezierPatch, Surface};
 use super::trims::Trims;
 use super::{crossing, refit, surface};
@@ -63,10 +63,10 @@ impl Cutter<'_> {
             return Ok(None);
         }
         let mut out = Parts::default();
-        let trims = Trims::of(surface);
+        let trims = Trims::from_surface(surface);
         for (n, (piece, levels)) in pieces.iter().zip(crossed).enumerate() {
-            let at = |k: usize| [breaks[0][n % across + k], breaks[1][n / across + k]];
-            let trims = self.trims_of(trims.as_ref(), at(0), at(1))?;
+            let corner = |k: usize| [breaks[0][(n % across) + k], breaks[1][(n / across) + k]];
+            let trims = self.trims_of(trims.as_ref(), corner(0), corner(1))?;
             self.part(&Part { patch: piece.clone(), trims }, &levels, [0, 0], &mut out)?;
         }
         for part in &mut out.surfaces {
@@ -77,19 +77,20 @@ impl Cutter<'_> {
 
     /// Returns `true` if the images of any two neighbouring patches do not join.
     fn is_torn(&self, pieces: &[BezierPatch], across: usize) -> Result<bool, Exceeded> {
-        const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+        /// Parameters along a shared side.
+        const SAMPLES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
         if pieces.len() == 1 {
             return Ok(false);
         }
-        self.budget.spend((4 * PLACES.len() * pieces.len()) as f64)?;
-        let sides: Vec<Sided> = pieces.iter().map(|p| Sided::new(p, self.map)).collect();
-        let image = |k: usize, u: f64, v: f64| sides[k].map.point(pieces[k].point(u, v));
-        let apart = |p: DVec3, q: DVec3| p.distance(q) > self.tolerance;
+        self.budget.spend((4 * SAMPLES.len() * pieces.len()) as f64)?;
+        let local: Vec<LocalMap> = pieces.iter().map(|p| LocalMap::new(p, self.map)).collect();
+        let image = |k: usize, u: f64, v: f64| local[k].map.point(pieces[k].point(u, v));
+        let are_apart = |p: DVec3, q: DVec3| p.distance(q) > self.tolerance;
         Ok((0..pieces.len()).any(|k| {
-            let (right, up) = ((k + 1) % across > 0, k + across < pieces.len());
-            PLACES.into_iter().any(|t| {
-                right && apart(image(k, 1.0, t), image(k + 1, 0.0, t))
-                    || up && apart(image(k, t, 1.0), image(k + across, t, 0.0))
+            let (has_right, has_upper) = ((k + 1) % across > 0, k + across < pieces.len());
+            SAMPLES.into_iter().any(|t| {
+                (has_right && are_apart(image(k, 1.0, t), image(k + 1, 0.0, t)))
+                    || (has_upper && are_apart(image(k, t, 1.0), image(k + across, t, 0.0)))
             })
         }))
     }
@@ -109,15 +110,15 @@ impl Cutter<'_> {
             return Ok(());
         }
         let patch = &part.patch;
-        let turned = part.transposed();
-        let searched = [patch, &turned.patch].map(Searched::new);
+        let transposed = part.transposed();
+        let searched = [patch, &transposed.patch].map(Searched::new);
         let crossing = crossing::crossing(&searched[0], self.map, levels);
         searched[0].spend(self.budget)?;
         let max_cells = if cuts[0] < MAX_HALVINGS && cuts[1] < MAX_CUTS { ENOUGH } else { MAX_CELLS };
-        if let Some((surfaces, off)) = self.whole([part, &turned], &searched, &crossing, max_cells)?
-            && (off <= self.tolerance || max_cells == MAX_CELLS)
+        if let Some((surfaces, distance)) = self.whole([part, &transposed], &searched, &crossing, max_cells)?
+            && (distance <= self.tolerance || max_cells == MAX_CELLS)
         {
-            out.distance = out.distance.max(off);
+            out.distance = out.distance.max(distance);
             out.surfaces.extend(surfaces);
             return Ok(());
         }
@@ -140,10 +141,10 @@ impl Cutter<'_> {
     }
 
     /// Returns the image of a part without further cuts, with up to `max_cells` cells along a layer, and its distance from the exact image.
-    /// `None` if the part must be cut because a crease crosses it that is not a graph. `turned` is the part with u and v exchanged.
+    /// `None` if the part must be cut because a crease crosses it that is not a graph. `swapped` is the part with u and v exchanged.
     fn whole(
         &self,
-        [part, turned]: [&Part; 2],
+        [part, swapped]: [&Part; 2],
         searched: &[Searched<'_>; 2],
         crossing: &[Level3],
         max_cells: usize,
@@ -153,27 +154,18 @@ impl Cutter<'_> {
                 return self.layers(part, &graphs, self.map, max_cells).map(Some);
             }
             if let Some(graphs) = Graphs::new(&searched[1], crossing) {
-                let (images, off) = self.layers(turned, &graphs, self.map, max_cells)?;
-                return Ok(Some((images.into_iter().map(transposed).collect(), off)));
+                let (images, distance) = self.layers(swapped, &graphs, self.map, max_cells)?;
+                return Ok(Some((images.into_iter().map(transposed).collect(), distance)));
             }
             if max_cells < MAX_CELLS {
                 return Ok(None);
             }
         }
-        let mut image = Some(part.surface());
-        for step in self.map.steps() {
-            image = match image {
-                Some(s) => refit::image(&s, step, self.budget)?,
-                None => None,
-            };
+        if let Some(image) = refit::exact_image(&part.surface(), self.map, self.budget)? {
+            return Ok(Some((vec![image], 0.0)));
         }
-        match image {
-            Some(image) => Ok(Some((vec![image], 0.0))),
-            None => {
-                let side = Sided::new(&part.patch, self.map);
-                self.layers(part, &Graphs::none(&searched[0]), &side.map, max_cells).map(Some)
-            }
-        }
+        let local = LocalMap::new(&part.patch, self.map);
+        self.layers(part, &Graphs::none(&searched[0]), &local.map, max_cells).map(Some)
     }
 
     /// Returns layers as surfaces with their trimming loops. Each layer has different loops, so the layers cannot be stacked.
@@ -185,18 +177,18 @@ impl Cutter<'_> {
         let mut out = Vec::with_capacity(fits.len());
         for (k, cells) in fits.iter().enumerate() {
             let Some(mut surface) = stacked(std::slice::from_ref(cells), n, self.tolerance).pop() else { continue };
-            let own = if graphs.count() == 0 {
+            let loops = if graphs.count() == 0 {
                 Some(trims.clone())
             } else {
                 self.budget.spend((WORK * trims.count()) as f64)?;
-                let own = trims.layer(graphs, k, FRACTION * self.tolerance / max_derivative(&surface, n));
+                let loops = trims.layer(graphs, k, FRACTION * self.tolerance / max_derivative(&surface, n));
                 graphs.spend(self.budget)?;
-                own
+                loops
             };
-            if own.as_ref().is_some_and(Trims::is_empty) {
+            if loops.as_ref().is_some_and(Trims::is_empty) {
                 continue;
             }
-            surface.trims = own.as_ref().map(Trims::curves).unwrap_or_default();
+            surface.trims = loops.as_ref().map(Trims::curves).unwrap_or_default();
             out.push(surface);
         }
         Ok(out)
@@ -216,13 +208,13 @@ impl Cutter<'_> {
             self.budget.spend(refit::work(&part.patch, n) * (graphs.count() + 1) as f64)?;
             let fits: Vec<Cells> = (0..=graphs.count()).map(|k| layers.fit(k, n)).collect();
             graphs.spend(self.budget)?;
-            let off = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
-            if off <= self.tolerance || n >= max_cells {
+            let distance = fits.iter().fold(0.0, |d: f64, c| d.max(c.distance));
+            if distance <= self.tolerance || n >= max_cells {
                 let surfaces = match &part.trims {
                     None => stacked(&fits, n, self.tolerance),
                     Some(trims) => self.trimmed(&fits, n, trims, graphs)?,
                 };
-                return Ok((surfaces, off));
+                return Ok((surfaces, distance));
             }
             n *= 2;
         }
@@ -268,7 +260,7 @@ fn stacked(layers: &[Cells], n: usize, tolerance: f64) -> Vec<Surface> {
     let surface = |rows: Vec<Vec<DVec3>>| {
         let cells = [n, rows.len() / 3];
         let mut out = Surface::bezier("", [3, 3], rows.concat());
-        out.knots = cells.map(|c| surface::joined(3, &breaks(c)));
+        out.knots = cells.map(|c| surface::bezier_knots(3, &breaks(c)));
         out
     };
     stacks.into_iter().map(surface).collect()
@@ -312,17 +304,14 @@ struct Rung {
 impl Layers<'_> {
     /// Fits n × n cells to a layer and measures their distance from the image.
     fn fit(&self, layer: usize, n: usize) -> Cells {
-        let at = |i: usize| i as f64 / n as f64;
-        let mut corners = Vec::with_capacity((n + 1) * (n + 1));
-        let rungs: Vec<[Rung; 2]> =
-            (0..=n).map(|i| [self.rung(layer, at(i)), self.rung(layer, at(i).clamp(INSIDE, 1.0 - INSIDE))]).collect();
-        for j in 0..=n {
-            corners.extend(rungs.iter().map(|rungs| self.corner(rungs, at(j), n)));
-        }
-        let mut cells = Cells::new(n, corners);
-        let columns: Vec<Rung> =
-            (0..n * refit::PLACES).map(|i| self.rung(layer, (i as f64 + 0.5) / (n * refit::PLACES) as f64)).collect();
-        cells.measure(|i, _, t| self.map.point(self.place(&columns[i], t)));
+        let parameter = |i: usize| i as f64 / n as f64;
+        let rungs = (0..=n).map(parameter).map(|s| [s, s.clamp(INSET, 1.0 - INSET)].map(|s| self.rung(layer, s)));
+        let rungs: Vec<[Rung; 2]> = rungs.collect();
+        let corners = (0..=n).flat_map(|j| rungs.iter().map(move |rungs| self.corner(rungs, parameter(j), n)));
+        let mut cells = Cells::new(n, corners.collect());
+        let samples = n * refit::SAMPLES;
+        let columns: Vec<Rung> = (0..samples).map(|i| self.rung(layer, (i as f64 + 0.5) / samples as f64)).collect();
+        cells.measure(|i, _, t| self.map.point(self.point(&columns[i], t)));
         cells
     }
 
@@ -331,7 +320,7 @@ impl Layers<'_> {
         Rung { s, low, high }
     }
 
-    fn place(&self, rung: &Rung, t: f64) -> DVec3 {
+    fn point(&self, rung: &Rung, t: f64) -> DVec3 {
         self.patch.point(rung.s, rung.low[0] + t * (rung.high[0] - rung.low[0]))
     }
 
@@ -344,12 +333,13 @@ impl Layers<'_> {
         [jet.p, jet.d * (du + dv * slope), jet.d * (dv * (rung.high[0] - rung.low[0]))]
     }
 
+    /// Returns a corner of a cell from the line through it and a line inside the patch, at which derivatives are taken.
     fn corner(&self, [exact, inside]: &[Rung; 2], t: f64, n: usize) -> Corner {
         let h = 1e-4 / n as f64;
-        let own = self.tangents(inside, t.clamp(INSIDE, 1.0 - INSIDE));
-        let (before, after) = ((t - h).max(INSIDE), (t + h).min(1.0 - INSIDE));
+        let beside = self.tangents(inside, t.clamp(INSET, 1.0 - INSET));
+        let (before, after) = ((t - h).max(INSET), (t + h).min(1.0 - INSET));
         let twist = (self.tangents(inside, after)[1] - self.tangents(inside, before)[1]) / (after - before);
-        let at = self.map.point(self.place(exact, t));
-        [if refit::is_torn(at, &own, INSIDE) { own[0] } else { at }, own[1], own[2], twist]
+        let p = self.map.point(self.point(exact, t));
+        [if refit::is_torn(p, &beside, INSET) { beside[0] } else { p }, beside[1], beside[2], twist]
     }
 }

@@ -64,21 +64,21 @@ struct Curve {
 pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let file: File =
         serde_json::from_slice(text).map_err(|e| MeshError::whole(format!("is not a file of surfaces: {e}")))?;
+    let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);
+    // Degrees are checked below, but must not overflow here.
+    let default_knots = |degree: usize| surface::single(degree.min(usize::from(u8::MAX)));
     let mut out = Vec::with_capacity(file.surfaces.len());
     for (n, entry) in file.surfaces.into_iter().enumerate() {
-        let ones = |given: Option<Vec<f64>>, n: usize| given.unwrap_or_else(|| vec![1.0; n]);
-        // Degrees are checked below, but must not overflow here.
-        let default = |d: usize| surface::single(d.min(usize::from(u8::MAX)), [0.0, 1.0]);
         let curve = |c: Curve| TrimCurve {
             degree: c.degree,
-            knots: c.knots.unwrap_or_else(|| default(c.degree)),
+            knots: c.knots.unwrap_or_else(|| default_knots(c.degree)),
             weights: ones(c.weights, c.points.len()),
             points: c.points,
         };
         let surface = Surface {
             name: entry.name,
             degree: entry.degree,
-            knots: entry.knots.unwrap_or_else(|| entry.degree.map(default)),
+            knots: entry.knots.unwrap_or_else(|| entry.degree.map(default_knots)),
             weights: ones(entry.weights, entry.points.len()),
             points: entry.points.into_iter().map(DVec3::from_array).collect(),
             trims: entry.trims.into_iter().map(|l| l.into_iter().map(curve).collect()).collect(),
@@ -89,15 +89,12 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
         out.push(surface);
     }
     for (n, c) in file.curves.into_iter().enumerate() {
-        let weights = c.weights.unwrap_or_else(|| vec![1.0; c.points.len()]);
-        let own = c.knots.unwrap_or_else(|| surface::single(c.degree.min(usize::from(u8::MAX)), [0.0, 1.0]));
-        let points = c.points.into_iter().map(DVec3::from_array).collect::<Vec<_>>();
         let surface = Surface {
             name: c.name,
             degree: [c.degree, 1],
-            knots: [own, surface::single(1, [0.0, 1.0])],
-            weights: weights.repeat(2),
-            points: points.repeat(2),
+            knots: [c.knots.unwrap_or_else(|| default_knots(c.degree)), surface::single(1)],
+            weights: ones(c.weights, c.points.len()).repeat(2),
+            points: c.points.repeat(2).into_iter().map(DVec3::from_array).collect(),
             trims: Vec::new(),
         };
         if let Some(fault) = surface.fault() {
@@ -117,35 +114,35 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
 /// A message when a number cannot be written as JSON.
 pub fn write(surfaces: &[Surface]) -> Result<String, String> {
     let weights = |w: &[f64]| w.iter().any(|w| *w != 1.0).then(|| w.to_vec());
+    let knots = |degree: usize, k: &Vec<f64>| (*k != surface::single(degree)).then(|| k.clone());
     let curve = |c: &TrimCurve| Curve {
         degree: c.degree,
-        knots: (c.knots != surface::single(c.degree, [0.0, 1.0])).then(|| c.knots.clone()),
+        knots: knots(c.degree, &c.knots),
         points: c.points.clone(),
         weights: weights(&c.weights),
     };
     let entry = |s: &Surface| Entry {
         name: s.name.clone(),
         degree: s.degree,
-        knots: (s.knots != s.degree.map(|d| surface::single(d, [0.0, 1.0]))).then(|| s.knots.clone()),
+        knots: (s.knots != s.degree.map(surface::single)).then(|| s.knots.clone()),
         points: s.points.iter().map(DVec3::to_array).collect(),
         weights: weights(&s.weights),
         trims: s.trims.iter().map(|l| l.iter().map(curve).collect()).collect(),
     };
-    let of_space = |s: &Surface| {
+    let space_curve = |s: &Surface| {
         let n = s.size()[0];
-        let own = weights(&s.weights[..n]);
         SpaceCurve {
             name: s.name.clone(),
             degree: s.degree[0],
-            knots: (s.knots[0] != surface::single(s.degree[0], [0.0, 1.0])).then(|| s.knots[0].clone()),
+            knots: knots(s.degree[0], &s.knots[0]),
             points: s.points[..n].iter().map(DVec3::to_array).collect(),
-            weights: own,
+            weights: weights(&s.weights[..n]),
         }
     };
     let (curves, surfaces): (Vec<&Surface>, Vec<&Surface>) = surfaces.iter().partition(|s| s.is_curve());
     let file = File {
         surfaces: surfaces.into_iter().map(entry).collect(),
-        curves: curves.into_iter().map(of_space).collect(),
+        curves: curves.into_iter().map(space_curve).collect(),
     };
     serde_json::to_string(&file).map(|t| t + "\n").map_err(|e| e.to_string())
 }

@@ -15,9 +15,9 @@ use crate::map::{Chain3, Creases3, Map3};
 use crossing::Searched;
 use cut::Cutter;
 use glam::DVec3;
-use part::Sided;
+use part::LocalMap;
 use pathwarp::budget::{Budget, Exceeded};
-use refit::{INSIDE, MAX_CELLS};
+use refit::{INSET, MAX_CELLS};
 use thiserror::Error;
 
 pub use surface::{BezierPatch, MAX_DEGREE, Surface, TrimCurve};
@@ -76,7 +76,7 @@ pub fn deform_patches(
     let levels = crossing::levels(&creases);
     let cutter = Cutter { map, levels: &levels, tolerance, budget };
     let mut images: Vec<Vec<Surface>> = Vec::with_capacity(surfaces.len());
-    let mut left = Vec::new();
+    let mut to_refit = Vec::new();
     for (n, surface) in surfaces.iter().enumerate() {
         let (pieces, breaks) = surface.pieces();
         examine(n, &pieces, map, &creases, &mut out, budget)?;
@@ -87,14 +87,7 @@ pub fn deform_patches(
                 searched.spend(budget)?;
             }
         }
-        let mut image = Some(surface.clone());
-        for step in map.steps() {
-            image = match image {
-                Some(s) => refit::image(&s, step, budget)?,
-                None => None,
-            };
-        }
-        if let Some(image) = image {
+        if let Some(image) = refit::exact_image(surface, map, budget)? {
             out.exact += 1;
             images.push(vec![image]);
         } else if !surface.is_curve()
@@ -105,49 +98,49 @@ pub fn deform_patches(
             images.push(parts.surfaces);
         } else {
             images.push(Vec::new());
-            let pieces = pieces.into_iter().map(|p| (Sided::new(&p, map), p)).collect();
-            left.push((n, pieces, breaks));
+            let pieces = pieces.into_iter().map(|p| (LocalMap::new(&p, map), p)).collect();
+            to_refit.push((n, pieces, breaks));
         }
     }
-    out.refitted = left.len() + out.cut;
-    let far = refitted(surfaces, &left, tolerance, &mut images, budget)?;
-    out.distance = out.distance.max(far);
+    out.refitted = to_refit.len() + out.cut;
+    let distance = refit_together(surfaces, &to_refit, tolerance, &mut images, budget)?;
+    out.distance = out.distance.max(distance);
     *surfaces = images.into_iter().flatten().collect();
     Ok(out)
 }
 
 /// A surface to refit: its index, its pieces with the map on each, and the parameters between them.
-type Left = (usize, Vec<(Sided, BezierPatch)>, [Vec<f64>; 2]);
+type ToRefit = (usize, Vec<(LocalMap, BezierPatch)>, [Vec<f64>; 2]);
 
 /// Fits all surfaces with one number of cells, as many as the worst of them needs to get within the tolerance. Returns the largest
 /// distance.
-fn refitted(
+fn refit_together(
     surfaces: &[Surface],
-    left: &[Left],
+    to_refit: &[ToRefit],
     tolerance: f64,
     images: &mut [Vec<Surface>],
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
     // A crease may lie along sides. All surfaces take derivatives equally far inside, so that neighbours take them at the same points.
-    let smooth = left.iter().flat_map(|(_, pieces, _)| pieces).all(|(side, _)| side.smooth);
-    let inside = if smooth { 0.0 } else { INSIDE };
+    let is_smooth = to_refit.iter().flat_map(|(_, pieces, _)| pieces).all(|(local, _)| local.is_smooth);
+    let inset = if is_smooth { 0.0 } else { INSET };
     let mut n = 1;
     loop {
-        let mut fitted = Vec::with_capacity(left.len());
+        let mut fitted = Vec::with_capacity(to_refit.len());
         let mut distance = 0.0_f64;
-        for (_, pieces, _) in left {
+        for (_, pieces, _) in to_refit {
             let mut cells = Vec::with_capacity(pieces.len());
-            for (side, piece) in pieces {
+            for (local, piece) in pieces {
                 budget.spend(refit::work(piece, n))?;
-                let fit = refit::fit(piece, &side.map, n, inside);
+                let fit = refit::fit(piece, &local.map, n, inset);
                 distance = distance.max(fit.distance);
                 cells.push(fit);
             }
             fitted.push(cells);
         }
         if distance <= tolerance || n >= MAX_CELLS {
-            for ((i, _, breaks), cells) in left.iter().zip(&fitted) {
-                images[*i] = vec![refit::joined(&surfaces[*i], breaks, cells)];
+            for ((i, _, breaks), cells) in to_refit.iter().zip(&fitted) {
+                images[*i] = vec![refit::join_cells(&surfaces[*i], breaks, cells)];
             }
             return Ok(distance);
         }
@@ -168,8 +161,8 @@ fn examine(
     for piece in pieces {
         budget.spend((GRID * GRID) as f64)?;
         for k in 0..GRID * GRID {
-            let at = |i: usize| i as f64 / (GRID - 1) as f64;
-            let p = piece.point(at(k % GRID), at(k / GRID));
+            let [u, v] = [k % GRID, k / GRID].map(|i| i as f64 / (GRID - 1) as f64);
+            let p = piece.point(u, v);
             let jet = map.jet(p);
             if !jet.p.is_finite() || !creases.defined_at(p) {
                 return Err(PatchError::Undefined { surface, at: p });

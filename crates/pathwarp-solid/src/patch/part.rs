@@ -12,11 +12,11 @@ impl BezierPatch {
     #[must_use]
     pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Self {
         let rows = self.points.chunks(self.degree[0] + 1);
-        let across = Self { degree: self.degree, points: rows.flat_map(|row| section(row, from[0], to[0])).collect() };
-        let turned = across.transposed();
-        let columns = turned.points.chunks(turned.degree[0] + 1);
+        let points = rows.flat_map(|row| section(row, from[0], to[0])).collect();
+        let Self { degree, points } = Self { degree: self.degree, points }.transposed();
+        let columns = points.chunks(degree[0] + 1);
         let points = columns.flat_map(|column| section(column, from[1], to[1])).collect();
-        Self { degree: turned.degree, points }.transposed()
+        Self { degree, points }.transposed()
     }
 
     /// Returns the patch with u and v exchanged.
@@ -45,23 +45,23 @@ pub(super) fn section(points: &[DVec4], from: f64, to: f64) -> Vec<DVec4> {
 }
 
 /// A map as it acts on one patch: where a side of the patch lies in a crease, the branch on the patch's side applies.
-pub(super) struct Sided {
+pub(super) struct LocalMap {
     pub(super) map: Chain3,
     /// `true` if no crease crosses or touches the patch, as far as its bounding box shows.
-    pub(super) smooth: bool,
+    pub(super) is_smooth: bool,
 }
 
-impl Sided {
+impl LocalMap {
     pub(super) fn new(patch: &BezierPatch, map: &Chain3) -> Self {
-        let mut out = Self { map: Chain3::default(), smooth: true };
+        let mut out = Self { map: Chain3::default(), is_smooth: true };
         let mut on = patch.bounds();
         for step in map.steps() {
-            let own = on.and_then(|on| step.branch(&on));
-            out.smooth &= own.is_some() || !has_kinks(&**step);
-            let own = own.unwrap_or_else(|| Arc::clone(step));
+            let branch = on.and_then(|on| step.branch(&on));
+            out.is_smooth &= branch.is_some() || !has_kinks(&**step);
+            let local = branch.unwrap_or_else(|| Arc::clone(step));
             // The box of the image is only known for collineations.
-            on = on.zip(own.collineation()).and_then(|(on, c)| image(&on, c));
-            out.map.push(own);
+            on = on.zip(local.collineation()).and_then(|(on, c)| image_box(&on, c));
+            out.map.push(local);
         }
         out
     }
@@ -74,9 +74,9 @@ fn has_kinks(map: &dyn Map3) -> bool {
 }
 
 /// Returns the bounding box of a box's image, if the box is all in front of the vanishing plane.
-fn image(on: &Box3, map: &Collineation) -> Option<Box3> {
-    let ahead = on.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
-    if ahead { Box3::around(on.corners().map(|p| map.point(p))) } else { None }
+fn image_box(on: &Box3, map: &Collineation) -> Option<Box3> {
+    let is_in_front = on.corners().iter().all(|p| map.homogeneous(*p).w > 0.0);
+    if is_in_front { Box3::around(on.corners().map(|p| map.point(p))) } else { None }
 }
 
 #[cfg(test)]

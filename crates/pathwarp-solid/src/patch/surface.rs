@@ -1,6 +1,6 @@
 //! NURBS surfaces, and the Bézier patches they consist of.
 
-use crate::settings::Box3;
+use crate::settings::{Box3, grid};
 use glam::{DVec3, DVec4, Vec4Swizzles as _};
 
 /// A NURBS surface.
@@ -39,7 +39,7 @@ impl Surface {
     #[must_use]
     pub fn bezier(name: &str, degree: [usize; 2], points: Vec<DVec3>) -> Self {
         let weights = vec![1.0; points.len()];
-        let knots = degree.map(|d| single(d, [0.0, 1.0]));
+        let knots = degree.map(single);
         Self { name: name.to_owned(), degree, knots, points, weights, trims: Vec::new() }
     }
 
@@ -80,12 +80,11 @@ impl Surface {
     /// Returns a description of the first fault in the numbers, if there is one.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
-        let names = ["u", "v"];
-        for (a, name) in names.into_iter().enumerate() {
+        for (a, name) in ["u", "v"].into_iter().enumerate() {
             if !(1..=MAX_DEGREE).contains(&self.degree[a]) {
                 return Some(format!("has degree {} in {name}; degrees are 1 to {MAX_DEGREE}", self.degree[a]));
             }
-            if let Some(fault) = fault(self.degree[a], &self.knots[a]) {
+            if let Some(fault) = knot_fault(self.degree[a], &self.knots[a]) {
                 return Some(format!("{fault} (in {name})"));
             }
         }
@@ -94,12 +93,11 @@ impl Surface {
             return Some(format!("has {} control points; its degrees and knots take {nu} × {nv}", self.points.len()));
         }
         // The square of a larger number would overflow.
-        if let Some(i) =
-            self.points.iter().position(|p| p.abs().max_element().is_nan() || p.abs().max_element() > 1e100)
-        {
+        let is_too_large = |p: &DVec3| p.abs().max_element().is_nan() || p.abs().max_element() > 1e100;
+        if let Some(i) = self.points.iter().position(is_too_large) {
             return Some(format!("control point {} is not finite", i + 1));
         }
-        faulty_weights(&self.weights, self.points.len())
+        weight_fault(&self.weights, self.points.len())
             .or_else(|| self.trims.iter().flatten().find_map(|t| t.fault().map(|f| format!("a trimming curve {f}"))))
     }
 
@@ -122,11 +120,11 @@ impl TrimCurve {
         if self.points.iter().flatten().any(|v| !v.is_finite()) {
             return Some("has a control point that is not finite".into());
         }
-        fault(self.degree, &self.knots).or_else(|| faulty_weights(&self.weights, self.points.len()))
+        knot_fault(self.degree, &self.knots).or_else(|| weight_fault(&self.weights, self.points.len()))
     }
 }
 
-fn faulty_weights(weights: &[f64], points: usize) -> Option<String> {
+fn weight_fault(weights: &[f64], points: usize) -> Option<String> {
     if weights.len() != points {
         return Some(format!("has {} weights for {points} control points", weights.len()));
     }
@@ -162,13 +160,13 @@ impl BezierPatch {
     #[must_use]
     pub fn homogeneous(&self, u: f64, v: f64) -> [DVec4; 3] {
         let rows = self.points.chunks(self.degree[0] + 1).map(|row| curve(row.iter().copied(), u));
-        let (mut at, mut slope) = ([DVec4::ZERO; MAX_DEGREE + 1], [DVec4::ZERO; MAX_DEGREE + 1]);
-        for ((p, d), row) in at.iter_mut().zip(&mut slope).zip(rows) {
+        let (mut values, mut slopes) = ([DVec4::ZERO; MAX_DEGREE + 1], [DVec4::ZERO; MAX_DEGREE + 1]);
+        for ((p, d), row) in values.iter_mut().zip(&mut slopes).zip(rows) {
             (*p, *d) = row;
         }
         let n = self.degree[1] + 1;
-        let (value, dv) = curve(at[..n].iter().copied(), v);
-        [value, curve(slope[..n].iter().copied(), v).0, dv]
+        let (value, dv) = curve(values[..n].iter().copied(), v);
+        [value, curve(slopes[..n].iter().copied(), v).0, dv]
     }
 
     /// Returns the point at u and v.
@@ -186,8 +184,8 @@ impl BezierPatch {
     #[must_use]
     pub fn jet(&self, u: f64, v: f64) -> [DVec3; 3] {
         let [p, du, dv] = self.homogeneous(u, v);
-        let at = p.xyz() / p.w;
-        [at, (du.xyz() - at * du.w) / p.w, (dv.xyz() - at * dv.w) / p.w]
+        let point = p.xyz() / p.w;
+        [point, (du.xyz() - point * du.w) / p.w, (dv.xyz() - point * dv.w) / p.w]
     }
 
     /// Returns the bounding box of the control points.
@@ -295,20 +293,20 @@ impl Scaled {
     }
 }
 
-/// Returns the knots of a single Bézier span.
-pub(super) fn single(degree: usize, [from, to]: [f64; 2]) -> Vec<f64> {
-    joined(degree, &[from, to])
+/// Returns the knots of a single Bézier span over 0..1.
+pub(super) fn single(degree: usize) -> Vec<f64> {
+    bezier_knots(degree, &[0.0, 1.0])
 }
 
 /// Returns the knots of Bézier spans joined at these parameters.
-pub(super) fn joined(degree: usize, breaks: &[f64]) -> Vec<f64> {
+pub(super) fn bezier_knots(degree: usize, breaks: &[f64]) -> Vec<f64> {
     let last = breaks.len().saturating_sub(1);
     let times = |i: usize| if i == 0 || i == last { degree + 1 } else { degree };
     breaks.iter().enumerate().flat_map(|(i, b)| std::iter::repeat_n(*b, times(i))).collect()
 }
 
 /// Returns a description of the first fault in the knots, if there is one.
-fn fault(degree: usize, knots: &[f64]) -> Option<String> {
+fn knot_fault(degree: usize, knots: &[f64]) -> Option<String> {
     let n = knots.len();
     if n < 2 * (degree + 1) {
         return Some(format!("has {n} knots; degree {degree} takes {} or more", 2 * (degree + 1)));
@@ -316,17 +314,15 @@ fn fault(degree: usize, knots: &[f64]) -> Option<String> {
     if knots.iter().any(|k| !k.is_finite()) || knots.windows(2).any(|w| w[0] > w[1]) {
         return Some("has knots that are not in order".into());
     }
-    let clamped = knots[0] == knots[degree] && knots[n - 1] == knots[n - 1 - degree];
-    if !clamped || knots[0] == knots[n - 1] {
-        return Some(format!(
-            "has knots that are not clamped: the first and the last must be repeated {} times",
-            degree + 1
-        ));
+    let is_clamped = knots[0] == knots[degree] && knots[n - 1] == knots[n - 1 - degree];
+    if !is_clamped || knots[0] == knots[n - 1] {
+        let times = degree + 1;
+        return Some(format!("has knots that are not clamped: the first and the last must be repeated {times} times"));
     }
-    let torn = knots[1..n - 1].windows(degree + 1).any(|w| w[0] == w[degree]);
-    torn.then(|| {
-        format!("has a knot repeated more than {degree} times, where it falls apart; store its parts one by one")
-    })
+    let is_torn = knots[1..n - 1].windows(degree + 1).any(|w| w[0] == w[degree]);
+    let torn =
+        || format!("has a knot repeated more than {degree} times, where it falls apart; store its parts one by one");
+    is_torn.then(torn)
 }
 
 /// Returns the distinct knots.
@@ -374,18 +370,14 @@ fn pieces(
 ) -> (Vec<BezierPatch>, [Vec<f64>; 2]) {
     let rows: Vec<Vec<DVec4>> = points.chunks(nu).map(|row| bezier_row(degree[0], &knots[0], row)).collect();
     let width = rows.first().map_or(0, Vec::len);
-    let columns: Vec<Vec<DVec4>> = (0..width)
-        .map(|i| {
-            let column: Vec<DVec4> = rows.iter().map(|r| r[i]).collect();
-            bezier_row(degree[1], &knots[1], &column)
-        })
-        .collect();
+    let column = |i: usize| bezier_row(degree[1], &knots[1], &rows.iter().map(|r| r[i]).collect::<Vec<_>>());
+    let columns: Vec<Vec<DVec4>> = (0..width).map(column).collect();
     let breaks = [breaks(&knots[0]), breaks(&knots[1])];
     let [spans_u, spans_v] = [breaks[0].len() - 1, breaks[1].len() - 1];
     let piece = |n: usize| {
-        let (i, j) = (n % spans_u * degree[0], n / spans_u * degree[1]);
-        let points = (0..=degree[1]).flat_map(|b| (0..=degree[0]).map(move |a| (a, b)));
-        BezierPatch { degree, points: points.map(|(a, b)| columns[i + a][j + b]).collect() }
+        let (i, j) = ((n % spans_u) * degree[0], (n / spans_u) * degree[1]);
+        let points = grid([degree[0] + 1, degree[1] + 1, 1]).map(|[a, b, _]| columns[i + a][j + b]);
+        BezierPatch { degree, points: points.collect() }
     };
     ((0..spans_u * spans_v).map(piece).collect(), breaks)
 }
@@ -478,8 +470,8 @@ mod tests {
             (&[1.0, 1.0, 1.0, 1.0], "clamped"),
             (&[0.0, 0.0, 1.0, 1.0, 2.0, 2.0], "more than 1"),
         ] {
-            assert!(fault(1, knots).unwrap().contains(part), "{knots:?}: {:?}", fault(1, knots));
+            assert!(knot_fault(1, knots).unwrap().contains(part), "{knots:?}: {:?}", knot_fault(1, knots));
         }
-        assert_eq!(fault(2, &joined(2, &[0.0, 1.0, 3.0])), None);
+        assert_eq!(knot_fault(2, &bezier_knots(2, &[0.0, 1.0, 3.0])), None);
     }
 }

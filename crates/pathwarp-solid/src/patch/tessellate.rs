@@ -3,7 +3,8 @@
 use super::surface::{BezierPatch, Surface};
 use super::trims::Trims;
 use crate::map::{Chain3, Map3};
-use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind};
+use crate::mesh::{Corner, Mark, Mesh, NONE, PolygonKind, index32};
+use crate::settings::grid;
 use glam::DVec3;
 use pathwarp::budget::{Budget, Exceeded, cost};
 use std::collections::HashMap;
@@ -40,7 +41,7 @@ pub fn tessellate_image(
 ) -> Result<Mesh, Exceeded> {
     let patches: Vec<(usize, BezierPatch)> =
         surfaces.iter().enumerate().flat_map(|(n, s)| s.pieces().0.into_iter().map(move |p| (n, p))).collect();
-    let trims: Vec<Option<Polygons>> = surfaces.iter().flat_map(trimmed).collect();
+    let trims: Vec<Option<Polygons>> = surfaces.iter().flat_map(loops_of_patches).collect();
     let corners: usize = trims.iter().flatten().flatten().map(Vec::len).sum();
     let work: usize = patches.iter().map(|(_, p)| p.work()).sum();
     let mut side = match within {
@@ -48,6 +49,7 @@ pub fn tessellate_image(
         Some(_) => 1,
         None => DEFAULT_SIDE,
     };
+    // Testing a quad against a side of a loop takes about a tenth of an evaluation.
     budget.spend((corners * side * side) as f64 * 0.1)?;
     if let Some(within) = within {
         // Powers of two, so that parameters counted from either end of an edge are equal numbers.
@@ -61,15 +63,14 @@ pub fn tessellate_image(
     }
     budget.spend((work * (side + 1) * (side + 1)) as f64 + cost::SEGMENT * (patches.len() * side * side) as f64)?;
     let mut mesh = Mesh::default();
-    let mut places: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut known: HashMap<[u64; 3], u32> = HashMap::new();
     let mut last = None;
     for ((n, patch), trims) in patches.iter().zip(&trims) {
         if last != Some(n) && !surfaces[*n].name.is_empty() {
-            let first = u32::try_from(mesh.polygons.len()).unwrap_or(NONE);
-            mesh.marks.push((first, Mark::Object(surfaces[*n].name.clone())));
+            mesh.mark(Mark::Object(surfaces[*n].name.clone()));
         }
         last = Some(n);
-        quads(&mut mesh, &mut places, (patch, trims.as_ref()), map, side);
+        add_quads(&mut mesh, &mut known, (patch, trims.as_ref()), map, side);
     }
     Ok(mesh)
 }
@@ -78,9 +79,9 @@ pub fn tessellate_image(
 type Polygons = Vec<Vec<[f64; 2]>>;
 
 /// Returns the trimming loops of a surface's patches, u fastest; `None` for a whole patch.
-fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
+fn loops_of_patches(surface: &Surface) -> Vec<Option<Polygons>> {
     let (pieces, [us, vs]) = surface.pieces();
-    let Some(trims) = Trims::of(surface) else { return vec![None; pieces.len()] };
+    let Some(trims) = Trims::from_surface(surface) else { return vec![None; pieces.len()] };
     let spans = |k: &[f64]| k.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
     let (us, vs) = (spans(&us), spans(&vs));
     let part = |(u, v): ((f64, f64), (f64, f64))| trims.part([u.0, v.0], [u.1, v.1]).map(|t| t.polygons());
@@ -90,7 +91,7 @@ fn trimmed(surface: &Surface) -> Vec<Option<Polygons>> {
 }
 
 /// Returns `true` if an odd number of polygons surrounds a point.
-fn surrounded(polygons: &Polygons, [x, y]: [f64; 2]) -> bool {
+fn is_surrounded(polygons: &Polygons, [x, y]: [f64; 2]) -> bool {
     let crosses = |(a, b): (&[f64; 2], &[f64; 2])| {
         (a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])
     };
@@ -98,46 +99,43 @@ fn surrounded(polygons: &Polygons, [x, y]: [f64; 2]) -> bool {
     polygons.iter().map(crossings).sum::<usize>() % 2 == 1
 }
 
-fn quads(
+/// Adds the quads of a patch. `known` holds the vertices so far, by their coordinates.
+fn add_quads(
     mesh: &mut Mesh,
-    places: &mut HashMap<[u64; 3], u32>,
+    known: &mut HashMap<[u64; 3], u32>,
     (patch, trims): (&BezierPatch, Option<&Polygons>),
     map: &dyn Map3,
     side: usize,
 ) {
-    let at = |i: usize| i as f64 / side as f64;
-    let mut vertex = |p: DVec3| {
+    let vertex = |[i, j, _]: [usize; 3]| {
+        let p: DVec3 = map.point(patch.point(i as f64 / side as f64, j as f64 / side as f64));
         // Adding 0 turns −0 into 0.
-        *places.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
+        *known.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
             mesh.positions.push(p);
-            u32::try_from(mesh.positions.len() - 1).unwrap_or(NONE)
+            index32(mesh.positions.len() - 1)
         })
     };
-    let grid: Vec<u32> = (0..=side)
-        .flat_map(|j| (0..=side).map(move |i| (i, j)))
-        .map(|(i, j)| vertex(map.point(patch.point(at(i), at(j)))))
-        .collect();
-    for j in 0..side {
-        for i in 0..side {
-            let middle = [i, j].map(|k| (k as f64 + 0.5) / side as f64);
-            if trims.is_some_and(|t| !surrounded(t, middle)) {
-                continue;
-            }
-            let k = j * (side + 1) + i;
-            let mut corners = vec![grid[k], grid[k + 1], grid[k + side + 2], grid[k + side + 1]];
-            // At a pole, an edge has no length.
-            corners.dedup();
-            if corners.len() > 1 && corners.first() == corners.last() {
-                corners.pop();
-            }
-            let kind = match corners.len() {
-                2 if j == 0 && grid[k] == grid[k + (side + 1) * side] => PolygonKind::Line,
-                0..=2 => continue,
-                _ => PolygonKind::Face,
-            };
-            let corner = |vertex| Corner { vertex, uv: NONE, normal: NONE };
-            mesh.push(kind, corners.into_iter().map(corner));
+    let vertices: Vec<u32> = grid([side + 1, side + 1, 1]).map(vertex).collect();
+    for [i, j, _] in grid([side, side, 1]) {
+        let middle = [i, j].map(|k| (k as f64 + 0.5) / side as f64);
+        if trims.is_some_and(|t| !is_surrounded(t, middle)) {
+            continue;
         }
+        let k = j * (side + 1) + i;
+        let mut corners = vec![vertices[k], vertices[k + 1], vertices[k + side + 2], vertices[k + side + 1]];
+        // At a pole, an edge has no length.
+        corners.dedup();
+        if corners.len() > 1 && corners.first() == corners.last() {
+            corners.pop();
+        }
+        let kind = match corners.len() {
+            // Both rows of a curve are equal.
+            2 if j == 0 && vertices[k] == vertices[k + (side + 1) * side] => PolygonKind::Line,
+            0..=2 => continue,
+            _ => PolygonKind::Face,
+        };
+        let corner = |vertex| Corner { vertex, uv: NONE, normal: NONE };
+        mesh.push(kind, corners.into_iter().map(corner));
     }
 }
 

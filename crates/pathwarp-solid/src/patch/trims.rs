@@ -25,7 +25,7 @@ pub(super) struct Trims(Vec<Vec<Curve>>);
 
 impl Trims {
     /// Returns the loops of a surface in its parameters, or `None` if it is not trimmed.
-    pub(super) fn of(surface: &Surface) -> Option<Self> {
+    pub(super) fn from_surface(surface: &Surface) -> Option<Self> {
         let curves = |t: &TrimCurve| {
             let points = t.points.iter().zip(&t.weights).map(|([u, v], w)| DVec4::new(u * w, v * w, 0.0, *w));
             let row = surface::bezier_row(t.degree, &t.knots, &points.collect::<Vec<_>>());
@@ -52,49 +52,49 @@ impl Trims {
 
     /// Returns the loops of the part over `from[0]`..`to[0]` × `from[1]`..`to[1]`, or `None` if all of it belongs to the surface.
     pub(super) fn part(&self, from: [f64; 2], to: [f64; 2]) -> Option<Self> {
-        let moved = |p: &DVec4| {
-            let at = |a: usize| (p[a] - from[a] * p.w) / (to[a] - from[a]);
-            DVec4::new(at(0), at(1), 0.0, p.w)
+        let to_part = |p: &DVec4| {
+            let coordinate = |a: usize| (p[a] - from[a] * p.w) / (to[a] - from[a]);
+            DVec4::new(coordinate(0), coordinate(1), 0.0, p.w)
         };
         let sides = [DVec4::X, DVec4::W - DVec4::X, DVec4::Y, DVec4::W - DVec4::Y];
-        let own = |curves: &Vec<Curve>| {
-            let curves = curves.iter().map(|c| c.iter().map(moved).collect()).collect();
-            sides.iter().fold(curves, |curves: Vec<Curve>, side| clipped(&curves, *side))
+        let clip_all = |curves: &Vec<Curve>| {
+            let curves = curves.iter().map(|c| c.iter().map(to_part).collect()).collect();
+            sides.iter().fold(curves, |curves: Vec<Curve>, side| clip(&curves, *side))
         };
-        Self(self.0.iter().map(own).collect()).reduced()
+        Self(self.0.iter().map(clip_all).collect()).reduced()
     }
 
     /// Returns the loops with u and v exchanged.
     pub(super) fn transposed(&self) -> Self {
-        let turn = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
-        Self(self.0.iter().map(|l| l.iter().map(turn).collect()).collect())
+        let swap = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
+        Self(self.0.iter().map(|l| l.iter().map(swap).collect()).collect())
     }
 
-    /// Returns the loops of a layer between two graphs, as cubics within `off` of the exact ones, or `None` if all of the layer belongs to
-    /// the surface. In the coordinates of the layer, the graphs are t = 0 and t = 1.
-    pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, off: f64) -> Option<Self> {
-        let place = |p: [f64; 2]| {
+    /// Returns the loops of a layer between two graphs, as cubics within a tolerance, or `None` if all of the layer belongs to the surface.
+    /// In the coordinates of the layer, the graphs are t = 0 and t = 1.
+    pub(super) fn layer(&self, graphs: &Graphs<'_>, layer: usize, tolerance: f64) -> Option<Self> {
+        let to_layer = |p: [f64; 2]| {
             let [low, high] = graphs.sides(layer, p[0]).map(|side| side[0]);
             // Where the sides meet, a point is below both or above both.
             [p[0], (p[1] - low) / (high - low).max(ROUNDING)]
         };
-        let own = |curves: &Vec<Curve>| {
-            let mut layer = InLayer { off, ..InLayer::default() };
-            layer.beyond = curves.last().and_then(|c| side_of(place(point(c, 1.0 - SAME))[1]));
+        let follow_all = |curves: &Vec<Curve>| {
+            let mut layer = InLayer { tolerance, ..InLayer::default() };
+            layer.beyond = curves.last().and_then(|c| side_of(to_layer(point(c, 1.0 - ON_SIDE))[1]));
             for curve in curves {
-                let at = |t: f64| place(point(curve, t));
-                spans(&at).into_iter().for_each(|span| layer.follow(&at, span));
+                let point_at = |t: f64| to_layer(point(curve, t));
+                spans(&point_at).into_iter().for_each(|span| layer.follow(&point_at, span));
             }
             layer.kept.closed()
         };
-        Self(self.0.iter().map(own).collect()).reduced()
+        Self(self.0.iter().map(follow_all).collect()).reduced()
     }
 
     /// Returns the loops as trimming curves of a surface.
     pub(super) fn curves(&self) -> Vec<Vec<TrimCurve>> {
         let curve = |c: &Curve| TrimCurve {
             degree: c.len() - 1,
-            knots: surface::single(c.len() - 1, [0.0, 1.0]),
+            knots: surface::single(c.len() - 1),
             points: c.iter().map(|p| [p.x / p.w, p.y / p.w]).collect(),
             weights: c.iter().map(|p| p.w).collect(),
         };
@@ -117,25 +117,20 @@ impl Trims {
 }
 
 /// Distance from a side within which parameters of a fitted loop count as on it.
-const SAME: f64 = 1e-9;
+const ON_SIDE: f64 = 1e-9;
 
 /// Returns the side beyond which a height is, `true` for t = 1; `None` inside the layer.
 fn side_of(t: f64) -> Option<bool> {
-    if (-SAME..=1.0 + SAME).contains(&t) { None } else { Some(t > 0.5) }
+    if (-ON_SIDE..=1.0 + ON_SIDE).contains(&t) { None } else { Some(t > 0.5) }
 }
 
-fn on_sides([s, t]: [f64; 2]) -> [f64; 2] {
-    let t = t.clamp(0.0, 1.0);
-    [
-        s,
-        if t < SAME {
-            0.0
-        } else if t > 1.0 - SAME {
-            1.0
-        } else {
-            t
-        },
-    ]
+/// Moves a point into the layer, and onto a side that it is near.
+fn snap([s, t]: [f64; 2]) -> [f64; 2] {
+    match t.clamp(0.0, 1.0) {
+        t if t < ON_SIDE => [s, 0.0],
+        t if t > 1.0 - ON_SIDE => [s, 1.0],
+        t => [s, t],
+    }
 }
 
 fn point(curve: &Curve, t: f64) -> [f64; 2] {
@@ -150,8 +145,7 @@ fn line([a, b]: [[f64; 2]; 2]) -> Curve {
 /// Returns the polygon with many corners on each curve of a loop.
 fn polygon(curves: &[Curve]) -> Vec<[f64; 2]> {
     const CORNERS: usize = 16;
-    let on = |c: &Curve| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64)).collect::<Vec<_>>();
-    curves.iter().flat_map(on).collect()
+    curves.iter().flat_map(|c| (0..CORNERS).map(|i| point(c, i as f64 / CORNERS as f64))).collect()
 }
 
 /// Returns the area inside a loop, approximated by the area of its polygon. Exact if all curves are straight.
@@ -165,7 +159,9 @@ fn area(curves: &[Curve]) -> f64 {
 #[derive(Default)]
 struct Kept {
     curves: Vec<Curve>,
+    /// `true` if curves were omitted after the last one that is kept.
     gap: bool,
+    /// `true` if curves were omitted before the first one.
     gap_first: bool,
 }
 
@@ -209,47 +205,48 @@ struct InLayer {
     beyond: Option<bool>,
     /// The point that the loop has reached.
     last: [f64; 2],
-    off: f64,
+    tolerance: f64,
 }
 
 impl InLayer {
     /// Follows a curve between two of its parameters, where it is all inside the layer or all beyond one side.
-    fn follow(&mut self, at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2]) {
+    fn follow(&mut self, curve: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2]) {
         let height = |side: bool| f64::from(u8::from(side));
-        let (start, side) = (on_sides(at(from)), side_of(at(0.5 * (from + to))[1]));
+        let (start, side) = (snap(curve(from)), side_of(curve(0.5 * (from + to))[1]));
         match (self.beyond, side) {
-            (Some(old), Some(new)) if old != new => self.across(start[0], height(old), height(new)),
-            (Some(old), None) => self.across(start[0], height(old), start[1]),
-            (None, Some(new)) if !self.kept.curves.is_empty() => self.across(self.last[0], self.last[1], height(new)),
+            (Some(old), Some(new)) if old != new => self.cross(start[0], height(old), height(new)),
+            (Some(old), None) => self.cross(start[0], height(old), start[1]),
+            (None, Some(new)) if !self.kept.curves.is_empty() => self.cross(self.last[0], self.last[1], height(new)),
             _ => {}
         }
         if side.is_some() {
             self.kept.leave_out();
         } else {
-            let curves = fitted(&|t| on_sides(at(t)), [from, to], self.off, MAX_HALVINGS);
+            let curves = fit_cubics(&|t| snap(curve(t)), [from, to], self.tolerance, MAX_HALVINGS);
             curves.into_iter().for_each(|c| self.kept.add(c));
         }
-        (self.beyond, self.last) = (side, on_sides(at(to)));
+        (self.beyond, self.last) = (side, snap(curve(to)));
     }
 
-    fn across(&mut self, s: f64, from: f64, to: f64) {
-        if (from - to).abs() > SAME {
+    /// Adds a line across the layer.
+    fn cross(&mut self, s: f64, from: f64, to: f64) {
+        if (from - to).abs() > ON_SIDE {
             self.kept.add(line([[s, from], [s, to]]));
         }
     }
 }
 
 /// Clips a loop: omits the parts where a linear form in (u, v, 0, 1) is negative.
-fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
+fn clip(curves: &[Curve], side: DVec4) -> Vec<Curve> {
     let mut kept = Kept::default();
     for curve in curves {
-        let values: Vec<f64> = curve.iter().map(|p| above(side, *p)).collect();
+        let values: Vec<f64> = curve.iter().map(|p| height_above(side, *p)).collect();
         let mut cuts = vec![0.0];
         roots(&values, 0.0, 1.0, &mut cuts);
         cuts.push(1.0);
         for w in cuts.windows(2).filter(|w| w[0] < w[1]) {
             let piece = if cuts.len() == 2 { curve.clone() } else { section(curve, w[0], w[1]) };
-            if above(side, surface::curve(piece.iter().copied(), 0.5).0) >= 0.0 {
+            if height_above(side, surface::curve(piece.iter().copied(), 0.5).0) >= 0.0 {
                 kept.add(piece);
             } else {
                 kept.leave_out();
@@ -260,7 +257,7 @@ fn clipped(curves: &[Curve], side: DVec4) -> Vec<Curve> {
 }
 
 /// Returns the value of a linear form at a point; 0 if the point is on the side.
-fn above(side: DVec4, p: DVec4) -> f64 {
+fn height_above(side: DVec4, p: DVec4) -> f64 {
     let v = side.dot(p);
     if v.abs() <= ROUNDING * p.w { 0.0 } else { v }
 }
@@ -292,32 +289,32 @@ fn roots(c: &[f64], from: f64, to: f64, out: &mut Vec<f64>) {
 }
 
 /// Returns the parts of 0..1 between the parameters where the second coordinate passes 0 or 1.
-fn spans(at: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
-    let place = |i: usize| i as f64 / STEPS as f64;
-    let values: Vec<f64> = (0..=STEPS).map(|i| at(place(i))[1]).collect();
+fn spans(curve: &dyn Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+    let parameter = |i: usize| i as f64 / STEPS as f64;
+    let values: Vec<f64> = (0..=STEPS).map(|i| curve(parameter(i))[1]).collect();
     let mut cuts = vec![0.0, 1.0];
     for level in [0.0, 1.0] {
-        let beyond = |t: f64| at(t)[1] > level;
-        let mut pass = |mut a: f64, mut b: f64| {
-            let from = beyond(a);
+        let is_above = |t: f64| curve(t)[1] > level;
+        let mut add_crossing = |mut a: f64, mut b: f64| {
+            let starts_above = is_above(a);
             for _ in 0..48 {
                 let m = 0.5 * (a + b);
-                if beyond(m) == from { a = m } else { b = m }
+                if is_above(m) == starts_above { a = m } else { b = m }
             }
             cuts.push(b);
         };
         for i in 0..STEPS {
             if (values[i] > level) != (values[i + 1] > level) {
-                pass(place(i), place(i + 1));
+                add_crossing(parameter(i), parameter(i + 1));
             } else if i > 0 && (values[i - 1] > level) == (values[i] > level) {
                 // Near its extremum, the coordinate may pass the level twice.
-                let off = |k: usize| (values[k] - level).abs();
-                if off(i) <= off(i - 1).min(off(i + 1)) {
+                let distance = |k: usize| (values[k] - level).abs();
+                if distance(i) <= distance(i - 1).min(distance(i + 1)) {
                     let sign = if values[i] > level { 1.0 } else { -1.0 };
-                    let turn = minimum(&|t| sign * (at(t)[1] - level), place(i - 1), place(i + 1));
-                    if beyond(turn) != (values[i] > level) {
-                        pass(place(i - 1), turn);
-                        pass(turn, place(i + 1));
+                    let turn = minimum(&|t| sign * (curve(t)[1] - level), parameter(i - 1), parameter(i + 1));
+                    if is_above(turn) != (values[i] > level) {
+                        add_crossing(parameter(i - 1), turn);
+                        add_crossing(turn, parameter(i + 1));
                     }
                 }
             }
@@ -336,22 +333,22 @@ fn minimum(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     0.5 * (a + b)
 }
 
-/// Returns cubics, each through four points of a curve and within `off` of it at three others.
-fn fitted(at: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], off: f64, depth: usize) -> Vec<Curve> {
-    let place = |t: f64| at(from + t * (to - from));
-    let [a, p, q, d] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(place);
+/// Returns cubics, each through four points of a curve and within a tolerance of it at three others.
+fn fit_cubics(curve: &dyn Fn(f64) -> [f64; 2], [from, to]: [f64; 2], tolerance: f64, depth: usize) -> Vec<Curve> {
+    let exact = |t: f64| curve(from + t * (to - from));
+    let [a, p, q, d] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(exact);
     let inner = |a: f64, p: f64, q: f64, d: f64| (-5.0 * a + 18.0 * p - 9.0 * q + 2.0 * d) / 6.0;
     let [b, c] = [[a, p, q, d], [d, q, p, a]].map(|[a, p, q, d]| [0, 1].map(|k| inner(a[k], p[k], q[k], d[k])));
     let cubic: Curve = [a, b, c, d].map(|[u, v]| DVec4::new(u, v, 0.0, 1.0)).to_vec();
-    let near = |t: f64| {
-        let (own, truth) = (point(&cubic, t), place(t));
-        (own[0] - truth[0]).hypot(own[1] - truth[1]) <= off
+    let is_close = |t: f64| {
+        let (fit, truth) = (point(&cubic, t), exact(t));
+        (fit[0] - truth[0]).hypot(fit[1] - truth[1]) <= tolerance
     };
-    if depth == 0 || [1.0 / 6.0, 0.5, 5.0 / 6.0].into_iter().all(near) {
+    if depth == 0 || [1.0 / 6.0, 0.5, 5.0 / 6.0].into_iter().all(is_close) {
         return vec![cubic];
     }
     let middle = 0.5 * (from + to);
-    [[from, middle], [middle, to]].into_iter().flat_map(|part| fitted(at, part, off, depth - 1)).collect()
+    [[from, middle], [middle, to]].into_iter().flat_map(|part| fit_cubics(curve, part, tolerance, depth - 1)).collect()
 }
 
 #[cfg(test)]
@@ -367,7 +364,7 @@ mod tests {
         (0..4)
             .map(|k| TrimCurve {
                 degree: 2,
-                knots: surface::single(2, [0.0, 1.0]),
+                knots: surface::single(2),
                 points: (0..3).map(|i| corner(2 * k + i)).map(|[x, y]| [u + r * x, v + r * y]).collect(),
                 weights: vec![1.0, 0.5f64.sqrt(), 1.0],
             })
@@ -375,7 +372,7 @@ mod tests {
     }
 
     fn trimmed(loops: Vec<Vec<TrimCurve>>) -> Trims {
-        Trims::of(&Surface { trims: loops, ..Surface::default() }).unwrap()
+        Trims::from_surface(&Surface { trims: loops, ..Surface::default() }).unwrap()
     }
 
     #[test]

@@ -35,8 +35,9 @@ impl<'a> Cost<'a> {
     /// The cost of a map whose evaluation takes `work`.
     #[must_use]
     pub const fn new(work: f64) -> Self {
-        const SINGLY: f64 = 3.0;
-        Self { work, jet: 1.0 + SINGLY * (work - 1.0).max(0.0), batches: None, searches: None }
+        /// The factor by which the work beyond that of a net grows for a jet alone.
+        const ALONE: f64 = 3.0;
+        Self { work, jet: 1.0 + ALONE * (work - 1.0).max(0.0), batches: None, searches: None }
     }
 
     setters! {
@@ -100,12 +101,11 @@ impl fmt::Debug for Gathered<'_> {
 /// Results by the bits of their points.
 type Cache<T> = HashMap<Key, T, BuildHasherDefault<Mixer>>;
 
-/// The key of a point: the bits of its coordinates.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Key(u64, u64);
+/// The bits of a point's coordinates.
+type Key = (u64, u64);
 
 fn key(p: Point) -> Key {
-    Key(p.x.to_bits(), p.y.to_bits())
+    (p.x.to_bits(), p.y.to_bits())
 }
 
 /// A hash of coordinates. The points are computed, so they cannot be chosen to collide.
@@ -140,58 +140,53 @@ impl<'a> Gathered<'a> {
 }
 
 /// The points of `ps` that are not in the cache.
-fn unknown<T>(cache: &Mutex<Cache<T>>, ps: &[Point]) -> Vec<Point> {
+fn missing<T>(cache: &Mutex<Cache<T>>, ps: &[Point]) -> Vec<Point> {
     let known = cache.lock().unwrap_or_else(PoisonError::into_inner);
     ps.iter().filter(|p| !known.contains_key(&key(**p))).copied().collect()
 }
 
-/// Stores the answers for `ps`.
-fn remember<T: Copy>(cache: &Mutex<Cache<T>>, ps: &[Point], answers: &[T]) {
+/// Stores the results at `ps`.
+fn remember<T: Copy>(cache: &Mutex<Cache<T>>, ps: &[Point], results: &[T]) {
     let mut known = cache.lock().unwrap_or_else(PoisonError::into_inner);
     if known.len() > MAX_CACHED {
         known.clear();
     }
-    known.extend(ps.iter().map(|p| key(*p)).zip(answers.iter().copied()));
+    known.extend(ps.iter().map(|p| key(*p)).zip(results.iter().copied()));
 }
 
-/// Copies the answers for `ps` to `out`, asking for the missing ones in one call.
-fn recall<T: Copy + Default>(cache: &Mutex<Cache<T>>, ps: &[Point], out: &mut [T], ask: impl Fn(&[Point], &mut [T])) {
-    let (mut missing, mut places) = (Vec::new(), Vec::new());
+/// Copies the results at `ps` to `out`, and computes the missing ones in one call of `compute`.
+fn recall<T: Copy + Default>(
+    cache: &Mutex<Cache<T>>,
+    ps: &[Point],
+    out: &mut [T],
+    compute: impl Fn(&[Point], &mut [T]),
+) {
+    let (mut missing, mut slots) = (Vec::new(), Vec::new());
     let known = cache.lock().unwrap_or_else(PoisonError::into_inner);
     for (p, o) in ps.iter().zip(out.iter_mut()) {
         match known.get(&key(*p)) {
-            Some(answer) => *o = *answer,
+            Some(result) => *o = *result,
             None => {
                 missing.push(*p);
-                places.push(o);
+                slots.push(o);
             }
         }
     }
-    // Other threads need not wait for the answer.
+    // Other threads need not wait for the results.
     drop(known);
     if missing.is_empty() {
         return;
     }
-    let mut answers = vec![T::default(); missing.len()];
-    ask(&missing, &mut answers);
-    remember(cache, &missing, &answers);
-    for (o, answer) in places.into_iter().zip(answers) {
-        *o = answer;
+    let mut results = vec![T::default(); missing.len()];
+    compute(&missing, &mut results);
+    remember(cache, &missing, &results);
+    for (slot, result) in slots.into_iter().zip(results) {
+        *slot = result;
     }
 }
 
 impl Map for Gathered<'_> {
-    fn jet(&self, p: Point) -> Jet {
-        let mut out = [Jet::default()];
-        self.jets(&[p], &mut out);
-        out[0]
-    }
-
-    fn point(&self, p: Point) -> Point {
-        let mut out = [Point::ORIGIN];
-        self.points(&[p], &mut out);
-        out[0]
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         recall(&self.jets, ps, out, |ps, out| self.map.jets(ps, out));
@@ -199,30 +194,6 @@ impl Map for Gathered<'_> {
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         recall(&self.points, ps, out, |ps, out| self.map.points(ps, out));
-    }
-
-    fn class(&self) -> Class {
-        self.map.class()
-    }
-
-    fn creases(&self, out: &mut Creases) {
-        self.map.creases(out);
-    }
-
-    fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        self.map.branch(inside)
-    }
-
-    fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        self.map.image(curve)
-    }
-
-    fn denominator(&self, p: Point) -> f64 {
-        self.map.denominator(p)
-    }
-
-    fn inverse(&self) -> Option<Arc<dyn Map>> {
-        self.map.inverse()
     }
 
     fn cost(&self) -> Cost<'_> {
@@ -233,9 +204,11 @@ impl Map for Gathered<'_> {
         self.map.enclose(along)
     }
 
-    fn detail(&self, area: Rect) -> Option<f64> {
-        self.map.detail(area)
+    fn inverse(&self) -> Option<Arc<dyn Map>> {
+        self.map.inverse()
     }
+
+    forward_common!(self => Map, self.map);
 }
 
 impl Batches for Gathered<'_> {
@@ -248,7 +221,7 @@ impl Batches for Gathered<'_> {
     }
 
     fn prepare(&self, points: &[Point], jets: &[Point]) {
-        let (ps, qs) = (unknown(&self.points, points), unknown(&self.jets, jets));
+        let (ps, qs) = (missing(&self.points, points), missing(&self.jets, jets));
         if ps.is_empty() && qs.is_empty() {
             return;
         }
@@ -274,14 +247,14 @@ const MAX_ROUNDS: usize = 100;
 
 /// The jets known so far, and the unknown ones asked for in this round.
 #[derive(Default)]
-struct Replay {
+struct KnownJets {
     known: Cache<Jet>,
     missing: Mutex<Vec<Point>>,
     /// `true` once the current computation has asked for an unknown jet. Its result and its further questions mean nothing.
     stopped: AtomicBool,
 }
 
-impl Map for Replay {
+impl Map for KnownJets {
     fn jet(&self, p: Point) -> Jet {
         if let Some(jet) = self.known.get(&key(p)) {
             return *jet;
@@ -293,25 +266,25 @@ impl Map for Replay {
     }
 }
 
-/// Computes `f` of every item under `map`. `f` must ask for jets only, and end soon after an undefined one.
+/// Computes `f` of the map and every item. `f` must ask for jets only, and end soon after an undefined one.
 pub(super) fn by_rounds<T, R>(map: &dyn Map, items: &[T], f: impl Fn(&dyn Map, &T) -> R) -> Vec<R> {
-    let mut replay = Replay::default();
+    let mut jets_so_far = KnownJets::default();
     let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
     for _ in 0..MAX_ROUNDS {
         for (item, result) in items.iter().zip(&mut results).filter(|(_, r)| r.is_none()) {
-            replay.stopped.store(false, Ordering::Relaxed);
-            let found = f(&replay, item);
-            if !replay.stopped.load(Ordering::Relaxed) {
+            jets_so_far.stopped.store(false, Ordering::Relaxed);
+            let found = f(&jets_so_far, item);
+            if !jets_so_far.stopped.load(Ordering::Relaxed) {
                 *result = Some(found);
             }
         }
-        let missing = std::mem::take(replay.missing.get_mut().unwrap_or_else(PoisonError::into_inner));
+        let missing = std::mem::take(jets_so_far.missing.get_mut().unwrap_or_else(PoisonError::into_inner));
         if missing.is_empty() {
             break;
         }
         let mut jets = vec![Jet::default(); missing.len()];
         map.jets(&missing, &mut jets);
-        replay.known.extend(missing.iter().map(|p| key(*p)).zip(jets));
+        jets_so_far.known.extend(missing.iter().map(|p| key(*p)).zip(jets));
     }
     items.iter().zip(results).map(|(item, result)| result.unwrap_or_else(|| f(map, item))).collect()
 }
@@ -337,9 +310,10 @@ pub(super) struct Target {
 
 /// The search for one target's preimage.
 struct BroydenSearch {
+    /// The index of the target.
     index: usize,
     q: Point,
-    at: Point,
+    x: Point,
     residual: Vec2,
     /// The columns of H.
     inverse: [Vec2; 2],
@@ -352,14 +326,14 @@ impl BroydenSearch {
     }
 
     /// Steps to a point whose image is known. Returns `false`, and stays, if the residual does not shrink enough.
-    fn step(&mut self, to: Point, image: Point) -> bool {
+    fn step(&mut self, next: Point, image: Point) -> bool {
         let residual = self.q - image;
         // Also false where the map is undefined and the residual NaN.
         let shrinks = residual.hypot() < SHRINKAGE * self.residual.hypot();
         if !shrinks {
             return false;
         }
-        let (s, y) = (to - self.at, self.residual - residual);
+        let (s, y) = (next - self.x, self.residual - residual);
         let explained = self.times(y);
         let scale = 1.0 / s.dot(explained);
         if scale.is_finite() {
@@ -368,36 +342,36 @@ impl BroydenSearch {
                 *column += (s - explained) * v;
             }
         }
-        (self.at, self.residual) = (to, residual);
+        (self.x, self.residual) = (next, residual);
         true
     }
 }
 
-/// For each target, a point whose image is at most `enough` from it, if one is found.
-pub(super) fn broyden(map: &dyn Map, targets: &[Option<Target>], enough: f64) -> Vec<Option<Point>> {
+/// For each target, a point whose image is at most `tolerance` from it, if one is found.
+pub(super) fn broyden(map: &dyn Map, targets: &[Option<Target>], tolerance: f64) -> Vec<Option<Point>> {
     let mut found = vec![None; targets.len()];
     let search = |(index, target): (usize, &Option<Target>)| {
         let Target { q, start, jet } = (*target)?;
         let back = jet.inverted(start);
-        Some(BroydenSearch { index, q, at: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
+        Some(BroydenSearch { index, q, x: start, residual: q - jet.p, inverse: [back.dx, back.dy] })
     };
     let mut active: Vec<BroydenSearch> = targets.iter().enumerate().filter_map(search).collect();
     for _ in 0..MAX_STEPS {
         active.retain(|s| {
-            let near = s.residual.hypot() <= enough;
-            if near {
-                found[s.index] = Some(s.at);
+            let is_solved = s.residual.hypot() <= tolerance;
+            if is_solved {
+                found[s.index] = Some(s.x);
             }
-            !near
+            !is_solved
         });
         if active.is_empty() {
             break;
         }
-        let places: Vec<Point> = active.iter().map(|s| s.at + s.times(s.residual)).collect();
-        let mut images = vec![Point::ORIGIN; places.len()];
-        map.points(&places, &mut images);
-        let mut steps = places.into_iter().zip(images);
-        active.retain_mut(|s| steps.next().is_some_and(|(to, image)| s.step(to, image)));
+        let next: Vec<Point> = active.iter().map(|s| s.x + s.times(s.residual)).collect();
+        let mut images = vec![Point::ORIGIN; next.len()];
+        map.points(&next, &mut images);
+        let mut steps = next.into_iter().zip(images);
+        active.retain_mut(|s| steps.next().is_some_and(|(next, image)| s.step(next, image)));
     }
     found
 }

@@ -1,9 +1,5 @@
-//! Bicubic nets: maps of the plane given by 16 control points.
-//!
-//! > F(u,v) = Σᵣ Σₛ B³ₛ(u) B³ᵣ(v) pᵣₛ
-//!
-//! (Koppinen, *A plane transformation from 16 control points*, equation 3), with (u,v) an affine function of the source point.
-//! They are evaluated in power form, in which a completed net loses its four highest terms.
+//! Bicubic nets: maps of the plane given by 16 control points, by the formula at [`BicubicNet`]. They are evaluated in power form, in
+//! which a completed net loses its four highest terms.
 
 use super::rational_bezier::Scaled;
 use super::{AffineMap, Class, Jet, Map, Polynomials, RationalBezier, RationalDegree};
@@ -12,7 +8,7 @@ use kurbo::{Affine, Point, Rect, Vec2};
 /// Control points: four rows along v, each of four points along u.
 pub type Net = [[Point; 4]; 4];
 
-/// Computes the four inner points from the twelve outer ones by equation (7) of the paper, so that the terms u²v², u²v³, u³v² and
+/// Computes the four inner points from the twelve outer ones by Koppinen's equation (7), so that the terms u²v², u²v³, u³v² and
 /// u³v³ vanish. The result is the bilinearly blended Coons patch of the four sides.
 #[must_use]
 pub(crate) fn complete_net(mut p: Net) -> Net {
@@ -154,13 +150,12 @@ impl Map for BicubicNet {
     /// other) and 6n for a general net, or less if terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
         let curve = AffineMap(self.pre).image(curve)?;
-        let terms = || self.terms();
-        let total = terms().map(|(i, j, _)| i + j).max().unwrap_or(0);
+        let total = self.terms().map(|(i, j, _)| i + j).max().unwrap_or(0);
         let (u, v, w) =
             (curve.coordinate(0).powers(3), curve.coordinate(1).powers(3), curve.coordinate(2).powers(total));
         let degree = curve.degree() * total;
         let (mut x, mut y) = (Scaled::zero(degree), Scaled::zero(degree));
-        for (i, j, c) in terms() {
+        for (i, j, c) in self.terms() {
             let term = u[i].times(&v[j]).times(&w[total - i - j]);
             x.add_scaled(c.x, &term);
             y.add_scaled(c.y, &term);

@@ -3,9 +3,8 @@
 //! A clamped knot vector of degree d with c cells is 0 (d+1 times), 1/c, 2/c, …, 1 (d+1 times); it has d + c control points.
 //! With one cell the spline is a Bézier curve. Adjacent pieces agree in d − 1 derivatives.
 //!
-//! The Bézier points of a cell \[a, b\] are blossom values f(a,…,a,b,…,b) (L. Ramshaw, *Blossoms are polar forms*, CAGD 6,
-//! 1989), the result of inserting each knot until it has multiplicity d (W. Boehm, *Inserting new knots into B-spline
-//! curves*, CAD 12, 1980).
+//! The Bézier points of a cell \[a, b\] are blossom values f(a,…,a,b,…,b) (L. Ramshaw, *Blossoms are polar forms*, CAGD 6, 1989), the
+//! result of inserting each knot until it has multiplicity d (W. Boehm, *Inserting new knots into B-spline curves*, CAD 12, 1980).
 
 /// The clamped knot vector.
 fn knots(degree: usize, cells: usize) -> Vec<f64> {
@@ -14,8 +13,7 @@ fn knots(degree: usize, cells: usize) -> Vec<f64> {
     zeros.chain(inner).chain(ones).collect()
 }
 
-/// The control points that make the spline the identity: the means of `degree` consecutive knots (Greville abscissae), i/n for
-/// one cell.
+/// The control points that make the spline the identity: the means of `degree` consecutive knots (Greville abscissae), i/n for one cell.
 #[must_use]
 pub fn regular(degree: usize, cells: usize) -> Vec<f64> {
     if cells == 1 {
@@ -61,7 +59,7 @@ pub fn extraction(degree: usize, cells: usize) -> Vec<Vec<Vec<f64>>> {
 #[must_use]
 pub fn pieces<const K: usize>(degree: usize, points: &[[f64; K]], closed: bool) -> Vec<Vec<[f64; K]>> {
     let n = points.len();
-    // The middle cell of a long clamped spline has only uniform knots.
+    // The middle cell of a long clamped spline has only uniform knots, as every cell of a periodic one.
     let cells = extraction(degree, if closed { 2 * degree - 1 } else { n - degree });
     let first = if closed { n * degree - (degree - 1) / 2 } else { 0 };
     let bezier = |i: usize| -> Vec<[f64; K]> {
@@ -89,7 +87,7 @@ pub fn through<const K: usize>(points: &[[f64; K]], widths: &[f64], closed: bool
     let mut slopes = vec![[0.0; K]; n];
     for _ in 0..SWEEPS {
         for i in 0..n {
-            // The pieces before and after a point; an end of an open spline has only one.
+            // The pieces before and after a point, with the points at their other ends; an end of an open spline has only one.
             let before = if closed { Some((i + n - 1) % n) } else { i.checked_sub(1) };
             let sides = [before.map(|b| (b, b)), (i < m).then_some((i, (i + 1) % n))];
             let weight: f64 = sides.iter().flatten().map(|(piece, _)| 2.0 / widths[*piece]).sum();
@@ -104,7 +102,7 @@ pub fn through<const K: usize>(points: &[[f64; K]], widths: &[f64], closed: bool
     }
     let piece = |i: usize| {
         let (j, third) = ((i + 1) % n, widths[i] / 3.0);
-        let inner = |p: usize, by: f64| std::array::from_fn(|k| points[p][k] + by * slopes[p][k]);
+        let inner = |p: usize, width: f64| std::array::from_fn(|k| points[p][k] + width * slopes[p][k]);
         vec![points[i], inner(i, third), inner(j, -third), points[j]]
     };
     (0..m).map(piece).collect()
@@ -126,12 +124,12 @@ pub fn basis(degree: usize, cells: usize, s: f64) -> (usize, Vec<f64>) {
 
 /// The [`basis`] of cells whose matrices are known.
 pub(crate) fn basis_on(cells: &[Vec<Vec<f64>>], s: f64) -> (usize, Vec<f64>) {
-    let at = s * cells.len() as f64;
-    let cell = (at.max(0.0) as usize).min(cells.len() - 1);
+    let x = s * cells.len() as f64;
+    let cell = (x.max(0.0) as usize).min(cells.len() - 1);
     let rows = &cells[cell];
-    let b = bernstein(rows.len() - 1, at - cell as f64);
-    let through = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
-    (cell, (0..rows.len()).map(through).collect())
+    let b = bernstein(rows.len() - 1, x - cell as f64);
+    let value = |l: usize| rows.iter().zip(&b).map(|(row, b)| row[l] * b).sum();
+    (cell, (0..rows.len()).map(value).collect())
 }
 
 /// The Bernstein polynomials of this degree at `t`, by their recursion.

@@ -110,7 +110,7 @@ impl Called {
         if self.failed.get().is_some() {
             return None;
         }
-        // The first error wins.
+        // The first error is kept.
         answers(self.callee.as_ref()).map_err(|error| self.failed.set(error)).ok()
     }
 
@@ -122,10 +122,11 @@ impl Called {
         numbers: &[f64],
         read: impl Fn(&[f64; N]) -> T,
     ) {
-        let places = ps.iter().zip(out).filter(|(p, _)| p.is_finite());
-        for ((p, o), answer) in places.zip(numbers.as_chunks::<N>().0) {
-            let defined = ask != Ask::Inverse && !self.abilities.partial && self.abilities.creases.defined_at(*p);
-            if defined && answer.iter().any(|v| !v.is_finite()) {
+        let finite = ps.iter().zip(out).filter(|(p, _)| p.is_finite());
+        for ((p, o), answer) in finite.zip(numbers.as_chunks::<N>().0) {
+            let must_be_finite =
+                ask != Ask::Inverse && !self.abilities.partial && self.abilities.creases.defined_at(*p);
+            if must_be_finite && answer.iter().any(|v| !v.is_finite()) {
                 let _ = self.failed.set(self.callee.not_finite(*p));
                 return;
             }
@@ -133,17 +134,13 @@ impl Called {
         }
     }
 
+    /// Writes the values at `ps` by the answers to `ask`, which are points.
     fn points_by(&self, ask: Ask, ps: &[Point], out: &mut [Point]) {
         out.fill(UNDEFINED);
         let finite = finite(ps);
         if let (false, Some(numbers)) = (finite.is_empty(), self.answers(|callee| callee.ask(ask, &finite))) {
             self.write(ask, (ps, out), &numbers, point);
         }
-    }
-
-    /// Returns the map on the side of `inside` of every crease.
-    fn beside(&self, inside: Point) -> Beside {
-        Beside { map: self.clone(), inside }
     }
 }
 
@@ -168,28 +165,8 @@ fn finite(ps: &[Point]) -> Cow<'_, [Point]> {
     }
 }
 
-/// Returns the jet at a point, by a batch of one.
-fn single_jet(map: &impl Map, p: Point) -> Jet {
-    let mut out = [Jet::UNDEFINED];
-    map.jets(&[p], &mut out);
-    out[0]
-}
-
-/// Returns the image of a point, by a batch of one.
-fn single_point(map: &impl Map, p: Point) -> Point {
-    let mut out = [p];
-    map.points(&[p], &mut out);
-    out[0]
-}
-
 impl Map for Called {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        single_point(self, p)
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         if self.abilities.jacobian {
@@ -214,7 +191,7 @@ impl Map for Called {
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        (!self.abilities.creases.items().is_empty()).then(|| Arc::new(self.beside(inside)) as Arc<dyn Map>)
+        (!self.abilities.creases.items().is_empty()).then(|| Arc::new(OneSided { map: self.clone(), inside }) as _)
     }
 
     fn detail(&self, _area: Rect) -> Option<f64> {
@@ -254,35 +231,37 @@ impl Batches for Called {
 
 /// The map on one side of its creases. The callee does not know the side, so points on a crease are moved slightly towards `inside`, and
 /// differences beside one are one-sided.
-struct Beside {
+struct OneSided {
     map: Called,
     inside: Point,
 }
 
-impl Beside {
+impl OneSided {
     /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal.
     const NEAR: f64 = 1e-11;
 
-    fn moved(&self, p: Point) -> Point {
-        let near = self.map.abilities.creases.items().iter().any(|c| c.level.at(p).abs() <= Self::NEAR * self.map.size);
-        if near { p + (self.inside - p).normalize() * (4.0 * Self::NEAR * self.map.size) } else { p }
+    /// Moves a point on a crease slightly towards `inside`.
+    fn off_creases(&self, p: Point) -> Point {
+        let is_near =
+            self.map.abilities.creases.items().iter().any(|c| c.level.at(p).abs() <= Self::NEAR * self.map.size);
+        if is_near { p + (self.inside - p).normalize() * (4.0 * Self::NEAR * self.map.size) } else { p }
     }
 
     /// Returns `true` if `p` is on the side of `inside` of every crease.
-    fn is_on_its_side(&self, p: Point) -> bool {
+    fn is_on_side(&self, p: Point) -> bool {
         self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
     }
 
     /// Returns two directions from `p` for differences that cross no crease; `None` if central differences cross none.
     fn directions(&self, p: Point) -> Option<[Vec2; 2]> {
-        let reach = |d: Vec2, share: f64| p + d * (share * self.map.size);
+        let crosses_none = |d: &Vec2, share: f64| self.is_on_side(p + *d * (share * self.map.size));
         let around = (0..16).map(|k| Vec2::from_angle(f64::from(k) * (TAU / 16.0)));
-        if around.clone().all(|d| self.is_on_its_side(reach(d, STEPS[0]))) {
+        if around.clone().all(|d| crosses_none(&d, STEPS[0])) {
             return None;
         }
-        let mut open: Vec<Vec2> = around.filter(|d| self.is_on_its_side(reach(*d, 4.0 * ONE_SIDED_STEP))).collect();
-        let first = open.pop()?;
-        open.into_iter().max_by(|a, b| a.cross(first).abs().total_cmp(&b.cross(first).abs())).map(|d| [first, d])
+        let mut candidates: Vec<Vec2> = around.filter(|d| crosses_none(d, 4.0 * ONE_SIDED_STEP)).collect();
+        let first = candidates.pop()?;
+        candidates.into_iter().max_by(|a, b| a.cross(first).abs().total_cmp(&b.cross(first).abs())).map(|d| [first, d])
     }
 
     /// Returns the jet at `p` by one-sided differences of fourth order along two directions.
@@ -302,17 +281,11 @@ impl Beside {
     }
 }
 
-impl Map for Beside {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        self.map.point(self.moved(p))
-    }
+impl Map for OneSided {
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
-        let ps: Vec<Point> = ps.iter().map(|p| self.moved(*p)).collect();
+        let ps: Vec<Point> = ps.iter().map(|p| self.off_creases(*p)).collect();
         self.map.jets(&ps, out);
         if self.map.abilities.jacobian {
             return;
@@ -325,7 +298,7 @@ impl Map for Beside {
     }
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
-        self.map.points(&ps.iter().map(|p| self.moved(*p)).collect::<Vec<_>>(), out);
+        self.map.points(&ps.iter().map(|p| self.off_creases(*p)).collect::<Vec<_>>(), out);
     }
 
     fn cost(&self) -> Cost<'_> {
@@ -337,19 +310,13 @@ impl Map for Beside {
     }
 }
 
-impl Batches for Beside {}
+impl Batches for OneSided {}
 
 /// The inverse by the callee's answers. Its derivatives are the inverted Jacobians of the map.
 struct Inverse(Called);
 
 impl Map for Inverse {
-    fn jet(&self, p: Point) -> Jet {
-        single_jet(self, p)
-    }
-
-    fn point(&self, p: Point) -> Point {
-        single_point(self, p)
-    }
+    single_by_batch!();
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         let mut sources = vec![Point::ORIGIN; ps.len()];
@@ -393,14 +360,14 @@ const STENCIL: [(f64, f64); 8] =
 /// Computes the jets at `ps` by differences of `values`, which evaluates many points at once. `size` is the frame's diagonal.
 fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
     let mut out: Vec<Jet> = vec![Jet::UNDEFINED; ps.len()];
-    let mut least = vec![f64::INFINITY; ps.len()];
-    let mut left: Vec<usize> = (0..ps.len()).collect();
+    let mut errors = vec![f64::INFINITY; ps.len()];
+    let mut pending: Vec<usize> = (0..ps.len()).collect();
     for (round, share) in STEPS.into_iter().enumerate() {
-        if left.is_empty() {
+        if pending.is_empty() {
             break;
         }
-        let mut asked = Vec::with_capacity(9 * left.len());
-        for p in left.iter().filter_map(|i| ps.get(*i)) {
+        let mut asked = Vec::with_capacity(9 * pending.len());
+        for p in pending.iter().filter_map(|i| ps.get(*i)) {
             let h = step(*p, share * size);
             if round == 0 {
                 asked.push(*p);
@@ -409,27 +376,29 @@ fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point]))
         }
         let mut images = vec![Point::ORIGIN; asked.len()];
         values(&asked, &mut images);
-        let each = STENCIL.len() + usize::from(round == 0);
+        let per_point = STENCIL.len() + usize::from(round == 0);
         let mut again = Vec::new();
-        for ((i, places), images) in left.iter().zip(asked.chunks_exact(each)).zip(images.chunks_exact(each)) {
-            let (Some(jet), Some(least)) = (out.get_mut(*i), least.get_mut(*i)) else { continue };
-            let (mut places, mut images) = (places, images);
+        for ((i, stencil), images) in
+            pending.iter().zip(asked.chunks_exact(per_point)).zip(images.chunks_exact(per_point))
+        {
+            let (Some(jet), Some(least)) = (out.get_mut(*i), errors.get_mut(*i)) else { continue };
+            let (mut stencil, mut images) = (stencil, images);
             if round == 0 {
                 jet.p = images[0];
-                (places, images) = (&places[1..], &images[1..]);
+                (stencil, images) = (&stencil[1..], &images[1..]);
             }
-            let ((dx, x_off), (dy, y_off)) = (slope(places, images, 0), slope(places, images, 2));
-            let rounding = f64::EPSILON * jet.p.to_vec2().hypot() / (0.5 * (places[0] - places[1]).hypot());
-            let (scale, off) = (dx.hypot().max(dy.hypot()), x_off.max(y_off) + rounding);
-            if off < *least || !least.is_finite() {
-                (jet.dx, jet.dy, *least) = (dx, dy, off);
+            let ((dx, x_error), (dy, y_error)) = (slope(stencil, images, 0), slope(stencil, images, 2));
+            let rounding = f64::EPSILON * jet.p.to_vec2().hypot() / (0.5 * (stencil[0] - stencil[1]).hypot());
+            let (scale, error) = (dx.hypot().max(dy.hypot()), x_error.max(y_error) + rounding);
+            if error < *least || !least.is_finite() {
+                (jet.dx, jet.dy, *least) = (dx, dy, error);
             }
             // At the edge of a domain, an estimate of NaN may become finite with a smaller step.
-            if off.is_nan() || off > GOOD * scale.max(f64::MIN_POSITIVE) {
+            if error.is_nan() || error > GOOD * scale.max(f64::MIN_POSITIVE) {
                 again.push(*i);
             }
         }
-        left = again;
+        pending = again;
     }
     out
 }
@@ -442,15 +411,14 @@ fn step(p: Point, h: f64) -> f64 {
     h.max(min).max(f64::MIN_POSITIVE).log2().round().exp2()
 }
 
-/// The extrapolated slope along the axis of the stencil's points `k` and `k` + 4, with an estimate of its error.
-fn slope(places: &[Point], images: &[Point], k: usize) -> (Vec2, f64) {
-    let central = |k: usize| (images[k] - images[k + 1]) / (places[k] - places[k + 1]).hypot();
+/// The slope along the axis of the stencil's points `k` and `k` + 4, extrapolated from both steps, with an estimate of its error.
+fn slope(stencil: &[Point], images: &[Point], k: usize) -> (Vec2, f64) {
+    let central = |k: usize| (images[k] - images[k + 1]) / (stencil[k] - stencil[k + 1]).hypot();
     let (whole, half) = (central(k), central(k + 4));
     let correction = (half - whole) / 3.0;
     // The error is of fourth order after a correction of second order: about the square of the relative correction.
     let size = half.hypot().max(f64::MIN_POSITIVE);
-    let off = correction.hypot() * (correction.hypot() / size).min(1.0);
-    (half + correction, off)
+    (half + correction, correction.hypot() * (correction.hypot() / size).min(1.0))
 }
 
 #[cfg(test)]

@@ -125,10 +125,9 @@ const BATCH: usize = 16;
 
 /// The level set of a later step, pulled back through the steps `before` it.
 fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
-    match (level, before) {
-        (l, []) => l.clone(),
-        (Level::Line { a, b, c }, [only]) if matches!(only.class(), Class::Affine(_)) => {
-            let Class::Affine(m) = only.class() else { return level.clone() };
+    match (level, before, before.first().map(Map::class)) {
+        (_, [], _) => level.clone(),
+        (Level::Line { a, b, c }, [_], Some(Class::Affine(m))) => {
             let [ma, mb, mc, md, me, mf] = m.as_coeffs();
             Level::Line { a: a * ma + b * mb, b: a * mc + b * md, c: a * me + b * mf + c }
         }
@@ -136,7 +135,7 @@ fn pull_back(level: &Level, before: &[Arc<dyn Map>]) -> Level {
     }
 }
 
-/// A level of the image under some steps.
+/// The level set of a step behind the chain.
 impl Field for (Level, Chain) {
     fn at(&self, p: Point) -> f64 {
         self.0.at(self.1.point(p))
@@ -154,9 +153,8 @@ impl Field for (Level, Chain) {
 
 impl Map for Chain {
     fn jet(&self, p: Point) -> Jet {
-        let mut it = self.steps.iter();
-        let Some(first) = it.next() else { return AffineMap::IDENTITY.jet(p) };
-        it.fold(first.jet(p), |j, m| j.then(&m.jet(j.p)))
+        let Some((first, rest)) = self.steps.split_first() else { return AffineMap::IDENTITY.jet(p) };
+        rest.iter().fold(first.jet(p), |j, m| j.then(&m.jet(j.p)))
     }
 
     fn point(&self, p: Point) -> Point {
@@ -170,21 +168,21 @@ impl Map for Chain {
         first.jets(ps, out);
         for m in rest {
             if m.prefers_batches() {
-                let at: Vec<Point> = out.iter().map(|j| j.p).collect();
-                let mut outer = vec![Jet::default(); at.len()];
-                m.jets(&at, &mut outer);
+                let points: Vec<Point> = out.iter().map(|j| j.p).collect();
+                let mut outer = vec![Jet::default(); points.len()];
+                m.jets(&points, &mut outer);
                 for (j, o) in out.iter_mut().zip(&outer) {
                     *j = j.then(o);
                 }
                 continue;
             }
             for chunk in out.chunks_mut(BATCH) {
-                let (mut at, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
+                let (mut points, mut outer) = ([Point::ORIGIN; BATCH], [Jet::default(); BATCH]);
                 let n = chunk.len();
-                for (a, j) in at.iter_mut().zip(chunk.iter()) {
-                    *a = j.p;
+                for (p, j) in points.iter_mut().zip(chunk.iter()) {
+                    *p = j.p;
                 }
-                m.jets(&at[..n], &mut outer[..n]);
+                m.jets(&points[..n], &mut outer[..n]);
                 for (j, o) in chunk.iter_mut().zip(&outer) {
                     *j = j.then(o);
                 }
@@ -200,14 +198,14 @@ impl Map for Chain {
         first.points(ps, out);
         for m in rest {
             if m.prefers_batches() {
-                let at = out.to_vec();
-                m.points(&at, out);
+                let points = out.to_vec();
+                m.points(&points, out);
                 continue;
             }
             for chunk in out.chunks_mut(BATCH) {
-                let mut at = [Point::ORIGIN; BATCH];
-                at[..chunk.len()].copy_from_slice(chunk);
-                m.points(&at[..chunk.len()], chunk);
+                let mut points = [Point::ORIGIN; BATCH];
+                points[..chunk.len()].copy_from_slice(chunk);
+                m.points(&points[..chunk.len()], chunk);
             }
         }
     }
@@ -239,27 +237,24 @@ impl Map for Chain {
 
     fn creases(&self, out: &mut Creases) {
         for (i, m) in self.steps.iter().enumerate() {
-            let mut own = Creases::default();
-            m.creases(&mut own);
-            for c in own.items() {
+            for c in Creases::of_map(m).items() {
                 out.push(Crease { level: pull_back(&c.level, &self.steps[..i]), kind: c.kind });
             }
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let mut at = inside;
-        let mut any = false;
+        let (mut p, mut has_branches) = (inside, false);
         let mut steps = Vec::with_capacity(self.steps.len());
         for (i, m) in self.steps.iter().enumerate() {
-            let b = m.branch(at);
-            any |= b.is_some();
+            let branch = m.branch(p);
+            has_branches |= branch.is_some();
             if i + 1 < self.steps.len() {
-                at = m.point(at);
+                p = m.point(p);
             }
-            steps.push(b.unwrap_or_else(|| m.clone()));
+            steps.push(branch.unwrap_or_else(|| m.clone()));
         }
-        any.then(|| Arc::new(Self { steps }) as Arc<dyn Map>)
+        has_branches.then(|| Arc::new(Self { steps }) as Arc<dyn Map>)
     }
 
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
@@ -276,18 +271,18 @@ impl Map for Chain {
         if let [only] = self.steps.as_slice() {
             return only.detail(area);
         }
-        let mut at = middle_and_corners(area).map(|p| AffineMap::IDENTITY.jet(p));
-        let across = area.size().to_vec2().hypot();
+        let mut jets = middle_and_corners(area).map(|p| AffineMap::IDENTITY.jet(p));
+        let diagonal = area.size().to_vec2().hypot();
         let (mut least, mut is_stated) = (f64::INFINITY, false);
         for (i, step) in self.steps.iter().enumerate() {
-            let stretch = most_stretched(&at);
-            let area = Rect::from_center_size(at[0].p, (stretch * across, stretch * across));
+            let stretch = most_stretched(&jets);
+            let area = Rect::from_center_size(jets[0].p, (stretch * diagonal, stretch * diagonal));
             is_stated |= step.detail(area).is_some();
             least = least.min(detail_in(&**step, area)? / stretch);
             if i + 1 < self.steps.len() {
-                let mut jets = [Jet::default(); 3];
-                step.jets(&at.map(|j| j.p), &mut jets);
-                at = std::array::from_fn(|k| at[k].then(&jets[k]));
+                let mut outer = [Jet::default(); 3];
+                step.jets(&jets.map(|j| j.p), &mut outer);
+                jets = std::array::from_fn(|k| jets[k].then(&outer[k]));
             }
         }
         is_stated.then_some(least)
@@ -307,13 +302,10 @@ impl Map for Chain {
     }
 
     fn cost(&self) -> Cost<'_> {
-        let (mut work, mut all) = (0.0, Cost::NET);
-        for cost in self.steps.iter().map(|s| s.cost()) {
-            work += cost.work;
-            all = if cost.batches.is_some() { all.batched(self) } else { all };
-            all = if cost.searches.is_some() { all.searching(self) } else { all };
-        }
-        Cost { batches: all.batches, searches: all.searches, ..Cost::new(f64::max(work, 1.0)) }
+        let costs = || self.steps.iter().map(|s| s.cost());
+        let cost = Cost::new(costs().map(|c| c.work).sum::<f64>().max(1.0));
+        let cost = if costs().any(|c| c.batches.is_some()) { cost.batched(self) } else { cost };
+        if costs().any(|c| c.searches.is_some()) { cost.searching(self) } else { cost }
     }
 }
 
@@ -446,13 +438,11 @@ mod tests {
         let far = Homography::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.25, 0.0, 1.0]]);
         let scaled = Chain { steps: vec![affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]), Arc::new(far)] };
         let seg = Seg::Line(Line::new((0.0, 1.0), (3.0, 1.0)));
-        let mut cr = Creases::default();
-        scaled.creases(&mut cr);
-        assert!(cr.first_undefined(&seg).unwrap().distance((2.0, 1.0).into()) < 1e-12);
+        let creases = Creases::of_map(&scaled);
+        assert!(creases.first_undefined(&seg).unwrap().distance((2.0, 1.0).into()) < 1e-12);
         let sheared = Chain { steps: vec![Arc::new(Shear), affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]), Arc::new(far)] };
-        let mut cr = Creases::default();
-        sheared.creases(&mut cr);
-        assert!(cr.first_undefined(&seg).unwrap().distance((1.9, 1.0).into()) < 1e-12);
-        assert!(!cr.defined_at((1.95, 1.0).into()) && cr.defined_at((1.85, 1.0).into()));
+        let creases = Creases::of_map(&sheared);
+        assert!(creases.first_undefined(&seg).unwrap().distance((1.9, 1.0).into()) < 1e-12);
+        assert!(!creases.defined_at((1.95, 1.0).into()) && creases.defined_at((1.85, 1.0).into()));
     }
 }

@@ -1,11 +1,7 @@
-//! The Coons patch: the map of a box onto the region between four curved sides.
+//! The Coons patch: the map of a box onto the region between four curved sides, by the formula at [`Coons`].
 //!
-//! > F(u,v) = (1−v)·B(u) + v·T(u) + (1−u)·L(v) + u·R(v) − Σ corners, blended bilinearly
-//!
-//! (S. A. Coons, *Surfaces for Computer-Aided Design of Space Forms*, MIT 1967), with B, T the bottom and top sides from left to
-//! right, L, R the left and right sides upwards, and (u,v) an affine function of the source point. With one cubic for every
-//! side this is a completed bicubic net (Koppinen, *A plane transformation from 16 control points*, equation 7). With straight L
-//! and R it is the ruled map (1−v)·B(u) + v·T(u), under which verticals stay straight.
+//! With one cubic for every side this is a completed bicubic net (Koppinen, *A plane transformation from 16 control points*,
+//! equation 7). With straight L and R it is the ruled map (1−v)·B(u) + v·T(u), under which verticals stay straight.
 //!
 //! Lines u = k and v = k through the joints of facing sides cut the box into cells. If all four pieces of a cell are polynomials
 //! (lines, or Bézier curves at their own pace), the map of the cell is a bicubic net, with exact images.
@@ -37,13 +33,14 @@ use std::sync::Arc;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Coons {
+    /// The affine function from the source point to (u, v).
     pre: Affine,
-    cut: Arc<Cut>,
+    cells: Arc<Cells>,
 }
 
-/// The sides, and the lines through their joints that cut the box.
+/// The sides, and the parameters of their joints: lines of constant u and of constant v cut the box there.
 #[derive(Debug)]
-struct Cut {
+struct Cells {
     sides: Sides,
     us: Vec<f64>,
     vs: Vec<f64>,
@@ -91,20 +88,20 @@ impl Coons {
             all
         };
         let (us, vs) = (merged(&sides.bottom, &sides.top), merged(&sides.left, &sides.right));
-        Self { pre, cut: Arc::new(Cut { sides, us, vs }) }
+        Self { pre, cells: Arc::new(Cells { sides, us, vs }) }
     }
 
     /// The sides.
     #[must_use]
     pub fn sides(&self) -> &Sides {
-        &self.cut.sides
+        &self.cells.sides
     }
 
     /// Returns this map in its simplest form: as one net or an affine map if possible.
     #[must_use]
     pub fn simplest(self) -> Arc<dyn Map> {
         match self.net([0; 4]) {
-            Some(net) if self.cut.us.is_empty() && self.cut.vs.is_empty() => simplest(net),
+            Some(net) if self.cells.us.is_empty() && self.cells.vs.is_empty() => simplest(net),
             _ => Arc::new(self),
         }
     }
@@ -115,12 +112,12 @@ impl Coons {
         [s.bottom.piece(u), s.right.piece(v), s.top.piece(u), s.left.piece(v)]
     }
 
-    /// The jet at a source point, on the given pieces of the sides.
-    fn on(&self, [b, r, t, l]: Cell, p: Point) -> Jet {
+    /// The jet at a source point, by the given pieces of the sides.
+    fn jet_in(&self, [b, r, t, l]: Cell, p: Point) -> Jet {
         let Point { x: u, y: v } = self.pre * p;
         let s = self.sides();
-        let ((b, db), (t, dt)) = (s.bottom.on(b, u), s.top.on(t, u));
-        let ((l, dl), (r, dr)) = (s.left.on(l, v), s.right.on(r, v));
+        let ((b, db), (t, dt)) = (s.bottom.at_piece(b, u), s.top.at_piece(t, u));
+        let ((l, dl), (r, dr)) = (s.left.at_piece(l, v), s.right.at_piece(r, v));
         let [p00, p10, p01, p11] = self.corners();
         let value = self.blend([b, r, t, l], u, v);
         let du = db * (1.0 - v) + dt * v + ((r - p10.lerp(p11, v)) - (l - p00.lerp(p01, v)));
@@ -129,12 +126,12 @@ impl Coons {
         Jet { p: value, dx: du * a + dv * bb, dy: du * c + dv * d }
     }
 
-    /// The value at a source point, on the given pieces of the sides.
-    fn point_on(&self, [b, r, t, l]: Cell, p: Point) -> Point {
+    /// The value at a source point, by the given pieces of the sides.
+    fn point_in(&self, [b, r, t, l]: Cell, p: Point) -> Point {
         let Point { x: u, y: v } = self.pre * p;
         let s = self.sides();
-        let (b, t) = (s.bottom.point_on(b, u), s.top.point_on(t, u));
-        let (l, r) = (s.left.point_on(l, v), s.right.point_on(r, v));
+        let (b, t) = (s.bottom.point_at_piece(b, u), s.top.point_at_piece(t, u));
+        let (l, r) = (s.left.point_at_piece(l, v), s.right.point_at_piece(r, v));
         self.blend([b, r, t, l], u, v)
     }
 
@@ -155,14 +152,21 @@ impl Coons {
     /// even steps along an axis between the same ends. The inverse then has a closed form.
     fn kept_lines(&self) -> Option<bool> {
         let s = self.sides();
-        [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)].into_iter().find_map(
-            |(upright, pace, a, b)| {
-                let along = |p: Point| if upright { p.x } else { p.y };
-                let ([a0, a1], [b0, b1]) = (a.ends().map(along), b.ends().map(along));
-                let same = (a0 - b0).abs().max((a1 - b1).abs()) <= SAME * (a1 - a0).abs();
-                (same && a.pace() == pace && b.pace() == pace).then_some(upright)
-            },
-        )
+        let pairs = [(true, Pace::Width, &s.bottom, &s.top), (false, Pace::Height, &s.left, &s.right)];
+        pairs.into_iter().find_map(|(upright, pace, a, b)| {
+            let along = |p: Point| if upright { p.x } else { p.y };
+            let ([a0, a1], [b0, b1]) = (a.ends().map(along), b.ends().map(along));
+            let same_ends = (a0 - b0).abs().max((a1 - b1).abs()) <= SAME * (a1 - a0).abs();
+            (same_ends && a.pace() == pace && b.pace() == pace).then_some(upright)
+        })
+    }
+
+    /// The parameters of the creases: of u for `upright` lines, of v for level ones.
+    fn crease_parameters(&self, upright: bool) -> Vec<f64> {
+        let (s, cells) = (self.sides(), &self.cells);
+        let (joints, pair) = if upright { (&cells.us, [&s.bottom, &s.top]) } else { (&cells.vs, [&s.left, &s.right]) };
+        let smooth = pair.iter().all(|s| s.continues_smoothly());
+        [joints.as_slice(), if smooth { &[] } else { &[-OUTSIDE, 1.0 + OUTSIDE] }].concat()
     }
 
     /// The bicubic net of a cell; `None` if one of its pieces is not polynomial.
@@ -170,13 +174,12 @@ impl Coons {
         let s = self.sides();
         let [b, r, t, l] = cell;
         // The range of the cell: the common range of both facing pieces.
-        let range = |joints: &[f64], holds: &dyn Fn(f64) -> bool| {
-            let mut ends: Vec<f64> = std::iter::once(0.0).chain(joints.iter().copied()).collect();
-            ends.push(1.0);
-            ends.windows(2).find(|e| holds(0.5 * (e[0] + e[1]))).map(|e| (e[0], e[1]))
+        let range = |joints: &[f64], is_in_cell: &dyn Fn(f64) -> bool| {
+            let ends = [&[0.0], joints, &[1.0]].concat();
+            ends.windows(2).find(|e| is_in_cell(0.5 * (e[0] + e[1]))).map(|e| (e[0], e[1]))
         };
-        let (u0, u1) = range(&self.cut.us, &|m| s.bottom.piece(m) == b && s.top.piece(m) == t)?;
-        let (v0, v1) = range(&self.cut.vs, &|m| s.right.piece(m) == r && s.left.piece(m) == l)?;
+        let (u0, u1) = range(&self.cells.us, &|m| s.bottom.piece(m) == b && s.top.piece(m) == t)?;
+        let (v0, v1) = range(&self.cells.vs, &|m| s.right.piece(m) == r && s.left.piece(m) == l)?;
         let points = |c: kurbo::CubicBez| [c.p0, c.p1, c.p2, c.p3].map(Point::to_vec2);
         let bottom = points(s.bottom.cubic(b, u0, u1)?);
         let top = points(s.top.cubic(t, u0, u1)?);
@@ -190,9 +193,9 @@ impl Coons {
             let v = third(v0, v1, j);
             std::array::from_fn(|i| {
                 let u = third(u0, u1, i);
-                let lying: Vec2 = bottom[i] * (1.0 - v) + top[i] * v;
+                let ruled: Vec2 = bottom[i] * (1.0 - v) + top[i] * v;
                 let corner = (p00 * (1.0 - u) + p10 * u) * (1.0 - v) + (p01 * (1.0 - u) + p11 * u) * v;
-                (lying + (left[j] * (1.0 - u) + right[j] * u) - corner).to_point()
+                (ruled + (left[j] * (1.0 - u) + right[j] * u) - corner).to_point()
             })
         });
         let to_cell = Affine::scale_non_uniform(1.0 / (u1 - u0), 1.0 / (v1 - v0)) * Affine::translate((-u0, -v0));
@@ -203,28 +206,21 @@ impl Coons {
 impl Map for Coons {
     fn jet(&self, p: Point) -> Jet {
         let q = self.pre * p;
-        self.on(self.cell(q.x, q.y), p)
+        self.jet_in(self.cell(q.x, q.y), p)
     }
 
     fn point(&self, p: Point) -> Point {
         let q = self.pre * p;
-        self.point_on(self.cell(q.x, q.y), p)
+        self.point_in(self.cell(q.x, q.y), p)
     }
 
     fn creases(&self, out: &mut Creases) {
-        let (mut us, mut vs) = (self.cut.us.clone(), self.cut.vs.clone());
-        let s = self.sides();
-        for (levels, pair) in [(&mut us, [&s.bottom, &s.top]), (&mut vs, [&s.left, &s.right])] {
-            if !pair.iter().all(|s| s.runs_on()) {
-                levels.extend([-OUTSIDE, 1.0 + OUTSIDE]);
-            }
-        }
         let [a, b, c, d, e, f] = self.pre.as_coeffs();
-        for k in us {
-            out.push(Crease::kink(Level::Line { a, b: c, c: e - k }));
+        for u in self.crease_parameters(true) {
+            out.push(Crease::kink(Level::Line { a, b: c, c: e - u }));
         }
-        for k in vs {
-            out.push(Crease::kink(Level::Line { a: b, b: d, c: f - k }));
+        for v in self.crease_parameters(false) {
+            out.push(Crease::kink(Level::Line { a: b, b: d, c: f - v }));
         }
     }
 
@@ -233,7 +229,7 @@ impl Map for Coons {
         let cell = self.cell(q.x, q.y);
         Some(match self.net(cell) {
             Some(net) => simplest(net),
-            None => Arc::new(OnCell { whole: self.clone(), cell }),
+            None => Arc::new(CellMap { whole: self.clone(), cell }),
         })
     }
 
@@ -247,65 +243,63 @@ impl Map for Coons {
     }
 }
 
-/// The inverse of a map that keeps verticals (or horizontals): (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))).
+/// The inverse of a map that keeps verticals, (x, y) ↦ (u, (y − b(u)) / (t(u) − b(u))), or horizontals, with x and y exchanged.
 struct AxisInverse {
     whole: Coons,
+    /// `true` if verticals are kept.
     upright: bool,
     /// The cell of a branch; `None` for the whole inverse.
     cell: Option<Cell>,
 }
 
 impl AxisInverse {
-    /// The parameter of a point along the axis on which it runs at even steps.
-    fn share(&self, q: Point) -> f64 {
-        let (s, Point { x, y }) = (self.whole.sides(), q);
-        let [a, b] = if self.upright { s.bottom.ends().map(|p| p.x) } else { s.left.ends().map(|p| p.y) };
-        ((if self.upright { x } else { y }) - a) / (b - a)
+    /// The range of x, or of y, over which u, or v, runs from 0 to 1.
+    fn range(&self) -> [f64; 2] {
+        let s = self.whole.sides();
+        if self.upright { s.bottom.ends().map(|p| p.x) } else { s.left.ends().map(|p| p.y) }
     }
 
-    fn cell(&self, k: f64) -> Cell {
+    /// The parameter of the kept line through a point: u, or v.
+    fn parameter(&self, q: Point) -> f64 {
+        let [a, b] = self.range();
+        ((if self.upright { q.x } else { q.y }) - a) / (b - a)
+    }
+
+    /// The cell on the kept line of a parameter.
+    fn cell(&self, parameter: f64) -> Cell {
         let s = self.whole.sides();
-        let of = |side: &Side, on: bool| if on { side.piece(k) } else { 0 };
+        let piece = |side: &Side, is_along: bool| if is_along { side.piece(parameter) } else { 0 };
         let up = self.upright;
-        self.cell.unwrap_or_else(|| [of(&s.bottom, up), of(&s.right, !up), of(&s.top, up), of(&s.left, !up)])
+        self.cell
+            .unwrap_or_else(|| [piece(&s.bottom, up), piece(&s.right, !up), piece(&s.top, up), piece(&s.left, !up)])
     }
 }
 
 impl Map for AxisInverse {
     fn jet(&self, q: Point) -> Jet {
-        let k = self.share(q);
+        let k = self.parameter(q);
         let cell = self.cell(k);
         let (s, [b, r, t, l]) = (self.whole.sides(), cell);
-        let unit = if self.upright {
-            let (from, to) = (s.bottom.point_on(b, k).y, s.top.point_on(t, k).y);
+        let uv = if self.upright {
+            let (from, to) = (s.bottom.point_at_piece(b, k).y, s.top.point_at_piece(t, k).y);
             Point::new(k, (q.y - from) / (to - from))
         } else {
-            let (from, to) = (s.left.point_on(l, k).x, s.right.point_on(r, k).x);
+            let (from, to) = (s.left.point_at_piece(l, k).x, s.right.point_at_piece(r, k).x);
             Point::new((q.x - from) / (to - from), k)
         };
-        let p = self.whole.pre.inverse() * unit;
-        self.whole.on(cell, p).inverted(p)
+        let p = self.whole.pre.inverse() * uv;
+        self.whole.jet_in(cell, p).inverted(p)
     }
 
     fn creases(&self, out: &mut Creases) {
-        let s = self.whole.sides();
-        let (mut ks, [a, b], pair) = if self.upright {
-            (self.whole.cut.us.clone(), s.bottom.ends().map(|p| p.x), [&s.bottom, &s.top])
-        } else {
-            (self.whole.cut.vs.clone(), s.left.ends().map(|p| p.y), [&s.left, &s.right])
-        };
-        if !pair.iter().all(|s| s.runs_on()) {
-            ks.extend([-OUTSIDE, 1.0 + OUTSIDE]);
-        }
-        for k in ks {
-            let c = -(a + k * (b - a));
-            let (x, y) = if self.upright { (1.0, 0.0) } else { (0.0, 1.0) };
-            out.push(Crease::kink(Level::Line { a: x, b: y, c }));
+        let ([from, to], (a, b)) = (self.range(), if self.upright { (1.0, 0.0) } else { (0.0, 1.0) });
+        for k in self.whole.crease_parameters(self.upright) {
+            out.push(Crease::kink(Level::Line { a, b, c: -(from + k * (to - from)) }));
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let cell = Some(self.cell(self.share(inside)));
+        let cell = Some(self.cell(self.parameter(inside)));
         Some(Arc::new(Self { whole: self.whole.clone(), upright: self.upright, cell }))
     }
 
@@ -319,18 +313,18 @@ impl Map for AxisInverse {
 }
 
 /// The smooth map of one cell, continued beyond it.
-struct OnCell {
+struct CellMap {
     whole: Coons,
     cell: Cell,
 }
 
-impl Map for OnCell {
+impl Map for CellMap {
     fn jet(&self, p: Point) -> Jet {
-        self.whole.on(self.cell, p)
+        self.whole.jet_in(self.cell, p)
     }
 
     fn point(&self, p: Point) -> Point {
-        self.whole.point_on(self.cell, p)
+        self.whole.point_in(self.cell, p)
     }
 
     fn detail(&self, _: Rect) -> Option<f64> {

@@ -3,8 +3,8 @@
 //! Both are level sets φ(x, y) = 0 in the source plane, so that a chain can pull the crease of a later map back through the
 //! earlier maps, as φ ∘ F. The refitter splits paths at their crossings with creases.
 
-use super::enclosure::along;
-use super::{Enclosure, Real};
+use super::enclosure::enclose_segment;
+use super::{Enclosure, Map, Real};
 use crate::outline::Seg;
 use kurbo::{
     Point, Rect, Vec2,
@@ -14,7 +14,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// A function on the plane whose zero set is the crease.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Level {
     /// A straight crease a·x + b·y + c = 0, crossed exactly.
@@ -65,14 +65,9 @@ impl<F: Fn(Point) -> f64 + Send + Sync> Field for F {
     }
 }
 
-impl fmt::Debug for Level {
+impl fmt::Debug for dyn Field {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Line { a, b, c } => write!(f, "{a}·x + {b}·y + {c}"),
-            Self::Stretch { a, b, c, within } => write!(f, "{a}·x + {b}·y + {c} within {within:?}"),
-            Self::Circle { center, radius } => write!(f, "{radius} around {center:?}"),
-            Self::Field(_) => f.write_str("field"),
-        }
+        f.write_str("Field")
     }
 }
 
@@ -108,27 +103,27 @@ impl Level {
     pub fn crossings(&self, seg: &Seg, out: &mut Vec<f64>) -> usize {
         let within = if let Self::Stretch { within, .. } = self {
             // Inflated by the rounding error of a crossing.
-            let room = 1e-9 * (within.width() + within.height());
-            Some(within.inflate(room, room))
+            let margin = 1e-9 * (within.width() + within.height());
+            Some(within.inflate(margin, margin))
         } else {
             None
         };
-        let (knots, noise, more) = self.knots(seg);
+        let (knots, noise, evaluations) = self.knots(seg);
         let mut last: Option<(f64, f64)> = None;
-        for here in knots.into_iter().filter(|k| k.1.abs() > noise) {
-            if let Some(before) = last.replace(here)
-                && before.1 * here.1 < 0.0
+        for (t1, value1) in knots.into_iter().filter(|k| k.1.abs() > noise) {
+            if let Some((t0, value0)) = last.replace((t1, value1))
+                && value0 * value1 < 0.0
             {
-                let sign = here.1.signum();
+                let sign = value1.signum();
                 let f = |t: f64| sign * self.at(seg.eval(t));
-                let wide = here.0 - before.0;
-                let t = solve_itp(f, before.0, here.0, 1e-16, 1, 0.2 / wide, sign * before.1, sign * here.1);
+                // kurbo recommends 1 and 0.2 divided by the width as the method's parameters.
+                let t = solve_itp(f, t0, t1, 1e-16, 1, 0.2 / (t1 - t0), sign * value0, sign * value1);
                 if within.is_none_or(|b| b.contains(seg.eval(t))) {
                     out.push(t);
                 }
             }
         }
-        more
+        evaluations
     }
 
     /// Parameters from 0 to 1 with the function's values, at most one zero between neighbours; the size of its rounding errors; and the
@@ -143,11 +138,11 @@ impl Level {
             }
             Self::Circle { .. } | Self::Field(_) => {
                 let enclosed = self.enclosed(seg, &f);
-                let places = enclosed.as_ref().map_or(0, Vec::len);
+                let evaluations = ENCLOSURE_WORK * enclosed.as_ref().map_or(0, Vec::len);
                 let knots = enclosed.unwrap_or_else(|| sampled(f));
-                let one_side = knots.iter().all(|k| k.1 > 0.0) || knots.iter().all(|k| k.1 < 0.0);
-                let noise = if one_side { 0.0 } else { noise(seg, &knots) };
-                (knots, noise, (ENCLOSURE_WORK * places).saturating_sub(SAMPLES as usize))
+                let is_on_one_side = knots.iter().all(|k| k.1 > 0.0) || knots.iter().all(|k| k.1 < 0.0);
+                let noise = if is_on_one_side { 0.0 } else { noise(seg, &knots) };
+                (knots, noise, evaluations.saturating_sub(SAMPLES as usize))
             }
         }
     }
@@ -159,34 +154,33 @@ impl Level {
         const MAX_PARTS: usize = 20_000;
         const SHORTEST: f64 = 1e-7;
         let (mut knots, mut ends) = (vec![f(0.0)], vec![f(1.0)]);
-        let mut looked = 0;
-        while let (Some(from), Some(to)) = (knots.last().copied(), ends.last().copied()) {
-            looked += 1;
-            let along = along(seg, [from.0, to.0]);
-            let stays = |slope: f64| from.1 * to.1 > 0.0 && from.1.abs() + to.1.abs() > slope;
-            if matches!(self, Self::Circle { .. }) && stays(along[0].d[0].hypot(along[1].d[0])) {
-                knots.push(to);
-                ends.pop();
+        let mut parts = 0;
+        while let (Some((t0, value0)), Some((t1, value1))) = (knots.last().copied(), ends.last().copied()) {
+            parts += 1;
+            let along = enclose_segment(seg, [t0, t1]);
+            let has_no_zero = |slope: f64| value0 * value1 > 0.0 && value0.abs() + value1.abs() > slope;
+            if matches!(self, Self::Circle { .. }) && has_no_zero(along[0].d[0].hypot(along[1].d[0])) {
+                knots.extend(ends.pop());
                 continue;
             }
             let e = self.enclose(along)?;
-            let stays = e.lo > 0.0 || e.hi < 0.0 || stays(e.d[0]);
+            let has_no_zero = e.lo > 0.0 || e.hi < 0.0 || has_no_zero(e.d[0]);
             // d[1] bounds half the second derivative, so the slope differs from the mean slope by at most 2·d[1].
-            let goes_one_way = (to.1 - from.1).abs() > 2.0 * e.d[1];
-            let undefined = from.1.is_nan() || to.1.is_nan();
-            if stays || goes_one_way || undefined || to.0 - from.0 < SHORTEST {
-                knots.push(to);
-                ends.pop();
-            } else if looked > MAX_PARTS {
+            let is_monotonic = (value1 - value0).abs() > 2.0 * e.d[1];
+            let is_undefined = value0.is_nan() || value1.is_nan();
+            if has_no_zero || is_monotonic || is_undefined || t1 - t0 < SHORTEST {
+                knots.extend(ends.pop());
+            } else if parts > MAX_PARTS {
                 return None;
             } else {
-                ends.push(f(0.5 * (from.0 + to.0)));
+                ends.push(f(0.5 * (t0 + t1)));
             }
         }
         Some(knots)
     }
 }
 
+/// The value of a [`Level::Circle`].
 fn circle<S: Real>([x, y]: [S; 2], center: Point, radius: f64) -> S {
     ((x - center.x).hypot(y - center.y) - radius.abs()) * radius.signum()
 }
@@ -202,17 +196,17 @@ fn noise(seg: &Seg, knots: &[(f64, f64)]) -> f64 {
 /// The parameters between which an affine function with gradient `(a, b)` is monotonic on a segment, its ends included. Empty if it has
 /// no zero there.
 fn straight_extremes(level: impl Fn(Point) -> f64, (a, b): (f64, f64), seg: &Seg) -> Vec<f64> {
-    let one_side = |ps: &[Point]| {
+    let is_on_one_side = |ps: &[Point]| {
         let mut values = ps.iter().map(|p| level(*p));
         values.clone().all(|v| v > 0.0) || values.all(|v| v < 0.0)
     };
     let along = |v: Vec2| a * v.x + b * v.y;
     let mut ts: Vec<f64> = match seg {
-        Seg::Line(s) if one_side(&[s.p0, s.p1]) => return Vec::new(),
+        Seg::Line(s) if is_on_one_side(&[s.p0, s.p1]) => return Vec::new(),
         Seg::Line(_) => Vec::new(),
-        Seg::Quad(s) if one_side(&[s.p0, s.p1, s.p2]) => return Vec::new(),
+        Seg::Quad(s) if is_on_one_side(&[s.p0, s.p1, s.p2]) => return Vec::new(),
         Seg::Quad(s) => solve_quadratic(along(s.p1 - s.p0), along((s.p2 - s.p1) - (s.p1 - s.p0)), 0.0).to_vec(),
-        Seg::Cubic(s) if one_side(&[s.p0, s.p1, s.p2, s.p3]) => return Vec::new(),
+        Seg::Cubic(s) if is_on_one_side(&[s.p0, s.p1, s.p2, s.p3]) => return Vec::new(),
         Seg::Cubic(s) => {
             let [d0, d1, d2] = [s.p1 - s.p0, s.p2 - s.p1, s.p3 - s.p2].map(along);
             solve_quadratic(d0, 2.0 * (d1 - d0), d2 - 2.0 * d1 + d0).to_vec()
@@ -250,6 +244,7 @@ fn sampled(f: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
 /// The parameter between `from` and `to` at which a function that is smallest at the sample `least` comes nearest to zero, or crosses it.
 /// `None` if its rise to the neighbouring samples shows that it stays away.
 fn dip(f: impl Fn(f64) -> (f64, f64), least: (f64, f64), [from, to]: [f64; 2], rise: f64) -> Option<(f64, f64)> {
+    /// The shares of the golden section search: (3 − √5)/2 from either end.
     const GOLDEN: f64 = 0.381_966_011_250_105;
     /// The largest fall between samples, as a multiple of the rise to the neighbouring ones.
     const FALL: f64 = 2.0;
@@ -260,22 +255,22 @@ fn dip(f: impl Fn(f64) -> (f64, f64), least: (f64, f64), [from, to]: [f64; 2], r
     }
     // At an end of the segment there is a dip only if the function falls from there.
     if least.0 == from || least.0 == to {
-        let beside = least.0 + 1e-6 * (from + to - 2.0 * least.0);
-        if sign * f(beside).1 >= sign * least.1 {
+        let inward = least.0 + 1e-6 * (from + to - 2.0 * least.0);
+        if sign * f(inward).1 >= sign * least.1 {
             return None;
         }
     }
     let (mut a, mut b, mut best) = (from, to, least);
     for _ in 0..STEPS {
-        let ends = [a + GOLDEN * (b - a), b - GOLDEN * (b - a)].map(&f);
-        let nearer = usize::from(sign * ends[1].1 < sign * ends[0].1);
-        if sign * ends[nearer].1 < sign * best.1 {
-            best = ends[nearer];
+        let inner = [a + GOLDEN * (b - a), b - GOLDEN * (b - a)].map(&f);
+        let lower = usize::from(sign * inner[1].1 < sign * inner[0].1);
+        if sign * inner[lower].1 < sign * best.1 {
+            best = inner[lower];
         }
         if sign * best.1 < 0.0 && best.0 != least.0 {
             break;
         }
-        *if nearer == 0 { &mut b } else { &mut a } = ends[1 - nearer].0;
+        *if lower == 0 { &mut b } else { &mut a } = inner[1 - lower].0;
     }
     (best.0 != least.0).then_some(best)
 }
@@ -320,16 +315,25 @@ pub struct Creases {
 
 /// The work of finding the crossings of a segment with a straight crease, in evaluations of a bicubic net.
 const STRAIGHT_WORK: f64 = 1.0;
+/// The work of one sample of an arc beside a straight crease, where no map is evaluated.
+const SAMPLE_WORK: f64 = 0.1;
 
 impl Creases {
+    /// The creases of `map`.
+    pub(crate) fn of_map(map: &(impl Map + ?Sized)) -> Self {
+        let mut all = Self::default();
+        map.creases(&mut all);
+        all
+    }
+
     /// The work of [`splits`](Self::splits) for a map of `work` per evaluation, in evaluations of a bicubic net.
     pub(crate) fn splits_work(&self, seg: &Seg, work: f64) -> f64 {
-        let of = |c: &Crease| match (&c.level, seg) {
+        let crease_work = |c: &Crease| match (&c.level, seg) {
             (Level::Line { .. } | Level::Stretch { .. }, Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) => STRAIGHT_WORK,
             (Level::Circle { .. } | Level::Field(_), _) => f64::from(SAMPLES) * work,
-            _ => f64::from(SAMPLES) * 0.1,
+            _ => f64::from(SAMPLES) * SAMPLE_WORK,
         };
-        self.items.iter().map(of).sum()
+        self.items.iter().map(crease_work).sum()
     }
 
     /// Adds a crease.
@@ -359,29 +363,27 @@ impl Creases {
     /// Returns [`splits`](Self::splits), and the number of evaluations beyond [`splits_work`](Self::splits_work).
     pub(crate) fn splits_and_work(&self, seg: &Seg) -> (Vec<f64>, usize) {
         /// A shorter part would be lost in rounding.
-        const APART: f64 = 1e-9;
+        const SHORTEST: f64 = 1e-9;
         let mut ts = Vec::new();
         let kinks = self.items.iter().filter(|c| c.kind == CreaseKind::Kink);
-        let more = kinks.map(|c| c.level.crossings(seg, &mut ts)).sum();
+        let evaluations = kinks.map(|c| c.level.crossings(seg, &mut ts)).sum();
         ts.sort_by(f64::total_cmp);
-        ts.retain(|t| *t > APART && *t < 1.0 - APART);
-        ts.dedup_by(|b, a| *b - *a < APART);
-        (ts, more)
+        ts.retain(|t| *t > SHORTEST && *t < 1.0 - SHORTEST);
+        ts.dedup_by(|b, a| *b - *a < SHORTEST);
+        (ts, evaluations)
     }
 
     /// The first point of `seg` at which the map is not defined.
     #[must_use]
     pub(crate) fn first_undefined(&self, seg: &Seg) -> Option<Point> {
         let mut ts = Vec::new();
-        for c in &self.items {
-            if c.kind == CreaseKind::Edge {
-                if c.level.at(seg.start()) <= 0.0 {
-                    return Some(seg.start());
-                }
-                c.level.crossings(seg, &mut ts);
-                let (knots, noise, _) = c.level.knots(seg);
-                ts.extend(knots.iter().filter(|k| k.1 <= noise).map(|k| k.0));
+        for c in self.items.iter().filter(|c| c.kind == CreaseKind::Edge) {
+            if c.level.at(seg.start()) <= 0.0 {
+                return Some(seg.start());
             }
+            c.level.crossings(seg, &mut ts);
+            let (knots, noise, _) = c.level.knots(seg);
+            ts.extend(knots.iter().filter(|k| k.1 <= noise).map(|k| k.0));
         }
         ts.into_iter().min_by(f64::total_cmp).map(|t| seg.eval(t))
     }
@@ -400,8 +402,8 @@ mod tests {
             for y in [0.0, 20.0, 39.0, 39.99] {
                 let (mut ts, line) = (Vec::new(), Line::new((from, y), (to, y + 1e-3)));
                 disc.crossings(&Seg::Line(line), &mut ts);
-                let off = |t: &f64| (line.eval(*t).to_vec2().hypot() - 40.0).abs();
-                assert!(ts.len() == 2 && ts.iter().all(|t| off(t) < 1e-7), "{from} {y}: {ts:?}");
+                let error = |t: &f64| (line.eval(*t).to_vec2().hypot() - 40.0).abs();
+                assert!(ts.len() == 2 && ts.iter().all(|t| error(t) < 1e-7), "{from} {y}: {ts:?}");
             }
         }
     }

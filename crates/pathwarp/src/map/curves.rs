@@ -52,12 +52,13 @@ const MAX_DEPTH: usize = 48;
 /// The number of spans of a curve.
 const MAX_SPANS: usize = 2000;
 
-/// The inverse of a curve's arc length.
+/// The inverse of a curve's arc length, as a table.
 #[derive(Debug, Clone)]
 pub(crate) struct ArcLength {
     spans: Vec<Span>,
 }
 
+/// A part of the parameter range on which both series converge.
 #[derive(Debug, Clone)]
 struct Span {
     /// The distances along the curve at the ends of the span.
@@ -72,13 +73,13 @@ impl ArcLength {
     pub(crate) fn new(speed: &dyn Fn(f64) -> f64) -> Self {
         /// The number of equal parts from which the length is estimated.
         const PARTS: u32 = 4;
-        let points = Points::new();
+        let points = ChebyshevPoints::new();
         let part =
             |i: u32| Speed::new(speed, f64::from(i) / f64::from(PARTS), f64::from(i + 1) / f64::from(PARTS), &points);
         let rough: f64 = (0..PARTS).map(|i| part(i).length()).sum();
         let mut spans = Vec::new();
         let mut todo = vec![(0.0, 1.0, 0)];
-        let mut at = 0.0;
+        let mut distance = 0.0;
         // Depth first, left before right, so that distances accumulate in order.
         while let Some((a, b, depth)) = todo.pop() {
             let last = depth >= MAX_DEPTH || spans.len() + todo.len() >= MAX_SPANS;
@@ -87,8 +88,8 @@ impl ArcLength {
                 let c = span.inverse(&points);
                 if last || c[TERMS - 2].abs() + c[TERMS - 1].abs() <= TAIL {
                     let length = span.length();
-                    spans.push(Span { s0: at, s1: at + length, u: powers(&c) });
-                    at += length;
+                    spans.push(Span { s0: distance, s1: distance + length, u: powers(&c) });
+                    distance += length;
                     continue;
                 }
             }
@@ -100,7 +101,7 @@ impl ArcLength {
     }
 
     /// Tabulates a segment.
-    pub(crate) fn of(seg: &Seg) -> Self {
+    pub(crate) fn of_segment(seg: &Seg) -> Self {
         Self::new(&|u| seg.deriv(u).hypot())
     }
 
@@ -123,26 +124,26 @@ impl ArcLength {
 }
 
 /// The Chebyshev points tₖ = cos(π(k + ½)/n) of the first kind.
-struct Points {
+struct ChebyshevPoints {
     /// The values cos(πm/2n), among them all Tⱼ(tₖ) = cos(πj(2k + 1)/2n).
     cosines: [f64; 4 * TERMS],
 }
 
-impl Points {
+impl ChebyshevPoints {
     fn new() -> Self {
         Self { cosines: from_fn(|m| (PI * m as f64 / (2 * TERMS) as f64).cos()) }
     }
 
     /// The value Tⱼ(tₖ).
     fn value(&self, j: usize, k: usize) -> f64 {
-        self.cosines[j * (2 * k + 1) % (4 * TERMS)]
+        self.cosines[(j * (2 * k + 1)) % (4 * TERMS)]
     }
 
     /// The coefficients of the polynomial with these values at the points.
     fn series(&self, values: &[f64; TERMS]) -> [f64; TERMS] {
         from_fn(|j| {
             let sum: f64 = values.iter().enumerate().map(|(k, v)| v * self.value(j, k)).sum();
-            sum * if j == 0 { 1.0 } else { 2.0 } / TERMS as f64
+            (sum * if j == 0 { 1.0 } else { 2.0 }) / TERMS as f64
         })
     }
 }
@@ -157,7 +158,7 @@ struct Speed {
 }
 
 impl Speed {
-    fn new(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, points: &Points) -> Self {
+    fn new(speed: &dyn Fn(f64) -> f64, a: f64, b: f64, points: &ChebyshevPoints) -> Self {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let v = points.series(&from_fn(|k| speed(middle + half * points.value(1, k)) * half));
         // The integrals are ∫T₀ = T₁ and, for j > 0, ∫Tⱼ = Tⱼ₊₁/2(j + 1) − Tⱼ₋₁/2(j − 1); the constant makes the length 0 at t = −1.
@@ -166,12 +167,12 @@ impl Speed {
             1 => v[0] - 0.5 * v[2],
             _ => (v[j - 1] - v.get(j + 1).unwrap_or(&0.0)) / (2 * j) as f64,
         });
-        length[0] = -sum(&length, -1.0);
+        length[0] = -clenshaw(&length, -1.0);
         Self { middle, half, speed: v, length }
     }
 
     fn length(&self) -> f64 {
-        sum(&self.length, 1.0)
+        clenshaw(&self.length, 1.0)
     }
 
     /// The size of the last terms of the length.
@@ -180,21 +181,24 @@ impl Speed {
     }
 
     /// The Chebyshev series of u over the distances of the span.
-    fn inverse(&self, points: &Points) -> [f64; TERMS] {
+    fn inverse(&self, points: &ChebyshevPoints) -> [f64; TERMS] {
         let whole = self.length();
-        points.series(&from_fn(|k| self.middle + self.half * self.at(0.5 * whole * (1.0 + points.value(1, k)), whole)))
+        points.series(&from_fn(|k| {
+            self.middle + self.half * self.parameter(0.5 * whole * (1.0 + points.value(1, k)), whole)
+        }))
     }
 
-    /// The t at the share `wanted / whole` of the span's length; the middle of a span without length.
-    fn at(&self, wanted: f64, whole: f64) -> f64 {
+    /// The t at the length `wanted` of the span's `whole` length; the middle of a span without length.
+    fn parameter(&self, wanted: f64, whole: f64) -> f64 {
         if whole <= 0.0 {
             return 0.0;
         }
         let start = 2.0 * wanted / whole - 1.0;
-        let off = |t: f64| (sum(&self.length, t) - wanted, sum(&self.speed, t));
+        let excess = |t: f64| (clenshaw(&self.length, t) - wanted, clenshaw(&self.speed, t));
         // The exact length ends the iteration, too: where the curve nearly stands still, the parameter converges later.
-        let is_close = |_, off: f64, step: f64| step.abs() <= 2.0 * f64::EPSILON || off.abs() <= f64::EPSILON * whole;
-        increasing_root((-1.0, 1.0), start, off, is_close)
+        let is_close =
+            |_, excess: f64, step: f64| step.abs() <= 2.0 * f64::EPSILON || excess.abs() <= f64::EPSILON * whole;
+        increasing_root((-1.0, 1.0), start, excess, is_close)
     }
 }
 
@@ -222,7 +226,7 @@ fn polynomial(c: &[f64; TERMS], t: f64) -> f64 {
 }
 
 /// The sum of a Chebyshev series at `t`, by Clenshaw's recurrence.
-fn sum(series: &[f64], t: f64) -> f64 {
+fn clenshaw(series: &[f64], t: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for c in series[1..].iter().rev() {
         (b1, b2) = (2.0 * t * b1 - b2 + c, b1);
@@ -258,6 +262,7 @@ pub struct Side {
     length: f64,
 }
 
+/// One segment of a side, with its parameter at a pace.
 #[derive(Debug, Clone)]
 struct SidePiece {
     seg: Seg,
@@ -281,7 +286,7 @@ impl Side {
     /// back from the axis of a pace along one.
     #[must_use]
     pub fn new(segs: &[Seg], pace: Pace) -> Option<Self> {
-        let measured: Vec<_> = segs.iter().map(|s| (*s, ArcLength::of(s))).collect();
+        let measured: Vec<_> = segs.iter().map(|s| (*s, ArcLength::of_segment(s))).collect();
         let length: f64 = measured.iter().map(|m| m.1.length()).sum();
         if !(length > 0.0 && length.is_finite()) {
             return None;
@@ -294,14 +299,12 @@ impl Side {
             Pace::Length | Pace::Parameter => t.length() / length,
             Pace::Width | Pace::Height => along(s.end() - s.start()) / extent,
         };
-        if matches!(pace, Pace::Width | Pace::Height) && !kept.iter().all(|(s, _)| runs_along(s, along, extent)) {
+        if matches!(pace, Pace::Width | Pace::Height) && !kept.iter().all(|(s, _)| never_turns_back(s, along, extent)) {
             return None;
         }
         let mut knots = vec![0.0];
-        let mut at = 0.0;
-        for (s, t) in &kept {
-            at += share(s, t);
-            knots.push(at);
+        for (i, (s, t)) in kept.iter().enumerate() {
+            knots.push(knots[i] + share(s, t));
         }
         // Shares add up to 1, up to rounding.
         let n = knots.len();
@@ -313,9 +316,8 @@ impl Side {
     /// A straight side, or a single point.
     pub(crate) fn straight(from: Point, to: Point) -> Self {
         let seg = Seg::Line(Line::new(from, to));
-        let table = ArcLength::of(&seg);
-        let length = table.length();
-        Self { pieces: vec![SidePiece { seg, table, pace: Pace::Parameter }], knots: vec![0.0, 1.0], length }
+        let (table, pace) = (ArcLength::of_segment(&seg), Pace::Parameter);
+        Self { length: table.length(), pieces: vec![SidePiece { seg, table, pace }], knots: vec![0.0, 1.0] }
     }
 
     /// The meaning of equal steps of the parameter.
@@ -355,27 +357,27 @@ impl Side {
     /// The point and derivative at `u`.
     #[must_use]
     pub fn at(&self, u: f64) -> (Point, Vec2) {
-        self.on(self.piece(u), u)
+        self.at_piece(self.piece(u), u)
     }
 
     /// The point and derivative at `u` on a given piece, continued beyond its ends.
     #[must_use]
-    pub(crate) fn on(&self, piece: usize, u: f64) -> (Point, Vec2) {
+    pub(crate) fn at_piece(&self, piece: usize, u: f64) -> (Point, Vec2) {
         let (from, to) = (self.knots[piece], self.knots[piece + 1]);
-        let (p, v) = self.pieces[piece].at((u - from) / (to - from));
+        let (p, v) = self.pieces[piece].point_and_derivative((u - from) / (to - from));
         (p, v / (to - from))
     }
 
     /// The point at `u` on a given piece, continued beyond its ends.
     #[must_use]
-    pub(crate) fn point_on(&self, piece: usize, u: f64) -> Point {
+    pub(crate) fn point_at_piece(&self, piece: usize, u: f64) -> Point {
         let (from, to) = (self.knots[piece], self.knots[piece + 1]);
         self.pieces[piece].point((u - from) / (to - from))
     }
 
     /// Returns `true` if every piece continues smoothly beyond its ends.
     #[must_use]
-    pub(crate) fn runs_on(&self) -> bool {
+    pub(crate) fn continues_smoothly(&self) -> bool {
         self.pieces.iter().all(|p| p.is_polynomial() || (p.pace == Pace::Parameter))
     }
 
@@ -392,7 +394,7 @@ impl Side {
 
     /// The largest distance of the side from its chord, and the point where it occurs.
     #[must_use]
-    pub(crate) fn off_straight(&self) -> (f64, Point) {
+    pub(crate) fn farthest_from_chord(&self) -> (f64, Point) {
         /// The number of samples per piece.
         const SAMPLES: u32 = 64;
         let [a, b] = self.ends();
@@ -406,8 +408,8 @@ impl Side {
     }
 }
 
-/// Returns `true` if a segment runs in one direction along the axis.
-fn runs_along(s: &Seg, along: impl Fn(Vec2) -> f64, extent: f64) -> bool {
+/// Returns `true` if a segment runs along an axis in the direction of `extent` only. `along` gives the component on that axis.
+fn never_turns_back(s: &Seg, along: impl Fn(Vec2) -> f64, extent: f64) -> bool {
     const SAMPLES: u32 = 256;
     (0..=SAMPLES).all(|i| {
         let v = s.deriv(f64::from(i) / f64::from(SAMPLES));
@@ -426,7 +428,7 @@ impl SidePiece {
     }
 
     /// The point and derivative at `t`, which runs from 0 to 1 over the piece.
-    fn at(&self, t: f64) -> (Point, Vec2) {
+    fn point_and_derivative(&self, t: f64) -> (Point, Vec2) {
         let inside = t.clamp(0.0, 1.0);
         let Some(u) = self.parameter(inside) else { return (self.seg.eval(t), self.seg.deriv(t)) };
         let inward = if u < 0.5 { u + INWARD } else { u - INWARD };
@@ -458,7 +460,7 @@ impl SidePiece {
     /// The point at `t`, which runs from 0 to 1 over the piece.
     fn point(&self, t: f64) -> Point {
         if !(0.0..=1.0).contains(&t) {
-            return self.at(t).0;
+            return self.point_and_derivative(t).0;
         }
         self.seg.eval(self.parameter(t).unwrap_or(t))
     }
@@ -519,25 +521,25 @@ impl Guide {
         let mut lengths = Vec::with_capacity(segs.len());
         let mut tables = Vec::with_capacity(segs.len());
         for seg in segs {
-            let table = ArcLength::of(seg);
+            let table = ArcLength::of_segment(seg);
             lengths.push(if along == Along::ArcLength { table.length() } else { 1.0 });
             // The parameter of a line is proportional to its length.
-            let even = along == Along::Parameter || matches!(seg, Seg::Line(_));
-            tables.push((!even).then_some(table));
+            let proportional = along == Along::Parameter || matches!(seg, Seg::Line(_));
+            tables.push((!proportional).then_some(table));
         }
         let total: f64 = lengths.iter().sum();
-        let flat = segs.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
-        if flat || !total.is_finite() || total <= 0.0 {
+        let is_point = segs.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
+        if is_point || !total.is_finite() || total <= 0.0 {
             return None;
         }
-        let mut at = 0.0;
+        let mut distance = 0.0;
         let mut pieces: Vec<GuidePiece> = Vec::with_capacity(segs.len());
         for ((seg, length), table) in segs.iter().zip(lengths).zip(tables) {
-            let from = at / total;
-            at += length;
+            let from = distance / total;
+            distance += length;
             // A segment without length covers no u.
             if length > 0.0 {
-                pieces.push(GuidePiece { seg: *seg, from, to: at / total, table });
+                pieces.push(GuidePiece { seg: *seg, from, to: distance / total, table });
             }
         }
         if let Some(last) = pieces.last_mut() {
@@ -549,7 +551,7 @@ impl Guide {
     /// The point at `u`. The outermost pieces continue beyond the ends.
     #[cfg(test)]
     pub(in crate::map) fn eval(&self, u: f64) -> Point {
-        self.piece(u).at(u).0
+        self.piece(u).point(u)
     }
 
     /// The parameters between 0 and 1 at which pieces meet.
@@ -566,7 +568,7 @@ impl Guide {
 
 impl GuidePiece {
     /// The point and the derivative with respect to u.
-    pub(in crate::map) fn at(&self, u: f64) -> (Point, Vec2) {
+    pub(in crate::map) fn point_and_derivative(&self, u: f64) -> (Point, Vec2) {
         let share = self.share(u);
         let (t, dt) = match &self.table {
             None => (share, 1.0),
@@ -587,7 +589,7 @@ impl GuidePiece {
         match &self.table {
             None => self.seg.eval(share),
             Some(table) if (0.0..=1.0).contains(&share) => self.seg.eval(table.parameter(share * table.length())),
-            Some(_) => self.at(u).0,
+            Some(_) => self.point_and_derivative(u).0,
         }
     }
 
@@ -612,10 +614,6 @@ mod tests {
     use super::*;
     use kurbo::{ParamCurveArclen, ParamCurveDeriv};
 
-    fn of(c: CubicBez) -> ArcLength {
-        ArcLength::of(&Seg::Cubic(c))
-    }
-
     #[test]
     fn distances_agree_with_an_independent_integration() {
         for c in [
@@ -623,7 +621,7 @@ mod tests {
             CubicBez::new((0.0, 0.0), (100.0, 10.0), (0.0, 10.0), (100.0, 0.0)),
             CubicBez::new((0.0, 0.0), (1.0, 0.0), (99.0, 80.0), (100.0, 0.0)),
         ] {
-            let table = of(c);
+            let table = ArcLength::of_segment(&Seg::Cubic(c));
             assert!((table.length() - c.arclen(1e-12)).abs() < 1e-10, "{} {}", table.length(), c.arclen(1e-12));
             for i in 0..=50 {
                 let s = table.length() * f64::from(i) / 50.0;
@@ -641,7 +639,8 @@ mod tests {
             assert!((table.parameter(s) - (s / 10.0).sqrt()).abs() < 1e-7, "{s} {}", table.spans.len());
         }
         assert!((table.parameter(1.0) - 0.1f64.sqrt()).abs() < 1e-13);
-        let cusp = of(CubicBez::new((0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0)));
+        let cusp = CubicBez::new((0.0, 0.0), (100.0, 100.0), (0.0, 100.0), (100.0, 0.0));
+        let cusp = ArcLength::of_segment(&Seg::Cubic(cusp));
         assert!(cusp.spans.len() < 300 && (cusp.parameter(0.5 * cusp.length()) - 0.5).abs() < 1e-6);
     }
 

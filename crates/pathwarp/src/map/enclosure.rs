@@ -35,7 +35,8 @@ impl Enclosure {
     /// The number of derivatives that are bounded.
     pub(crate) const ORDER: usize = ORDER;
 
-    /// The largest product of the distances from six neighbouring samples between them, in steps; see [`resolved`](Self::resolved).
+    /// The largest product of the distances of a point between six neighbouring samples from them, in steps; see
+    /// [`resolved`](Self::resolved).
     pub(crate) const LAST_SPREAD: f64 = 4.0;
 
     /// Encloses v + hτ and v − hτ, for every v at most `far` from the middle.
@@ -73,48 +74,49 @@ impl Enclosure {
     /// The image of a curve under a map that stretches by at most `stretch` and has no features smaller than `detail`, given the image of
     /// the middle of the curve's box: by Cauchy's estimates, the map's coefficients are at most stretch·detail¹⁻ᵏ/k.
     pub(crate) fn estimated([x, y]: [Self; 2], middle: Point, stretch: f64, detail: f64) -> [Self; 2] {
-        let way = Self { lo: 0.0, hi: 0.0, d: std::array::from_fn(|k| x.d[k].hypot(y.d[k])) };
-        let reach = 0.5 * stretch * (x.hi - x.lo).hypot(y.hi - y.lo);
-        let image = way.under([-reach, reach], coefficients(|k| stretch * detail.powi(1 - k) / f64::from(k)));
+        let path = Self { lo: 0.0, hi: 0.0, d: std::array::from_fn(|k| x.d[k].hypot(y.d[k])) };
+        let radius = 0.5 * stretch * (x.hi - x.lo).hypot(y.hi - y.lo);
+        let image = path.mapped([-radius, radius], coefficients(|k| stretch * detail.powi(1 - k) / f64::from(k)));
         [image + middle.x, image + middle.y]
     }
 
     /// Returns `true` if samples at `intervals` equal steps determine both coordinates of a curve: if interpolation between them is at
-    /// most `by` from the curve.
+    /// most `tolerance` from the curve.
     #[must_use]
-    pub fn resolved([x, y]: &[Self; 2], intervals: usize, by: f64) -> bool {
+    pub fn resolved([x, y]: &[Self; 2], intervals: usize, tolerance: f64) -> bool {
         /// The largest product of the distances from k neighbouring samples, in steps: between the middle ones, or, for higher k, a little
         /// nearer to the ends, where the derivative at the curve's end counts as a sample too.
         const SPREAD: [f64; ORDER] = [0.5, 0.25, 0.385, 1.0, 2.0, Enclosure::LAST_SPREAD];
         let step = 1.0 / intervals as f64;
         let mut power = 1.0;
-        let by_order = |k: usize| {
+        let is_resolved_by_order = |k: usize| {
             power *= step;
             // Also false for NaN.
-            SPREAD[k] * power * (x.d[k] + y.d[k]) <= by
+            SPREAD[k] * power * (x.d[k] + y.d[k]) <= tolerance
         };
-        (0..ORDER).any(by_order) || (x.hi - x.lo) + (y.hi - y.lo) <= by
+        (0..ORDER).any(is_resolved_by_order) || (x.hi - x.lo) + (y.hi - y.lo) <= tolerance
     }
 
-    /// The size of the smallest feature of a curve, as a share of its parameter range.
+    /// The size of the smallest feature of a curve, as a share of its parameter range: the largest r with coefficient k at most the first
+    /// one times r¹⁻ᵏ.
     pub(crate) fn finest([x, y]: &[Self; 2]) -> f64 {
         let d = |k: usize| x.d[k] + y.d[k];
         (1..ORDER).map(|k| (d(0) / d(k)).powf(1.0 / k as f64)).fold(f64::INFINITY, f64::min)
     }
 
     /// The largest magnitude.
-    fn most(&self) -> f64 {
+    fn max_abs(&self) -> f64 {
         self.hi.abs().max(self.lo.abs())
     }
 
     /// The least magnitude; 0 if the sign is not known.
-    fn least(&self) -> f64 {
+    fn min_abs(&self) -> f64 {
         self.lo.max(-self.hi).max(0.0)
     }
 
-    /// A function g of this one, with its range and bounds for its coefficients |g⁽ᵏ⁾|/k! on the range of this one.
+    /// Encloses g ∘ f, given the range of g and bounds for its coefficients |g⁽ᵏ⁾|/k! on the range of f.
     #[inline(never)]
-    fn under(&self, [lo, hi]: [f64; 2], coefficients: [f64; ORDER]) -> Self {
+    fn mapped(&self, [lo, hi]: [f64; 2], coefficients: [f64; ORDER]) -> Self {
         let mut out = Self { lo, hi, d: [0.0; ORDER] };
         if self.d == out.d {
             return out;
@@ -137,67 +139,67 @@ impl Enclosure {
 
     /// 1/f.
     fn reciprocal(&self) -> Self {
-        let most = 1.0 / self.least();
+        let most = 1.0 / self.min_abs();
         let range = if most.is_finite() { [1.0 / self.hi, 1.0 / self.lo] } else { [-most, most] };
         let mut power = most;
-        self.under(
-            range,
-            [(); ORDER].map(|()| {
-                power *= most;
-                power
-            }),
-        )
+        let coefficient = |_| {
+            power *= most;
+            power
+        };
+        self.mapped(range, coefficients(coefficient))
     }
 
     /// fᵃ in a range. The coefficients are (a over k)·fᵃ⁻ᵏ.
     fn power(&self, range: [f64; 2], a: f64) -> Self {
         let mut over = 1.0;
-        let mut powers = [self.least(), self.most()].map(|v| (v.powf(a), v));
+        let mut powers = [self.min_abs(), self.max_abs()].map(|v| (v.powf(a), v));
         let coefficient = |k: i32| {
             over *= (a - f64::from(k - 1)).abs() / f64::from(k);
             powers = powers.map(|(power, v)| (power / v, v));
             if over == 0.0 { 0.0 } else { over * powers[usize::from(a >= f64::from(k))].0 }
         };
-        self.under(range, coefficients(coefficient))
+        self.mapped(range, coefficients(coefficient))
     }
 
-    /// The sine or the cosine, with range `own`; `other` is the range of its derivative, but for the sign.
-    fn wave(&self, own: [f64; 2], other: [f64; 2]) -> Self {
-        let [own_most, most] = [own, other].map(|[lo, hi]| hi.max(-lo));
+    /// The sine or the cosine, with this range of values, and this range of the derivative, but for the sign.
+    fn wave(&self, values: [f64; 2], derivative: [f64; 2]) -> Self {
+        let [even, odd] = [values, derivative].map(|[lo, hi]| hi.max(-lo));
         let [f1, f2, f3, f4, f5, f6] = FACTORIALS;
-        self.under(own, [most * f1, own_most * f2, most * f3, own_most * f4, most * f5, own_most * f6])
+        self.mapped(values, [odd * f1, even * f2, odd * f3, even * f4, odd * f5, even * f6])
     }
 
     /// The ranges of sine and cosine.
     fn ranges(&self) -> [[f64; 2]; 2] {
         /// The positions of larger angles in the circle are rounding errors.
         const FAR: f64 = 1e12;
-        let known = self.hi - self.lo < TAU && self.most() < FAR;
-        if !known {
+        let is_known = self.hi - self.lo < TAU && self.max_abs() < FAR;
+        if !is_known {
             return [[-1.0, 1.0]; 2];
         }
         let ((s0, c0), (s1, c1)) = (self.lo.sin_cos(), self.hi.sin_cos());
         let mut out = [range([s0, s1]), range([c0, c1])];
         let quarters = [self.lo, self.hi].map(|v| (v / FRAC_PI_2).floor() as i64);
         for quarter in quarters[0] + 1..=quarters[1] {
-            let (sine, low) = (quarter & 1, quarter >> 1 & 1);
-            out[usize::from(sine == 0)][usize::from(low == 0)] = if low == 0 { 1.0 } else { -1.0 };
+            // At odd multiples of a right angle the sine is 1 or −1, at even ones the cosine, and it is 1 on every other one.
+            let (is_sine, is_maximum) = (quarter & 1 == 1, (quarter >> 1) & 1 == 0);
+            out[usize::from(!is_sine)][usize::from(is_maximum)] = if is_maximum { 1.0 } else { -1.0 };
         }
         out
     }
 }
 
 /// Bounds for the coefficients of each order, from 1.
-fn coefficients(mut of: impl FnMut(i32) -> f64) -> [f64; ORDER] {
-    std::array::from_fn(|k| of(k as i32 + 1))
+fn coefficients(mut bound: impl FnMut(i32) -> f64) -> [f64; ORDER] {
+    std::array::from_fn(|k| bound(k as i32 + 1))
 }
 
+/// The least and the largest value.
 fn range<const N: usize>(values: [f64; N]) -> [f64; 2] {
     [values.into_iter().fold(values[0], f64::min), values.into_iter().fold(values[0], f64::max)]
 }
 
 /// The coordinates of a segment between two parameters.
-pub(crate) fn along(seg: &Seg, [from, to]: [f64; 2]) -> [Enclosure; 2] {
+pub(crate) fn enclose_segment(seg: &Seg, [from, to]: [f64; 2]) -> [Enclosure; 2] {
     if let Seg::Arc(a) = seg {
         let angle = Enclosure::between(a.start + from * a.sweep, a.start + to * a.sweep);
         let (sin, cos) = (angle.sin(), angle.cos());
@@ -205,8 +207,8 @@ pub(crate) fn along(seg: &Seg, [from, to]: [f64; 2]) -> [Enclosure; 2] {
     }
     let c = seg.part(from, to).unwrap_or(*seg).to_cubic();
     let (d0, d1, d2) = ((c.p1 - c.p0) * 3.0, (c.p2 - c.p1) * 3.0, (c.p3 - c.p2) * 3.0);
-    let (bend, twist) = (d1 - d0, (d2 - d1 * 2.0 + d0) / 3.0);
-    [[c.p0.x, d0.x, bend.x, twist.x], [c.p0.y, d0.y, bend.y, twist.y]].map(Enclosure::cubic)
+    let (a2, a3) = (d1 - d0, (d2 - d1 * 2.0 + d0) / 3.0);
+    [[c.p0.x, d0.x, a2.x, a3.x], [c.p0.y, d0.y, a2.y, a3.y]].map(Enclosure::cubic)
 }
 
 impl From<f64> for Enclosure {
@@ -221,9 +223,9 @@ operators! { #[inline(never)] Enclosure:
     Sub sub Self: |a, b| a + -b;
     Mul mul Self: |a, b| {
         let [lo, hi] = range([a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi]);
-        let (of_a, of_b) = (a.most(), b.most());
+        let (max_a, max_b) = (a.max_abs(), b.max_abs());
         let mixed = |k: usize| (0..k).map(|j| a.d[j] * b.d[k - 1 - j]).sum::<f64>();
-        Self { lo, hi, d: std::array::from_fn(|k| of_a * b.d[k] + a.d[k] * of_b + mixed(k)) }
+        Self { lo, hi, d: std::array::from_fn(|k| max_a * b.d[k] + a.d[k] * max_b + mixed(k)) }
     };
     Div div Self: |a, b| Mul::mul(a, b.reciprocal());
     Add add f64: |a, b| Self { lo: a.lo + b, hi: a.hi + b, ..a };
@@ -269,23 +271,22 @@ impl Real for Enclosure {
 
     fn exp(self) -> Self {
         let most = self.hi.exp();
-        self.under([self.lo.exp(), most], FACTORIALS.map(|f| most * f))
+        self.mapped([self.lo.exp(), most], FACTORIALS.map(|f| most * f))
     }
 
     fn ln(self) -> Self {
         let least = self.lo.max(0.0);
-        self.under([least.ln(), self.hi.ln()], coefficients(|k| 1.0 / (f64::from(k) * least.powi(k))))
+        self.mapped([least.ln(), self.hi.ln()], coefficients(|k| 1.0 / (f64::from(k) * least.powi(k))))
     }
 
     /// The angle from the middle's direction is an arctangent, whose coefficients are at most 1/k.
     fn atan2(self, x: Self) -> Self {
-        let (own, other) = (self.value(), x.value());
-        let middle = own.atan2(other);
+        let middle = self.value().atan2(x.value());
         let (sin, cos) = middle.sin_cos();
         let (ahead, aside) = (x * cos + self * sin, self * cos - x * sin);
         if ahead.lo > 0.0 {
             let slope = aside / ahead;
-            slope.under([slope.lo.atan(), slope.hi.atan()], coefficients(|k| 1.0 / f64::from(k))) + middle
+            slope.mapped([slope.lo.atan(), slope.hi.atan()], coefficients(|k| 1.0 / f64::from(k))) + middle
         } else {
             Self::broken(-PI, PI, f64::INFINITY)
         }
@@ -295,7 +296,7 @@ impl Real for Enclosure {
         if n < 0 {
             return self.powi(-n).reciprocal();
         }
-        let ends = if n % 2 == 0 { [self.least(), self.most()] } else { [self.lo, self.hi] };
+        let ends = if n % 2 == 0 { [self.min_abs(), self.max_abs()] } else { [self.lo, self.hi] };
         self.power(ends.map(|v| v.powi(n)), f64::from(n))
     }
 
@@ -322,7 +323,7 @@ impl Real for Enclosure {
     }
 
     fn sign(self) -> Self {
-        if self.least() > 0.0 { Self::from(self.hi.signum()) } else { Self::broken(-1.0, 1.0, f64::INFINITY) }
+        if self.min_abs() > 0.0 { Self::from(self.hi.signum()) } else { Self::broken(-1.0, 1.0, f64::INFINITY) }
     }
 
     fn floor(self) -> Self {

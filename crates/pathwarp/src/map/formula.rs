@@ -135,6 +135,10 @@ impl<F: Formula> Map for F {
         Formula::inverse(self)
     }
 
+    fn cost(&self) -> Cost<'_> {
+        Formula::cost(self)
+    }
+
     forward_common!(self => Formula, self);
 }
 
@@ -209,14 +213,14 @@ impl<F: Fn(Point) -> Point + Send + Sync> FromFn<F> {
         let size = p.x.abs().max(p.y.abs()).max(1.0).sqrt();
         // A power of two, so that the steps are exact.
         let h = STEP * 2f64.powi(size.log2().ceil() as i32);
-        let at = |k: f64| (self.0)(p + axis * (k * h)) - image;
-        let (before, after) = (at(-1.0), at(1.0));
-        let both = (8.0 * (after - before) - (at(2.0) - at(-2.0))) / (12.0 * h);
-        if both.is_finite() {
-            return both;
+        let difference = |k: f64| (self.0)(p + axis * (k * h)) - image;
+        let (before, after) = (difference(-1.0), difference(1.0));
+        let central = (8.0 * (after - before) - (difference(2.0) - difference(-2.0))) / (12.0 * h);
+        if central.is_finite() {
+            return central;
         }
-        let sides = [(4.0 * after - at(2.0)) / (2.0 * h), (at(-2.0) - 4.0 * before) / (2.0 * h)];
-        sides.into_iter().find(|s| s.is_finite()).unwrap_or((after - before) / (2.0 * h))
+        let one_sided = [4.0 * after - difference(2.0), difference(-2.0) - 4.0 * before].map(|v| v / (2.0 * h));
+        one_sided.into_iter().find(|s| s.is_finite()).unwrap_or((after - before) / (2.0 * h))
     }
 }
 

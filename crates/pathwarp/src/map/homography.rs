@@ -42,13 +42,13 @@ impl Homography {
         };
         let m = mul(&basis(to)?, &inverse(&basis(from)?)?);
         let m = m.map(|row| row.map(|v| v / m[2][2]));
-        let out = Self { m, from: from[0], to: to[0] }.tidied(from);
+        let out = Self { m, from: from[0], to: to[0] }.without_noise(from);
         let positive = from.iter().all(|p| out.w(*p) > 0.0);
         (positive && m.iter().flatten().all(|v| v.is_finite())).then_some(out)
     }
 
     /// Sets the perspective part to zero if it is rounding noise over `at`, so that parallelograms give affine maps.
-    fn tidied(mut self, at: [Point; 4]) -> Self {
+    fn without_noise(mut self, at: [Point; 4]) -> Self {
         /// The rounding error of the two 3×3 solves, with a margin.
         const NOISE: f64 = 1e-13;
         let varies = at.iter().map(|p| (self.m[2][0] * (p.x - at[0].x) + self.m[2][1] * (p.y - at[0].y)).abs());
@@ -62,7 +62,7 @@ impl Homography {
 
     /// The homogeneous image of `p`, about `to`.
     #[inline]
-    pub(super) fn near(&self, p: Point) -> [f64; 3] {
+    pub(super) fn homogeneous(&self, p: Point) -> [f64; 3] {
         let v = p - self.from;
         self.m.map(|row| row[0] * v.x + row[1] * v.y + row[2])
     }
@@ -78,7 +78,7 @@ impl Homography {
     #[inline]
     #[must_use]
     pub fn w(&self, p: Point) -> f64 {
-        self.near(p)[2]
+        self.homogeneous(p)[2]
     }
 
     /// The coefficients of W = a·x + b·y + c.
@@ -97,8 +97,8 @@ impl Homography {
     /// The composition `self ∘ first`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
-        let gap = first.to - self.from;
-        let shift = [[1.0, 0.0, gap.x], [0.0, 1.0, gap.y], [0.0, 0.0, 1.0]];
+        let v = first.to - self.from;
+        let shift = [[1.0, 0.0, v.x], [0.0, 1.0, v.y], [0.0, 0.0, 1.0]];
         Self { m: mul(&mul(&self.m, &shift), &first.m), from: first.from, to: self.to }
     }
 
@@ -112,12 +112,12 @@ impl Homography {
     /// The composition `self ∘ m` with an invertible `m`.
     #[must_use]
     pub(crate) fn after_affine(&self, m: Affine) -> Self {
-        let near = m.inverse() * self.from;
-        if !near.is_finite() {
+        let from = m.inverse() * self.from;
+        if !from.is_finite() {
             return self.after(&m.into());
         }
-        let ([a, b, c, d, ..], gap) = (m.as_coeffs(), m * near - self.from);
-        Self { m: mul(&self.m, &[[a, c, gap.x], [b, d, gap.y], [0.0, 0.0, 1.0]]), from: near, to: self.to }
+        let ([a, b, c, d, ..], v) = (m.as_coeffs(), m * from - self.from);
+        Self { m: mul(&self.m, &[[a, c, v.x], [b, d, v.y], [0.0, 0.0, 1.0]]), from, to: self.to }
     }
 
     /// Returns this map as an affine one, if it is affine.

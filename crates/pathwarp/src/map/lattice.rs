@@ -1,16 +1,11 @@
-//! Lattices of control points: free-form deformation of the plane.
-//!
-//! > X(s,t) = Σⱼ Σᵢ Nᵢ(s) Nⱼ(t) wᵢⱼ (xᵢⱼ, yᵢⱼ, 1),  s = (x − x₀)/(x₁ − x₀),  t = (y − y₀)/(y₁ − y₀)
-//!
-//! (T. W. Sederberg, S. R. Parry, *Free-form deformation of solid geometric models*, SIGGRAPH 1986; T. W. Sederberg,
-//! *Computer Aided Geometric Design*, chapter 14). The basis consists of Bernstein polynomials or of uniform clamped B-splines. i counts
-//! from the left, j from the top.
+//! Lattices of control points: free-form deformation of the plane, by the formula at [`LatticeMap`] (T. W. Sederberg, S. R. Parry,
+//! SIGGRAPH 1986; T. W. Sederberg, *Computer Aided Geometric Design*, chapter 14). i counts from the left, j from the top.
 //!
 //! Nothing moves outside the region, so its border is a crease. If the k + 1 outermost rows or columns along a side are in their
 //! regular positions (with weights 1), the map is Cᵏ across that side. The Bézier pieces of a B-spline lattice of degree d agree
 //! in d − 1 derivatives; the lines between them are creases too.
 
-use super::newton::kinks_through;
+use super::newton::{kinks, push_images};
 use super::{
     AffineMap, Class, Cost, Crease, Creases, Jet, Level, Map, NewtonInverse, Patch, RationalBezier, Searches, bspline,
 };
@@ -25,21 +20,20 @@ pub struct Lattice {
     degree: [usize; 2],
     cells: [usize; 2],
     /// The regular positions along x and y, from 0 to 1.
-    places: [Vec<f64>; 2],
+    regular: [Vec<f64>; 2],
     /// The displacements from the regular positions, row by row.
     moves: Vec<Vec2>,
     weights: Vec<f64>,
 }
 
 impl Lattice {
-    /// The lattice that is the identity: `degree` along x and y (at least 1), `cells` Bézier pieces along x and y (1 for a Bézier
-    /// lattice).
+    /// The lattice that is the identity: `degree` along x and y (at least 1), `cells` Bézier pieces along x and y (1 for a Bézier lattice).
     #[must_use]
     pub fn regular(region: Rect, degree: [usize; 2], cells: [usize; 2]) -> Self {
         let (degree, cells) = (degree.map(|d| d.max(1)), cells.map(|c| c.max(1)));
-        let places = [0, 1].map(|k| bspline::regular(degree[k], cells[k]));
-        let count = places[0].len() * places[1].len();
-        Self { region, degree, cells, places, moves: vec![Vec2::ZERO; count], weights: vec![1.0; count] }
+        let regular = [0, 1].map(|k| bspline::regular(degree[k], cells[k]));
+        let count = regular[0].len() * regular[1].len();
+        Self { region, degree, cells, regular, moves: vec![Vec2::ZERO; count], weights: vec![1.0; count] }
     }
 
     /// The degrees along x and y.
@@ -63,13 +57,13 @@ impl Lattice {
     /// The number of control points along x.
     #[must_use]
     pub fn columns(&self) -> usize {
-        self.places[0].len()
+        self.regular[0].len()
     }
 
     /// The number of control points along y.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.places[1].len()
+        self.regular[1].len()
     }
 
     fn index(&self, i: usize, j: usize) -> usize {
@@ -80,7 +74,7 @@ impl Lattice {
     #[must_use]
     pub fn regular_point(&self, i: usize, j: usize) -> Point {
         let r = self.region;
-        Point::new(r.x0 + self.places[0][i] * r.width(), r.y0 + self.places[1][j] * r.height())
+        Point::new(r.x0 + self.regular[0][i] * r.width(), r.y0 + self.regular[1][j] * r.height())
     }
 
     /// The position of control point (i, j).
@@ -134,8 +128,8 @@ impl Lattice {
     #[must_use]
     pub fn influence(&self, p: Point) -> Vec<((usize, usize), f64)> {
         let r = self.region;
-        let at = [(p.x - r.x0) / r.width(), (p.y - r.y0) / r.height()];
-        let [(i0, across), (j0, down)] = [0, 1].map(|k| bspline::basis(self.degree[k], self.cells[k], at[k]));
+        let st = [(p.x - r.x0) / r.width(), (p.y - r.y0) / r.height()];
+        let [(i0, across), (j0, down)] = [0, 1].map(|k| bspline::basis(self.degree[k], self.cells[k], st[k]));
         let mut out = Vec::with_capacity(across.len() * down.len());
         for (j, b) in down.iter().enumerate() {
             for (i, a) in across.iter().enumerate() {
@@ -151,12 +145,12 @@ impl Lattice {
 
     /// The patch of one cell. A polynomial patch takes displacements, a rational one homogeneous points.
     fn patch(&self, [ci, cj]: [usize; 2]) -> Patch {
-        let cell = |a: f64, size: f64, c: usize, n: usize| {
+        let range = |a: f64, size: f64, c: usize, n: usize| {
             (a + size * (c as f64 / n as f64), a + size * ((c + 1) as f64 / n as f64))
         };
         let r = self.region;
-        let (x0, x1) = cell(r.x0, r.width(), ci, self.cells[0]);
-        let (y0, y1) = cell(r.y0, r.height(), cj, self.cells[1]);
+        let (x0, x1) = range(r.x0, r.width(), ci, self.cells[0]);
+        let (y0, y1) = range(r.y0, r.height(), cj, self.cells[1]);
         let rect = Rect::new(x0, y0, x1, y1);
         let across = &bspline::extraction(self.degree[0], self.cells[0])[ci];
         let down = &bspline::extraction(self.degree[1], self.cells[1])[cj];
@@ -198,8 +192,8 @@ impl Lattice {
         let size = self.moves.iter().map(|d| d.hypot()).fold(0.0, f64::max);
         for j in 0..=n {
             for i in 0..=m {
-                let at = self.regular_point(i, j) - r.origin();
-                if (o + u * at.x + v * at.y - self.moves[self.index(i, j)]).hypot() > 1e-14 * size {
+                let p = self.regular_point(i, j) - r.origin();
+                if (o + u * p.x + v * p.y - self.moves[self.index(i, j)]).hypot() > 1e-14 * size {
                     return None;
                 }
             }
@@ -247,7 +241,7 @@ impl LatticeMap {
     #[must_use]
     pub fn new(lattice: &Lattice, extended: bool) -> Self {
         let r = lattice.region();
-        let reach = ROUNDING * (r.x0.abs() + r.y0.abs() + r.x1.abs() + r.y1.abs());
+        let rounding = ROUNDING * (r.x0.abs() + r.y0.abs() + r.x1.abs() + r.y1.abs());
         let [across, down] = lattice.cells();
         let cells = (0..down).flat_map(|j| (0..across).map(move |i| [i, j]));
         let patch = |c: [usize; 2]| {
@@ -255,31 +249,30 @@ impl LatticeMap {
             Arc::new(if extended { p } else { p.bounded() })
         };
         let affine = lattice.as_affine().filter(|m| extended || *m == Affine::IDENTITY);
-        Self {
-            region: r,
-            inside: r.inflate(reach, reach),
-            cells: lattice.cells(),
-            patches: cells.map(patch).collect(),
-            extended,
-            affine,
-        }
+        let (inside, patches) = (r.inflate(rounding, rounding), cells.map(patch).collect());
+        Self { region: r, inside, cells: lattice.cells(), patches, extended, affine }
+    }
+
+    /// A margin for the rounding of preimages, which is larger than that of points.
+    fn margin(&self) -> f64 {
+        1e3 * (self.inside.x1 - self.region.x1)
     }
 
     /// The index of the cell at `p`; `None` outside the region, where nothing moves.
     #[inline]
     fn cell(&self, p: Point) -> Option<usize> {
         let b = &self.inside;
-        let within = p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
-        if !within && !self.extended {
+        let is_inside = p.x >= b.x0 && p.x <= b.x1 && p.y >= b.y0 && p.y <= b.y1;
+        if !is_inside && !self.extended {
             return None;
         }
         if self.patches.len() == 1 {
             return Some(0);
         }
         let r = &self.region;
-        let along = |v: f64, n: usize| ((v * n as f64).max(0.0) as usize).min(n - 1);
-        let i = along((p.x - r.x0) / r.width(), self.cells[0]);
-        let j = along((p.y - r.y0) / r.height(), self.cells[1]);
+        let index = |v: f64, n: usize| ((v * n as f64).max(0.0) as usize).min(n - 1);
+        let i = index((p.x - r.x0) / r.width(), self.cells[0]);
+        let j = index((p.y - r.y0) / r.height(), self.cells[1]);
         Some(j * self.cells[0] + i)
     }
 
@@ -287,10 +280,9 @@ impl LatticeMap {
     #[inline]
     fn runs(&self, ps: &[Point], mut f: impl FnMut(Option<&Patch>, std::ops::Range<usize>)) {
         let (c, half) = (self.inside.center(), self.inside.size() * 0.5);
-        let all = |ps: &[Point]| {
-            ps.iter().fold(true, |all, p| all & ((p.x - c.x).abs() <= half.width) & ((p.y - c.y).abs() <= half.height))
-        };
-        if self.patches.len() == 1 && (self.extended || all(ps)) {
+        let is_inside = |p: &Point| ((p.x - c.x).abs() <= half.width) & ((p.y - c.y).abs() <= half.height);
+        // Without branches, so that the compiler can use vectors.
+        if self.patches.len() == 1 && (self.extended || ps.iter().fold(true, |all, p| all & is_inside(p))) {
             return f(Some(&self.patches[0]), 0..ps.len());
         }
         let mut from = 0;
@@ -342,8 +334,8 @@ impl Map for LatticeMap {
             return;
         }
         let within = self.inside;
-        let mut line = |vertical: bool, at: f64| {
-            let (a, b, c) = if vertical { (1.0, 0.0, -at) } else { (0.0, 1.0, -at) };
+        let mut line = |vertical: bool, coordinate: f64| {
+            let (a, b, c) = if vertical { (1.0, 0.0, -coordinate) } else { (0.0, 1.0, -coordinate) };
             let level = if self.extended { Level::Line { a, b, c } } else { Level::Stretch { a, b, c, within } };
             out.push(Crease::kink(level));
         };
@@ -361,9 +353,9 @@ impl Map for LatticeMap {
             line(false, r.y0 + r.height() * (j as f64 / self.cells[1] as f64));
         }
         if self.patches.iter().any(|p| p.has_edge()) {
-            let own = self.clone();
+            let map = self.clone();
             out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
-                own.cell(p).map_or(1.0, |c| own.patches[c].denominator(p))
+                map.cell(p).map_or(1.0, |c| map.patches[c].denominator(p))
             }))));
         }
     }
@@ -395,25 +387,20 @@ impl Map for LatticeMap {
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         let mut all: Vec<Point> = self.cell(q).is_none().then_some(q).into_iter().collect();
         for (c, patch) in self.patches.iter().enumerate() {
-            // Points on a border count on both its sides: `near` is a margin for rounding, as in `LatticeInverse::new`.
-            let (i, j, near) = (c % self.cells[0], c / self.cells[0], 1e3 * (self.inside.x1 - self.region.x1));
-            let b = patch.rect().inflate(near, near);
-            let within = |v: f64, lo: f64, hi: f64, at: usize, n: usize| {
-                (v >= lo || self.extended && at == 0) && (v <= hi || self.extended && at + 1 == n)
+            // Points on a border count on both its sides.
+            let ([nx, ny], b) = (self.cells, patch.rect.inflate(self.margin(), self.margin()));
+            let (i, j) = (c % nx, c / nx);
+            let in_range = |v: f64, lo: f64, hi: f64, index: usize, n: usize| {
+                (v >= lo || (self.extended && index == 0)) && (v <= hi || (self.extended && index + 1 == n))
             };
-            let [nx, ny] = self.cells;
-            all.extend(
-                patch
-                    .preimages(q)?
-                    .into_iter()
-                    .filter(|p| within(p.x, b.x0, b.x1, i, nx) && within(p.y, b.y0, b.y1, j, ny)),
-            );
+            let found = patch.preimages(q)?.into_iter();
+            all.extend(found.filter(|p| in_range(p.x, b.x0, b.x1, i, nx) && in_range(p.y, b.y0, b.y1, j, ny)));
         }
         Some(all)
     }
 
     fn detail(&self, area: Rect) -> Option<f64> {
-        self.patches[0].detail(area) // An estimate: other cells may have another degree.
+        self.patches.iter().filter_map(|p| p.detail(area)).reduce(f64::min)
     }
 
     /// The inverse by Newton's method over the region, enlarged by half its size on every side if the map is extended.
@@ -430,64 +417,60 @@ impl Map for LatticeMap {
 #[derive(Clone)]
 struct LatticeInverse {
     map: LatticeMap,
-    inner: Arc<NewtonInverse>,
+    newton: Arc<NewtonInverse>,
 }
 
 impl LatticeInverse {
     fn new(map: &LatticeMap) -> Self {
         let r = map.region;
-        let (beyond, pieces): (f64, Arc<dyn Map>) = match (map.extended, map.patches.len()) {
+        let (share_beyond, pieces): (f64, Arc<dyn Map>) = match (map.extended, map.patches.len()) {
             (true, 1) => (0.5, map.patches[0].clone()),
             (true, _) => (0.5, Arc::new(map.clone())),
             (false, 1) => (0.0, map.patches[0].clone()),
             // Newton steps may leave the region on their way, and must not meet the identity there.
             (false, _) => (0.0, Arc::new(LatticeMap { extended: true, affine: None, ..map.clone() })),
         };
-        let domain = r.inflate(beyond * r.width(), beyond * r.height());
-        // Reaches further than the margin within which points count as inside, so that no gap remains.
-        let reach = 1e3 * (map.inside.x1 - r.x1);
-        Self { map: map.clone(), inner: Arc::new(NewtonInverse::with_core(pieces, r, domain, reach, map.cells)) }
-    }
-
-    /// Returns `true` if `q` lies outside the region, where nothing moves.
-    fn is_outside(&self, q: Point) -> bool {
-        !self.map.extended && self.map.cell(q).is_none()
+        let domain = r.inflate(share_beyond * r.width(), share_beyond * r.height());
+        // The margin exceeds that within which points count as inside, so that no gap remains.
+        let newton = NewtonInverse::with_core(pieces, r, domain, map.margin(), map.cells);
+        Self { map: map.clone(), newton: Arc::new(newton) }
     }
 }
 
 impl Map for LatticeInverse {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(2.0 * self.inner.cost().work).searching(self)
+        Cost::new(2.0 * self.newton.cost().work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
-        match self.inner.solve(q) {
+        match self.newton.solve(q) {
             Some(found) => found,
-            None if self.is_outside(q) => AffineMap::IDENTITY.jet(q),
+            None if self.map.cell(q).is_none() => AffineMap::IDENTITY.jet(q),
             None => Jet::UNDEFINED,
         }
     }
 
     fn creases(&self, out: &mut Creases) {
-        kinks_through(self, &self.map, out);
+        push_images(kinks(&self.map), self, out);
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
         if self.map.extended && self.map.patches.len() == 1 {
             return None;
         }
-        let Some(found) = self.inner.solve(inside) else {
-            return Some(if self.is_outside(inside) { Arc::new(AffineMap::IDENTITY) } else { self.inner.clone() });
+        let Some(found) = self.newton.solve(inside) else {
+            let is_outside = self.map.cell(inside).is_none();
+            return Some(if is_outside { Arc::new(AffineMap::IDENTITY) } else { self.newton.clone() });
         };
         let cell = self.map.cell(found.p)?;
         let patch = self.map.patches[cell].clone();
         // A margin for parts that end on the border of the cell.
-        let (domain, reach) = (patch.rect(), 1e-3 * (patch.rect().width() + patch.rect().height()));
-        Some(Arc::new(NewtonInverse::new(patch, domain, reach, [1, 1])))
+        let (domain, margin) = (patch.rect, 1e-3 * (patch.rect.width() + patch.rect.height()));
+        Some(Arc::new(NewtonInverse::new(patch, domain, margin, [1, 1])))
     }
 
     fn detail(&self, area: Rect) -> Option<f64> {
-        self.inner.detail(area)
+        self.newton.detail(area)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -497,6 +480,20 @@ impl Map for LatticeInverse {
 
 impl Searches for LatticeInverse {
     fn within(&self, budget: &Arc<Budget>) -> Arc<dyn Map> {
-        Arc::new(Self { map: self.map.clone(), inner: Arc::new(self.inner.spending(budget)) })
+        Arc::new(Self { map: self.map.clone(), newton: Arc::new(self.newton.spending(budget)) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two cells, the first one is the identity and the second one is bent.
+    #[test]
+    fn the_finest_cell_determines_the_detail() {
+        let region = Rect::new(0.0, 0.0, 8.0, 4.0);
+        let mut lattice = Lattice::regular(region, [2, 2], [2, 1]);
+        lattice.shift(3, 0, Vec2::new(0.0, 1.0));
+        assert_eq!(LatticeMap::new(&lattice, true).detail(region), Some(4.0 / 3.0));
     }
 }

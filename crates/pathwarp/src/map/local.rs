@@ -17,7 +17,7 @@ pub(crate) struct Local {
     /// The coefficients of each side's signed distance a·x + b·y + c, positive inside, and the bounding box of the side.
     sides: Vec<([f64; 3], Rect)>,
     /// Distance within which outside points count as inside, in user units.
-    reach: f64,
+    rounding: f64,
     inside: Arc<dyn Map>,
 }
 
@@ -34,7 +34,7 @@ impl Local {
             ([a, b, -(a * p.x + b * p.y)], Rect::from_points(p, q))
         };
         let size = corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
-        Self { sides: (0..n).map(side).collect(), reach: ROUNDING * size, inside }
+        Self { sides: (0..n).map(side).collect(), rounding: ROUNDING * size, inside }
     }
 
     /// The signed distance from `p` to the nearest side's line, negative outside.
@@ -54,7 +54,7 @@ impl Local {
 
     /// Returns `true` if `p` is inside, up to rounding.
     fn contains(&self, p: Point) -> bool {
-        self.depth(p) >= -self.reach
+        self.depth(p) >= -self.rounding
     }
 }
 
@@ -75,9 +75,7 @@ impl Map for Local {
         for ([a, b, c], within) in &self.sides {
             out.push(Crease::kink(Level::Stretch { a: *a, b: *b, c: *c, within: *within }));
         }
-        let mut own = Creases::default();
-        self.inside.creases(&mut own);
-        for c in own.items() {
+        for c in Creases::of_map(&self.inside).items() {
             let (level, local) = (c.level.clone(), self.clone());
             let level = Level::Field(Arc::new(move |p: Point| if local.contains(p) { level.at(p) } else { 1.0 }));
             out.push(Crease { level, kind: c.kind });
@@ -99,19 +97,19 @@ impl Map for Local {
         if points.iter().all(|p| self.contains(*p)) {
             return self.inside.image(curve);
         }
-        let beyond = |[a, b, c]: [f64; 3]| points.iter().all(|p| a * p.x + b * p.y + c < -self.reach);
+        let beyond = |[a, b, c]: [f64; 3]| points.iter().all(|p| a * p.x + b * p.y + c < -self.rounding);
         self.sides.iter().any(|s| beyond(s.0)).then(|| curve.clone())
     }
 
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
         // Preimages are less exact than points.
-        let inside = self.inside.preimages(q)?.into_iter().filter(|p| self.depth(*p) >= -1e3 * self.reach);
+        let inside = self.inside.preimages(q)?.into_iter().filter(|p| self.depth(*p) >= -1e3 * self.rounding);
         Some(inside.chain((!self.contains(q)).then_some(q)).collect())
     }
 
     /// The inverse of the map inside, for points whose preimage lies inside, and the identity for others.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let back = match self.inside.inverse().filter(|m| m.cost().searches.is_none()) {
+        let inner = match self.inside.inverse().filter(|m| m.cost().searches.is_none()) {
             Some(closed) => InnerInverse::Closed(closed),
             None if !matches!(self.inside.class(), Class::Rational(_) | Class::Smooth) => return None,
             None => {
@@ -120,7 +118,7 @@ impl Map for Local {
                 InnerInverse::Newton(Arc::new(NewtonInverse::new(inside, bounds, self.margin(), [1, 1])))
             }
         };
-        Some(Arc::new(LocalInverse { of: self.clone(), back }))
+        Some(Arc::new(LocalInverse { map: self.clone(), inner }))
     }
 }
 
@@ -134,32 +132,30 @@ enum InnerInverse {
 /// The inverse of a [`Local`] map.
 #[derive(Clone)]
 struct LocalInverse {
-    of: Local,
-    back: InnerInverse,
+    map: Local,
+    inner: InnerInverse,
 }
 
 impl LocalInverse {
-    /// The preimage inside the polygon, or at most `beyond` outside.
-    fn preimage(&self, q: Point, beyond: f64) -> Option<Jet> {
-        let accept = |p: Point| self.of.depth(p) >= -beyond;
-        match &self.back {
+    /// The preimage inside the polygon, or at most `margin` outside.
+    fn preimage(&self, q: Point, margin: f64) -> Option<Jet> {
+        let accept = |p: Point| self.map.depth(p) >= -margin;
+        match &self.inner {
             InnerInverse::Closed(m) => Some(m.jet(q)).filter(|j| j.is_finite() && accept(j.p)),
             InnerInverse::Newton(m) => m.solve_where(q, accept),
         }
     }
 
     fn spending(&self, budget: &Arc<Budget>) -> Self {
-        let back = match &self.back {
-            InnerInverse::Closed(m) => InnerInverse::Closed(m.within(budget).unwrap_or_else(|| Arc::clone(m))),
-            InnerInverse::Newton(m) => InnerInverse::Newton(Arc::new(m.spending(budget))),
-        };
-        Self { of: self.of.clone(), back }
+        // A closed form does not search.
+        let InnerInverse::Newton(m) = &self.inner else { return self.clone() };
+        Self { map: self.map.clone(), inner: InnerInverse::Newton(Arc::new(m.spending(budget))) }
     }
 }
 
 impl Map for LocalInverse {
     fn cost(&self) -> Cost<'_> {
-        let work = match &self.back {
+        let work = match &self.inner {
             InnerInverse::Closed(m) => m.work(),
             InnerInverse::Newton(m) => m.cost().work,
         };
@@ -167,33 +163,33 @@ impl Map for LocalInverse {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        match self.preimage(q, self.of.reach) {
+        match self.preimage(q, self.map.rounding) {
             Some(found) => found,
-            None if !self.of.contains(q) => AffineMap::IDENTITY.jet(q),
+            None if !self.map.contains(q) => AffineMap::IDENTITY.jet(q),
             None => Jet::UNDEFINED,
         }
     }
 
     fn creases(&self, out: &mut Creases) {
-        let own = self.clone();
+        let inverse = self.clone();
         out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| {
-            let margin = own.of.margin();
-            own.preimage(q, margin).map_or(-margin, |found| own.of.depth(found.p))
+            let margin = inverse.map.margin();
+            inverse.preimage(q, margin).map_or(-margin, |found| inverse.map.depth(found.p))
         }))));
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        if self.preimage(inside, self.of.reach).is_none() {
+        if self.preimage(inside, self.map.rounding).is_none() {
             return Some(Arc::new(AffineMap::IDENTITY));
         }
-        Some(match &self.back {
+        Some(match &self.inner {
             InnerInverse::Closed(m) => m.clone(),
             InnerInverse::Newton(_) => Arc::new(InsideInverse(self.clone())),
         })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.of.clone()))
+        Some(Arc::new(self.map.clone()))
     }
 }
 
@@ -212,11 +208,11 @@ impl Map for InsideInverse {
     }
 
     fn jet(&self, q: Point) -> Jet {
-        self.0.preimage(q, self.0.of.margin()).unwrap_or(Jet::UNDEFINED)
+        self.0.preimage(q, self.0.map.margin()).unwrap_or(Jet::UNDEFINED)
     }
 
     fn detail(&self, area: Rect) -> Option<f64> {
-        if let InnerInverse::Newton(m) = &self.0.back { m.detail(area) } else { None }
+        if let InnerInverse::Newton(m) = &self.0.inner { m.detail(area) } else { None }
     }
 }
 
@@ -266,8 +262,7 @@ mod tests {
         assert!(m.image(&curve(&[(1.0, 1.0), (2.0, 1.0)])).is_some());
         assert!(m.image(&curve(&[(3.0, 3.0), (4.0, 3.0)])).is_some());
         assert!(m.image(&curve(&[(1.0, 1.0), (4.0, 3.0)])).is_none());
-        let mut creases = Creases::default();
-        m.creases(&mut creases);
+        let creases = Creases::of_map(&m);
         let seg = crate::outline::Seg::Line(kurbo::Line::new((-1.0, 1.0), (9.0, 1.0)));
         // The segment enters at the left side and leaves at the slanting one. The lines of the sides do not count outside the sides.
         let at = creases.splits(&seg);

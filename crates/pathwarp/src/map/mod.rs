@@ -34,7 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse.
+/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse and the cost.
 macro_rules! forward_common {
     ($self:ident => $trait:ident, $to:expr) => {
         fn class(&$self) -> Class {
@@ -54,9 +54,6 @@ macro_rules! forward_common {
         }
         fn preimages(&$self, q: Point) -> Option<Vec<Point>> {
             $trait::preimages($to, q)
-        }
-        fn cost(&$self) -> Cost<'_> {
-            $trait::cost($to)
         }
         fn detail(&$self, area: Rect) -> Option<f64> {
             $trait::detail($to, area)
@@ -87,7 +84,26 @@ macro_rules! forward {
         fn inverse(&self) -> Option<Arc<dyn Map>> {
             (**self).inverse()
         }
+        fn cost(&self) -> Cost<'_> {
+            (**self).cost()
+        }
         forward_common!(self => Map, &**self);
+    };
+}
+
+/// Implements [`Map::jet`] and [`Map::point`] by batches of one point.
+macro_rules! single_by_batch {
+    () => {
+        fn jet(&self, p: Point) -> Jet {
+            let mut out = [Jet::UNDEFINED];
+            self.jets(&[p], &mut out);
+            out[0]
+        }
+        fn point(&self, p: Point) -> Point {
+            let mut out = [p];
+            self.points(&[p], &mut out);
+            out[0]
+        }
     };
 }
 
@@ -130,7 +146,7 @@ pub use coons::{Coons, Sides};
 pub use crease::{Crease, CreaseKind, Creases, Field, Level};
 pub use curves::{Pace, Side};
 pub use enclosure::Enclosure;
-pub(crate) use enclosure::along;
+pub(crate) use enclosure::enclose_segment;
 pub use formula::{Formula, FromFn, FromFnWith, from_fn, from_fn_with};
 pub use homography::Homography;
 pub(crate) use joint::Joint;
@@ -154,7 +170,7 @@ pub(crate) use tiled::{TileRow, Tiled};
 /// Only [`Map::jet`] is required. [`point`](Map::point), [`points`](Map::points) and [`jets`](Map::jets) are faster ways to the
 /// same values; the other methods tell the refitter where the map is not smooth and what is known about it exactly.
 pub trait Map: Send + Sync {
-    /// The value and both partial derivatives at `p`. On a crease, the derivatives on either side.
+    /// The value and both partial derivatives at `p`. On a crease, the derivatives are those of one of its sides.
     fn jet(&self, p: Point) -> Jet;
 
     /// The value alone.
@@ -255,19 +271,16 @@ fn most_stretched(jets: &[Jet]) -> f64 {
     jets.iter().map(|j| (j.dx.hypot2() + j.dy.hypot2()).sqrt()).fold(0.0, f64::max)
 }
 
-/// The size of the smallest feature of a map in a box: what it states, or what its enclosures show on the lines through the middle. With
-/// no feature smaller than r, coefficient k is at most the first one times r¹⁻ᵏ.
+/// The size of the smallest feature of a map in a box: the [detail](Map::detail) that the map states, or else the finest feature of the
+/// enclosed images of the horizontal and the vertical line through the middle.
 pub(crate) fn detail_in(map: &dyn Map, area: Rect) -> Option<f64> {
-    let told = || {
+    let enclosed = || {
         let middle = area.center();
-        let lines = [
-            ([Enclosure::between(area.x0, area.x1), middle.y.into()], area.width()),
-            ([middle.x.into(), Enclosure::between(area.y0, area.y1)], area.height()),
-        ];
-        let of = |(line, length): ([Enclosure; 2], f64)| Some(length * Enclosure::finest(&map.enclose(line)?));
-        Some(of(lines[0])?.min(of(lines[1])?))
+        let finest = |line: [Enclosure; 2], length: f64| Some(length * Enclosure::finest(&map.enclose(line)?));
+        let across = finest([Enclosure::between(area.x0, area.x1), middle.y.into()], area.width())?;
+        Some(across.min(finest([middle.x.into(), Enclosure::between(area.y0, area.y1)], area.height())?))
     };
-    map.detail(area).or_else(told)
+    map.detail(area).or_else(enclosed)
 }
 
 /// Shorthands for parts of the cost and the class.

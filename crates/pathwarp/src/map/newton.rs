@@ -4,14 +4,14 @@
 //! steps x ← x + J⁻¹(q − F(x)) run from the center of the cell until they no longer change x. The answer is accepted if
 //!
 //! 1. the residual |F(x) − q| is at rounding level,
-//! 2. x lies in the box, or outside it by at most the stated reach,
+//! 2. x lies in the box, or outside it by at most the margin,
 //! 3. β·L·η ≤ ½, with β = ‖J(x)⁻¹‖, η = |J(x)⁻¹(q − F(x))| and L a Lipschitz bound of the Jacobian: Kantorovich's condition
 //!    (L. V. Kantorovich 1948; Ortega & Rheinboldt, *Iterative Solution of Nonlinear Equations*, theorem 12.6.2), under which
 //!    a solution exists within 2η of x and is the only one within about 1/(βL). On a fold β is unbounded and the test fails.
 //!    L is measured between neighbouring starting points and doubled: a bound for maps that the grid resolves.
 //!
 //! The inverse is undefined (NaN) at every other point. If the map folds, a point can have several preimages. Those in the *core*
-//! (the part of the box that the map is designed for) or within the reach of it take precedence; outside, only sheets with the
+//! (the part of the box that the map is designed for) or within the margin of it take precedence; outside, only sheets with the
 //! orientation of the core's center count, and of those the preimage nearest to the core is chosen.
 
 use super::batches::{Target, broyden, by_rounds};
@@ -34,7 +34,7 @@ const MIN_DAMPING: f64 = 1e-4;
 /// The number of starting points tried for one point.
 const MAX_TRIES: usize = 16;
 /// The cost of comparing a starting point with those already tried, as a multiple of the cost of looking at it.
-const COMPARED: usize = 6;
+const COMPARISON_COST: usize = 6;
 
 /// The inverse of a smooth map over a box, by damped Newton iteration.
 ///
@@ -47,17 +47,20 @@ pub struct NewtonInverse {
     core: Rect,
     /// The sign of the determinant at the center of the core.
     orientation: f64,
-    reach: f64,
+    /// The distance outside the domain within which answers count.
+    margin: f64,
     starts: Arc<[StartingPoint]>,
     /// The size of a starting point's cell.
     cell: Vec2,
     /// Indices of the starting points whose cells' images meet each bucket of a grid over `bounds`.
     buckets: Arc<[Vec<u32>]>,
     bounds: Rect,
-    side: usize,
+    buckets_per_side: usize,
+    /// A Lipschitz bound of the Jacobian.
     lipschitz: f64,
-    /// The rounding error of an image coordinate.
+    /// The rounding error of an image coordinate: 64 units in the last place of the largest one.
     rounding: f64,
+    /// The work of one of the map's jets, in a batch or alone, whichever is less.
     map_work: f64,
     /// The work of one of the map's jets in a search.
     pub(crate) jet_work: f64,
@@ -71,69 +74,69 @@ impl fmt::Debug for NewtonInverse {
     }
 }
 
+/// The center of a cell, with the map's jet there.
 #[derive(Debug, Clone, Copy)]
 struct StartingPoint {
-    at: Point,
+    point: Point,
     jet: Jet,
     in_core: bool,
 }
 
 impl NewtonInverse {
     /// The inverse of `map` over `area`, with enough starting points for a map that bends a few times across it. Answers outside
-    /// `area` count up to `reach` times its diagonal away.
+    /// `area` count up to `margin` times its diagonal away.
     #[must_use]
-    pub fn over(map: Arc<dyn Map>, area: Rect, reach: f64) -> Self {
-        const PIECES: [usize; 2] = [6, 6];
-        Self::new(map, area, reach * area.width().hypot(area.height()), PIECES)
+    pub fn over(map: Arc<dyn Map>, area: Rect, margin: f64) -> Self {
+        Self::new(map, area, margin * area.width().hypot(area.height()), [6, 6])
     }
 
-    /// The inverse of `map` over `domain`. Answers up to `reach` user units outside it count. `pieces` is the number of smooth
+    /// The inverse of `map` over `domain`. Answers up to `margin` user units outside it count. `pieces` is the number of smooth
     /// pieces of the map along x and y (1, 1 for a single polynomial).
     #[must_use]
-    pub fn new(map: Arc<dyn Map>, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
-        Self::with_core(map, domain, domain, reach, pieces)
+    pub fn new(map: Arc<dyn Map>, domain: Rect, margin: f64, pieces: [usize; 2]) -> Self {
+        Self::with_core(map, domain, domain, margin, pieces)
     }
 
     /// The inverse of `map` over `domain`, with a `core` smaller than that box; see [`NewtonInverse::new`].
     #[must_use]
-    pub(crate) fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, reach: f64, pieces: [usize; 2]) -> Self {
+    pub(crate) fn with_core(map: Arc<dyn Map>, core: Rect, domain: Rect, margin: f64, pieces: [usize; 2]) -> Self {
         let [nx, ny] = pieces.map(|n| (n * STARTS_PER_PIECE).clamp(MIN_STARTS, MAX_STARTS));
         let cell = Vec2::new(domain.width() / nx as f64, domain.height() / ny as f64);
-        let at = |i: usize, j: usize| domain.origin() + Vec2::new((i as f64 + 0.5) * cell.x, (j as f64 + 0.5) * cell.y);
-        let centers: Vec<Point> = (0..ny).flat_map(|j| (0..nx).map(move |i| at(i, j))).collect();
+        let center =
+            |i: usize, j: usize| domain.origin() + Vec2::new((i as f64 + 0.5) * cell.x, (j as f64 + 0.5) * cell.y);
+        let centers: Vec<Point> = (0..ny).flat_map(|j| (0..nx).map(move |i| center(i, j))).collect();
         let mut jets = vec![Jet::default(); centers.len()];
         map.jets(&centers, &mut jets);
 
         let mut lipschitz: f64 = 0.0;
-        let mut between = |a: &Jet, b: &Jet, apart: f64| {
+        let mut compare = |a: &Jet, b: &Jet, distance: f64| {
             let (dx, dy) = (a.dx - b.dx, a.dy - b.dy);
-            let rate = (dx.hypot2() + dy.hypot2()).sqrt() / apart;
+            let rate = (dx.hypot2() + dy.hypot2()).sqrt() / distance;
             if rate.is_finite() {
                 lipschitz = lipschitz.max(rate);
             }
         };
         for (k, jet) in jets.iter().enumerate() {
             if (k + 1) % nx != 0 {
-                between(jet, &jets[k + 1], cell.x);
+                compare(jet, &jets[k + 1], cell.x);
             }
             if k + nx < jets.len() {
-                between(jet, &jets[k + nx], cell.y);
+                compare(jet, &jets[k + nx], cell.y);
             }
         }
 
-        // Each starting point gets a box around the image of its cell: the first-order image, enlarged by half.
+        // Each starting point gets a box around the image of its cell: the box of the first-order image, enlarged by half.
         let mut starts = Vec::with_capacity(centers.len());
         let mut boxes = Vec::with_capacity(centers.len());
-        for (at, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
-            let half = Vec2::new(
-                0.75 * (j.dx.x.abs() * cell.x + j.dy.x.abs() * cell.y),
-                0.75 * (j.dx.y.abs() * cell.x + j.dy.y.abs() * cell.y),
-            );
-            starts.push(StartingPoint { at: *at, jet: *j, in_core: core.contains(*at) });
+        for (point, j) in centers.iter().zip(&jets).filter(|(_, j)| j.is_finite()) {
+            let [x, y] = [(j.dx.x, j.dy.x), (j.dx.y, j.dy.y)].map(|(a, b)| a.abs() * cell.x + b.abs() * cell.y);
+            let half = Vec2::new(0.75 * x, 0.75 * y);
+            starts.push(StartingPoint { point: *point, jet: *j, in_core: core.contains(*point) });
             boxes.push(Rect::from_points(j.p - half, j.p + half));
         }
         let bounds = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
-        let side = nx.max(ny);
+        let largest = [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(f64::abs).into_iter().fold(1e-300, f64::max);
+        let buckets_per_side = nx.max(ny);
         let orientation = map.jet(core.center()).det().signum();
         let Cost { work, jet: jet_work, .. } = map.cost();
         let mut out = Self {
@@ -144,23 +147,21 @@ impl NewtonInverse {
             core,
             orientation,
             domain,
-            reach,
+            margin,
             buckets: Arc::default(),
             bounds,
-            side,
+            buckets_per_side,
             lipschitz: 2.0 * lipschitz,
-            rounding: 64.0
-                * f64::EPSILON
-                * [bounds.x0, bounds.y0, bounds.x1, bounds.y1].iter().fold(1e-300, |a: f64, v| a.max(v.abs())),
+            rounding: 64.0 * f64::EPSILON * largest,
             starts: starts.into(),
             cell,
         };
-        let mut buckets = vec![Vec::new(); side * side];
+        let mut buckets = vec![Vec::new(); buckets_per_side * buckets_per_side];
         for (k, b) in boxes.iter().enumerate() {
             let ((i0, j0), (i1, j1)) = (out.bucket(b.origin()), out.bucket(Point::new(b.x1, b.y1)));
             for j in j0..=j1 {
                 for i in i0..=i1 {
-                    buckets[j * side + i].push(k as u32);
+                    buckets[j * buckets_per_side + i].push(k as u32);
                 }
             }
         }
@@ -176,10 +177,17 @@ impl NewtonInverse {
         Self { map, budget: Some(Arc::clone(budget)), ..self.clone() }
     }
 
+    /// The column and row of the bucket at `q`, or of the nearest one.
     fn bucket(&self, q: Point) -> (usize, usize) {
-        let along =
-            |v: f64, a: f64, b: f64| (((v - a) / (b - a) * self.side as f64).max(0.0) as usize).min(self.side - 1);
-        (along(q.x, self.bounds.x0, self.bounds.x1), along(q.y, self.bounds.y0, self.bounds.y1))
+        let n = self.buckets_per_side;
+        let index = |v: f64, a: f64, b: f64| (((v - a) / (b - a) * n as f64).max(0.0) as usize).min(n - 1);
+        (index(q.x, self.bounds.x0, self.bounds.x1), index(q.y, self.bounds.y0, self.bounds.y1))
+    }
+
+    /// The indices of the starting points in the bucket at `q`.
+    fn candidates(&self, q: Point) -> &[u32] {
+        let (i, j) = self.bucket(q);
+        &self.buckets[j * self.buckets_per_side + i]
     }
 
     /// The preimage of `q` and the derivatives of the inverse there; `None` if there is no preimage in the box.
@@ -200,6 +208,7 @@ impl NewtonInverse {
         self.search_by(&*self.map, q, accept)
     }
 
+    /// Charges a search to the budget and returns its result.
     fn charged(&self, (found, search): (Option<Jet>, Search)) -> Option<Jet> {
         search.spend(self.budget.as_ref(), 1, self.jet_work);
         found
@@ -207,48 +216,46 @@ impl NewtonInverse {
 
     /// The next starting point for `q` in its bucket: starting points in the core first, then by the distance of their images from q.
     fn next_start(&self, q: Point, tried: &[u32]) -> Option<u32> {
-        let (i, j) = self.bucket(q);
         let key = |k: u32| {
             let s = &self.starts[k as usize];
             (!s.in_core, (s.jet.p - q).hypot2())
         };
-        let all = self.buckets[j * self.side + i].iter().copied().filter(|k| !tried.contains(k));
-        all.min_by(|a, b| {
+        self.candidates(q).iter().copied().filter(|k| !tried.contains(k)).min_by(|a, b| {
             let (a, b) = (key(*a), key(*b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })
     }
 
-    /// The result of [`NewtonInverse::search`], with the jets of `map`: this inverse's map, or a cache of it.
+    /// Runs [`NewtonInverse::search`] with the jets of `map`: this inverse's map, or a cache of it.
     fn search_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool) -> (Option<Jet>, Search) {
         let mut search = Search::default();
-        let found = self.solve_by(map, q, accept, &mut search);
+        let found = self.preimage(map, q, accept, &mut search);
         (found, search)
     }
 
-    fn solve_by(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, search: &mut Search) -> Option<Jet> {
+    /// The first preimage of `q` that `accept` accepts. Adds the work to `search`.
+    fn preimage(&self, map: &dyn Map, q: Point, accept: impl Fn(Point) -> bool, search: &mut Search) -> Option<Jet> {
         if !q.is_finite() || self.starts.is_empty() || is_over(self.budget.as_ref()) {
             return None;
         }
-        let (i, j) = self.bucket(q);
-        let near = self.buckets[j * self.side + i].len();
-        if near == 0 {
+        let count = self.candidates(q).len();
+        if count == 0 {
             search.starts += self.starts.len();
-            let off = |s: &StartingPoint| (s.jet.p - q).hypot2();
-            let start = self.starts.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            return self.newton(map, start.at, q, search).filter(|found| self.is_eligible(found) && accept(found.p));
+            let distance = |s: &StartingPoint| (s.jet.p - q).hypot2();
+            let start = self.starts.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            return self.newton(map, start.point, q, search).filter(|found| self.is_eligible(found) && accept(found.p));
         }
         let mut tried = [u32::MAX; MAX_TRIES];
         let mut best: Option<(f64, Jet)> = None;
         for n in 0..MAX_TRIES {
-            search.starts += COMPARED * near;
+            search.starts += COMPARISON_COST * count;
             let Some(k) = self.next_start(q, &tried) else { break };
             tried[n] = k;
-            let Some(found) = self.newton(map, self.starts[k as usize].at, q, search).filter(|f| accept(f.p)) else {
+            let Some(found) = self.newton(map, self.starts[k as usize].point, q, search).filter(|f| accept(f.p)) else {
                 continue;
             };
             let distance = self.distance_from_core(found.p);
-            if distance <= self.reach {
+            if distance <= self.margin {
                 return Some(found);
             }
             if self.is_eligible(&found) && best.is_none_or(|(least, _)| distance < least) {
@@ -260,39 +267,40 @@ impl NewtonInverse {
 
     /// For each point, its preimage found from values alone, if it is near the first starting point and in the core: up to rounding, the
     /// point where Newton's method ends too.
-    fn places_by_values(&self, qs: &[Point]) -> Vec<Option<Point>> {
+    fn preimages_by_values(&self, qs: &[Point]) -> Vec<Option<Point>> {
         let target = |q: &Point| {
             let start = self.starts.get(self.next_start(*q, &[])? as usize).filter(|_| q.is_finite())?;
-            Some(Target { q: *q, start: start.at, jet: start.jet })
+            Some(Target { q: *q, start: start.point, jet: start.jet })
         };
         let targets: Vec<Option<Target>> = qs.iter().map(target).collect();
         let mut found = broyden(&*self.map, &targets, self.rounding);
-        for (place, target) in found.iter_mut().zip(&targets) {
-            let near = |p: &Point, start: Point| {
-                let off = *p - start;
-                off.x.abs() <= self.cell.x && off.y.abs() <= self.cell.y && self.distance_from_core(*p) <= self.reach
+        for (preimage, target) in found.iter_mut().zip(&targets) {
+            let is_near = |p: &Point, start: Point| {
+                let d = *p - start;
+                d.x.abs() <= self.cell.x && d.y.abs() <= self.cell.y && self.distance_from_core(*p) <= self.margin
             };
-            *place = place.filter(|p| target.as_ref().is_some_and(|t| near(p, t.start)));
+            *preimage = preimage.filter(|p| target.as_ref().is_some_and(|t| is_near(p, t.start)));
         }
         found
     }
 
     /// The jets of the inverse at `qs`, at preimages found from values alone, or by Newton's method where that fails.
     fn jets_by_values(&self, qs: &[Point]) -> Vec<Jet> {
-        let places = self.places_by_values(qs);
-        let known: Vec<Point> = places.iter().flatten().copied().collect();
+        let preimages = self.preimages_by_values(qs);
+        let known: Vec<Point> = preimages.iter().flatten().copied().collect();
         let mut jets = vec![Jet::default(); known.len()];
         self.map.jets(&known, &mut jets);
         let mut next = jets.iter().zip(known);
-        let polished = |(place, q): (&Option<Point>, &Point)| {
-            place.and_then(|_| next.next()).and_then(|(jet, x)| {
+        // One more Newton step, for which the jet is at hand.
+        let polished = |(preimage, q): (&Option<Point>, &Point)| {
+            preimage.and_then(|_| next.next()).and_then(|(jet, x)| {
                 let step = solve(jet, *q - jet.p)?;
-                self.accepted(x, jet, *q - jet.p).map(|found| Jet { p: found.p + step, ..found })
+                self.certified(x, jet, *q - jet.p).map(|found| Jet { p: found.p + step, ..found })
             })
         };
-        let found: Vec<Option<Jet>> = places.iter().zip(qs).map(polished).collect();
-        let left: Vec<Point> = found.iter().zip(qs).filter(|(f, _)| f.is_none()).map(|(_, q)| *q).collect();
-        let mut rest = self.jets_by_rounds(&left).into_iter();
+        let found: Vec<Option<Jet>> = preimages.iter().zip(qs).map(polished).collect();
+        let unsolved: Vec<Point> = found.iter().zip(qs).filter(|(f, _)| f.is_none()).map(|(_, q)| *q).collect();
+        let mut rest = self.jets_by_rounds(&unsolved).into_iter();
         found.into_iter().map(|f| f.or_else(|| rest.next()).unwrap_or(Jet::UNDEFINED)).collect()
     }
 
@@ -311,55 +319,56 @@ impl NewtonInverse {
 
     /// Returns `true` for a preimage in the core, or on a sheet with the orientation of the core's center.
     fn is_eligible(&self, found: &Jet) -> bool {
-        found.det().signum() == self.orientation || self.distance_from_core(found.p) <= self.reach
+        found.det().signum() == self.orientation || self.distance_from_core(found.p) <= self.margin
     }
 
     /// Newton's method from one starting point.
     fn newton(&self, map: &dyn Map, start: Point, q: Point, search: &mut Search) -> Option<Jet> {
-        let room = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
+        // Steps stay near the box: the map may be undefined further away.
+        let limits = self.domain.inflate(0.25 * self.domain.width(), 0.25 * self.domain.height());
         let mut x = start;
         let mut jet = map.jet(x);
         search.jets += 1;
         let mut residual = q - jet.p;
         for _ in 0..MAX_STEPS {
             let step = solve(&jet, residual)?;
-            // Halve the step until it reduces the residual. Stay near the box: the map may be undefined further away.
+            // Halve the step until it reduces the residual.
             let mut damping = 1.0;
-            let (mut to, mut at, mut r) = (x, jet, residual);
+            let (mut next, mut next_jet, mut next_residual) = (x, jet, residual);
             while damping > MIN_DAMPING {
-                to = x + step * damping;
-                to = Point::new(to.x.clamp(room.x0, room.x1), to.y.clamp(room.y0, room.y1));
-                at = map.jet(to);
+                next = x + step * damping;
+                next = Point::new(next.x.clamp(limits.x0, limits.x1), next.y.clamp(limits.y0, limits.y1));
+                next_jet = map.jet(next);
                 search.jets += 1;
-                r = q - at.p;
-                if r.hypot2() < residual.hypot2() || r.hypot() <= self.rounding {
+                next_residual = q - next_jet.p;
+                if next_residual.hypot2() < residual.hypot2() || next_residual.hypot() <= self.rounding {
                     break;
                 }
                 damping *= 0.5;
             }
-            let (moved, better) = ((to - x).hypot(), r.hypot2() < residual.hypot2());
-            if better || r.hypot() <= self.rounding {
-                (x, jet, residual) = (to, at, r);
+            let (length, is_better) = ((next - x).hypot(), next_residual.hypot2() < residual.hypot2());
+            if is_better || next_residual.hypot() <= self.rounding {
+                (x, jet, residual) = (next, next_jet, next_residual);
             }
-            let still = moved <= 4.0 * f64::EPSILON * (x.x.abs() + x.y.abs() + self.domain.width());
-            if residual == Vec2::ZERO || still || !better {
-                return self.accepted(x, &jet, residual);
+            let converged = length <= 4.0 * f64::EPSILON * (x.x.abs() + x.y.abs() + self.domain.width());
+            if residual == Vec2::ZERO || converged || !is_better {
+                return self.certified(x, &jet, residual);
             }
         }
         None
     }
 
-    /// Checks the three conditions in the module's text.
-    fn accepted(&self, x: Point, jet: &Jet, residual: Vec2) -> Option<Jet> {
-        let b = self.domain.inflate(self.reach, self.reach);
+    /// The jet of the inverse that leads to `x`, if the three conditions in the module's text hold.
+    fn certified(&self, x: Point, jet: &Jet, residual: Vec2) -> Option<Jet> {
+        let b = self.domain.inflate(self.margin, self.margin);
         let det = jet.det();
         let beta = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() / det.abs();
         let eta = solve(jet, residual)?.hypot();
-        let sound = residual.hypot() <= self.rounding
+        let is_solution = residual.hypot() <= self.rounding
             && (b.x0..=b.x1).contains(&x.x)
             && (b.y0..=b.y1).contains(&x.y)
             && beta * self.lipschitz * eta <= 0.5;
-        sound.then(|| jet.inverted(x))
+        is_solution.then(|| jet.inverted(x))
     }
 }
 
@@ -403,13 +412,13 @@ impl Map for NewtonInverse {
         Some(self.map.clone())
     }
 
-    /// The map's detail times σ·(σ/Σ), with σ and Σ its least and largest stretch: its least size in the image, and smaller for shear.
+    /// The map's detail times σ·(σ/Σ), with σ and Σ its least and largest stretch: its least size in the image, or less where it shears.
     fn detail(&self, area: Rect) -> Option<f64> {
         let jet = self.solve(area.center())?;
         let square = jet.dx.hypot2() + jet.dy.hypot2();
         let side = 2.0 * square.sqrt() * area.size().to_vec2().hypot();
-        let there = Rect::from_center_size(jet.p, (side, side));
-        Some(detail_in(&*self.map, there)? * jet.det().abs() / (square * square.sqrt()))
+        let preimage = Rect::from_center_size(jet.p, (side, side));
+        Some(detail_in(&*self.map, preimage)? * jet.det().abs() / (square * square.sqrt()))
     }
 }
 
@@ -432,18 +441,22 @@ pub fn inverse_over(map: impl Map + 'static, area: Rect) -> Arc<dyn Map> {
 
 /// Returns [`inverse_over`] for a map that is already shared.
 pub(crate) fn inverse_of(map: &Arc<dyn Map>, area: Rect) -> Arc<dyn Map> {
-    const REACH: f64 = 0.25;
-    let by_newton = || CreasedInverse::of(map, NewtonInverse::over(Arc::clone(map), area, REACH));
+    const MARGIN: f64 = 0.25;
+    let by_newton = || CreasedInverse::of_pieces(map, NewtonInverse::over(Arc::clone(map), area, MARGIN));
     map.inverse().unwrap_or_else(by_newton)
 }
 
-/// Adds the kinks of `map`, pulled back through its inverse.
-pub(super) fn kinks_through<M: Map + Clone + 'static>(inverse: &M, map: &dyn Map, out: &mut Creases) {
-    let mut own = Creases::default();
-    map.creases(&mut own);
-    for c in own.items().iter().filter(|c| c.kind == CreaseKind::Kink) {
-        let (level, back) = (c.level.clone(), inverse.clone());
-        out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| level.at(back.point(q))))));
+/// The level sets of the kinks of `map`.
+pub(super) fn kinks(map: &dyn Map) -> Vec<Level> {
+    let all = Creases::of_map(map);
+    all.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone()).collect()
+}
+
+/// Adds the images of kinks of a map: their level sets, pulled back through the map's inverse.
+pub(super) fn push_images<M: Map + Clone + 'static>(kinks: Vec<Level>, inverse: &M, out: &mut Creases) {
+    for level in kinks {
+        let inverse = inverse.clone();
+        out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| level.at(inverse.point(q))))));
     }
 }
 
@@ -458,12 +471,9 @@ pub(crate) struct CreasedInverse {
 impl CreasedInverse {
     /// Declares the creases of `map` in its inverse. Returns the plain inverse if there are none, or so many that searching for each takes
     /// too long.
-    pub(crate) fn of(map: &Arc<dyn Map>, whole: NewtonInverse) -> Arc<dyn Map> {
+    pub(crate) fn of_pieces(map: &Arc<dyn Map>, whole: NewtonInverse) -> Arc<dyn Map> {
         const MAX_KINKS: usize = 32;
-        let (whole, mut all) = (Arc::new(whole), Creases::default());
-        map.creases(&mut all);
-        let kinks = all.items().iter().filter(|c| c.kind == CreaseKind::Kink).map(|c| c.level.clone());
-        let kinks: Vec<Level> = kinks.collect();
+        let (whole, kinks) = (Arc::new(whole), kinks(&**map));
         if kinks.is_empty() || kinks.len() > MAX_KINKS || map.prefers_batches() {
             return whole;
         }
@@ -481,17 +491,14 @@ impl Map for CreasedInverse {
     }
 
     fn creases(&self, out: &mut Creases) {
-        for level in &self.kinks {
-            let (whole, level) = (Arc::clone(&self.whole), level.clone());
-            out.push(Crease::kink(Level::Field(Arc::new(move |q: Point| level.at(whole.point(q))))));
-        }
+        push_images(self.kinks.clone(), &self.whole, out);
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
         let inside = self.whole.solve(inside)?.p;
         let map = self.map.branch(inside)?;
         let sides = self.kinks.iter().map(|k| (k.clone(), k.at(inside))).collect();
-        Some(Arc::new(OnBranch { whole: Arc::clone(&self.whole), map, sides }))
+        Some(Arc::new(BranchInverse { whole: Arc::clone(&self.whole), map, sides }))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -511,34 +518,34 @@ impl Searches for CreasedInverse {
 }
 
 /// The inverse of one branch of the map. The search starts where the inverse of the whole map leads.
-struct OnBranch {
+struct BranchInverse {
     whole: Arc<NewtonInverse>,
     map: Arc<dyn Map>,
     /// The map's creases, with the values of their functions in the branch.
     sides: Vec<(Level, f64)>,
 }
 
-impl OnBranch {
+impl BranchInverse {
     /// Returns `true` if `p` is in the branch or on its boundary.
-    fn holds(&self, p: Point) -> bool {
+    fn contains(&self, p: Point) -> bool {
         /// The rounding error, as a share of the value inside.
         const NOISE: f64 = 1e-9;
         self.sides.iter().all(|(level, inside)| level.at(p) * inside.signum() >= -NOISE * inside.abs())
     }
 }
 
-impl Map for OnBranch {
+impl Map for BranchInverse {
     fn cost(&self) -> Cost<'_> {
         Cost { searches: None, ..self.whole.cost() } // Its searches are charged to the budget of the whole inverse.
     }
 
     fn jet(&self, q: Point) -> Jet {
         // Where the ends of a closed strip meet, a point has preimages at both ends.
-        let near = self.whole.solve(q).filter(|near| self.holds(near.p));
-        let near = near.or_else(|| self.whole.solve_where(q, |p| self.holds(p))).or_else(|| self.whole.solve(q));
-        let Some(near) = near else { return Jet::UNDEFINED };
+        let start = self.whole.solve(q).filter(|found| self.contains(found.p));
+        let start = start.or_else(|| self.whole.solve_where(q, |p| self.contains(p))).or_else(|| self.whole.solve(q));
+        let Some(start) = start else { return Jet::UNDEFINED };
         let mut search = Search::default();
-        let found = self.whole.newton(&*self.map, near.p, q, &mut search);
+        let found = self.whole.newton(&*self.map, start.p, q, &mut search);
         self.whole.charged((found, search)).unwrap_or(Jet::UNDEFINED)
     }
 
@@ -651,10 +658,11 @@ mod tests {
     #[test]
     fn an_inverse_has_a_crease_where_that_of_the_map_goes() {
         let map: Arc<dyn Map> = Arc::new(Roof);
-        let back =
-            CreasedInverse::of(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(-5.0, -5.0, 5.0, 5.0), 0.1));
-        let mut creases = Creases::default();
-        back.creases(&mut creases);
+        let back = CreasedInverse::of_pieces(
+            &map,
+            NewtonInverse::over(Arc::clone(&map), Rect::new(-5.0, -5.0, 5.0, 5.0), 0.1),
+        );
+        let creases = Creases::of_map(&back);
         let [crease] = creases.items() else { panic!("{creases:?}") };
         assert!(crease.level.at(Point::new(-1e-6, 2.0)) < 0.0 && crease.level.at(Point::new(1e-6, 2.0)) > 0.0);
         for side in [-1.0, 1.0] {
@@ -690,7 +698,8 @@ mod tests {
     #[test]
     fn where_the_ends_of_a_strip_meet_each_branch_goes_to_its_own() {
         let map: Arc<dyn Map> = Arc::new(Ring);
-        let back = CreasedInverse::of(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(0.0, -0.5, 1.0, 0.5), 0.1));
+        let back =
+            CreasedInverse::of_pieces(&map, NewtonInverse::over(Arc::clone(&map), Rect::new(0.0, -0.5, 1.0, 0.5), 0.1));
         for (side, x) in [(0.3, 0.0), (-0.3, 1.0)] {
             let branch = back.branch(Point::new(0.9, side)).unwrap();
             for r in [0.7, 1.0, 1.3] {

@@ -7,7 +7,7 @@
 //! coefficients are exact. A polynomial patch is stored as the displacement F(p) − p, so that points that do not move are not
 //! rounded. Horner's scheme runs on a whole batch of points.
 
-use super::rational_bezier::Scaled;
+use super::rational_bezier::{Scaled, binomials};
 use super::{Class, Cost, Crease, Creases, Jet, Level, Map, Polynomials, RationalBezier};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::sync::Arc;
@@ -23,10 +23,11 @@ const NOISE: f64 = 1e-15;
 /// A rational tensor-product map of the plane.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Patch {
-    rect: Rect,
-    /// u = (x − center.x)·k.x, v = (y − center.y)·k.y.
+    /// The box over which s and t run from 0 to 1.
+    pub(crate) rect: Rect,
+    /// u = (x − center.x)·scale.x, v = (y − center.y)·scale.y.
     center: Point,
-    k: Vec2,
+    scale: Vec2,
     /// The number of terms in a row: powers of u.
     width: usize,
     /// The number of rows: powers of v.
@@ -58,14 +59,11 @@ impl Patch {
     pub(crate) fn rational(rect: Rect, degree: [usize; 2], points: &[[f64; 3]]) -> Self {
         let (max, min) = points.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), p| (a.max(p[2]), b.min(p[2])));
         if max - min <= 4.0 * NOISE * max {
-            let moves: Vec<Vec2> = points
-                .iter()
-                .enumerate()
-                .map(|(k, p)| {
-                    let (i, j) = (k % (degree[0] + 1), k / (degree[0] + 1));
-                    Point::new(p[0] / p[2], p[1] / p[2]) - regular_point(rect, degree, i, j)
-                })
-                .collect();
+            let displacement = |(k, p): (usize, &[f64; 3])| {
+                let (i, j) = (k % (degree[0] + 1), k / (degree[0] + 1));
+                Point::new(p[0] / p[2], p[1] / p[2]) - regular_point(rect, degree, i, j)
+            };
+            let moves: Vec<Vec2> = points.iter().enumerate().map(displacement).collect();
             return Self::polynomial(rect, degree, &moves);
         }
         let c = rect.center();
@@ -76,6 +74,7 @@ impl Patch {
         out
     }
 
+    /// The patch with these coefficients, without those that are rounding noise.
     fn from_planes(rect: Rect, degree: [usize; 2], mut x: Vec<f64>, mut y: Vec<f64>, mut w: Vec<f64>) -> Self {
         let (m, n) = (degree[0] + 1, degree[1] + 1);
         for planes in [&mut [&mut x, &mut y][..], &mut [&mut w]] {
@@ -89,18 +88,9 @@ impl Patch {
         let height = (1..n).rev().find(|&j| (0..m).any(|i| used(i, j))).unwrap_or(0) + 1;
         let cut =
             |p: &[f64]| -> Vec<f64> { p.chunks(m).take(height).flat_map(|row| row[..width].iter().copied()).collect() };
-        Self {
-            rect,
-            center: rect.center(),
-            k: Vec2::new(2.0 / rect.width(), 2.0 / rect.height()),
-            width,
-            height,
-            x: cut(&x),
-            y: cut(&y),
-            w: cut(&w),
-            may_vanish: false,
-            bounded: false,
-        }
+        let (center, scale) = (rect.center(), Vec2::new(2.0 / rect.width(), 2.0 / rect.height()));
+        let [x, y, w] = [&x, &y, &w].map(|p| cut(p));
+        Self { rect, center, scale, width, height, x, y, w, may_vanish: false, bounded: false }
     }
 
     /// Marks the patch as used only inside its box.
@@ -109,20 +99,13 @@ impl Patch {
         Self { bounded: true, ..self }
     }
 
-    /// The box over which s and t run from 0 to 1.
-    #[must_use]
-    pub(crate) fn rect(&self) -> Rect {
-        self.rect
-    }
-
     /// Returns `true` if the denominator is constant.
     #[must_use]
     pub(crate) fn is_polynomial(&self) -> bool {
         self.w.is_empty()
     }
 
-    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the
-    /// box.
+    /// Returns `true` if the denominator may vanish where the patch is used: with a weight that is not positive, or outside the box.
     pub(crate) fn has_edge(&self) -> bool {
         !self.is_polynomial() && (self.may_vanish || !self.bounded)
     }
@@ -132,8 +115,8 @@ impl Patch {
     fn local<const L: usize>(&self, p: [Point; L]) -> [[f64; L]; 2] {
         let mut out = [[0.0; L]; 2];
         for i in 0..L {
-            out[0][i] = (p[i].x - self.center.x) * self.k.x;
-            out[1][i] = (p[i].y - self.center.y) * self.k.y;
+            out[0][i] = (p[i].x - self.center.x) * self.scale.x;
+            out[1][i] = (p[i].y - self.center.y) * self.scale.y;
         }
         out
     }
@@ -192,15 +175,15 @@ impl Patch {
 
     #[inline(always)]
     fn points_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Point; L] {
-        let at = self.local(p);
-        let (x, y) = (self.values::<L, W>(&self.x, &at), self.values::<L, W>(&self.y, &at));
+        let uv = self.local(p);
+        let (x, y) = (self.values::<L, W>(&self.x, &uv), self.values::<L, W>(&self.y, &uv));
         let mut out = p;
         if self.w.is_empty() {
             for i in 0..L {
                 out[i] += Vec2::new(x[i], y[i]);
             }
         } else {
-            let w = self.values::<L, W>(&self.w, &at);
+            let w = self.values::<L, W>(&self.w, &uv);
             for i in 0..L {
                 let r = 1.0 / w[i];
                 out[i] = Point::new(self.center.x + x[i] * r, self.center.y + y[i] * r);
@@ -211,9 +194,9 @@ impl Patch {
 
     #[inline(always)]
     fn jets_at<const L: usize, const W: usize>(&self, p: [Point; L]) -> [Jet; L] {
-        let at = self.local(p);
-        let (x, y) = (self.slopes::<L, W>(&self.x, &at), self.slopes::<L, W>(&self.y, &at));
-        let Vec2 { x: kx, y: ky } = self.k;
+        let uv = self.local(p);
+        let (x, y) = (self.slopes::<L, W>(&self.x, &uv), self.slopes::<L, W>(&self.y, &uv));
+        let Vec2 { x: kx, y: ky } = self.scale;
         let mut out = [Jet::default(); L];
         if self.w.is_empty() {
             for i in 0..L {
@@ -224,7 +207,7 @@ impl Patch {
                 };
             }
         } else {
-            let w = self.slopes::<L, W>(&self.w, &at);
+            let w = self.slopes::<L, W>(&self.w, &uv);
             for i in 0..L {
                 let r = 1.0 / w[0][i];
                 let (a, b) = (x[0][i] * r, y[0][i] * r);
@@ -238,7 +221,7 @@ impl Patch {
         out
     }
 
-    fn points_in<const W: usize>(&self, ps: &[Point], out: &mut [Point]) {
+    fn batch_of_points<const W: usize>(&self, ps: &[Point], out: &mut [Point]) {
         let (from, rest) = ps.as_chunks::<WIDTH>();
         let (to, rest_out) = out.as_chunks_mut::<WIDTH>();
         for (p, o) in from.iter().zip(to) {
@@ -249,7 +232,7 @@ impl Patch {
         }
     }
 
-    fn jets_in<const W: usize>(&self, ps: &[Point], out: &mut [Jet]) {
+    fn batch_of_jets<const W: usize>(&self, ps: &[Point], out: &mut [Jet]) {
         let (from, rest) = ps.as_chunks::<JET_WIDTH>();
         let (to, rest_out) = out.as_chunks_mut::<JET_WIDTH>();
         for (p, o) in from.iter().zip(to) {
@@ -274,8 +257,8 @@ impl Patch {
         }
         if self.w.is_empty() {
             // Add the point itself to the displacement.
-            let base = [(0, [self.center.x, self.center.y, 1.0]), (1, [1.0 / self.k.x, 0.0, 0.0])];
-            for (k, add) in base.into_iter().chain([(width, [0.0, 1.0 / self.k.y, 0.0])]) {
+            let base = [(0, [self.center.x, self.center.y, 1.0]), (1, [1.0 / self.scale.x, 0.0, 0.0])];
+            for (k, add) in base.into_iter().chain([(width, [0.0, 1.0 / self.scale.y, 0.0])]) {
                 for (a, b) in all[k].iter_mut().zip(add) {
                     *a += b;
                 }
@@ -314,19 +297,19 @@ impl Map for Patch {
 
     fn points(&self, ps: &[Point], out: &mut [Point]) {
         match self.width {
-            2 => self.points_in::<2>(ps, out),
-            3 => self.points_in::<3>(ps, out),
-            4 => self.points_in::<4>(ps, out),
-            _ => self.points_in::<0>(ps, out),
+            2 => self.batch_of_points::<2>(ps, out),
+            3 => self.batch_of_points::<3>(ps, out),
+            4 => self.batch_of_points::<4>(ps, out),
+            _ => self.batch_of_points::<0>(ps, out),
         }
     }
 
     fn jets(&self, ps: &[Point], out: &mut [Jet]) {
         match self.width {
-            2 => self.jets_in::<2>(ps, out),
-            3 => self.jets_in::<3>(ps, out),
-            4 => self.jets_in::<4>(ps, out),
-            _ => self.jets_in::<0>(ps, out),
+            2 => self.batch_of_jets::<2>(ps, out),
+            3 => self.batch_of_jets::<3>(ps, out),
+            4 => self.batch_of_jets::<4>(ps, out),
+            _ => self.batch_of_jets::<0>(ps, out),
         }
     }
 
@@ -342,23 +325,23 @@ impl Map for Patch {
         if self.x.iter().chain(&self.y).all(|v| *v == 0.0) {
             return Class::Affine(Affine::IDENTITY);
         }
-        let of = |a: usize, b: usize| terms.iter().find(|(i, j, _)| (*i, *j) == (a, b)).map_or([0.0; 3], |t| t.2);
-        let (u, v) = (of(1, 0), of(0, 1));
-        let linear = Affine::new([u[0] * self.k.x, u[1] * self.k.x, v[0] * self.k.y, v[1] * self.k.y, 0.0, 0.0]);
+        let coefficient = |i: usize, j: usize| terms.iter().find(|t| (t.0, t.1) == (i, j)).map_or([0.0; 3], |t| t.2);
+        let (u, v, k) = (coefficient(1, 0), coefficient(0, 1), self.scale);
+        let linear = Affine::new([u[0] * k.x, u[1] * k.x, v[0] * k.y, v[1] * k.y, 0.0, 0.0]);
         let shift = self.point(self.center) - linear * self.center;
         Class::Affine(linear.then_translate(shift))
     }
 
     fn creases(&self, out: &mut Creases) {
         if self.has_edge() {
-            let own = Arc::new(self.clone());
-            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.denominator(p)))));
+            let patch = self.clone();
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| patch.denominator(p)))));
         }
     }
 
     /// The image of a curve of degree d has degree d·(m+n), or less if the highest terms vanish.
     fn image(&self, curve: &RationalBezier) -> Option<RationalBezier> {
-        let (c, k) = (self.center, self.k);
+        let (c, k) = (self.center, self.scale);
         let local = |f: &dyn Fn(&[f64; 3]) -> f64| Scaled::new(curve.points.iter().map(f));
         let terms = self.terms();
         let total = terms.iter().map(|t| t.0 + t.1).max().unwrap_or(0);
@@ -377,7 +360,7 @@ impl Map for Patch {
     }
 
     fn preimages(&self, q: Point) -> Option<Vec<Point>> {
-        let pre = Affine::scale_non_uniform(self.k.x, self.k.y) * Affine::translate(-self.center.to_vec2());
+        let pre = Affine::scale_non_uniform(self.scale.x, self.scale.y) * Affine::translate(-self.center.to_vec2());
         // Computed about the center, so that no digits are lost far from the origin.
         let mut terms = self.terms();
         let c = self.center;
@@ -385,6 +368,7 @@ impl Map for Patch {
         Polynomials { pre, origin: c, terms }.preimages(self, q)
     }
 
+    /// The distance of control points, roughly: a polynomial of n terms turns back less than n times.
     fn detail(&self, _: Rect) -> Option<f64> {
         Some((self.rect.width() / self.width as f64).min(self.rect.height() / self.height as f64))
     }
@@ -413,19 +397,17 @@ pub(crate) fn powers(degree: [usize; 2], b: &[f64]) -> Vec<f64> {
 
 /// The coefficients of uᵏ in each Bⁿᵢ((1+u)/2) = C(n,i)·(1+u)ⁱ(1−u)ⁿ⁻ⁱ/2ⁿ, which are exact binary fractions.
 fn centered(n: usize) -> Vec<Vec<f64>> {
-    let mut binomial = 1.0;
-    (0..=n)
-        .map(|i| {
-            let mut c = vec![0.0; n + 1];
-            c[0] = binomial * 0.5f64.powi(n as i32);
-            binomial = binomial * (n - i) as f64 / (i + 1) as f64;
-            for step in 0..n {
-                let sign = if step < i { 1.0 } else { -1.0 };
-                for k in (1..=step + 1).rev() {
-                    c[k] += sign * c[k - 1];
-                }
-            }
-            c
-        })
-        .collect()
+    let factors = binomials(n).into_iter().map(|b| b * 0.5f64.powi(n as i32));
+    factors.enumerate().map(|(i, factor)| product_of_powers(factor, i, n - i)).collect()
+}
+
+/// The coefficients of the powers of x in factor·(1 + x)ⁱ(1 − x)ʲ.
+pub(super) fn product_of_powers(factor: f64, i: usize, j: usize) -> Vec<f64> {
+    let mut c = vec![0.0; i + j + 1];
+    c[0] = factor;
+    for step in 0..i + j {
+        let sign = if step < i { 1.0 } else { -1.0 };
+        (1..=step + 1).rev().for_each(|k| c[k] += sign * c[k - 1]);
+    }
+    c
 }

@@ -7,6 +7,8 @@
 //! is diagonally dominant has at most one, which Newton's method finds (E. Sherbrooke, N. Patrikalakis, *Computation of the solutions of
 //! nonlinear polynomial systems*, CAGD 10, 1993). Up to rounding, no preimage is missed.
 
+use super::patch::product_of_powers;
+use super::rational_bezier::binomials;
 use super::{Creases, Map, NewtonInverse};
 use kurbo::{Affine, Point, Rect, Vec2};
 use std::cell::LazyCell;
@@ -34,7 +36,9 @@ pub(crate) struct Polynomials {
 /// Two polynomials on a square, as Bernstein coefficients: rows along v of columns along u.
 #[derive(Clone)]
 struct Square {
-    at: [[f64; 2]; 2],
+    /// The ranges of u and v.
+    ranges: [[f64; 2]; 2],
+    /// The coefficients of g₁ and g₂.
     g: Vec<Vec<Vec2>>,
 }
 
@@ -56,20 +60,18 @@ impl Polynomials {
                 g.reverse();
             }
             let rows = g.iter().map(|row| bernstein(row)).collect::<Vec<_>>();
-            let mut squares = vec![Square {
-                at: [[-1.0, 1.0]; 2],
-                g: transposed(&transposed(&rows).iter().map(|c| bernstein(c)).collect::<Vec<_>>()),
-            }];
+            let columns = transposed(&rows).iter().map(|column| bernstein(column)).collect::<Vec<_>>();
+            let mut squares = vec![Square { ranges: [[-1.0, 1.0]; 2], g: transposed(&columns) }];
             while let Some(square) = squares.pop() {
                 count += 1;
                 if count > MAX_SQUARES {
                     return None;
                 }
-                let beyond = |k: usize| far[k] && square.at[k].iter().all(|c| c.abs() <= 1.0 / FAR);
-                if beyond(0) || beyond(1) || square.has_no_zero() {
+                let is_at_infinity = |k: usize| far[k] && square.ranges[k].iter().all(|c| c.abs() <= 1.0 / FAR);
+                if is_at_infinity(0) || is_at_infinity(1) || square.has_no_zero() {
                     continue;
                 }
-                match square.only_zero(&Chart { of: self, far }, map, q) {
+                match square.only_zero(&Chart { polynomials: self, far }, map, q) {
                     Some(p) => found.push(p),
                     None if square.is_narrow() => {}
                     None => squares.extend(square.halves()),
@@ -98,8 +100,7 @@ fn distinct(mut points: Vec<Point>, center: Point, size: f64) -> Vec<Point> {
 /// Newton's method find over `area` and half its size around it. Sorted by abscissa, without points where the map is not defined.
 #[must_use]
 pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>> {
-    let mut creases = Creases::default();
-    map.creases(&mut creases);
+    let creases = Creases::of_map(map);
     let size = area.width() + area.height();
     let search = LazyCell::new(|| {
         let area = area.inflate(0.5 * area.width(), 0.5 * area.height());
@@ -124,18 +125,9 @@ pub fn preimages(map: &Arc<dyn Map>, qs: &[Point], area: Rect) -> Vec<Vec<Point>
 /// Returns the Bernstein coefficients over [−1, 1] of Σ cₖ·xᵏ: the ith is Σₖ cₖ·tᵢₖ / C(n, k), with Σₖ tᵢₖ·xᵏ = (1 − x)ⁿ⁻ⁱ(1 + x)ⁱ.
 fn bernstein(powers: &[Vec2]) -> Vec<Vec2> {
     let n = powers.len() - 1;
-    let product = |ones: usize| {
-        let mut c = vec![1.0];
-        for step in 0..n {
-            let sign = if step < ones { 1.0 } else { -1.0 };
-            c.push(0.0);
-            (1..c.len()).rev().for_each(|k| c[k] += sign * c[k - 1]);
-        }
-        c
-    };
-    let binomials = product(n);
+    let binomials = binomials(n);
     let coefficient = |i: usize| {
-        let terms = product(i).into_iter().zip(&binomials).zip(powers);
+        let terms = product_of_powers(1.0, i, n - i).into_iter().zip(&binomials).zip(powers);
         terms.fold(Vec2::ZERO, |sum, ((t, b), c)| sum + *c * (t / b))
     };
     (0..=n).map(coefficient).collect()
@@ -147,35 +139,38 @@ fn transposed(rows: &[Vec<Vec2>]) -> Vec<Vec<Vec2>> {
 
 /// Coordinates for a square of the (u, v) plane. Where `far` is `true`, 1/u or 1/v takes the place of u or v.
 struct Chart<'a> {
-    of: &'a Polynomials,
+    polynomials: &'a Polynomials,
     far: [bool; 2],
 }
 
 impl Chart<'_> {
-    fn turned(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+    /// Converts coordinates of the chart to u and v, and back.
+    fn convert(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [if self.far[0] { 1.0 / u } else { u }, if self.far[1] { 1.0 / v } else { v }]
     }
 
+    /// The source point at coordinates of the chart.
     fn source(&self, at: [f64; 2]) -> Point {
-        self.of.pre.inverse() * Point::from(<(f64, f64)>::from(self.turned(at)))
+        self.polynomials.pre.inverse() * Point::from(<(f64, f64)>::from(self.convert(at)))
     }
 
     /// Returns `true` if W exceeds its rounding error. At a base point, which is no preimage, all three polynomials vanish.
     fn is_regular(&self, at: [f64; 2]) -> bool {
-        let [u, v] = self.turned(at);
-        let terms = self.of.terms.iter().map(|(i, j, c)| c[2] * u.powi(*i as i32) * v.powi(*j as i32));
+        let [u, v] = self.convert(at);
+        let terms = self.polynomials.terms.iter().map(|(i, j, c)| c[2] * u.powi(*i as i32) * v.powi(*j as i32));
         let (w, size) = terms.fold((0.0, 0.0), |(w, size), t| (w + t, size + f64::abs(t)));
         f64::abs(w) > 1e-6 * size
     }
 
-    fn place(&self, p: Point) -> [f64; 2] {
-        let at = self.of.pre * p;
-        self.turned([at.x, at.y])
+    /// The chart's coordinates of a source point.
+    fn coordinates(&self, p: Point) -> [f64; 2] {
+        let uv = self.polynomials.pre * p;
+        self.convert([uv.x, uv.y])
     }
 }
 
 impl Square {
-    fn all(&self) -> impl Iterator<Item = Vec2> {
+    fn coefficients(&self) -> impl Iterator<Item = Vec2> {
         self.g.iter().flatten().copied()
     }
 
@@ -196,12 +191,14 @@ impl Square {
         (rows[0].is_finite() && rows[1].is_finite()).then(|| (rows, is_dominant(0) && is_dominant(1)))
     }
 
+    /// Returns `true` if a polynomial, or a combination by the inverse Jacobian, has coefficients of one sign.
     fn has_no_zero(&self) -> bool {
         /// The rounding error of the coefficients, as a share of the largest.
         const NOISE: f64 = 1e-14;
         let one_sign = |row: Vec2| {
-            let noise = NOISE * self.all().map(|g| (row.x * g.x).abs() + (row.y * g.y).abs()).fold(0.0, f64::max);
-            self.all().all(|g| row.dot(g) > noise) || self.all().all(|g| row.dot(g) < -noise)
+            let noise =
+                NOISE * self.coefficients().map(|g| (row.x * g.x).abs() + (row.y * g.y).abs()).fold(0.0, f64::max);
+            self.coefficients().all(|g| row.dot(g) > noise) || self.coefficients().all(|g| row.dot(g) < -noise)
         };
         one_sign(Vec2::new(1.0, 0.0))
             || one_sign(Vec2::new(0.0, 1.0))
@@ -210,7 +207,9 @@ impl Square {
 
     /// The zero in the square, if it can have only one and Newton's method finds it, or if it is too narrow to be divided.
     fn only_zero(&self, chart: &Chart<'_>, map: &dyn Map, q: Point) -> Option<Point> {
-        let center = self.at.map(|[a, b]| 0.5 * (a + b));
+        const MAX_STEPS: usize = 40;
+        const ROUNDING: f64 = 1e-9;
+        let center = self.ranges.map(|[a, b]| 0.5 * (a + b));
         if self.is_narrow() {
             return Some(chart.source(center)).filter(|_| chart.is_regular(center));
         }
@@ -218,28 +217,31 @@ impl Square {
             return None;
         }
         let (mut p, mut last) = (chart.source(center), f64::INFINITY);
-        for _ in 0..40 {
+        for _ in 0..MAX_STEPS {
             let jet = map.jet(p);
-            let off = jet.inverted(p).push(q - jet.p);
-            if !(off.is_finite() && (off.hypot() < last || last == f64::INFINITY)) {
+            let step = jet.inverted(p).push(q - jet.p);
+            if !(step.is_finite() && (step.hypot() < last || last == f64::INFINITY)) {
                 break;
             }
-            (p, last) = (p + off, off.hypot());
+            (p, last) = (p + step, step.hypot());
         }
-        let at = chart.place(p);
-        let near = |k: usize| at[k] >= self.at[k][0] - 1e-9 && at[k] <= self.at[k][1] + 1e-9;
-        (last <= 1e-9 * (p.to_vec2().hypot() + 1.0) && near(0) && near(1)).then_some(p)
+        let at = chart.coordinates(p);
+        let is_in_range = |k: usize| {
+            let [from, to] = self.ranges[k];
+            at[k] >= from - ROUNDING && at[k] <= to + ROUNDING
+        };
+        (last <= ROUNDING * (p.to_vec2().hypot() + 1.0) && is_in_range(0) && is_in_range(1)).then_some(p)
     }
 
     fn is_narrow(&self) -> bool {
-        self.at.iter().all(|[a, b]| b - a < NARROW)
+        self.ranges.iter().all(|[a, b]| b - a < NARROW)
     }
 
     /// The two halves across the longer side.
     fn halves(self) -> [Self; 2] {
-        let [w, h] = self.at.map(|[a, b]| b - a);
+        let [w, h] = self.ranges.map(|[a, b]| b - a);
         let k = usize::from(h > w);
-        let [a, b] = self.at[k];
+        let [a, b] = self.ranges[k];
         let middle = 0.5 * (a + b);
         let rows = if k == 0 { self.g } else { transposed(&self.g) };
         let (mut first, mut second) = (Vec::new(), Vec::new());
@@ -254,9 +256,9 @@ impl Square {
             second.push(row);
         }
         [(first, [a, middle]), (second, [middle, b])].map(|(rows, range)| {
-            let mut at = self.at;
-            at[k] = range;
-            Self { at, g: if k == 0 { rows } else { transposed(&rows) } }
+            let mut ranges = self.ranges;
+            ranges[k] = range;
+            Self { ranges, g: if k == 0 { rows } else { transposed(&rows) } }
         })
     }
 }

@@ -63,14 +63,14 @@ impl Map for AffineMap {
 impl Map for Homography {
     #[inline]
     fn jet(&self, p: Point) -> Jet {
-        let image = self.near(p);
+        let image = self.homogeneous(p);
         let [dx, dy] = self.slopes(image);
         Jet { p: self.point_of(image), dx, dy }
     }
 
     #[inline]
     fn point(&self, p: Point) -> Point {
-        self.point_of(self.near(p))
+        self.point_of(self.homogeneous(p))
     }
 
     fn class(&self) -> Class {

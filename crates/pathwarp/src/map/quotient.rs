@@ -41,7 +41,7 @@ impl Quotient {
     /// The map p ↦ p + (x, y). `pre` takes the source point to (a, b); the inverse is sought over `domain`.
     pub(crate) fn polynomial(pre: Affine, x: Plane, y: Plane, domain: Rect) -> Self {
         let size = x.largest().max(y.largest());
-        let (x, y) = (x.tidied(size), y.tidied(size));
+        let (x, y) = (x.without_noise(size), y.without_noise(size));
         let degree = x.degree().max(y.degree()).max(1);
         let w = Plane::default();
         Self { pre, origin: Point::ORIGIN, x, y, w, guard: None, degree, without_poles: true, domain, back: None }
@@ -50,22 +50,22 @@ impl Quotient {
     /// The map p ↦ `origin` + (x, y)/w.
     pub(crate) fn rational(pre: Affine, origin: Point, x: Plane, y: Plane, w: Plane, domain: Rect) -> Self {
         let size = x.largest().max(y.largest());
-        let (x, y) = (x.tidied(size), y.tidied(size));
-        let below = w.largest();
-        let w = w.tidied(below);
+        let (x, y) = (x.without_noise(size), y.without_noise(size));
+        let size = w.largest();
+        let w = w.without_noise(size);
         if w.degree() == 0 {
             let k = 1.0 / w.coefficient(0, 0);
             let [sx, sy] = source_coordinates(pre);
-            let shift = |p: &Plane, o: f64, s: [f64; 3]| {
-                p.scaled(k).plus(-1.0, &Plane::linear(s)).plus(o, &Plane::linear([1.0, 0.0, 0.0]))
+            let displacement = |p: &Plane, origin: f64, source: [f64; 3]| {
+                p.scaled(k).plus(-1.0, &Plane::linear(source)).plus(origin, &Plane::linear([1.0, 0.0, 0.0]))
             };
-            return Self::polynomial(pre, shift(&x, origin.x, sx), shift(&y, origin.y, sy), domain);
+            return Self::polynomial(pre, displacement(&x, origin.x, sx), displacement(&y, origin.y, sy), domain);
         }
         let degree = x.degree().max(y.degree()).max(w.degree());
         Self { pre, origin, x, y, w, guard: None, degree, without_poles: false, domain, back: None }
     }
 
-    /// Marks the map as having no pole in its domain of use.
+    /// Returns this map, known to have no pole in its domain of use.
     pub(crate) fn without_poles(self) -> Self {
         Self { without_poles: true, ..self }
     }
@@ -121,9 +121,10 @@ pub(crate) fn source_coordinates(pre: Affine) -> [[f64; 3]; 2] {
 impl Formula for Quotient {
     /// The cost is proportional to the number of terms of a polynomial.
     fn cost(&self) -> Cost<'_> {
-        const TERMS: f64 = 32.0;
+        /// The numbers of a bicubic net: sixteen terms of two coordinates.
+        const NET_TERMS: f64 = 32.0;
         let terms = (self.degree + 1) * (self.degree + 2) / 2;
-        Cost::new((terms as f64 / TERMS).max(1.0))
+        Cost::new((terms as f64 / NET_TERMS).max(1.0))
     }
 
     #[inline]
@@ -147,15 +148,15 @@ impl Formula for Quotient {
     }
 
     fn creases(&self, out: &mut Creases) {
-        let own = Arc::new(self.clone());
         if !self.without_poles {
-            let own = Arc::clone(&own);
-            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| Formula::denominator(&*own, p)))));
+            let map = self.clone();
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| Formula::denominator(&map, p)))));
         }
-        if self.guard.is_some() {
+        if let Some(guard) = self.guard.clone() {
+            let pre = self.pre;
             out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
-                let q = own.pre * p;
-                own.guard.as_ref().map_or(1.0, |g| g.at(q.x, q.y))
+                let q = pre * p;
+                guard.at(q.x, q.y)
             }))));
         }
     }
@@ -171,21 +172,21 @@ impl Formula for Quotient {
         let local = AffineMap(self.pre).image(curve)?;
         let [a, b, w] = [0, 1, 2].map(|k| local.coordinate(k).powers(total));
         let degree = curve.degree() * total;
-        let on = |p: &Plane| p.on(&a, &b, &w, total, degree);
-        let (mut x, mut y) = (on(&self.x), on(&self.y));
-        let below = if self.is_polynomial() {
+        let along_curve = |p: &Plane| p.along_curve(&a, &b, &w, total, degree);
+        let (mut x, mut y) = (along_curve(&self.x), along_curve(&self.y));
+        let denominator = if self.is_polynomial() {
             // Add the point itself to the displacement.
             x.add_scaled(1.0, &curve.coordinate(0).times(&w[total - 1]));
             y.add_scaled(1.0, &curve.coordinate(1).times(&w[total - 1]));
             w[total].clone()
         } else {
-            let below = on(&self.w);
-            x.add_scaled(self.origin.x, &below);
-            y.add_scaled(self.origin.y, &below);
-            below
+            let denominator = along_curve(&self.w);
+            x.add_scaled(self.origin.x, &denominator);
+            y.add_scaled(self.origin.y, &denominator);
+            denominator
         };
         let polynomial = self.is_polynomial() && curve.is_polynomial();
-        Some(RationalBezier::from_coordinates([&x, &y, &below], polynomial))
+        Some(RationalBezier::from_coordinates([&x, &y, &denominator], polynomial))
     }
 
     fn denominator(&self, p: Point) -> f64 {
@@ -215,31 +216,29 @@ impl Formula for Quotient {
     /// The inverse in closed form if that is known, by the matrix for degree one, by Newton's method over the domain otherwise.
     fn inverse(&self) -> Option<Arc<dyn Map>> {
         if let Some(back) = &self.back {
-            let own = Self { back: None, ..self.clone() };
-            return Some(Arc::new(Self { back: Some(Box::new(own)), ..(**back).clone() }));
+            let forward = Self { back: None, ..self.clone() };
+            return Some(Arc::new(Self { back: Some(Box::new(forward)), ..(**back).clone() }));
         }
         match Formula::class(self) {
             Class::Affine(m) => AffineMap(m).inverse(),
             Class::Projective(h) => h.inverse(),
             _ => {
-                let reach = 1e-9 * (self.domain.width() + self.domain.height());
-                Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [1, 1])))
+                let margin = 1e-9 * (self.domain.width() + self.domain.height());
+                Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, margin, [1, 1])))
             }
         }
     }
 }
 
-// Polynomials in two variables, as rows of power coefficients.
-
 /// Coefficients below this share of the largest are rounding noise.
 const NOISE: f64 = 4e-15;
 
-/// A polynomial in two variables a and b.
+/// A polynomial in two variables a and b, by its coefficients in rows: that of aⁱbʲ has the index `[j][i]`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Plane(Vec<Vec<f64>>);
 
 impl Plane {
-    /// The polynomial with coefficients `rows[j][i]` of aⁱbʲ.
+    /// The polynomial with these rows of coefficients.
     pub(crate) fn new(rows: Vec<Vec<f64>>) -> Self {
         Self(rows)
     }
@@ -306,7 +305,7 @@ impl Plane {
     }
 
     /// Sets coefficients below [`NOISE`] times `size` to zero and drops trailing zeros.
-    fn tidied(mut self, size: f64) -> Self {
+    fn without_noise(mut self, size: f64) -> Self {
         for row in &mut self.0 {
             for c in row.iter_mut().filter(|c| c.abs() <= NOISE * size) {
                 *c = 0.0;
@@ -321,7 +320,7 @@ impl Plane {
 
     /// The polynomial along a curve (a/w, b/w), multiplied by the curve's denominator to the power `total`. The slices hold powers
     /// of a, b and w.
-    fn on(&self, a: &[Scaled], b: &[Scaled], w: &[Scaled], total: usize, degree: usize) -> Scaled {
+    fn along_curve(&self, a: &[Scaled], b: &[Scaled], w: &[Scaled], total: usize, degree: usize) -> Scaled {
         let mut sum = Scaled::zero(degree);
         for (i, j, c) in self.terms() {
             sum.add_scaled(c, &a[i].times(&b[j]).times(&w[total - i - j]));
@@ -329,7 +328,7 @@ impl Plane {
         sum
     }
 
-    /// Returns `true` if every coefficient vanishes. Exact only after [`Plane::tidied`].
+    /// Returns `true` if every coefficient vanishes. Exact only after [`Plane::without_noise`].
     fn is_zero(&self) -> bool {
         self.0.is_empty()
     }

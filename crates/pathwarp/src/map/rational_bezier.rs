@@ -105,7 +105,7 @@ impl RationalBezier {
             if !(0..3).all(vanishes) {
                 break;
             }
-            // Each half is computed from its end, where the recurrence is stable: P̂ᵢ = (i·P̂ᵢ₋₁ + (n − i)·P̂ᵢ)/n of the lower degree.
+            // From Pᵢ = (i·P̂ᵢ₋₁ + (n − i)·P̂ᵢ)/n, with P̂ of the lower degree. Each half is computed from its end, where that is stable.
             let (p, mut low) = (&self.points, vec![[0.0; 3]; n]);
             for k in 0..3 {
                 for i in 0..n.div_ceil(2) {
@@ -161,10 +161,9 @@ impl RationalBezier {
 /// ```
 #[must_use]
 pub fn exact_images(map: &dyn Map, seg: &Seg) -> Option<Vec<RationalBezier>> {
-    let mut creases = Creases::default();
-    map.creases(&mut creases);
-    let halves = if matches!(seg, Seg::Arc(_)) { vec![0.25, 0.5, 0.75] } else { Vec::new() };
-    let mut cuts = [vec![0.0, 1.0], halves, creases.splits(seg)].concat();
+    // Quarters of an arc are short enough for one quadratic each.
+    let quarters = if matches!(seg, Seg::Arc(_)) { vec![0.25, 0.5, 0.75] } else { Vec::new() };
+    let mut cuts = [vec![0.0, 1.0], quarters, Creases::of_map(map).splits(seg)].concat();
     cuts.sort_by(f64::total_cmp);
     let image = |w: &[f64]| {
         let part = match seg {
@@ -234,7 +233,7 @@ impl Scaled {
 }
 
 /// The binomials C(n, k) for k from 0 to n.
-fn binomials(n: usize) -> Vec<f64> {
+pub(super) fn binomials(n: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(n + 1);
     let mut b = 1.0;
     for i in 0..=n {

@@ -86,7 +86,7 @@ macro_rules! operators {
 pub(super) use operators;
 
 /// Implements [`Real`] for `f64` by the functions that `f64` has by the same names.
-macro_rules! own_functions {
+macro_rules! std_functions {
     ($($name:ident($($argument:ident: $type:ty)?);)*) => {
         impl Real for f64 {
             #[inline]
@@ -100,7 +100,7 @@ macro_rules! own_functions {
         }
     };
 }
-own_functions! { sqrt(); sin(); cos(); exp(); ln(); atan2(x: f64); powi(n: i32); powf(n: f64); hypot(y: f64); }
+std_functions! { sqrt(); sin(); cos(); exp(); ln(); atan2(x: f64); powi(n: i32); powf(n: f64); hypot(y: f64); }
 
 /// A number with its derivatives with respect to x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,8 +119,8 @@ impl Dual {
     fn chain(self, value: f64, slope: f64) -> Self {
         if slope.is_infinite() {
             // Where both derivatives vanish, so does the result, even if the slope is infinite, as at the tip of √(x² + y²).
-            let by = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
-            return Self { v: value, x: by(self.x), y: by(self.y) };
+            let product = |d: f64| if d == 0.0 { 0.0 } else { d * slope };
+            return Self { v: value, x: product(self.x), y: product(self.y) };
         }
         Self { v: value, x: self.x * slope, y: self.y * slope }
     }
@@ -155,6 +155,18 @@ impl Neg for Dual {
     }
 }
 
+/// Implements functions of a dual number by their values and slopes at its value.
+macro_rules! chained {
+    ($($name:ident($v:ident $(, $n:ident: $type:ty)?) => $value_and_slope:expr;)*) => {$(
+        #[inline]
+        fn $name(self $(, $n: $type)?) -> Self {
+            let $v = self.v;
+            let (value, slope) = $value_and_slope;
+            self.chain(value, slope)
+        }
+    )*};
+}
+
 impl Real for Dual {
     #[inline]
     fn value(self) -> f64 {
@@ -165,29 +177,14 @@ impl Real for Dual {
         let (dx, dy) = (jet.push((x.x, y.x).into()), jet.push((x.y, y.y).into()));
         (Self { v: jet.p.x, x: dx.x, y: dy.x }, Self { v: jet.p.y, x: dx.y, y: dy.y })
     }
-    #[inline]
-    fn sqrt(self) -> Self {
-        let r = self.v.sqrt();
-        self.chain(r, 0.5 / r)
-    }
-    #[inline]
-    fn sin(self) -> Self {
-        let (s, c) = self.v.sin_cos();
-        self.chain(s, c)
-    }
-    #[inline]
-    fn cos(self) -> Self {
-        let (s, c) = self.v.sin_cos();
-        self.chain(c, -s)
-    }
-    #[inline]
-    fn exp(self) -> Self {
-        let e = self.v.exp();
-        self.chain(e, e)
-    }
-    #[inline]
-    fn ln(self) -> Self {
-        self.chain(self.v.ln(), 1.0 / self.v)
+    chained! {
+        sqrt(v) => { let r = v.sqrt(); (r, 0.5 / r) };
+        sin(v) => (v.sin(), v.cos());
+        cos(v) => (v.cos(), -v.sin());
+        exp(v) => { let e = v.exp(); (e, e) };
+        ln(v) => (v.ln(), 1.0 / v);
+        powi(v, n: i32) => (v.powi(n), if n == 0 { 0.0 } else { f64::from(n) * v.powi(n - 1) });
+        powf(v, n: f64) => (v.powf(n), if n == 0.0 { 0.0 } else { n * v.powf(n - 1.0) });
     }
     #[inline]
     fn atan2(self, x: Self) -> Self {
@@ -196,18 +193,10 @@ impl Real for Dual {
         Self { v: self.v.atan2(x.v), x: a * self.x + b * x.x, y: a * self.y + b * x.y }
     }
     #[inline]
-    fn powi(self, n: i32) -> Self {
-        self.chain(self.v.powi(n), if n == 0 { 0.0 } else { f64::from(n) * self.v.powi(n - 1) })
-    }
-    #[inline]
-    fn powf(self, n: f64) -> Self {
-        self.chain(self.v.powf(n), if n == 0.0 { 0.0 } else { n * self.v.powf(n - 1.0) })
-    }
-    #[inline]
-    fn hypot(self, o: Self) -> Self {
-        let r = self.v.hypot(o.v);
+    fn hypot(self, y: Self) -> Self {
+        let r = self.v.hypot(y.v);
         // The tip of the cone has no derivative. 0 is the mean over all directions and keeps the result finite.
-        let (a, b) = if r > 0.0 { (self.v / r, o.v / r) } else { (0.0, 0.0) };
-        Self { v: r, x: a * self.x + b * o.x, y: a * self.y + b * o.y }
+        let (a, b) = if r > 0.0 { (self.v / r, y.v / r) } else { (0.0, 0.0) };
+        Self { v: r, x: a * self.x + b * y.x, y: a * self.y + b * y.y }
     }
 }

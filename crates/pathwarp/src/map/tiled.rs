@@ -4,7 +4,7 @@
 //! vertical stretches within a row. Adjacent maps need not agree there; a path across a gap is connected by a straight line.
 
 use super::curves::{Guide, GuidePiece};
-use super::newton::kinks_through;
+use super::newton::{kinks, push_images};
 use super::{
     BicubicNet, Cost, Crease, Creases, INVERSE_WORK, Jet, Level, Map, Net, NewtonInverse, RationalBezier, Searches,
 };
@@ -12,6 +12,7 @@ use crate::budget::{Budget, Search, is_over};
 use kurbo::{Affine, CubicBez, Point, Rect};
 use std::sync::Arc;
 
+/// Tiles beside one another.
 #[derive(Clone)]
 pub(crate) struct TileRow {
     /// The increasing abscissae between tiles, one fewer than there are tiles.
@@ -32,7 +33,7 @@ pub(crate) struct Tiled {
 }
 
 /// The extent of the creases beyond the region, as a multiple of its size. Artwork extends past its frame by less.
-const REACH: f64 = 1e3;
+const CREASE_REACH: f64 = 1e3;
 /// The margin around a tile within which preimages count, as a share of the sides of the region or of the tile's rectangle: for paths that
 /// end on the border, and rounding.
 const MARGIN: f64 = 1e-9;
@@ -50,13 +51,13 @@ impl Tiled {
         if !fits(&cuts, rows.len()) || !rows.iter().all(|r| fits(&r.cuts, r.maps.len())) {
             return None;
         }
-        match &rows[..] {
-            [TileRow { maps, .. }] if maps.len() == 1 => maps.first().cloned(),
-            _ => {
-                let work = rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max);
-                Some(Arc::new(Self { region, cuts, rows, work }))
-            }
+        if let [TileRow { maps, .. }] = &rows[..]
+            && let [only] = &maps[..]
+        {
+            return Some(Arc::clone(only));
         }
+        let work = rows.iter().flat_map(|r| &r.maps).map(|m| m.work()).fold(1.0, f64::max);
+        Some(Arc::new(Self { region, cuts, rows, work }))
     }
 
     /// The row and column of the tile at `p`.
@@ -84,7 +85,7 @@ impl Tiled {
     /// The rectangle of a tile, extended far beyond the region for the outermost tiles.
     fn extended_rect(&self, j: usize, i: usize) -> Rect {
         let (mut b, r) = (self.rect(j, i), self.region);
-        let far = r.inflate(REACH * r.width(), REACH * r.height());
+        let far = r.inflate(CREASE_REACH * r.width(), CREASE_REACH * r.height());
         b.x0 = if b.x0 == r.x0 { far.x0 } else { b.x0 };
         b.x1 = if b.x1 == r.x1 { far.x1 } else { b.x1 };
         b.y0 = if b.y0 == r.y0 { far.y0 } else { b.y0 };
@@ -116,16 +117,12 @@ impl Map for Tiled {
             out.push(Crease::kink(Level::Line { a: 0.0, b: 1.0, c: -y }));
         }
         for (j, row) in self.rows.iter().enumerate() {
-            let last = row.maps.len() - 1;
-            let within = Rect {
-                x0: self.extended_rect(j, 0).x0,
-                x1: self.extended_rect(j, last).x1,
-                ..self.extended_rect(j, 0)
-            };
-            // A single row has no lower or upper end: a whole line is its crease.
+            let within = Rect { x1: self.extended_rect(j, row.maps.len() - 1).x1, ..self.extended_rect(j, 0) };
             for x in &row.cuts {
                 let (a, b, c) = (1.0, 0.0, -x);
-                out.push(Crease::kink(if self.cuts.is_empty() {
+                // A single row has no lower or upper end: a whole line is its crease.
+                let is_line = self.cuts.is_empty();
+                out.push(Crease::kink(if is_line {
                     Level::Line { a, b, c }
                 } else {
                     Level::Stretch { a, b, c, within }
@@ -133,10 +130,8 @@ impl Map for Tiled {
             }
         }
         for (j, i) in self.tiles() {
-            let mut own = Creases::default();
-            self.rows[j].maps[i].creases(&mut own);
             // Creases are zeros, so 1 makes none beyond the tile. The jump is at the tile's border, a crease already.
-            for c in own.items() {
+            for c in Creases::of_map(&self.rows[j].maps[i]).items() {
                 let (level, tiled) = (c.level.clone(), self.clone());
                 let level =
                     Level::Field(Arc::new(move |p: Point| if tiled.index(p) == (j, i) { level.at(p) } else { 1.0 }));
@@ -173,9 +168,10 @@ impl Map for Tiled {
     }
 }
 
+/// The inverse of a [`Tiled`] map, by Newton's method in every tile.
 #[derive(Clone)]
 struct TiledInverse {
-    of: Tiled,
+    map: Tiled,
     /// The inverse of every tile, and the rectangle in which its answers must lie.
     tiles: Vec<(Rect, Arc<NewtonInverse>)>,
     jet_work: f64,
@@ -183,19 +179,19 @@ struct TiledInverse {
 }
 
 impl TiledInverse {
-    fn new(of: &Tiled) -> Self {
-        let r = of.region;
-        let wide = r.inflate(INVERSE_REACH * r.width(), INVERSE_REACH * r.height());
-        let tiles = of.tiles().map(|(j, i)| {
-            let domain = of.extended_rect(j, i).intersect(wide);
+    fn new(map: &Tiled) -> Self {
+        let r = map.region;
+        let searched = r.inflate(INVERSE_REACH * r.width(), INVERSE_REACH * r.height());
+        let tiles = map.tiles().map(|(j, i)| {
+            let domain = map.extended_rect(j, i).intersect(searched);
             let margin = MARGIN * (domain.width() + domain.height());
-            let (map, core) = (of.rows[j].maps[i].clone(), of.rect(j, i));
+            let (tile, core) = (map.rows[j].maps[i].clone(), map.rect(j, i));
             // The map is one smooth piece. Preimages in the core come first; those beyond the domain do not count.
-            (domain.inflate(margin, margin), Arc::new(NewtonInverse::with_core(map, core, domain, 0.0, [1, 1])))
+            (domain.inflate(margin, margin), Arc::new(NewtonInverse::with_core(tile, core, domain, 0.0, [1, 1])))
         });
         let tiles: Vec<(Rect, Arc<NewtonInverse>)> = tiles.collect();
         let jet_work = tiles.iter().map(|t| t.1.jet_work).fold(1.0, f64::max);
-        Self { of: of.clone(), tiles, jet_work, budget: None }
+        Self { map: map.clone(), tiles, jet_work, budget: None }
     }
 
     /// The tile and jet of the first preimage in the region, or else of the first one beyond it.
@@ -208,7 +204,7 @@ impl TiledInverse {
             let (found, more) = inverse.search(q, |p| rect.contains(p));
             search.add(more);
             match found {
-                Some(jet) if self.of.region.contains(jet.p) => {
+                Some(jet) if self.map.region.contains(jet.p) => {
                     best = Some((k, jet));
                     break;
                 }
@@ -223,7 +219,7 @@ impl TiledInverse {
 
 impl Map for TiledInverse {
     fn cost(&self) -> Cost<'_> {
-        Cost::new(USUAL_TILES as f64 * INVERSE_WORK * self.of.cost().work).searching(self)
+        Cost::new(USUAL_TILES as f64 * INVERSE_WORK * self.map.cost().work).searching(self)
     }
 
     fn jet(&self, q: Point) -> Jet {
@@ -232,21 +228,21 @@ impl Map for TiledInverse {
 
     /// The images of the kinks of the tiled map.
     fn creases(&self, out: &mut Creases) {
-        kinks_through(self, &self.of, out);
+        push_images(kinks(&self.map), self, out);
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
         let (k, _) = self.solve(inside)?;
         let (rect, _) = self.tiles[k];
-        let (j, i) = self.of.tiles().nth(k)?;
+        let (j, i) = self.map.tiles().nth(k)?;
         // A margin for paths that end on the border of the tile, whose map is one smooth piece.
-        let reach = 1e-3 * (rect.width() + rect.height());
-        let branch = NewtonInverse::new(self.of.rows[j].maps[i].clone(), rect, reach, [1, 1]);
+        let margin = 1e-3 * (rect.width() + rect.height());
+        let branch = NewtonInverse::new(self.map.rows[j].maps[i].clone(), rect, margin, [1, 1]);
         Some(Arc::new(self.budget.as_ref().map_or_else(|| branch.clone(), |b| branch.spending(b))))
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.of.clone()))
+        Some(Arc::new(self.map.clone()))
     }
 }
 
@@ -276,44 +272,46 @@ pub(crate) fn ruled_row(frame: Rect, top: &Guide, bottom: &Guide) -> Option<Tile
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a < MIN_DISTANCE);
     let ends: Vec<f64> = [0.0].into_iter().chain(cuts.iter().copied()).chain([1.0]).collect();
-    let maps = ends.windows(2).map(|w| strip(frame, top, bottom, w[0], w[1])).collect();
+    let maps = ends.windows(2).map(|w| ruled_map(frame, top, bottom, w[0], w[1])).collect();
     let cuts = cuts.iter().map(|u| frame.x0 + u * frame.width()).collect();
     Some(TileRow { cuts, maps })
 }
 
 /// The map from the source to (u, v), with u from 0 to 1 over [`u0`, `u1`] of the frame.
-fn unit(frame: Rect, u0: f64, u1: f64) -> Affine {
+fn to_unit_square(frame: Rect, u0: f64, u1: f64) -> Affine {
     let (w, h) = (frame.width() * (u1 - u0), frame.height());
     Affine::new([1.0 / w, 0.0, 0.0, 1.0 / h, -(frame.x0 + u0 * frame.width()) / w, -frame.y0 / h])
 }
 
-fn strip(frame: Rect, top: &Guide, bottom: &Guide, u0: f64, u1: f64) -> Arc<dyn Map> {
+/// The ruled map over [`u0`, `u1`], which contains no joint of either guide.
+fn ruled_map(frame: Rect, top: &Guide, bottom: &Guide, u0: f64, u1: f64) -> Arc<dyn Map> {
     let middle = 0.5 * (u0 + u1);
     let (top, bottom) = (top.piece(middle), bottom.piece(middle));
     if let (Some(t), Some(b)) = (top.cubic(u0, u1), bottom.cubic(u0, u1)) {
-        return Arc::new(BicubicNet::new(&between(t, b), unit(frame, u0, u1)));
+        return Arc::new(BicubicNet::new(&ruled_net(t, b), to_unit_square(frame, u0, u1)));
     }
-    Arc::new(Strip { pre: unit(frame, 0.0, 1.0), top: top.clone(), bottom: bottom.clone() })
+    Arc::new(RuledMap { pre: to_unit_square(frame, 0.0, 1.0), top: top.clone(), bottom: bottom.clone() })
 }
 
 /// The net of the ruled map between two cubics.
-fn between(top: CubicBez, bottom: CubicBez) -> Net {
+fn ruled_net(top: CubicBez, bottom: CubicBez) -> Net {
     let (t, b) = ([top.p0, top.p1, top.p2, top.p3], [bottom.p0, bottom.p1, bottom.p2, bottom.p3]);
     std::array::from_fn(|j| std::array::from_fn(|i| if j == 3 { b[i] } else { t[i].lerp(b[i], j as f64 / 3.0) }))
 }
 
-/// The map over a strip whose guides are not both polynomials in u.
+/// The ruled map between pieces of guides that are not both polynomials in u.
 #[derive(Debug, Clone)]
-struct Strip {
+struct RuledMap {
+    /// The affine function from the source point to (u, v).
     pre: Affine,
     top: GuidePiece,
     bottom: GuidePiece,
 }
 
-impl Map for Strip {
+impl Map for RuledMap {
     fn jet(&self, p: Point) -> Jet {
         let Point { x: u, y: v } = self.pre * p;
-        let ((t, dt), (b, db)) = (self.top.at(u), self.bottom.at(u));
+        let ((t, dt), (b, db)) = (self.top.point_and_derivative(u), self.bottom.point_and_derivative(u));
         let [a, _, _, d, ..] = self.pre.as_coeffs();
         Jet { p: t.lerp(b, v), dx: (dt * (1.0 - v) + db * v) * a, dy: (b - t) * d }
     }
@@ -403,8 +401,7 @@ mod tests {
         let roof = guide("M0,20 L50,0 L100,20", Along::ArcLength);
         let floor = guide("M0,50 Q50,70 100,50", Along::Parameter);
         let m = ruled(&roof, &floor);
-        let mut creases = Creases::default();
-        m.creases(&mut creases);
+        let creases = Creases::of_map(&m);
         assert_eq!(creases.items().len(), 1);
         assert!(creases.items()[0].level.at(source(0.5, 0.3)).abs() < 1e-12);
         for u in [0.2, 0.8] {

@@ -86,15 +86,8 @@ impl EllipticArc {
         if delta.abs() < 1e-12 || (delta.abs() - TAU).abs() < 1e-12 {
             delta = if lambda >= 1.0 { PI.copysign(delta) } else { return None };
         }
-        Some(Self {
-            p0,
-            p1,
-            center,
-            a: Vec2::new(cos * rx, sin * rx),
-            b: Vec2::new(-sin * ry, cos * ry),
-            start: on_grid(th0),
-            sweep: on_grid(delta),
-        })
+        let (a, b) = (Vec2::new(cos * rx, sin * rx), Vec2::new(-sin * ry, cos * ry));
+        Some(Self { p0, p1, center, a, b, start: on_grid(th0), sweep: on_grid(delta) })
     }
 
     /// Returns the circular arc that a cubic approximates, if its handles are within `near` of the usual approximation's. `None` for other
@@ -128,11 +121,8 @@ impl EllipticArc {
     #[inline]
     #[must_use]
     pub fn eval(&self, t: f64) -> Point {
-        if t == 0.0 {
-            return self.p0;
-        }
-        if t == 1.0 {
-            return self.p1;
+        if t == 0.0 || t == 1.0 {
+            return if t == 0.0 { self.p0 } else { self.p1 };
         }
         let (s, c) = (self.start + t * self.sweep).sin_cos();
         self.center + self.a * c + self.b * s
@@ -155,22 +145,14 @@ impl EllipticArc {
     /// Returns the exact image under an affine map.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
-        let linear = |v: Vec2| {
-            let [a, b, c, d, ..] = m.as_coeffs();
-            Vec2::new(a * v.x + c * v.y, b * v.x + d * v.y)
-        };
-        Self {
-            p0: m * self.p0,
-            p1: m * self.p1,
-            center: m * self.center,
-            a: linear(self.a),
-            b: linear(self.b),
-            ..*self
-        }
+        let [k0, k1, k2, k3, ..] = m.as_coeffs();
+        let [a, b] = [self.a, self.b].map(|v| Vec2::new(k0 * v.x + k2 * v.y, k1 * v.x + k3 * v.y));
+        let [p0, p1, center] = [self.p0, self.p1, self.center].map(|p| m * p);
+        Self { p0, p1, center, a, b, ..*self }
     }
 
     /// Returns half the width and height of the whole ellipse.
-    pub(super) fn reach(&self) -> Vec2 {
+    pub(super) fn half_size(&self) -> Vec2 {
         Vec2::new(self.a.x.hypot(self.b.x), self.a.y.hypot(self.b.y))
     }
 
@@ -193,13 +175,8 @@ impl EllipticArc {
     /// Returns the part between `t0` and `t1`.
     #[must_use]
     pub fn subsegment(&self, t0: f64, t1: f64) -> Self {
-        Self {
-            p0: self.eval(t0),
-            p1: self.eval(t1),
-            start: self.start + t0 * self.sweep,
-            sweep: (t1 - t0) * self.sweep,
-            ..*self
-        }
+        let (start, sweep) = (self.start + t0 * self.sweep, (t1 - t0) * self.sweep);
+        Self { p0: self.eval(t0), p1: self.eval(t1), start, sweep, ..*self }
     }
 
     /// Returns the cubic with the end points and end tangents of the arc, and handles of (4/3)·tan(Δ/4) for the sweep Δ. It is close
@@ -225,7 +202,7 @@ impl EllipticArc {
     #[must_use]
     pub(crate) fn cubics_error(&self, n: usize) -> f64 {
         let (s, c) = (self.sweep / n as f64 / 4.0).sin_cos();
-        2.0 / 27.0 * s.powi(6) / (c * c) * self.major()
+        ((2.0 / 27.0 * s.powi(6)) / (c * c)) * self.major()
     }
 
     /// Returns the number of cubics that stay within `tolerance` of the arc, at least one per quarter turn.
@@ -246,21 +223,10 @@ impl EllipticArc {
         (0..n).map(move |i| self.subsegment(i as f64 / n as f64, (i + 1) as f64 / n as f64).to_cubic())
     }
 
+    /// Returns `true` if every coordinate is below `limit` in magnitude.
     pub(super) fn is_finite(&self, limit: f64) -> bool {
-        [
-            self.p0.x,
-            self.p0.y,
-            self.p1.x,
-            self.p1.y,
-            self.center.x,
-            self.center.y,
-            self.a.x,
-            self.a.y,
-            self.b.x,
-            self.b.y,
-        ]
-        .iter()
-        .all(|v| v.abs() < limit)
+        let points = [self.p0, self.p1, self.center, self.a.to_point(), self.b.to_point()];
+        points.iter().all(|p| p.x.abs() < limit && p.y.abs() < limit)
     }
 }
 

@@ -5,8 +5,7 @@
 //! [`Builder`].
 //!
 //! [`BezPath`] has no arcs. Converting a circle to cubics before it is warped would take part of the tolerance, or many nodes.
-//! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was
-//! drawn.
+//! Here an [`EllipticArc`] stays an arc until its image is fitted, so that the promised error is measured from the shape that was drawn.
 
 mod arc;
 mod stroke;
@@ -48,15 +47,12 @@ impl Subpath {
     /// their anchors, and arcs become cubics.
     #[must_use]
     pub fn with_handles(&self) -> Vec<[Point; 3]> {
-        let cubics: Vec<CubicBez> = self
-            .segs
-            .iter()
-            .flat_map(|g| match g {
-                Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
-                Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
-                other => vec![other.to_cubic()],
-            })
-            .collect();
+        let to_cubics = |g: &Seg| match g {
+            Seg::Line(l) => vec![CubicBez::new(l.p0, l.p0, l.p1, l.p1)],
+            Seg::Arc(a) => a.to_cubics(a.a.hypot().max(a.b.hypot()) * 1e-3).collect(),
+            other => vec![other.to_cubic()],
+        };
+        let cubics: Vec<CubicBez> = self.segs.iter().flat_map(to_cubics).collect();
         let Some(last) = cubics.last() else { return vec![[self.start; 3]] };
         let mut incoming = if self.closed { last.p2 } else { cubics[0].p0 };
         let mut out = Vec::with_capacity(cubics.len() + 1);
@@ -152,16 +148,9 @@ impl Outline {
     /// Returns the exact image under an affine map.
     #[must_use]
     pub fn transformed(&self, m: Affine) -> Self {
-        let subpaths = self
-            .subpaths
-            .iter()
-            .map(|s| Subpath {
-                start: m * s.start,
-                segs: s.segs.iter().map(|g| g.transformed(m)).collect(),
-                closed: s.closed,
-            })
-            .collect();
-        Self { subpaths }
+        let segs = |s: &Subpath| s.segs.iter().map(|g| g.transformed(m)).collect();
+        let image = |s: &Subpath| Subpath { start: m * s.start, segs: segs(s), closed: s.closed };
+        Self { subpaths: self.subpaths.iter().map(image).collect() }
     }
 
     /// Returns the bounding box; `None` for an empty path.
@@ -321,16 +310,16 @@ impl Seg {
     #[must_use]
     pub fn extend(&self, b: Rect) -> Rect {
         let holds = |p: Point| b.x0 <= p.x && p.x <= b.x1 && b.y0 <= p.y && p.y <= b.y1;
-        let inside = match self {
+        let is_inside = match self {
             Self::Line(_) => true,
             Self::Quad(s) => holds(s.p1),
             Self::Cubic(s) => holds(s.p1) && holds(s.p2),
             Self::Arc(s) => {
-                let reach = s.reach();
-                holds(s.center - reach) && holds(s.center + reach)
+                let half = s.half_size();
+                holds(s.center - half) && holds(s.center + half)
             }
         };
-        if inside { b } else { b.union(self.bounding_box()) }
+        if is_inside { b } else { b.union(self.bounding_box()) }
     }
 
     /// Converts the segment to one cubic, exactly for lines, quadratics and cubics. An arc of sweep Δ becomes the cubic with its end
@@ -361,11 +350,11 @@ impl Seg {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         const HUGE: f64 = 1e100;
-        let ok = |p: Point| (p.x.abs() < HUGE) & (p.y.abs() < HUGE);
+        let is_small = |p: Point| (p.x.abs() < HUGE) & (p.y.abs() < HUGE);
         match self {
-            Self::Line(s) => ok(s.p0) & ok(s.p1),
-            Self::Quad(s) => ok(s.p0) & ok(s.p1) & ok(s.p2),
-            Self::Cubic(s) => ok(s.p0) & ok(s.p1) & ok(s.p2) & ok(s.p3),
+            Self::Line(s) => is_small(s.p0) & is_small(s.p1),
+            Self::Quad(s) => is_small(s.p0) & is_small(s.p1) & is_small(s.p2),
+            Self::Cubic(s) => is_small(s.p0) & is_small(s.p1) & is_small(s.p2) & is_small(s.p3),
             Self::Arc(s) => s.is_finite(HUGE),
         }
     }

@@ -33,7 +33,7 @@ impl Outline {
     /// Reads SVG path data up to the first error, as SVG renderers do.
     #[must_use]
     pub fn from_svg_lossy(data: &str) -> Self {
-        parse(data).unwrap_or_else(|(_, sound)| sound)
+        parse(data).unwrap_or_else(|(_, valid)| valid)
     }
 }
 
@@ -82,6 +82,7 @@ impl fmt::Display for Outline {
     }
 }
 
+/// A point as path data: two numbers with a comma.
 struct Pair(Point);
 
 impl fmt::Display for Pair {
@@ -102,8 +103,7 @@ fn write_arc(a: &EllipticArc, f: &mut fmt::Formatter<'_>) -> fmt::Result {
 fn parse(data: &str) -> Result<Outline, (PathDataError, Outline)> {
     let mut b = Builder::default();
     // The handles that smooth commands reflect.
-    let mut cubic: Option<Point> = None;
-    let mut quad: Option<Point> = None;
+    let (mut cubic, mut quad): (Option<Point>, Option<Point>) = (None, None);
     for seg in PathParser::from(data) {
         let seg = match seg {
             Ok(seg) => seg,

@@ -1,5 +1,4 @@
-//! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`,
-//! `spiral:turns=3,inner=20mm,outer=80mm`.
+//! Circles, arcs and spirals as path references: `circle:r=60mm`, `arc:r=60mm,from=180,to=360`, `spiral:turns=3,inner=20mm,outer=80mm`.
 //!
 //! The lengths `cx` and `cy` give the centre, which is the frame's by default. Their percentages count from the left and top of the
 //! frame; percentages of radii refer to its width; `%page` refers to the page instead. Angles are clockwise on the screen from the
@@ -92,6 +91,7 @@ impl<'a> Values<'a> {
         Ok(Self { word, given, frame })
     }
 
+    /// Returns a value as typed.
     fn text(&self, name: &str) -> Option<&'a str> {
         self.given.iter().find(|(n, _)| *n == name).map(|(_, v)| *v)
     }
@@ -119,24 +119,22 @@ impl<'a> Values<'a> {
 
     fn centre(&self) -> Result<Point, String> {
         // Percentages count from the box to which they refer, lengths from the drawing's origin.
-        let place = |name: &str, axis, start: fn(Rect) -> f64, middle: f64| -> Result<f64, String> {
-            if self.text(name).is_none() {
-                return Ok(middle);
-            }
-            self.length(name, axis).map(|(d, of)| of.map_or(0.0, start) + d)
+        let coordinate = |name: &str, axis, start: fn(Rect) -> f64, middle: f64| match self.text(name) {
+            None => Ok(middle),
+            Some(_) => self.length(name, axis).map(|(d, reference)| reference.map_or(0.0, start) + d),
         };
         let middle = self.frame.rect.center();
-        Ok(Point::new(place("cx", Axis::X, |r| r.x0, middle.x)?, place("cy", Axis::Y, |r| r.y0, middle.y)?))
+        Ok(Point::new(coordinate("cx", Axis::X, |r| r.x0, middle.x)?, coordinate("cy", Axis::Y, |r| r.y0, middle.y)?))
     }
 
     fn arc(&self) -> Result<Outline, String> {
-        let (whole, radius) = (self.word == "circle", self.radius("r")?);
+        let (is_circle, radius) = (self.word == "circle", self.radius("r")?);
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(format!("has the radius {radius}; it must be larger than 0"));
         }
         let centre = self.centre()?;
         let angle = |name| self.needed(name, value::angle);
-        let (from, to) = if whole { (0.0, 360.0) } else { (angle("from")?, angle("to")?) };
+        let (from, to) = if is_circle { (0.0, 360.0) } else { (angle("from")?, angle("to")?) };
         let sweep = to - from;
         if !(sweep.abs() > 0.0 && sweep.abs() <= 360.0) {
             return Err(format!("runs through {sweep}°; from and to must differ by at most 360°"));
@@ -144,7 +142,7 @@ impl<'a> Values<'a> {
         let (u, v) = (Vec2::new(radius, 0.0), Vec2::new(0.0, radius));
         let seg = Seg::Arc(EllipticArc::new(centre, u, v, from * PI / 180.0, sweep * PI / 180.0));
         let start = centre + Vec2::from_angle(from.to_radians()) * radius;
-        Ok(Outline { subpaths: vec![Subpath { start, segs: vec![seg], closed: whole }] })
+        Ok(Outline { subpaths: vec![Subpath { start, segs: vec![seg], closed: is_circle }] })
     }
 
     fn spiral(&self) -> Result<Outline, String> {
@@ -161,10 +159,10 @@ impl<'a> Values<'a> {
         let spiral = Spiral { centre: self.centre()?, inner, growth: outer - inner, from: from.to_radians(), sweep };
         let mut path = BezPath::new();
         // A fit of a whole turn or more would fail.
-        let parts = (QUARTERS * turns).ceil() as u32;
+        let parts = (PARTS_PER_TURN * turns).ceil() as u32;
         for i in 0..parts {
-            let at = |i: u32| f64::from(i) / f64::from(parts);
-            let part = kurbo::fit_to_bezpath(&spiral.part(at(i)..at(i + 1)), SPIRAL_WITHIN * outer);
+            let [from, to] = [i, i + 1].map(|i| f64::from(i) / f64::from(parts));
+            let part = kurbo::fit_to_bezpath(&spiral.part(from..to), SPIRAL_WITHIN * outer);
             path.extend(part.elements().iter().skip(usize::from(i > 0)).copied());
         }
         Ok(Outline::from(&path))
@@ -172,7 +170,7 @@ impl<'a> Values<'a> {
 }
 
 /// Number of parts of a turn, which are fitted separately.
-const QUARTERS: f64 = 4.0;
+const PARTS_PER_TURN: f64 = 4.0;
 
 /// An Archimedean spiral, at constant angular speed from t = 0 to 1.
 struct Spiral {

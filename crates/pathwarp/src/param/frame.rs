@@ -10,8 +10,7 @@ use std::sync::Arc;
 pub struct Frame {
     /// The box.
     pub rect: Rect,
-    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve put it on the curve by
-    /// default.
+    /// The y coordinate of the baseline if the box belongs to lettering. Deformations along a curve put it on the curve by default.
     pub baseline: Option<f64>,
     /// User units per px along x and y: 1 unless the drawing's `viewBox` scales it. Lengths with units refer to px.
     pub units_per_px: [f64; 2],
@@ -30,15 +29,8 @@ impl Frame {
     /// Creates a frame without lettering.
     #[must_use]
     pub fn new(rect: Rect) -> Self {
-        Self {
-            rect: rect.abs(),
-            baseline: None,
-            units_per_px: [1.0; 2],
-            letters: Arc::new([]),
-            objects: Arc::new([]),
-            ink: Arc::new([]),
-            page: None,
-        }
+        let (letters, objects, ink) = Default::default();
+        Self { rect: rect.abs(), baseline: None, units_per_px: [1.0; 2], letters, objects, ink, page: None }
     }
 
     setters! {
@@ -50,6 +42,8 @@ impl Frame {
         with_units_per_px(units_per_px: [f64; 2]) => units_per_px: units_per_px;
         /// Sets the page.
         with_page(page: Rect) => page: Some(page);
+        /// Sets the baseline of the lettering to `y`.
+        on_baseline(y: f64) => baseline: Some(y);
     }
 
     /// Returns the length of a px along `axis`, in user units; along the diagonal, the root mean square, as in SVG.
@@ -61,12 +55,6 @@ impl Frame {
             Axis::Y => y,
             Axis::Diagonal => x.hypot(y) / std::f64::consts::SQRT_2,
         }
-    }
-
-    /// Sets the baseline of the lettering to `y`.
-    #[must_use]
-    pub fn on_baseline(self, y: f64) -> Self {
-        Self { baseline: Some(y), ..self }
     }
 
     /// Returns the length of 100 % along `axis`, in user units.

@@ -32,11 +32,11 @@ pub(crate) fn word_space(letters: &[Letter]) -> Option<f64> {
     const MIN_SPACE: f64 = 0.25;
     /// The word space of most fonts, as a share of the mean advance.
     const USUAL: f64 = 0.5;
-    let mut seen: Vec<&Letter> = letters.iter().filter(|l| !l.outline.subpaths.is_empty()).collect();
-    seen.sort_by(|a, b| a.origin.y.total_cmp(&b.origin.y).then(a.origin.x.total_cmp(&b.origin.x)));
-    let mean = seen.iter().map(|l| l.advance).sum::<f64>() / seen.len() as f64;
+    let mut visible: Vec<&Letter> = letters.iter().filter(|l| !l.outline.subpaths.is_empty()).collect();
+    visible.sort_by(|a, b| a.origin.y.total_cmp(&b.origin.y).then(a.origin.x.total_cmp(&b.origin.x)));
+    let mean = visible.iter().map(|l| l.advance).sum::<f64>() / visible.len() as f64;
     let gap = |w: &[&Letter]| w[1].origin.x - w[0].origin.x - w[0].advance;
-    let gaps = seen.windows(2).filter(|w| w[0].origin.y == w[1].origin.y).map(gap);
+    let gaps = visible.windows(2).filter(|w| w[0].origin.y == w[1].origin.y).map(gap);
     let smallest = gaps.filter(|g| *g > MIN_SPACE * mean).min_by(f64::total_cmp);
-    (!seen.is_empty()).then(|| smallest.unwrap_or(USUAL * mean))
+    (!visible.is_empty()).then(|| smallest.unwrap_or(USUAL * mean))
 }

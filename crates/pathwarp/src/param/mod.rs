@@ -94,11 +94,9 @@ impl Args {
     /// Creates values from pairs of name and value.
     #[must_use]
     pub fn from_pairs(pairs: &[(&str, &str)]) -> Self {
-        let mut a = Self::new();
-        for (n, v) in pairs {
-            a.push(n, *v);
-        }
-        a
+        let mut args = Self::new();
+        pairs.iter().for_each(|(name, value)| args.push(name, *value));
+        args
     }
 
     /// Returns the values given for `name`.
@@ -137,9 +135,9 @@ impl Args {
 
     /// Returns the number of segments of all paths, looked up or typed.
     pub(crate) fn path_segments(&self) -> usize {
-        /// Length of texts that are counted; shorter ones have few segments.
-        const LONG: usize = 2000;
-        let typed = self.typed.values().flatten().filter(|text| text.len() > LONG && is_inline(text));
+        /// The length of texts, in bytes, up to which their few segments are not counted.
+        const SHORT: usize = 2000;
+        let typed = self.typed.values().flatten().filter(|text| text.len() > SHORT && is_inline(text));
         let typed: usize = typed.map(|text| Outline::from_svg_lossy(text).segs().count()).sum();
         self.paths.values().map(|p| p.outline.segs().count()).sum::<usize>() + typed
     }
@@ -154,8 +152,8 @@ impl Args {
         mut read: impl FnMut(&str) -> Result<String, Error>,
     ) -> Result<(), Error> {
         for p in params {
-            let typed = self.typed.get(p.name).into_iter().flatten();
-            for name in typed.filter(|v| p.reads_file(v)) {
+            let named = self.typed.get(p.name).into_iter().flatten().filter(|v| p.reads_file(v));
+            for name in named {
                 if !self.files.contains_key(name) {
                     let text = read(name)?;
                     self.files.insert(name.clone(), NamedText { name: name.clone(), text });
@@ -163,14 +161,6 @@ impl Args {
             }
         }
         Ok(())
-    }
-
-    fn file(&self, name: &str) -> Option<&NamedText> {
-        self.files.get(name)
-    }
-
-    fn looked_up(&self, reference: &str) -> Option<&NamedPath> {
-        self.paths.get(reference)
     }
 }
 

@@ -28,11 +28,8 @@ impl<'a> Settings<'a> {
         for (name, values) in args.iter() {
             let Some(p) = params.iter().find(|p| p.name == name) else {
                 let known: Vec<_> = params.iter().map(|p| p.name).collect();
-                return Err(Error::usage(
-                    name,
-                    values.join(" "),
-                    format!("is not a parameter of this deformation, which has {}", known.join(", ")),
-                ));
+                let problem = format!("is not a parameter of this deformation, which has {}", known.join(", "));
+                return Err(Error::usage(name, values.join(" "), problem));
             };
             if values.len() > 1 && !p.repeat {
                 return Err(Error::usage(name, values.join(" "), "is given more than once"));
@@ -123,9 +120,9 @@ impl<'a> Settings<'a> {
         let value = value.map_err(|e| usage(name, text, &e))?;
         let (min, max) = param.range;
         if !self.any_range && (value < min || value > max) {
-            let percent = param.kind == Kind::Number && !text.contains('%') && value.abs() >= LIKELY_PERCENT;
-            let meant = percent && (min..=max).contains(&(value / 100.0));
-            let advice = if meant { format!("; for {text} per cent write {text}%") } else { String::new() };
+            let may_be_percent = param.kind == Kind::Number && !text.contains('%') && value.abs() >= LIKELY_PERCENT;
+            let is_percent = may_be_percent && (min..=max).contains(&(value / 100.0));
+            let advice = if is_percent { format!("; for {text} per cent write {text}%") } else { String::new() };
             return Err(Error::usage(name, text, format!("is out of range: {min} to {max}{advice}")));
         }
         Ok(Some(value))
@@ -157,21 +154,16 @@ impl<'a> Settings<'a> {
     pub fn choice(&self, name: &str) -> Result<&'static str, Error> {
         let (text, param) = self.text(name).ok_or_else(|| self.missing(name))?;
         let words = if let Kind::Choice(words) = param.kind { words } else { &[] };
-        words
-            .iter()
-            .find(|w| **w == text)
-            .copied()
-            .ok_or_else(|| Error::usage(name, text, format!("is not one of {}", words.join(", "))))
+        let unknown = || Error::usage(name, text, format!("is not one of {}", words.join(", ")));
+        words.iter().find(|w| **w == text).copied().ok_or_else(unknown)
     }
 
     /// Returns the values of a text parameter in the order given, or the default.
     #[must_use]
     pub fn texts(&self, name: &str) -> Vec<&'a str> {
-        let typed = self.args.get(name);
-        if typed.is_empty() {
-            return self.param(name).and_then(|p| p.default).into_iter().collect();
-        }
-        typed.iter().map(String::as_str).collect()
+        let typed = self.args.get(name).iter().map(String::as_str);
+        let default = self.param(name).and_then(|p| p.default).filter(|_| !self.given(name));
+        typed.chain(default).collect()
     }
 
     /// Reads a length in the text of parameter `name`, in user units.
@@ -246,7 +238,7 @@ impl<'a> Settings<'a> {
     pub fn file_if(&self, name: &str) -> Result<Option<&'a NamedText>, Error> {
         let Some((file, _)) = self.text(name).filter(|(t, p)| p.reads_file(t)) else { return Ok(None) };
         let unread = || Error::input(file, "cannot be read here");
-        self.args.file(file).map(Some).ok_or_else(unread)
+        self.args.files.get(file).map(Some).ok_or_else(unread)
     }
 
     /// Returns the path of an optional path parameter.
@@ -262,15 +254,13 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// [`Error::Usage`] when a value is not a path, [`Error::Geometry`] for a coordinate that is not finite.
     pub fn paths(&self, name: &str) -> Result<Vec<NamedPath>, Error> {
-        let typed = self.args.get(name);
-        let default = self.param(name).and_then(|p| p.default).map(str::to_owned);
-        let texts: Vec<&String> = if typed.is_empty() { default.iter().collect() } else { typed.iter().collect() };
-        texts.into_iter().map(|t| self.path_from(name, t)).collect()
+        self.texts(name).into_iter().map(|t| self.path_from(name, t)).collect()
     }
 
+    /// Returns the path that was looked up for a reference, or reads an inline one.
     fn path_from(&self, name: &str, text: &str) -> Result<NamedPath, Error> {
-        if let Some(p) = self.args.looked_up(text) {
-            return Ok(NamedPath { name: format!("{name} {}", p.name), outline: p.outline.clone() }); // A reference, resolved before.
+        if let Some(known) = self.args.paths.get(text) {
+            return Ok(NamedPath { name: format!("{name} {}", known.name), outline: known.outline.clone() });
         }
         let outline = if let Some(circle) = circle::circle(text, self.frame) {
             circle.map_err(|e| Error::usage(name, text, e))?
@@ -289,6 +279,7 @@ impl<'a> Settings<'a> {
         Ok(NamedPath { name: name.to_owned(), outline })
     }
 
+    /// Returns the parameter of this name.
     pub(super) fn param(&self, name: &str) -> Option<&'a Param> {
         self.params.iter().find(|p| p.name == name)
     }
@@ -300,9 +291,9 @@ impl<'a> Settings<'a> {
         typed.or(param.default).map(|t| (t, param))
     }
 
+    /// Returns the error for a parameter that has no value.
     pub(super) fn missing(&self, name: &str) -> Error {
-        let hint = self.param(name).map_or("no such parameter", |p| p.help);
-        Error::missing(name, hint)
+        Error::missing(name, self.param(name).map_or("no such parameter", |p| p.help))
     }
 }
 

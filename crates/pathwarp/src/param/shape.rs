@@ -14,10 +14,10 @@ const DRAWING: &str = include_str!("shapes.svg");
 /// The names of a shape's values.
 const VALUES: [&str; 2] = ["ratio", "width"];
 /// Largest ratio of a shape's width to its height, and of its height to its width.
-const MOST: f64 = 1000.0;
+const MAX_RATIO: f64 = 1000.0;
 
 /// Returns the names and the path data of all shapes.
-fn drawn() -> impl Iterator<Item = (&'static str, &'static str)> {
+fn drawings() -> impl Iterator<Item = (&'static str, &'static str)> {
     let attribute = |line: &'static str, name: &str| Some(line.split_once(name)?.1.split_once('"')?.0);
     DRAWING.lines().filter_map(move |l| Some((attribute(l, "<path id=\"")?, attribute(l, " d=\"")?)))
 }
@@ -26,7 +26,7 @@ fn drawn() -> impl Iterator<Item = (&'static str, &'static str)> {
 #[must_use]
 pub fn shape_names() -> &'static [&'static str] {
     static NAMES: OnceLock<Vec<&'static str>> = OnceLock::new();
-    NAMES.get_or_init(|| drawn().map(|(name, _)| name).collect())
+    NAMES.get_or_init(|| drawings().map(|(name, _)| name).collect())
 }
 
 /// Returns `true` if a path reference begins with the name of a shape. A file or an object may have that name, too.
@@ -44,21 +44,22 @@ fn split(text: &str) -> (&str, &str) {
 /// Reads a shape; `None` for other texts. The error continues a sentence about the text.
 pub(super) fn shape(text: &str, frame: &Frame) -> Option<Result<Outline, String>> {
     let (name, values) = split(text);
-    let (_, data) = drawn().find(|(n, _)| *n == name)?;
-    Some(placed(name, data, values, frame))
+    let (_, data) = drawings().find(|(n, _)| *n == name)?;
+    Some(place(name, data, values, frame))
 }
 
-fn placed(name: &str, data: &str, values: &str, frame: &Frame) -> Result<Outline, String> {
-    let mut given: [Option<f64>; VALUES.len()] = [None; VALUES.len()];
+/// Places the drawing of a shape in the frame, according to its values.
+fn place(name: &str, data: &str, values: &str, frame: &Frame) -> Result<Outline, String> {
+    let mut given = [None; VALUES.len()];
     for part in values.split(',').map(str::trim).filter(|p| !p.is_empty()) {
         let (key, value) = part.split_once('=').map(|(k, v)| (k.trim(), v.trim())).unwrap_or((part, ""));
         let i = VALUES.iter().position(|v| *v == key);
         let i = i.ok_or_else(|| format!("has a value `{part}`; write {name},ratio=1.2 or {name},width=80mm"))?;
         let read = if key == "width" { value::length(value, Axis::X, frame) } else { value::number(value) };
         let read = read.map_err(|e| format!("has a wrong {key}: `{value}` {e}"))?;
-        let range = if key == "width" { f64::MIN_POSITIVE..=f64::MAX } else { 1.0 / MOST..=MOST };
+        let range = if key == "width" { f64::MIN_POSITIVE..=f64::MAX } else { 1.0 / MAX_RATIO..=MAX_RATIO };
         if !range.contains(&read) {
-            return Err(format!("has the {key} {value}; it must be larger than 0, and a ratio at most {MOST}"));
+            return Err(format!("has the {key} {value}; it must be larger than 0, and a ratio at most {MAX_RATIO}"));
         }
         given[i] = Some(read);
     }

@@ -106,17 +106,17 @@ macro_rules! parameters {
         pub struct $type:ident($s:ident $(, $given:ident: $given_type:ty)*) {
             $(
                 $(#[doc = $help:literal])+
-                $field:ident $(: $value:ident $(<$of:ident>)?)? = $kind:ident($name:literal $(, $kind_of:expr)*)
+                $field:ident $(: $value:ident $(<$inner:ident>)?)? = $kind:ident($name:literal $(, $kind_of:expr)*)
                     $(.$set:ident($($to:tt)*))*;
             )*
-            $(let $own:ident: $own_type:ty = $follows:expr;)*
+            $(let $derived:ident: $derived_type:ty = $follows:expr;)*
         }
     ) => {
         $(#[$about])*
         pub struct $type {
-            $($($field: $value $(<$of>)?,)?)*
+            $($($field: $value $(<$inner>)?,)?)*
             $($given: $given_type,)*
-            $($own: $own_type,)*
+            $($derived: $derived_type,)*
         }
 
         impl $type {
@@ -131,14 +131,14 @@ macro_rules! parameters {
                 $(#[doc = $help])+
                 #[doc = ""]
                 #[doc = concat!($crate::param::parameters!(@unit $kind) $(, $crate::param::parameters!(@note $set $($to)*))*)]
-                $name, $field $(: $value $(<$of>)?)?
+                $name, $field $(: $value $(<$inner>)?)?
             })*
 
             /// Reads the values from settings.
             fn read($s: &$crate::param::Settings<'_> $(, $given: $given_type)*) -> Result<Self, $crate::Error> {
                 Ok(Self {
-                    $($($field: <$value $(<$of>)? as $crate::param::Value>::read($s, $name)?,)?)*
-                    $($own: $follows,)*
+                    $($($field: <$value $(<$inner>)? as $crate::param::Value>::read($s, $name)?,)?)*
+                    $($derived: $follows,)*
                     $($given,)*
                 })
             }
@@ -152,7 +152,7 @@ macro_rules! parameters {
 
             /// Refuses numbers out of range.
             fn check(&self) -> Result<(), $crate::Error> {
-                $($(<$value $(<$of>)? as $crate::param::Value>::check(&self.$field, Self::PARAMS, $name)?;)?)*
+                $($(<$value $(<$inner>)? as $crate::param::Value>::check(&self.$field, Self::PARAMS, $name)?;)?)*
                 Ok(())
             }
         }
@@ -176,8 +176,8 @@ macro_rules! parameters {
             $field($field: &$crate::Outline) => $field: Some(NamedPath { name: $name.into(), outline: $field.clone() });
         }
     };
-    (@setter $(#[$about:meta])* $name:literal, $field:ident: Option<$of:ident>) => {
-        $crate::setters! { $(#[$about])* $field($field: $of) => $field: Some($field); }
+    (@setter $(#[$about:meta])* $name:literal, $field:ident: Option<$inner:ident>) => {
+        $crate::setters! { $(#[$about])* $field($field: $inner) => $field: Some($field); }
     };
     (@setter $(#[$about:meta])* $name:literal, $field:ident: $value:ident) => {
         $crate::setters! { $(#[$about])* $field($field: $value); }

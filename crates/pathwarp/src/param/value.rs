@@ -30,9 +30,7 @@ pub(super) fn length(text: &str, axis: Axis, frame: &Frame) -> Result<f64, Value
 
 /// Reads an angle, in degrees.
 pub(super) fn angle(text: &str) -> Result<f64, ValueError> {
-    let Some((v, unit)) = split(text) else {
-        return Err(ValueError::NotAnAngle);
-    };
+    let (v, unit) = split(text).ok_or(ValueError::NotAnAngle)?;
     match unit {
         "" | "deg" | "°" => Ok(v),
         "rad" => Ok(v.to_degrees()),
@@ -46,13 +44,14 @@ pub(super) fn angle(text: &str) -> Result<f64, ValueError> {
 pub(super) fn numbers(text: &str, expected: usize) -> Result<Vec<f64>, ValueError> {
     let parse = |word: &str| match split(word) {
         Some((v, "")) => Ok(v),
-        _ => Err(within(word, ValueError::NotANumber)),
+        _ => Err(in_word(word, ValueError::NotANumber)),
     };
     let out: Vec<f64> = words(text).map(parse).collect::<Result<_, _>>()?;
     if out.len() == expected { Ok(out) } else { Err(ValueError::WrongCount { found: out.len(), expected }) }
 }
 
-fn within(word: &str, error: ValueError) -> ValueError {
+/// Names the word of several that has an error.
+fn in_word(word: &str, error: ValueError) -> ValueError {
     ValueError::In { word: word.to_owned(), error: Box::new(error) }
 }
 
@@ -62,20 +61,15 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// Reads a point. Percentages count from the left and top of the frame.
 pub(super) fn point(text: &str, frame: &Frame) -> Result<Point, ValueError> {
-    let parts: Vec<&str> = words(text).collect();
-    let [x, y] = parts[..] else {
-        return Err(ValueError::NotAPoint);
-    };
-    let at = |t: &str, axis, origin: f64| length(t, axis, frame).map(|v| if t.ends_with('%') { origin + v } else { v });
-    Ok(Point::new(at(x, Axis::X, frame.rect.x0)?, at(y, Axis::Y, frame.rect.y0)?))
+    let [x, y] = words(text).collect::<Vec<_>>()[..] else { return Err(ValueError::NotAPoint) };
+    let coordinate =
+        |t: &str, axis, origin: f64| length(t, axis, frame).map(|v| if t.ends_with('%') { origin + v } else { v });
+    Ok(Point::new(coordinate(x, Axis::X, frame.rect.x0)?, coordinate(y, Axis::Y, frame.rect.y0)?))
 }
 
 /// Reads a box `x,y,w,h`. Percentages count from the left and top of the frame, or are of its width and height.
 pub(super) fn rect(text: &str, frame: &Frame) -> Result<Rect, ValueError> {
-    let parts: Vec<&str> = words(text).collect();
-    let [x, y, w, h] = parts[..] else {
-        return Err(ValueError::NotABox);
-    };
+    let [x, y, w, h] = words(text).collect::<Vec<_>>()[..] else { return Err(ValueError::NotABox) };
     let origin = point(&format!("{x},{y}"), frame)?;
     let (w, h) = (length(w, Axis::X, frame)?, length(h, Axis::Y, frame)?);
     if w > 0.0 && h > 0.0 { Ok(Rect::from_origin_size(origin, Size::new(w, h))) } else { Err(ValueError::NoArea) }
@@ -89,10 +83,8 @@ pub(super) fn looks_like_points(text: &str) -> bool {
 
 /// Reads points `x,y x,y …`, separated by white space or semicolons.
 pub(super) fn points(text: &str, frame: &Frame) -> Result<Vec<Point>, ValueError> {
-    text.split(|c: char| c == ';' || c.is_whitespace())
-        .filter(|w| !w.is_empty())
-        .map(|w| point(w, frame).map_err(|e| within(w, e)))
-        .collect()
+    let pairs = text.split(|c: char| c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
+    pairs.map(|w| point(w, frame).map_err(|e| in_word(w, e))).collect()
 }
 
 /// A length as typed. [`Length::in_units`] gives it in user units.
@@ -126,21 +118,25 @@ pub enum LengthUnit {
 
 const PX_PER_INCH: f64 = 96.0;
 
+/// The suffixes of the units, and the lengths of absolute ones in px.
+const UNITS: [(&str, LengthUnit, Option<f64>); 10] = [
+    ("", LengthUnit::User, None),
+    ("%", LengthUnit::Percent, None),
+    ("px", LengthUnit::Px, Some(1.0)),
+    ("mm", LengthUnit::Mm, Some(PX_PER_INCH / 25.4)),
+    ("cm", LengthUnit::Cm, Some(PX_PER_INCH / 2.54)),
+    ("m", LengthUnit::M, Some(PX_PER_INCH / 0.0254)),
+    ("in", LengthUnit::In, Some(PX_PER_INCH)),
+    ("pt", LengthUnit::Pt, Some(PX_PER_INCH / 72.0)),
+    ("pc", LengthUnit::Pc, Some(PX_PER_INCH / 6.0)),
+    ("q", LengthUnit::Q, Some(PX_PER_INCH / 101.6)),
+];
+
 impl LengthUnit {
     /// Returns the length of an absolute unit in px; `None` for user units and percentages.
     #[must_use]
     pub fn px(self) -> Option<f64> {
-        Some(match self {
-            Self::User | Self::Percent => return None,
-            Self::Px => 1.0,
-            Self::In => PX_PER_INCH,
-            Self::Mm => PX_PER_INCH / 25.4,
-            Self::Cm => PX_PER_INCH / 2.54,
-            Self::M => PX_PER_INCH / 0.0254,
-            Self::Q => PX_PER_INCH / 101.6,
-            Self::Pt => PX_PER_INCH / 72.0,
-            Self::Pc => PX_PER_INCH / 6.0,
-        })
+        UNITS.iter().find(|(_, unit, _)| *unit == self)?.2
     }
 }
 
@@ -169,24 +165,13 @@ impl FromStr for Length {
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<Length, ValueError> {
-    let Some((value, unit)) = split(text) else {
-        return Err(ValueError::NotALength);
-    };
-    let unit = match unit {
-        "" => LengthUnit::User,
-        "%" => LengthUnit::Percent,
-        "px" => LengthUnit::Px,
-        "mm" => LengthUnit::Mm,
-        "cm" => LengthUnit::Cm,
-        "m" => LengthUnit::M,
-        "in" => LengthUnit::In,
-        "pt" => LengthUnit::Pt,
-        "pc" => LengthUnit::Pc,
-        "q" | "Q" => LengthUnit::Q,
-        _ => return Err(ValueError::UnknownLengthUnit(unit.to_owned())),
-    };
-    Ok(Length { value, unit })
+/// Reads a length as typed.
+fn parse(text: &str) -> Result<Length, ValueError> {
+    let (value, unit) = split(text).ok_or(ValueError::NotALength)?;
+    let is_unit = |suffix: &str| suffix == unit || (suffix, unit) == ("q", "Q");
+    let known = UNITS.iter().find(|(suffix, ..)| is_unit(suffix));
+    let (_, unit, _) = known.ok_or_else(|| ValueError::UnknownLengthUnit(unit.to_owned()))?;
+    Ok(Length { value, unit: *unit })
 }
 
 /// Text that is not a value of the expected kind. Messages continue a sentence that begins with the text.
@@ -223,10 +208,8 @@ pub(super) enum ValueError {
 pub(super) fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     // The longest prefix that is a number includes the `e` of an exponent, but not that of a unit.
-    (1..=text.len())
-        .rev()
-        .filter(|&n| text.is_char_boundary(n))
-        .find_map(|n| text[..n].parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| (v, text[n..].trim_start())))
+    let mut prefixes = (1..=text.len()).rev().filter_map(|n| text.split_at_checked(n));
+    prefixes.find_map(|(number, unit)| Some((number.parse().ok().filter(|v: &f64| v.is_finite())?, unit.trim_start())))
 }
 
 #[cfg(test)]

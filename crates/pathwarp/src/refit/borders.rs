@@ -7,7 +7,7 @@
 use super::limits::ARCS;
 use super::options::Options;
 use super::report::{PathReport, RefittedPath};
-use super::shared::{SharedEdges, is_turned};
+use super::shared::{SharedEdges, is_reversed};
 use crate::error::GeometryError;
 use crate::outline::{Outline, Seg, Subpath};
 use kurbo::{BezPath, Line, ParamCurve, Point};
@@ -15,12 +15,12 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// The distance of a node from a line that it cuts, in tolerances: more than rounding to decimals moves it.
-const ON: f64 = 1e-2;
+const NODE_ON_LINE: f64 = 1e-2;
 
 /// The borders of a drawing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Borders {
-    nodes: Nodes,
+    nodes: NodeGrid,
     shared: SharedEdges,
 }
 
@@ -28,7 +28,7 @@ impl Borders {
     /// The borders among outlines whose subpaths have these tolerances, or `tolerance` if none are given.
     #[must_use]
     pub fn among<'a>(outlines: &[(&'a Outline, &'a [f64])], tolerance: f64) -> Self {
-        let nodes = Nodes::new(outlines.iter().map(|(o, _)| *o), ON * tolerance);
+        let nodes = NodeGrid::new(outlines.iter().map(|(o, _)| *o), NODE_ON_LINE * tolerance);
         let cut: Vec<Outline> = outlines.iter().map(|(o, _)| nodes.cut(o)).collect();
         let shared = SharedEdges::held(cut.iter().zip(outlines).map(|(cut, (_, contours))| (cut, *contours)));
         Self { nodes, shared }
@@ -55,25 +55,27 @@ impl Borders {
 
 /// The nodes of a drawing in square cells.
 #[derive(Debug, Clone, Default, PartialEq)]
-struct Nodes {
-    cell: f64,
-    within: f64,
+struct NodeGrid {
+    /// The side of a cell.
+    side: f64,
+    /// The distance of a node from a line that it cuts.
+    tolerance: f64,
     /// The nodes in each cell, with the number of the only subpath that has them, or `None` for several.
     cells: HashMap<[i64; 2], Vec<(Point, Option<usize>)>>,
 }
 
-impl Nodes {
-    fn new<'a>(outlines: impl Iterator<Item = &'a Outline> + Clone, within: f64) -> Self {
+impl NodeGrid {
+    fn new<'a>(outlines: impl Iterator<Item = &'a Outline> + Clone, tolerance: f64) -> Self {
         let lines = || outlines.clone().flat_map(Outline::segs).filter(|g| matches!(g, Seg::Line(_)));
         let (length, count) = lines().fold((0.0, 0.0), |(l, n), g| (l + g.start().distance(g.end()), n + 1.0));
-        let mut out = Self { cell: (length / count).max(4.0 * within), within, cells: HashMap::new() };
-        if !(count > 0.0 && out.cell.is_finite()) {
+        let mut out = Self { side: (length / count).max(4.0 * tolerance), tolerance, cells: HashMap::new() };
+        if !(count > 0.0 && out.side.is_finite()) {
             return out;
         }
         let ends = |s: &Subpath| s.segs.iter().map(Seg::end).chain([s.start]).collect::<Vec<_>>();
         for (i, s) in outlines.flat_map(|o| &o.subpaths).enumerate() {
             for p in ends(s) {
-                let nodes = out.cells.entry(out.key(p)).or_default();
+                let nodes = out.cells.entry(out.cell(p)).or_default();
                 match nodes.iter_mut().find(|(q, _)| *q == p) {
                     Some((_, owner)) if *owner != Some(i) => *owner = None,
                     Some(_) => {}
@@ -84,34 +86,34 @@ impl Nodes {
         out
     }
 
-    fn key(&self, p: Point) -> [i64; 2] {
-        [p.x, p.y].map(|v| (v / self.cell).floor() as i64)
+    /// The cell of a point.
+    fn cell(&self, p: Point) -> [i64; 2] {
+        [p.x, p.y].map(|v| (v / self.side).floor() as i64)
     }
 
-    /// The nodes that lie on a line, in order, without those of the subpath `own` alone.
-    fn on(&self, line: Line, own: Option<usize>) -> Vec<Point> {
+    /// The nodes that lie on a line of a subpath, in order, without those that only this subpath has.
+    fn nodes_on(&self, line: Line, subpath: Option<usize>) -> Vec<Point> {
         /// The length in cells beyond which lines are not cut: anything that ends on them is far smaller.
         const MOST_CELLS: f64 = 1e5;
         let (along, length) = (line.p1 - line.p0, line.p0.distance(line.p1));
-        let steps = (length / self.cell).ceil();
-        let mut out: Vec<(f64, Point)> = Vec::new();
+        let steps = (length / self.side).ceil();
         if !(length > 0.0 && steps < MOST_CELLS) || self.cells.is_empty() {
             return Vec::new();
         }
-        let mut seen: Vec<[i64; 2]> = Vec::new();
+        let (mut out, mut seen): (Vec<(f64, Point)>, Vec<[i64; 2]>) = (Vec::new(), Vec::new());
         for k in 0..=steps as usize {
-            let [x, y] = self.key(line.eval((k as f64 / steps).min(1.0)));
+            let [x, y] = self.cell(line.eval((k as f64 / steps).min(1.0)));
             for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (i, j))) {
-                let key = [x + i, y + j];
-                if seen.contains(&key) {
+                let cell = [x + i, y + j];
+                if seen.contains(&cell) {
                     continue;
                 }
-                seen.push(key);
-                let all = self.cells.get(&key).into_iter().flatten();
-                for (p, _) in all.filter(|(_, owner)| owner.is_none() || *owner != own) {
+                seen.push(cell);
+                let all = self.cells.get(&cell).into_iter().flatten();
+                for (p, _) in all.filter(|(_, owner)| owner.is_none() || *owner != subpath) {
                     let t = (*p - line.p0).dot(along) / (length * length);
-                    let inside = t * length > self.within && (1.0 - t) * length > self.within;
-                    if inside && (*p - line.p0).cross(along).abs() <= self.within * length {
+                    let is_between = t * length > self.tolerance && (1.0 - t) * length > self.tolerance;
+                    if is_between && (*p - line.p0).cross(along).abs() <= self.tolerance * length {
                         out.push((t, *p));
                     }
                 }
@@ -127,19 +129,20 @@ impl Nodes {
 
     /// The outline with its lines cut at the nodes that lie on them, without segments of no length beside others.
     fn cut(&self, outline: &Outline) -> Outline {
-        let lines = |g: &Seg, own: Option<usize>| match g {
+        let parts = |g: &Seg, subpath: Option<usize>| match g {
             Seg::Line(l) => {
-                let stops: Vec<Point> = [l.p0].into_iter().chain(self.on(*l, own)).chain([l.p1]).collect();
+                let stops = [vec![l.p0], self.nodes_on(*l, subpath), vec![l.p1]].concat();
                 stops.windows(2).map(|w| Seg::Line(Line::new(w[0], w[1]))).collect()
             }
             other => vec![*other],
         };
-        let owner = |p: Point| self.cells.get(&self.key(p))?.iter().find(|(q, _)| *q == p)?.1;
+        let owner = |p: Point| self.cells.get(&self.cell(p))?.iter().find(|(q, _)| *q == p)?.1;
         let is_point = |g: &Seg| matches!(g, Seg::Line(l) if l.p0 == l.p1);
         let cut = |s: &Subpath| {
             let only_points = s.segs.iter().all(is_point);
-            let own = s.segs.iter().find_map(|g| owner(g.start()));
-            let segs = s.segs.iter().filter(|g| only_points || !is_point(g)).flat_map(|g| lines(g, own)).collect();
+            let subpath = s.segs.iter().find_map(|g| owner(g.start()));
+            let kept = s.segs.iter().filter(|g| only_points || !is_point(g));
+            let segs = kept.flat_map(|g| parts(g, subpath)).collect();
             Subpath { segs, ..s.clone() }
         };
         Outline { subpaths: outline.subpaths.iter().map(cut).collect() }
@@ -160,7 +163,7 @@ pub fn simplified(
 ) -> Result<RefittedPath, GeometryError> {
     let (mut path, mut report, borders) = (BezPath::new(), PathReport::default(), &options.borders);
     let nodes = if options.nodes == bezierfit::Nodes::Extremes { options.nodes } else { bezierfit::Nodes::Fewest };
-    let mut fitted = |segs: Vec<Seg>, closed: bool, tolerance: f64| -> Result<BezPath, GeometryError> {
+    let mut fit = |segs: Vec<Seg>, closed: bool, tolerance: f64| -> Result<BezPath, GeometryError> {
         let arcs = if segs.iter().any(|g| matches!(g, Seg::Arc(_))) { ARCS * tolerance } else { 0.0 };
         let source = Outline { subpaths: vec![Subpath { start: segs[0].start(), segs, closed }] }.to_bez_path(arcs);
         let options = bezierfit::Options::new(tolerance - arcs).with_certify(options.certify).with_nodes(nodes);
@@ -173,27 +176,28 @@ pub fn simplified(
             path.extend(Outline { subpaths: vec![s] }.to_bez_path(options.tolerance));
             continue;
         }
-        let own = contours.get(i).copied().unwrap_or(options.tolerance);
-        let held = |segs: &[Seg]| segs.iter().filter_map(|g| borders.shared.tolerance_of(g)).fold(own, f64::min);
+        let contour = contours.get(i).copied().unwrap_or(options.tolerance);
+        let smallest =
+            |segs: &[Seg]| segs.iter().filter_map(|g| borders.shared.tolerance_of(g)).fold(contour, f64::min);
         if s.segs.iter().any(|g| borders.shared.is_junction(g.start())) {
             let chains = borders.chains(&s);
             path.move_to(chains[0][0].start());
             for chain in chains {
-                let tolerance = held(&chain);
-                let (chain, is_turned) = directed(chain);
-                let part = fitted(chain, false, tolerance)?;
-                path.extend(if is_turned { part.reverse_subpaths() } else { part }.into_iter().skip(1));
+                let tolerance = smallest(&chain);
+                let (chain, is_reversed) = directed(chain);
+                let part = fit(chain, false, tolerance)?;
+                path.extend(if is_reversed { part.reverse_subpaths() } else { part }.into_iter().skip(1));
             }
             if s.closed {
                 path.close_path();
             }
         } else if s.closed && borders.shared.holds_any(&s.segs) {
-            let tolerance = held(&s.segs);
-            let (ring, is_turned) = directed(from_least(s.segs));
-            let part = fitted(ring, true, tolerance)?;
-            path.extend(if is_turned { part.reverse_subpaths() } else { part });
+            let tolerance = smallest(&s.segs);
+            let (ring, is_reversed) = directed(from_least(s.segs));
+            let part = fit(ring, true, tolerance)?;
+            path.extend(if is_reversed { part.reverse_subpaths() } else { part });
         } else {
-            path.extend(fitted(s.segs, s.closed, own)?);
+            path.extend(fit(s.segs, s.closed, contour)?);
         }
     }
     (report.segments_in, report.segments_out) = (outline.segs().count(), path.segments().count());
@@ -202,8 +206,8 @@ pub fn simplified(
 
 /// Returns the segments in the direction that all outlines with them agree on, and `true` if it is the reverse of the given one.
 fn directed(segs: Vec<Seg>) -> (Vec<Seg>, bool) {
-    let turned = is_turned(&segs);
-    (if turned { segs.iter().rev().map(Seg::reversed).collect() } else { segs }, turned)
+    let reversed = is_reversed(&segs);
+    (if reversed { segs.iter().rev().map(Seg::reversed).collect() } else { segs }, reversed)
 }
 
 /// The segments of a closed path from its node with the least coordinates on.

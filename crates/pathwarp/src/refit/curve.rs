@@ -28,10 +28,8 @@ const SAMPLES: usize = 256;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn warp_curve(curve: &dyn Source, map: &dyn Map, options: &bezierfit::Options) -> Result<Fitted, Error> {
-    let mut creases = Creases::default();
-    map.creases(&mut creases);
     let mut breaks = curve.breaks();
-    creases.items().iter().for_each(|c| crossings(curve, &c.level, &mut breaks));
+    Creases::of_map(map).items().iter().for_each(|c| crossings(curve, &c.level, &mut breaks));
     bezierfit::fit(&Image { curve, map, breaks }, options)
 }
 
@@ -49,6 +47,7 @@ fn crossings(curve: &dyn Source, level: &Level, out: &mut Vec<f64>) {
     }
 }
 
+/// The image of a curve under a map.
 struct Image<'a> {
     curve: &'a dyn Source,
     map: &'a dyn Map,

@@ -15,21 +15,18 @@ pub(super) const WORTH_THREADS: usize = 4 * CHUNK;
 /// Test: `few_nodes::what_is_only_moved_keeps_its_nodes_unless_they_are_far_too_many` (at 1 and 1000).
 pub(super) const MANY_NODES: usize = 2;
 
-/// A segment whose control polygon is shorter than this, relative to its coordinates, is a point: differences of equal
-/// coordinates after rounding. It becomes a line. Set to 0, no test changes, as `straight` recognises such segments too; set
-/// too high, it drops visible ones.
+/// A segment whose control polygon is shorter than this, relative to its coordinates, is a point: differences of equal coordinates after
+/// rounding. It becomes a line. Set to 0, no test changes, as `straight` recognises such segments too; set too high, it drops visible ones.
 /// Test: `refit::the_identity_gives_every_segment_back` (at 1e-3).
 pub(super) const POINT_SIZE: f64 = 1e-15;
 
-/// Two sides of a crease closer than this share of the tolerance are joined, which spends that share; a wider gap is a tear and
-/// is bridged by a line, which adds a piece.
-/// Test: `limits::a_tear_is_bridged_by_a_line_unless_it_is_rounding` (at 0 and 1e9).
+/// Two sides of a crease closer than this share of the tolerance are joined, which spends that share; a wider gap is a tear and is bridged
+/// by a line, which adds a piece. Test: `limits::a_tear_is_bridged_by_a_line_unless_it_is_rounding` (at 0 and 1e9).
 pub(super) const TEAR: f64 = 0.01;
 
-/// For a proof, arcs are cut into parts of at most this angle (a little over a third of a turn). As rational quadratics, longer
-/// arcs have denominators that vary more, so that fewer bounds succeed; shorter ones cost pieces. Certified: 1.6: +0.2 %
-/// pieces, −1.6 % work; 2.9: +1.3 % work.
-/// Tests: *figures* (at 0.2 and 7); `random::within_the_tolerance_under_bicubic_maps` (at 7).
+/// For a proof, arcs are cut into parts of at most this angle (a little over a third of a turn). As rational quadratics, longer arcs have
+/// denominators that vary more, so that fewer bounds succeed; shorter ones cost pieces. Certified: 1.6: +0.2 % pieces, −1.6 % work; 2.9:
+/// +1.3 % work. Tests: *figures* (at 0.2 and 7); `random::within_the_tolerance_under_bicubic_maps` (at 7).
 pub(super) const MAX_RATIONAL_SWEEP: f64 = 2.2;
 
 /// Derivatives above this share of their segment's chord, times the size of the Jacobian, decide whether a joint is smooth. Far above

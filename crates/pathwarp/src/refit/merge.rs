@@ -7,7 +7,6 @@ use super::limits::{CLEAR_DERIVATIVE, MAX_SHAPE};
 use super::options::Options;
 use super::repeats::{Carried, CarriedWay, Repeats, Shapes, Site, Way};
 use super::segment::{Part, SegmentFitter};
-use super::source;
 use super::source::SourceCurve;
 use crate::map::{Jet, Map};
 use crate::outline::Seg;
@@ -51,7 +50,7 @@ pub(super) struct Merger<'a> {
     fitter: &'a SegmentFitter<'a>,
     parts: &'a [Part],
     /// `true` if the parts are a closed subpath without corners.
-    ring: bool,
+    is_ring: bool,
     pieces: Vec<Piece>,
     report: Report,
     memory: &'a mut MergeMemory,
@@ -61,16 +60,18 @@ pub(super) struct Merger<'a> {
 /// they meet.
 #[inline]
 fn may_be_smooth([before, after]: [&Seg; 2], jets: [&Jet; 2]) -> bool {
+    /// Only joints that certainly turn are excluded here; the run decides about the others.
+    const MARGIN: f64 = 1.03;
     let (into, away) = (jets[0].push(before.deriv(1.0)), jets[1].push(after.deriv(0.0)));
     // One-sided tangents decide where a derivative vanishes or nearly does.
-    let clear = |d: Vec2, jet: &Jet, seg: &Seg| {
+    let is_clear = |d: Vec2, jet: &Jet, seg: &Seg| {
         let scale = CLEAR_DERIVATIVE * CLEAR_DERIVATIVE * (jet.dx.hypot2() + jet.dy.hypot2());
         d.hypot2() > scale * seg.end().distance_squared(seg.start())
     };
     let (dot, cross) = (into.dot(away), into.cross(away).abs());
-    dot > 0.0 && cross <= 1.03 * SMOOTH_JOINT.tan() * dot
-        || !clear(into, jets[0], before)
-        || !clear(away, jets[1], after)
+    (dot > 0.0 && cross <= MARGIN * SMOOTH_JOINT.tan() * dot)
+        || !is_clear(into, jets[0], before)
+        || !is_clear(away, jets[1], after)
 }
 
 /// Returns `true` if a smooth joint of the source belongs to its structure.
@@ -103,11 +104,12 @@ pub(super) fn joins(before: &Part, after: &Part) -> bool {
 pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
     let mut sources = Vec::new();
     for segs in runs {
-        let smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
+        let joint_may_be_smooth = |i: usize| match (i.checked_sub(1).and_then(|i| segs.get(i)), segs.get(i)) {
             (Some(before), Some(after)) => may_be_smooth([before, after], [&map.jet(after.start()); 2]),
             _ => false,
         };
-        let in_run = |(i, seg): (usize, &'_ Seg)| (smooth(i) || smooth(i + 1)).then_some(*seg);
+        let in_run =
+            |(i, seg): (usize, &'_ Seg)| (joint_may_be_smooth(i) || joint_may_be_smooth(i + 1)).then_some(*seg);
         sources.extend(segs.iter().enumerate().filter_map(in_run));
     }
     let degree = map.rational_degree();
@@ -123,11 +125,12 @@ pub(super) fn announce(runs: &[&[Seg]], map: &dyn Map, options: &Options) {
 impl<'a> Merger<'a> {
     pub(super) fn new(
         fitter: &'a SegmentFitter<'a>,
-        (parts, ring): (&'a [Part], bool),
+        (parts, is_ring): (&'a [Part], bool),
         memory: &'a mut MergeMemory,
     ) -> Self {
+        // The search begins anew, so that the result does not depend on the subpath before.
         memory.reach.last_reach = 0;
-        Self { fitter, parts, ring, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
+        Self { fitter, parts, is_ring, pieces: Vec::with_capacity(parts.len()), report: Report::default(), memory }
     }
 
     /// The pieces of all segments, merged where that saves some.
@@ -138,7 +141,7 @@ impl<'a> Merger<'a> {
             let end = i + 1 + self.parts[i..].windows(2).take_while(|w| joins(&w[0], &w[1])).count();
             self.pieces.extend(self.parts[i].bridge(0));
             while i < end {
-                i += if i + 1 < end || extremes { self.joined(i, end)? } else { self.single(i)? };
+                i += if i + 1 < end || extremes { self.append_run(i, end)? } else { self.append_single(i)? };
             }
             self.pieces.extend(self.parts[end - 1].bridge(1));
         }
@@ -146,52 +149,52 @@ impl<'a> Merger<'a> {
     }
 
     /// Appends the pieces of a segment that cannot be in a run, and returns 1.
-    fn single(&mut self, i: usize) -> Result<usize, NotFinite> {
+    fn append_single(&mut self, i: usize) -> Result<usize, NotFinite> {
         self.fitter.fit_inside(&self.parts[i], &mut self.pieces, &mut self.report)?;
         Ok(1)
     }
 
-    /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns how many they are.
-    fn joined(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
+    /// Appends the pieces of the first segments from `start` up to `end`, whose joints may be smooth, and returns the number of segments.
+    fn append_run(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
         // The budget is used up, and the whole path will be refused.
         if self.fitter.options.budget.left() <= 0.0 {
-            return self.single(start);
+            return self.append_single(start);
         }
         let (parts, tolerance) = (&self.parts[start..end], self.fitter.options.tolerance);
         if self.fitter.options.nodes.are_placed() {
-            return self.placed(start, end);
+            return self.append_placed(start, end);
         }
         let shape = (parts.len() <= MAX_SHAPE).then(|| self.memory.repeats.shape(parts, tolerance));
         if let Some(shape) = shape
-            && let Some(segments) = self.carried(shape, start, end)?
+            && let Some(segments) = self.append_carried(shape, start, end)?
         {
             return Ok(segments);
         }
-        let run = self.run(start, end)?;
+        let run = self.longest_run(start, end)?;
         if run.segments.len() < 2 {
-            return self.single(start);
+            return self.append_single(start);
         }
-        self.merge(&run, start, shape)?;
+        self.append_merged(&run, start, shape)?;
         Ok(run.segments.len())
     }
 
     /// Appends the pieces of the first segments from `start` up to `end`, with nodes where the options want them; returns their number.
-    fn placed(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
+    fn append_placed(&mut self, start: usize, end: usize) -> Result<usize, NotFinite> {
         let options = self.fitter.options;
-        let mut run = self.run(start, end)?;
+        let mut run = self.longest_run(start, end)?;
         if run.segments.is_empty() && options.nodes == Nodes::Extremes {
             let parts: &'a [Part] = self.parts;
             run.extend(&parts[start..=start], SMOOTH_JOINT, |part| Ok(self.run_segment(part, true)))?;
         }
         let count = run.segments.len();
         if count < 1 + usize::from(options.nodes == Nodes::Auto) {
-            return self.single(start);
+            return self.append_single(start);
         }
         for (i, segment) in run.segments.iter_mut().enumerate() {
             let before = (start + i).checked_sub(1).unwrap_or(self.parts.len() - 1);
             segment.kept = is_structure(&self.parts[before].seg, &self.parts[start + i].seg);
         }
-        let closed = self.ring && count == self.parts.len() && run.closes(SMOOTH_JOINT);
+        let closed = self.is_ring && count == self.parts.len() && run.closes(SMOOTH_JOINT);
         let left = options.budget.left() / self.fitter.work;
         let settings = NodeSettings { nodes: options.nodes, tolerance: options.tolerance, closed, left };
         let work = placed(&run, settings, &mut self.memory.reach, &mut self.pieces, &mut self.report)?;
@@ -199,26 +202,32 @@ impl<'a> Merger<'a> {
         Ok(count)
     }
 
+    /// The segments from `start` up to `end`, under the map.
     fn site(&self, start: usize, end: usize) -> Site<'a> {
         Site { fitter: self.fitter, parts: &self.parts[start..end] }
     }
 
     /// Appends the pieces of a run whose cubics were found at another site, and returns the number of its segments. `None` if there
     /// are none or they may not suffice here.
-    fn carried(&mut self, (shape, off): (usize, f64), start: usize, end: usize) -> Result<Option<usize>, NotFinite> {
+    fn append_carried(
+        &mut self,
+        (shape, distance): (usize, f64),
+        start: usize,
+        end: usize,
+    ) -> Result<Option<usize>, NotFinite> {
         if !self.site(start, end).carries() {
             return Ok(None);
         }
         let [jet, _] = &self.parts[start].jets;
-        let magnified = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
-        for (way, other) in self.memory.repeats.nearest(shape, jet) {
-            // The curves differ by at most √2 of this before the map, which may magnify more further on.
-            let unlike = 2.0 * magnified * (off + other);
-            let tolerance = ACCEPTED * self.fitter.options.tolerance - unlike;
+        let magnification = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt();
+        for (way, other_distance) in self.memory.repeats.nearest(shape, jet) {
+            // The curves differ by at most √2 of the distances before the map, which may magnify more further on.
+            let difference = 2.0 * magnification * (distance + other_distance);
+            let tolerance = ACCEPTED * self.fitter.options.tolerance - difference;
             let site = self.site(start, start + way.segments);
             let piece = |(leg, cubic): &(Leg, Option<Carried>)| {
-                let piece = if leg.merged { cubic.as_ref()?.at(&site, *leg, tolerance) } else { None };
-                let piece = piece.map(|(piece, error)| (piece, error + unlike));
+                let piece = if leg.merged { cubic.as_ref()?.carry_to(&site, *leg, tolerance) } else { None };
+                let piece = piece.map(|(piece, error)| (piece, error + difference));
                 (piece.is_some() || !leg.merged).then_some((*leg, piece))
             };
             let legs = match &way.legs {
@@ -239,7 +248,7 @@ impl<'a> Merger<'a> {
     }
 
     /// The longest run of smoothly joined segments from `start` up to `end`.
-    fn run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
+    fn longest_run(&self, start: usize, end: usize) -> Result<SegmentRun<SourceCurve<'a>>, NotFinite> {
         let mut run = SegmentRun::new(self.fitter.degree.is_some(), end - start);
         let parts: &'a [Part] = self.parts;
         run.extend(&parts[start..end], SMOOTH_JOINT, |part| Ok(self.run_segment(part, false)))?;
@@ -251,30 +260,27 @@ impl<'a> Merger<'a> {
         let options = self.fitter.options;
         let source = part.source(self.fitter, &part.seg);
         let form = if options.certify { source.quotient().and_then(Quotient::provable) } else { None };
-        let mut slow = source::slow_spots(&part.seg);
-        if source.size() == 0.0 || !(alone || slow.all().is_empty()) {
+        let slow = source.slow_spots();
+        if source.size == 0.0 || !(alone || slow.all().is_empty()) {
             return None;
         }
-        if source.is_rational() {
-            slow = slow.map(|t| source.param(t));
-        }
         let samples = per_segment(self.fitter.degree.is_some());
-        let hides = |between: [f64; 2], samples: usize| {
-            form.is_none() && source.resolved(between, samples, options.tolerance) == Some(false)
+        let may_hide_features = |range: [f64; 2], samples: usize| {
+            form.is_none() && source.resolved(range, samples, options.tolerance) == Some(false)
         };
         // The enclosures of shorter parts are tighter.
         let quarter = |i: u8| [0.25 * f64::from(i), 0.25 * f64::from(i + 1)];
-        if hides([0.0, 1.0], samples) && (0..4).any(|i| hides(quarter(i), samples / 4)) {
+        if may_hide_features([0.0, 1.0], samples) && (0..4).any(|i| may_hide_features(quarter(i), samples / 4)) {
             return None;
         }
         let [first, last] = &part.jets;
         let ends = [source.end_with(0.0, first.p, first), source.end_with(1.0, last.p, last)];
         let is_straight = || {
-            let q = ends[1].p - ends[0].p;
-            let along = |v: Vec2| v.cross(q).abs() <= STRAIGHT_TURN * q.hypot() && v.dot(q) > 0.0;
-            let off = |t: f64| (source.eval(t).0 - ends[0].p).cross(q).abs();
-            let limit = STRAIGHT * options.tolerance * q.hypot();
-            along(ends[0].away) && along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(|t| off(t) <= limit)
+            let chord = ends[1].p - ends[0].p;
+            let is_along = |v: Vec2| v.cross(chord).abs() <= STRAIGHT_TURN * chord.hypot() && v.dot(chord) > 0.0;
+            let limit = STRAIGHT * options.tolerance * chord.hypot();
+            let is_near = |t: f64| (source.eval(t).0 - ends[0].p).cross(chord).abs() <= limit;
+            is_along(ends[0].away) && is_along(ends[1].into) && [0.27, 0.5, 0.81].into_iter().all(is_near)
         };
         let is_line = matches!(part.seg, Seg::Line(_));
         let bent = is_line && !is_straight();
@@ -284,7 +290,7 @@ impl<'a> Merger<'a> {
     }
 
     /// Appends the fewest pieces for a run that begins with segment `start`.
-    fn merge(
+    fn append_merged(
         &mut self,
         run: &SegmentRun<SourceCurve<'a>>,
         start: usize,
@@ -312,12 +318,12 @@ impl<'a> Merger<'a> {
                 legs
             }
         };
-        if let (true, Some((shape, off))) = (marks, shape) {
+        if let (true, Some((shape, distance))) = (marks, shape) {
             let pieces = reaches.own.count_of(legs.as_deref())?;
             let mut carried = |leg: Leg| Carried::new(&site, leg, reaches.marked(leg)?);
             let legs = legs.as_ref().map(|legs| legs.iter().map(|(leg, _)| (*leg, carried(*leg))).collect());
             let Jet { dx, dy, .. } = site.parts[0].jets[0];
-            repeats.carry(shape, CarriedWay { jacobian: [dx, dy], off, segments, pieces, legs });
+            repeats.carry(shape, CarriedWay { jacobian: [dx, dy], distance, segments, pieces, legs });
         }
         self.fitter.spend(TRIAL_WORK * reaches.tried() as f64);
         let Reaches { own, .. } = reaches;

@@ -63,21 +63,16 @@ use std::sync::Arc;
 /// ```
 pub fn warp_path(outline: &Outline, map: &dyn Map, options: &Options) -> Result<RefittedPath, GeometryError> {
     options.check()?;
-    let own;
-    let options = if options.suited && options.spans.is_empty() {
-        let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
-        let alone = || SharedEdges::held([(outline, &contours[..])]);
-        let spans = if *options.shared == SharedEdges::default() {
-            alone().spans(outline, &contours)
-        } else {
-            options.shared.spans(outline, &contours)
-        };
-        own = options.clone().with_spans(spans);
-        &own
+    if !options.suited || !options.spans.is_empty() {
+        return KnownShapes::default().warp_path(outline, map, options);
+    }
+    let contours: Vec<f64> = outline.subpaths.iter().map(|s| options.of_contour(s)).collect();
+    let spans = if *options.shared == SharedEdges::default() {
+        SharedEdges::held([(outline, &contours[..])]).spans(outline, &contours)
     } else {
-        options
+        options.shared.spans(outline, &contours)
     };
-    KnownShapes::default().warp_path(outline, map, options)
+    KnownShapes::default().warp_path(outline, map, &options.clone().with_spans(spans))
 }
 
 /// Shapes that come again in a drawing, with the cubics that merge them. Paths that are refitted with this knowledge need not search
@@ -94,7 +89,7 @@ impl KnownShapes {
     #[must_use]
     pub fn among<'a>(outlines: impl IntoIterator<Item = &'a Outline>, map: &dyn Map, options: &Options) -> Self {
         /// The least ratio of all segments to the outline's, whose work is done twice.
-        const SHARE: usize = 32;
+        const RATIO: usize = 32;
         /// The least number of segments for which this pays: a line of text.
         const LEAST: usize = 400;
         if options.nodes != Nodes::Fewest || map.prefers_batches() || matches!(map.class(), Class::Affine(_)) {
@@ -102,7 +97,7 @@ impl KnownShapes {
         }
         let sized: Vec<(usize, &Outline)> = outlines.into_iter().map(|o| (o.segs().count(), o)).collect();
         let all: usize = sized.iter().map(|(n, _)| n).sum();
-        let candidates = sized.into_iter().filter(|(n, _)| *n >= LEAST && n * SHARE <= all);
+        let candidates = sized.into_iter().filter(|(n, _)| *n >= LEAST && n * RATIO <= all);
         // Among equals, the first one.
         let Some((_, outline)) = candidates.reduce(|a, b| if b.0 > a.0 { b } else { a }) else {
             return Self::default();
@@ -127,6 +122,7 @@ impl KnownShapes {
     }
 }
 
+/// Returns the image of `outline`; see [`warp_path`].
 fn refit(
     outline: &Outline,
     map: &dyn Map,
@@ -142,8 +138,7 @@ fn refit(
         path::affine(outline, m, options, &mut out)?;
     } else {
         let map = gathered.as_ref().map_or(map, |g| g as &dyn Map);
-        let mut creases = Creases::default();
-        map.creases(&mut creases);
+        let creases = Creases::of_map(map);
         let announced = path::announce_short(outline, map, &creases, options);
         for sub in &outline.subpaths {
             // A map that searches is undefined once the budget is used up.
@@ -163,8 +158,8 @@ const FAR_AWAY: f64 = 1e4;
 
 /// The size of coordinates that have the same rounding error as the outline's, amplified by the map.
 fn amplified(outline: &Outline, map: &dyn Map) -> f64 {
-    let places = |s: &Seg| (0..=64).map(|i| s.eval(f64::from(i) / 64.0)).collect::<Vec<Point>>();
-    let points: Vec<Point> = outline.segs().flat_map(places).collect();
+    let samples = |s: &Seg| (0..=64).map(|i| s.eval(f64::from(i) / 64.0)).collect::<Vec<Point>>();
+    let points: Vec<Point> = outline.segs().flat_map(samples).collect();
     let mut jets = vec![Jet::default(); points.len()];
     map.jets(&points, &mut jets);
     let size = |(p, j): (&Point, &Jet)| j.dx.hypot().max(j.dy.hypot()) * p.to_vec2().hypot();

@@ -41,16 +41,8 @@ impl Options {
     /// Options with this tolerance, checked by dense sampling, and the fewest nodes, which are also the fitter's defaults.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self {
-            tolerance,
-            certify: false,
-            nodes: Nodes::default(),
-            shared: Arc::default(),
-            borders: Arc::default(),
-            suited: false,
-            spans: Arc::default(),
-            budget: Arc::default(),
-        }
+        let (nodes, shared, borders, spans, budget) = Default::default();
+        Self { tolerance, certify: false, nodes, shared, borders, suited: false, spans, budget }
     }
 
     /// Checks the tolerances.
@@ -59,8 +51,8 @@ impl Options {
     /// [`GeometryError::Tolerance`] if a tolerance is not positive, or not finite.
     pub fn check(&self) -> Result<(), GeometryError> {
         let mut all = [self.tolerance].into_iter().chain(self.spans.iter().map(|s| s.tolerance));
-        let wrong = |t: &f64| !(t.is_finite() && *t > 0.0);
-        all.find(wrong).map_or(Ok(()), |t| Err(GeometryError::Tolerance(t)))
+        let is_invalid = |t: &f64| !(t.is_finite() && *t > 0.0);
+        all.find(is_invalid).map_or(Ok(()), |t| Err(GeometryError::Tolerance(t)))
     }
 
     /// The tolerance of a contour: [`Options::tolerance`], or, with [`Options::suited`], the one that suits its diagonal.
@@ -106,7 +98,7 @@ impl Options {
 /// ```
 #[must_use]
 pub fn suited(tolerance: f64, diagonal: f64) -> f64 {
-    const OF_CONTOUR: f64 = 2e-3;
-    const LEAST: f64 = 1e-3;
-    (OF_CONTOUR * diagonal).max(LEAST * tolerance).min(tolerance)
+    const OF_DIAGONAL: f64 = 2e-3;
+    const LEAST_SHARE: f64 = 1e-3;
+    (OF_DIAGONAL * diagonal).max(LEAST_SHARE * tolerance).min(tolerance)
 }

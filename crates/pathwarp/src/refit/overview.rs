@@ -27,10 +27,8 @@ impl Overview {
     /// The overview for some segments. `None` if they are few, or if the map does not enclose curves.
     pub(super) fn new(map: &dyn Map, segs: &[Seg]) -> Option<Self> {
         let count = segs.len() / SEGMENTS;
-        let area = segs
-            .iter()
-            .skip(1)
-            .fold(Rect::from_points(segs.first()?.start(), segs.first()?.end()), |area, seg| area.union_pt(seg.end()));
+        let ends = segs.iter().map(|seg| Rect::from_points(seg.start(), seg.end()));
+        let area = ends.reduce(|a, b| a.union(b))?;
         let (width, height) = (area.width(), area.height());
         if count == 0 || map.detail(area).is_some() {
             return None;
@@ -39,33 +37,35 @@ impl Overview {
         let [columns, rows] = [width, height].map(|length| ((length / side).ceil() as usize).clamp(1, count));
         let mut out = Self { origin: area.origin(), side, columns, rows, cells: Vec::with_capacity(columns * rows) };
         for cell in 0..columns * rows {
-            let place = |origin: f64, i: usize| Enclosure::slope(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
-            let [x, y] = map.enclose([place(area.x0, cell % columns), place(area.y0, cell / columns)])?;
+            // The cell and one side around it, as the range of v in v + hτ and v − hτ.
+            let range = |origin: f64, i: usize| Enclosure::slope(origin + side * (i as f64 + 0.5), [1.5 * side, side]);
+            let [x, y] = map.enclose([range(area.x0, cell % columns), range(area.y0, cell / columns)])?;
             out.cells.push(std::array::from_fn(|k| x.d[k] + y.d[k]));
         }
         Some(out)
     }
 
-    /// Returns `true` if samples at `intervals` equal steps are known to determine the image of a cubic p + aτ + bτ² + cτ³ to `by`.
-    pub(super) fn resolves(&self, p: Point, way: [Vec2; 3], intervals: usize, by: f64) -> bool {
+    /// Returns `true` if samples at `intervals` equal steps are known to determine the image of a cubic p + aτ + bτ² + cτ³, with these
+    /// coefficients a, b and c, within the tolerance.
+    pub(super) fn resolves(&self, p: Point, coefficients: [Vec2; 3], intervals: usize, tolerance: f64) -> bool {
         /// The binomials 5 over m − 1.
-        const WAYS: [f64; Enclosure::ORDER] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+        const BINOMIALS: [f64; Enclosure::ORDER] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
         let scale = 1.0 / self.side;
-        let [a, b, c] = way.map(|v| v.x.abs().max(v.y.abs()) * scale);
-        let place = (p - self.origin) * scale;
-        let inside = place.x >= 0.0 && place.y >= 0.0 && a + b + c <= 1.0;
-        let (column, row) = (place.x as usize, place.y as usize);
-        if !inside || column >= self.columns || row >= self.rows {
+        let [a, b, c] = coefficients.map(|v| v.x.abs().max(v.y.abs()) * scale);
+        let v = (p - self.origin) * scale;
+        let stays_near = v.x >= 0.0 && v.y >= 0.0 && a + b + c <= 1.0;
+        let (column, row) = (v.x as usize, v.y as usize);
+        if !stays_near || column >= self.columns || row >= self.rows {
             return false;
         }
-        let bend = (b / a).max((c / a).sqrt());
-        let (mut sum, mut bends) = (0.0, 1.0);
-        for (bound, ways) in self.cells[row * self.columns + column].iter().zip(WAYS).rev() {
+        let theta = (b / a).max((c / a).sqrt());
+        let (mut sum, mut power) = (0.0, 1.0);
+        for (bound, binomial) in self.cells[row * self.columns + column].iter().zip(BINOMIALS).rev() {
             // The sum of the terms from this one on, without the powers of `a` that all of them have.
-            sum = sum * a + bound * ways * bends;
-            bends *= bend;
+            sum = sum * a + bound * binomial * power;
+            power *= theta;
         }
-        Enclosure::LAST_SPREAD * sum * a <= by * (intervals as f64).powi(Enclosure::ORDER as i32)
+        Enclosure::LAST_SPREAD * sum * a <= tolerance * (intervals as f64).powi(Enclosure::ORDER as i32)
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::Outline;
     use crate::deform::Registry;
-    use crate::map::along;
+    use crate::map::enclose_segment;
     use crate::param::{Args, Frame};
 
     /// Pieces that an overview resolves are resolved by their enclosures too; and nearly all short pieces under gentle maps are.
@@ -108,7 +108,7 @@ mod tests {
                     let (d0, d1, d2) = (part.p1 - part.p0, part.p2 - part.p1, part.p3 - part.p2);
                     let way = [d0 * 3.0, (d1 - d0) * 3.0, d2 - d1 * 2.0 + d0];
                     for intervals in [9, 17] {
-                        let own = map.enclose(along(seg, [0.01 * i as f64, 0.01 * i as f64 + 0.15])).unwrap();
+                        let own = map.enclose(enclose_segment(seg, [0.01 * i as f64, 0.01 * i as f64 + 0.15])).unwrap();
                         let known = overview.resolves(part.p0, way, intervals, TOLERANCE);
                         assert!(!known || Enclosure::resolved(&own, intervals, 1.01 * TOLERANCE), "{name} {seg:?}");
                         (told, count) = (told + usize::from(known), count + 1);

@@ -14,14 +14,13 @@ use super::options::Options;
 use super::overview::Overview;
 use super::report::{PathReport, RefittedPath, SUMMED, SpanReport, reverse};
 use super::segment::{Part, SegmentFitter};
-use super::shared::{Span, is_turned};
-use super::source;
-use super::source::SourceCurve;
+use super::shared::{Span, is_reversed};
+use super::source::{self, SourceCurve};
 use crate::error::GeometryError;
 use crate::map::{Class, CreaseKind, Creases, Jet, Map};
 use crate::outline::{Outline, Seg, Subpath};
 use bezierfit::parts::{CHECKED, FITTED, UNEVEN, spaced};
-use bezierfit::{Assurance, NotFinite, Piece, Report};
+use bezierfit::{Assurance, Piece, Report};
 use kurbo::{Affine, Point};
 use std::sync::Arc;
 
@@ -86,25 +85,26 @@ fn affine_segment(
 /// The spans of the next subpath to be written, from the options.
 fn spans_of(sub: &Subpath, options: &Options, out: &RefittedPath) -> Vec<Span> {
     let mut left = sub.segs.len();
-    let own = options.spans.iter().skip(out.spans.len()).take_while(|s| {
-        let some = left > 0;
+    let spans = options.spans.iter().skip(out.spans.len()).take_while(|s| {
+        let is_unfinished = left > 0;
         left = left.saturating_sub(s.segments);
-        some
+        is_unfinished
     });
-    own.copied().collect()
+    spans.copied().collect()
 }
 
-/// The runs of equal tolerance, with the index of their span, in a part of a subpath whose first segment is `from`.
-fn runs<'s>(spans: &[Span], all: f64, from: usize, segs: &'s [Seg]) -> Vec<(usize, f64, &'s [Seg])> {
+/// The runs of equal tolerance, with the index of their span, in a part of a subpath whose first segment is `from`. Without spans,
+/// `tolerance` holds for all of it.
+fn runs<'s>(spans: &[Span], tolerance: f64, from: usize, segs: &'s [Seg]) -> Vec<(usize, f64, &'s [Seg])> {
     if spans.is_empty() {
-        return vec![(0, all, segs)];
+        return vec![(0, tolerance, segs)];
     }
     let (mut out, mut start) = (Vec::new(), 0_usize);
     for (i, span) in spans.iter().enumerate() {
         let end = start + span.segments;
-        let inside = start.saturating_sub(from).min(segs.len())..end.saturating_sub(from).min(segs.len());
-        if !inside.is_empty() {
-            out.push((i, span.tolerance, &segs[inside]));
+        let range = start.saturating_sub(from).min(segs.len())..end.saturating_sub(from).min(segs.len());
+        if !range.is_empty() {
+            out.push((i, span.tolerance, &segs[range]));
         }
         start = end;
     }
@@ -133,32 +133,25 @@ pub(super) fn subpath(
     // The values at the nodes.
     options.budget.spend(work * sub.segs.len() as f64).map_err(GeometryError::Limit)?;
     let spans = spans_of(sub, options, out);
-    let refitted = |from: usize, segs: &[Seg], memory: &mut MergeMemory| {
+    let refit_chunk = |from: usize, segs: &[Seg], memory: &mut MergeMemory| {
         if !announced {
             announce(&[segs], map, creases, options);
         }
         let mut all = Vec::new();
         for (span, tolerance, segs) in runs(&spans, options.tolerance, from, segs) {
-            let own;
-            let options = if tolerance == options.tolerance {
-                options
-            } else {
-                own = options.clone().with_tolerance(tolerance);
-                &own
-            };
-            let degree = map.rational_degree();
+            let (options, degree) = (&options.clone().with_tolerance(tolerance), map.rational_degree());
             let overview = if degree.is_none() { Overview::new(map, segs) } else { None };
             let overview = overview.as_ref();
             let fitter = SegmentFitter { map, projective, degree, creases, work, options, overview };
-            let first = from == 0 && all.is_empty();
-            let nodes = if first { Nodes::new(&fitter, sub.start, start) } else { Nodes::inside(&fitter, segs) };
-            let ring = sub.closed && segs.len() == sub.segs.len();
-            let refit = if options.nodes.merges() {
-                merged(&fitter, (segs, ring), nodes, memory)
+            let is_first = from == 0 && all.is_empty();
+            let (node, jet) = if is_first { (sub.start, start) } else { (segs[0].start(), map.jet(segs[0].start())) };
+            let nodes = NodeJets { fitter: &fitter, jets: [jet; 2], node, last: 0 };
+            let is_ring = sub.closed && segs.len() == sub.segs.len();
+            let (pieces, found) = if options.nodes.merges() {
+                refit_merged(&fitter, (segs, is_ring), nodes, memory)?
             } else {
-                unmerged(&fitter, segs, nodes)
+                refit_singly(&fitter, segs, nodes)?
             };
-            let (pieces, found) = refit?;
             let mut report = PathReport::default();
             report.add_pieces(found);
             report.share = report.max_error / tolerance;
@@ -170,10 +163,10 @@ pub(super) fn subpath(
         Ok::<_, GeometryError>(all)
     };
     let parts = if sub.segs.len() <= CHUNK {
-        vec![refitted(0, &sub.segs, memory)?]
+        vec![refit_chunk(0, &sub.segs, memory)?]
     } else {
         let known = memory.known();
-        let alone = |from: usize, segs: &[Seg]| refitted(from, segs, &mut MergeMemory::new(Arc::clone(&known)));
+        let alone = |from: usize, segs: &[Seg]| refit_chunk(from, segs, &mut MergeMemory::new(Arc::clone(&known)));
         in_parallel(&chunks(&sub.segs, options), alone)?
     };
     let (mut pieces, first) = (Vec::new(), out.spans.len());
@@ -218,77 +211,72 @@ fn announce(runs: &[&[Seg]], map: &dyn Map, creases: &Creases, options: &Options
 type Refitted = Result<(Vec<Piece>, Report), GeometryError>;
 
 /// Refits segments one by one.
-fn unmerged(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: Nodes<'_>) -> Refitted {
+fn refit_singly(fitter: &SegmentFitter<'_>, segs: &[Seg], mut nodes: NodeJets<'_>) -> Refitted {
     let (mut pieces, mut report) = (Vec::with_capacity(segs.len() + segs.len() / 2), Report::default());
     for seg in segs {
         let ends = nodes.next(seg)?;
-        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(lost)?;
+        fitter.fit(seg, ends, &mut pieces, &mut report).map_err(|e| infinity(e.at))?;
     }
     Ok((pieces, report))
 }
 
-/// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted separately, in one direction. `ring` is
-/// `true` if the segments are a whole closed subpath.
-fn merged(
+/// Refits segments, with fewer pieces across smooth joints. Chains of shared segments are refitted separately, in one direction. `is_ring`
+/// is `true` if the segments are a whole closed subpath.
+fn refit_merged(
     fitter: &SegmentFitter<'_>,
-    (segs, ring): (&[Seg], bool),
-    mut nodes: Nodes<'_>,
+    (segs, is_ring): (&[Seg], bool),
+    mut nodes: NodeJets<'_>,
     memory: &mut MergeMemory,
 ) -> Refitted {
     let (mut parts, mut chains) = (Vec::with_capacity(segs.len()), Vec::new());
     let shared = &fitter.options.shared;
-    for chain in segs.chunk_by(|a, b| shared.goes_on(a, b)) {
+    for chain in segs.chunk_by(|a, b| shared.continues_chain(a, b)) {
         let is_shared = shared.contains(&chain[0]);
         for seg in chain {
             let ends = nodes.next(seg)?;
-            fitter.parts(seg, ends, is_shared && matches!(seg, Seg::Arc(_)), &mut parts).map_err(lost)?;
+            fitter.parts(seg, ends, is_shared && matches!(seg, Seg::Arc(_)), &mut parts).map_err(|e| infinity(e.at))?;
         }
-        chains.push((parts.len(), is_shared.then(|| is_turned(chain))));
+        chains.push((parts.len(), is_shared.then(|| is_reversed(chain))));
     }
     for i in 1..parts.len() {
         let (before, after) = parts.split_at_mut(i);
         Part::join(&mut before[i - 1], &mut after[0]);
     }
-    let whole = parts.len();
-    let (mut pieces, mut report, mut from) = (Vec::with_capacity(whole), Report::default(), 0);
-    for (to, turned) in chains {
-        let own = &mut parts[from..to];
-        let (mut more, mut found) = match turned {
-            None if ring && own.len() == whole && fitter.options.nodes.are_placed() => ringed(fitter, own, memory)?,
-            None => merged_parts(fitter, (own, false), memory)?,
-            Some(turned) => {
-                if turned {
-                    own.reverse();
-                    own.iter_mut().for_each(Part::reverse);
-                }
-                // The shapes of other paths may be known here, but not on the other side of the chain.
-                merged_parts(fitter, (own, false), &mut MergeMemory::default())?
+    let count = parts.len();
+    let (mut pieces, mut report, mut from) = (Vec::with_capacity(count), Report::default(), 0);
+    for (to, reversed) in chains {
+        let chain = &mut parts[from..to];
+        if reversed == Some(true) {
+            Part::reverse_all(chain);
+        }
+        let (mut more, mut found) = match reversed {
+            None if is_ring && chain.len() == count && fitter.options.nodes.are_placed() => {
+                merge_ring(fitter, chain, memory)?
             }
+            None => merge_parts(fitter, (chain, false), memory)?,
+            // The shapes of other paths may be known here, but not on the other side of the chain.
+            Some(_) => merge_parts(fitter, (chain, false), &mut MergeMemory::default())?,
         };
-        if turned == Some(true) {
+        if reversed == Some(true) {
             reverse(&mut more);
             found.pieces.reverse();
         }
         report.add(&found);
-        if pieces.is_empty() {
-            pieces = more;
-        } else {
-            pieces.extend(more);
-        }
         from = to;
+        if pieces.is_empty() { pieces = more } else { pieces.extend(more) }
     }
     Ok((pieces, report))
 }
 
 /// Merges the parts of a closed subpath from its first corner on: its start need not be a node. The result begins at the nearest node.
-fn ringed(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemory) -> Refitted {
+fn merge_ring(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemory) -> Refitted {
     let start = parts[0].jets[0].p;
     let before = |i: usize| if i == 0 { parts.len() } else { i } - 1;
     let corner = (0..parts.len()).find(|&i| !merge::joins(&parts[before(i)], &parts[i]));
     parts.rotate_left(corner.unwrap_or(0));
-    let (mut pieces, mut report) = merged_parts(fitter, (parts, corner.is_none()), memory)?;
-    let far = |i: &usize| pieces[*i].start().distance_squared(start);
-    let nearest = (0..pieces.len()).min_by(|i, j| far(i).total_cmp(&far(j))).unwrap_or(0);
+    let (mut pieces, mut report) = merge_parts(fitter, (parts, corner.is_none()), memory)?;
+    let distance = |i: &usize| pieces[*i].start().distance_squared(start);
+    let nearest = (0..pieces.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).unwrap_or(0);
     pieces.rotate_left(nearest);
     if report.pieces.len() == pieces.len() {
         report.pieces.rotate_left(nearest);
@@ -296,12 +284,13 @@ fn ringed(fitter: &SegmentFitter<'_>, parts: &mut [Part], memory: &mut MergeMemo
     Ok((pieces, report))
 }
 
-fn merged_parts(fitter: &SegmentFitter<'_>, (parts, ring): (&[Part], bool), memory: &mut MergeMemory) -> Refitted {
-    let found = Merger::new(fitter, (parts, ring), memory).merged().map_err(lost)?;
+/// Merges the parts of one chain; `is_ring` is `true` for a closed subpath without corners.
+fn merge_parts(fitter: &SegmentFitter<'_>, (parts, is_ring): (&[Part], bool), memory: &mut MergeMemory) -> Refitted {
+    let found = Merger::new(fitter, (parts, is_ring), memory).merged().map_err(|e| infinity(e.at))?;
     // Affine images keep their control points, unless these are far too many: flattened curves, outlines of dashes.
     if !parts.is_empty() && parts.len() <= MANY_NODES * found.0.len() && parts.iter().all(Part::is_affine) {
         let (mut pieces, mut report) = (Vec::with_capacity(parts.len()), Report::default());
-        parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(lost)?;
+        parts.iter().try_for_each(|p| fitter.fit_part(p, &mut pieces, &mut report)).map_err(|e| infinity(e.at))?;
         return Ok((pieces, report));
     }
     Ok(found)
@@ -313,10 +302,9 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
     let is_corner = |w: &[Seg]| {
         let (into, away) = (w[0].deriv(1.0), w[1].deriv(0.0));
         into.cross(away).abs() >= CHUNK_CORNER * into.dot(away)
-            && !(options.shared.contains(&w[0]) && options.shared.goes_on(&w[0], &w[1]))
+            && !(options.shared.contains(&w[0]) && options.shared.continues_chain(&w[0], &w[1]))
     };
-    let mut out = Vec::new();
-    let mut rest = segs;
+    let (mut out, mut rest) = (Vec::new(), segs);
     while rest.len() > CHUNK {
         let more = if options.nodes.merges() { rest[CHUNK - 1..].windows(2).position(is_corner) } else { Some(0) };
         let (chunk, after) = rest.split_at(more.map_or(rest.len(), |n| CHUNK + n));
@@ -330,27 +318,17 @@ fn chunks<'s>(segs: &'s [Seg], options: &Options) -> Vec<(usize, &'s [Seg])> {
 }
 
 /// The jets at the ends of one segment after the other.
-struct Nodes<'a> {
+struct NodeJets<'a> {
     fitter: &'a SegmentFitter<'a>,
     /// The jets at the last two nodes; each segment's last jet is the next one's first.
     jets: [Jet; 2],
     /// The last node.
-    at: Point,
-    odd: bool,
+    node: Point,
+    /// The index of its jet.
+    last: usize,
 }
 
-impl<'a> Nodes<'a> {
-    /// Starts at the node `at`, which has this jet.
-    fn new(fitter: &'a SegmentFitter<'a>, at: Point, jet: Jet) -> Self {
-        Self { fitter, jets: [jet; 2], at, odd: false }
-    }
-
-    /// Starts at the first of `segs`.
-    fn inside(fitter: &'a SegmentFitter<'a>, segs: &[Seg]) -> Self {
-        let at = segs.first().map_or(Point::ORIGIN, Seg::start);
-        Self::new(fitter, at, fitter.map.jet(at))
-    }
-
+impl NodeJets<'_> {
     #[inline(always)]
     fn next(&mut self, seg: &Seg) -> Result<[&Jet; 2], GeometryError> {
         finite(seg)?;
@@ -358,14 +336,13 @@ impl<'a> Nodes<'a> {
         if let Some(at) = creases.first_undefined(seg) {
             return Err(infinity(at));
         }
-        let here = usize::from(self.odd);
-        if seg.start() != self.at {
-            self.jets[here] = map.jet(seg.start());
+        let (start, end) = (self.last, 1 - self.last);
+        if seg.start() != self.node {
+            self.jets[start] = map.jet(seg.start());
         }
-        self.at = seg.end();
-        self.jets[1 - here] = map.jet(self.at);
-        self.odd = !self.odd;
-        let [first, last] = [&self.jets[here], &self.jets[1 - here]];
+        (self.node, self.last) = (seg.end(), end);
+        self.jets[end] = map.jet(self.node);
+        let [first, last] = [&self.jets[start], &self.jets[end]];
         if first.is_finite() && last.is_finite() {
             Ok([first, last])
         } else {
@@ -379,10 +356,6 @@ const PATH: &str = "path";
 
 fn finite(seg: &Seg) -> Result<(), GeometryError> {
     if seg.is_finite() { Ok(()) } else { Err(GeometryError::NotFinite { shape: PATH.into(), at: seg.start() }) }
-}
-
-fn lost(e: NotFinite) -> GeometryError {
-    infinity(e.at)
 }
 
 fn infinity(at: Point) -> GeometryError {

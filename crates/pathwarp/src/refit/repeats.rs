@@ -37,7 +37,7 @@ pub(super) struct CarriedWay {
     /// The partial derivatives of the map at its start.
     pub(super) jacobian: [Vec2; 2],
     /// The distance of its control points from the shape's.
-    pub(super) off: f64,
+    pub(super) distance: f64,
     pub(super) segments: usize,
     pub(super) pieces: usize,
     /// The legs, with cubics for those that are merged; `None` if every segment keeps its pieces.
@@ -60,20 +60,20 @@ struct Shape {
 
 /// A summary that distinguishes most shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Glance {
+struct Summary {
     /// A hash of the number and kinds of the segments.
     kinds: u64,
     /// The first of the control points.
     first: Vec2,
 }
 
-impl Glance {
-    fn of(segs: &[Part]) -> Self {
+impl Summary {
+    fn of_parts(segs: &[Part]) -> Self {
         Self { kinds: kinds(segs), first: points(segs).next().unwrap_or_default() }
     }
 
-    fn is_near(&self, other: &Self, near: f64) -> bool {
-        self.kinds == other.kinds && apart(self.first, other.first) <= near
+    fn is_near(&self, other: &Self, limit: f64) -> bool {
+        self.kinds == other.kinds && distance(self.first, other.first) <= limit
     }
 }
 
@@ -81,21 +81,21 @@ impl Glance {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Shapes {
     /// The summary of each shape.
-    glances: Vec<Glance>,
+    summaries: Vec<Summary>,
     all: Vec<Shape>,
 }
 
 impl Shapes {
-    /// The index of a shape whose control points are at most `near` from those of `segs`, and their largest distance.
-    fn find(&self, glance: &Glance, segs: &[Part], near: f64) -> Option<(usize, f64)> {
-        let off = |s: &Shape| {
-            points(segs).zip(&s.points).try_fold(0.0f64, |off, (p, q)| {
-                let d = apart(p, *q);
-                (d <= near).then(|| off.max(d))
+    /// The index of a shape whose control points are at most `limit` from those of `segs`, and their largest distance.
+    fn find(&self, summary: &Summary, segs: &[Part], limit: f64) -> Option<(usize, f64)> {
+        let largest_distance = |s: &Shape| {
+            points(segs).zip(&s.points).try_fold(0.0f64, |largest, (p, q)| {
+                let d = distance(p, *q);
+                (d <= limit).then(|| largest.max(d))
             })
         };
-        let alike = self.glances.iter().enumerate().filter(|(_, g)| g.is_near(glance, near));
-        alike.filter_map(|(i, _)| Some((i, off(&self.all[i])?))).next()
+        let mut similar = self.summaries.iter().enumerate().filter(|(_, s)| s.is_near(summary, limit));
+        similar.find_map(|(i, _)| Some((i, largest_distance(&self.all[i])?)))
     }
 }
 
@@ -115,22 +115,21 @@ impl Repeats {
 
     /// The index of the shape of a run, which is entered if it is new, and the distance between their control points.
     pub(super) fn shape(&mut self, segs: &[Part], tolerance: f64) -> (usize, f64) {
-        let (glance, near) = (Glance::of(segs), SAME_SHAPE * tolerance);
-        let entered = |i: usize| (i, 0.0);
-        self.own.find(&glance, segs, near).unwrap_or_else(|| {
-            let known = self.known.find(&glance, segs, near);
+        let (summary, limit) = (Summary::of_parts(segs), SAME_SHAPE * tolerance);
+        self.own.find(&summary, segs, limit).unwrap_or_else(|| {
+            let known = self.known.find(&summary, segs, limit);
             let ways = known.map_or(Vec::new(), |(i, _)| self.known.all[i].ways.clone());
             let new = Shape { points: points(segs).collect(), ways, carried: Vec::new(), uses: 0, known };
-            let Shapes { glances, all } = &mut self.own;
+            let Shapes { summaries, all } = &mut self.own;
             if all.len() < MAX_SHAPES {
-                glances.push(glance);
+                summaries.push(summary);
                 all.push(new);
-                return entered(all.len() - 1);
+                return (all.len() - 1, 0.0);
             }
             let i = self.oldest;
-            (glances[i], all[i]) = (glance, new);
+            (summaries[i], all[i]) = (summary, new);
             self.oldest = (i + 1) % MAX_SHAPES;
-            entered(i)
+            (i, 0.0)
         })
     }
 
@@ -145,12 +144,13 @@ impl Repeats {
     /// Each comes with the distance of its control points from the shape's.
     pub(super) fn nearest(&self, shape: usize, to: &Jet) -> impl Iterator<Item = (&CarriedWay, f64)> {
         let shape = &self.own.all[shape];
-        let (known, off) = shape.known.map_or((&[][..], 0.0), |(i, off)| (&self.known.all[i].carried, off));
-        let all = shape.carried.iter().map(|w| (w, w.off)).chain(known.iter().map(move |w| (w, w.off + off)));
+        let (known, extra) = shape.known.map_or((&[][..], 0.0), |(i, d)| (&self.known.all[i].carried, d));
+        let known = known.iter().map(move |w| (w, w.distance + extra));
+        let all = shape.carried.iter().map(|w| (w, w.distance)).chain(known);
         let change = |way: &CarriedWay| Change::new(way.jacobian, to).map(|c| c.factor);
-        let mut near: Vec<_> = all.filter_map(|(w, off)| Some((change(w)?, (w, off)))).collect();
-        near.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        near.into_iter().take(CARRY_TRIALS).map(|(_, way)| way)
+        let mut similar: Vec<_> = all.filter_map(|(w, distance)| Some((change(w)?, (w, distance)))).collect();
+        similar.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        similar.into_iter().take(CARRY_TRIALS).map(|(_, way)| way)
     }
 
     /// Returns `true` if the shape has come before.
@@ -180,7 +180,7 @@ impl Repeats {
 }
 
 /// The larger of the distances in x and in y.
-fn apart(p: Vec2, q: Vec2) -> f64 {
+fn distance(p: Vec2, q: Vec2) -> f64 {
     (p.x - q.x).abs().max((p.y - q.y).abs())
 }
 
@@ -233,18 +233,18 @@ impl<'a> Site<'a> {
 
     /// The image at grid point `k`, seen from the segment after it or before it. `None` if it has no derivative there.
     fn end(&self, k: usize, after: bool) -> Option<End> {
-        let (joint, place) = (k / MERGE_GRID, k % MERGE_GRID);
-        let i = if after || place > 0 { joint } else { joint.checked_sub(1)? };
+        let (joint, inner) = (k / MERGE_GRID, k % MERGE_GRID);
+        let i = if after || inner > 0 { joint } else { joint.checked_sub(1)? };
         let part = self.parts.get(i)?;
         let source = SourceCurve::new(&part.seg, self.fitter.map, None);
-        let mut end = if place > 0 {
-            source.end(place as f64 / MERGE_GRID as f64).ok()?
+        let mut end = if inner > 0 {
+            source.end(inner as f64 / MERGE_GRID as f64).ok()?
         } else {
             let jet = &part.jets[usize::from(!after)];
             source.end_with(if after { 0.0 } else { 1.0 }, jet.p, jet)
         };
         // Adjacent pieces share a joint bit by bit.
-        if let (0, Some(next)) = (place, self.parts.get(joint)) {
+        if let (0, Some(next)) = (inner, self.parts.get(joint)) {
             end.p = next.jets[0].p;
         }
         let tangent = if after { end.away } else { end.into };
@@ -277,23 +277,24 @@ impl<'a> Site<'a> {
 
 /// The change of a map's Jacobian from one site to another: J₁·J₀⁻¹.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Change {
+struct Change {
     columns: [Vec2; 2],
     det: f64,
-    /// The factor from 1 to the singular value farther from it.
-    pub(super) factor: f64,
+    /// The largest factor, 1 or more, by which a length grows or shrinks.
+    factor: f64,
 }
 
 impl Change {
     /// Returns the change; `None` unless the change of every length is between [`CARRY_DOWN`] and [`CARRY_UP`].
-    pub(super) fn new([dx, dy]: [Vec2; 2], to: &Jet) -> Option<Self> {
+    fn new([dx, dy]: [Vec2; 2], to: &Jet) -> Option<Self> {
         let k = 1.0 / dx.cross(dy);
         let columns = [(to.dx * dy.y - to.dy * dx.y) * k, (to.dy * dx.x - to.dx * dy.x) * k];
+        // The squares of the singular values are mean ± half their difference.
         let (mean, det) = (0.5 * (columns[0].hypot2() + columns[1].hypot2()), columns[0].cross(columns[1]));
-        let apart = (mean * mean - det * det).max(0.0).sqrt();
-        let (most, least) = ((mean + apart).sqrt(), (mean - apart).max(0.0).sqrt());
-        let within = most <= CARRY_UP && least >= CARRY_DOWN;
-        (det > 0.0 && within).then(|| Self { columns, det, factor: most.max(1.0 / least) })
+        let half = (mean * mean - det * det).max(0.0).sqrt();
+        let (most, least) = ((mean + half).sqrt(), (mean - half).max(0.0).sqrt());
+        let is_in_range = most <= CARRY_UP && least >= CARRY_DOWN;
+        (det > 0.0 && is_in_range).then(|| Self { columns, det, factor: most.max(1.0 / least) })
     }
 
     fn push(&self, v: Vec2) -> Vec2 {
@@ -333,7 +334,7 @@ impl Carried {
     }
 
     /// The cubic at another site, with a bound of its error. `None` if the error may exceed `tolerance`.
-    pub(super) fn at(&self, site: &Site<'_>, leg: Leg, tolerance: f64) -> Option<(Piece, f64)> {
+    pub(super) fn carry_to(&self, site: &Site<'_>, leg: Leg, tolerance: f64) -> Option<(Piece, f64)> {
         let change = Change::new(self.jacobian, &site.parts.get(leg.from / MERGE_GRID)?.jets[0])?;
         let across =
             self.cubic.batches.iter().flat_map(|b| &b.tangents).chain(&self.tangents).map(|t| change.across(*t));
@@ -361,12 +362,12 @@ impl Carried {
             let squares = frame.distances(&g, a, b, &mut s, 1);
             let errors = frame.signed_distances(&g, a, b, &s, &squares);
             for i in 0..8 {
-                let off = (errors[i] - change.across(batch.tangents[i]) * batch.errors[i]).abs();
+                let new = (errors[i] - change.across(batch.tangents[i]) * batch.errors[i]).abs();
                 // Written so that NaN fails.
-                if !(off * CARRY_MARGIN <= left && s[i] >= last - FOOT_ROUNDING) {
+                if !(new * CARRY_MARGIN <= left && s[i] >= last - FOOT_ROUNDING) {
                     return None;
                 }
-                difference = difference.max(off);
+                difference = difference.max(new);
                 last = s[i];
             }
         }
@@ -392,8 +393,8 @@ mod tests {
         assert_eq!(shape("M0,0C1,2 3,4 5,5"), 1);
         assert_eq!(shape("M70.001,-8C71,-6 73,-4 75,-3Q76,-2 79,-7"), 0);
         assert_eq!(shape("M70,1C71,3 73,5 75,6"), 1);
-        let (_, off) = repeats.shape(&segs("M0,0C1,2 3,4.002 5,5.001"), 0.1);
-        assert!((off - 0.002).abs() < 1e-12);
+        let (_, distance) = repeats.shape(&segs("M0,0C1,2 3,4.002 5,5.001"), 0.1);
+        assert!((distance - 0.002).abs() < 1e-12);
         let mut shape = |d: &str| repeats.shape(&segs(d), 0.1).0;
         assert_eq!(shape("M70,-8C71,-6 73,-4 75,-3Q76,-2 79,-7.1"), 2);
         assert_eq!(shape("M70,-8C71,-6 73,-4 75,-3L79,-7"), 3);

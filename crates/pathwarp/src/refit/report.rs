@@ -35,15 +35,9 @@ pub struct PathReport {
 
 impl Default for PathReport {
     fn default() -> Self {
-        Self {
-            segments_in: 0,
-            segments_out: 0,
-            max_error: 0.0,
-            share: 0.0,
-            assurance: Assurance::Exact,
-            unresolved: Vec::new(),
-            resolution: None,
-        }
+        let (segments_in, segments_out, assurance) = (0, 0, Assurance::Exact);
+        let (max_error, share, unresolved, resolution) = Default::default();
+        Self { segments_in, segments_out, max_error, share, assurance, unresolved, resolution }
     }
 }
 
@@ -77,7 +71,7 @@ impl PathReport {
         self.add_error(part.max_error, part.assurance);
         self.share = self.share.max(part.share);
         self.unresolved.extend(part.unresolved);
-        self.resolution = larger(self.resolution, part.resolution);
+        self.resolution = [self.resolution, part.resolution].into_iter().flatten().reduce(f64::max);
     }
 
     /// Adds the fitter's report on some pieces; `share` is left to the caller.
@@ -93,18 +87,14 @@ impl PathReport {
     }
 }
 
-fn larger(a: Option<f64>, b: Option<f64>) -> Option<f64> {
-    [a, b].into_iter().flatten().reduce(f64::max)
-}
-
 /// The largest coordinate of a path.
 pub(super) fn extent(path: &BezPath) -> f64 {
     let size = |p: Point| p.x.abs().max(p.y.abs());
-    path.elements().iter().fold(0.0, |most, e| match *e {
-        PathEl::MoveTo(p) | PathEl::LineTo(p) => size(p).max(most),
-        PathEl::QuadTo(p, q) => size(p).max(size(q)).max(most),
-        PathEl::CurveTo(p, q, r) => size(p).max(size(q)).max(size(r)).max(most),
-        PathEl::ClosePath => most,
+    path.elements().iter().fold(0.0, |largest, e| match *e {
+        PathEl::MoveTo(p) | PathEl::LineTo(p) => size(p).max(largest),
+        PathEl::QuadTo(p, q) => size(p).max(size(q)).max(largest),
+        PathEl::CurveTo(p, q, r) => size(p).max(size(q)).max(size(r)).max(largest),
+        PathEl::ClosePath => largest,
     })
 }
 

@@ -4,10 +4,9 @@ use super::limits::{MAX_RATIONAL_SWEEP, POINT_SIZE, TEAR};
 use super::options::Options;
 use super::overview::Overview;
 use super::report::reverse;
-use super::source;
-use super::source::SourceCurve;
+use super::source::{self, SourceCurve};
 use crate::map::{Class, CreaseKind, Creases, Jet, Map, RationalDegree};
-use crate::outline::{EllipticArc, Seg};
+use crate::outline::Seg;
 use bezierfit::parts::{SMOOTH_JOINT, StretchFitter, cover_far};
 use bezierfit::{NotFinite, Piece, Report};
 use kurbo::{CubicBez, Line, Point};
@@ -43,22 +42,14 @@ impl SegmentFitter<'_> {
             pieces.push(Piece::Line(Line::new(jets[0].p, jets[1].p)));
             return Ok(());
         }
-        let reversed;
-        let flipped = source::is_backwards(seg);
-        let canonical = if flipped {
-            reversed = seg.reversed();
-            &reversed
-        } else {
-            seg
-        };
+        let (canonical, flipped) = source::canonical(seg);
         let [first, last] = if flipped { [jets[1], jets[0]] } else { jets };
         let start = pieces.len();
         if self.creases.items().is_empty() && !self.is_long_arc(seg) {
-            let source = SourceCurve::for_proof(canonical, self.map, self.degree, self.options.certify);
-            let source = source.known_by(self.overview);
-            self.fit_smooth(&source, [first, last], 0.0, pieces, report)?;
+            let source = SourceCurve::for_proof(&canonical, self.map, self.degree, self.options.certify);
+            self.fit_smooth(&source.with_overview(self.overview), [first, last], 0.0, pieces, report)?;
         } else {
-            for part in self.cut(canonical, [first, last])? {
+            for part in self.cut(&canonical, [first, last])? {
                 self.fit_part(&part, pieces, report)?;
             }
         }
@@ -70,8 +61,8 @@ impl SegmentFitter<'_> {
 
     /// Returns `true` for arcs that are cut for a proof: only arcs of less than half a turn are quotients with positive denominators.
     fn is_long_arc(&self, seg: &Seg) -> bool {
-        let long = |a: &EllipticArc| a.sweep.abs() > MAX_RATIONAL_SWEEP;
-        self.options.certify && self.degree.is_some() && matches!(seg, Seg::Arc(a) if long(a))
+        let is_long = matches!(seg, Seg::Arc(a) if a.sweep.abs() > MAX_RATIONAL_SWEEP);
+        self.options.certify && self.degree.is_some() && is_long
     }
 
     /// Appends the image of a segment in its canonical direction, on which the map is smooth, given the jets at its ends, whose points
@@ -87,15 +78,12 @@ impl SegmentFitter<'_> {
     ) -> Result<(), NotFinite> {
         let seg = source.seg;
         // A segment of no length is kept, as it carries line caps and markers; it has no direction to preserve.
-        let is_point = source.size() <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot());
+        let is_point = source.size <= POINT_SIZE * (seg.start().to_vec2().hypot() + seg.end().to_vec2().hypot());
         if is_point || self.options.budget.left() <= 0.0 {
             pieces.push(Piece::Line(Line::new(first.p, last.p)));
             return Ok(());
         }
-        let mut slow = source::slow_spots(seg);
-        if source.is_rational() {
-            slow = slow.map(|t| source.param(t));
-        }
+        let slow = source.slow_spots();
         let from = source.end_with(0.0, first.p, first);
         let to = source.end_with(1.0, last.p, last);
         let left = self.options.budget.left() / self.work;
@@ -132,7 +120,7 @@ impl SegmentFitter<'_> {
         report: &mut Report,
     ) -> Result<(), NotFinite> {
         let Some(cut) = &part.cut else { return self.fit(&part.seg, part.jets.each_ref(), pieces, report) };
-        if !cut.sure {
+        if !cut.confirmed {
             report.unresolved.push(part.seg.eval(0.5));
         }
         let [first, last] = part.jets.each_ref();
@@ -158,21 +146,17 @@ impl SegmentFitter<'_> {
     /// Appends the parts of a segment, in its direction: the segment itself if `whole`, or if the map has no creases but edges.
     pub(super) fn parts(&self, seg: &Seg, jets: [&Jet; 2], whole: bool, out: &mut Vec<Part>) -> Result<(), NotFinite> {
         let creased = self.creases.items().iter().any(|c| c.kind != CreaseKind::Edge);
-        let nothing_left = self.options.budget.left() <= 0.0;
-        if whole || nothing_left || !(creased || self.is_long_arc(seg)) {
+        let is_budget_spent = self.options.budget.left() <= 0.0;
+        if whole || is_budget_spent || !(creased || self.is_long_arc(seg)) {
             out.push(Part::whole(*seg, jets));
             return Ok(());
         }
         let (canonical, flipped) = source::canonical(seg);
-        let parts = self.cut(&canonical, if flipped { [jets[1], jets[0]] } else { jets })?;
+        let mut parts = self.cut(&canonical, if flipped { [jets[1], jets[0]] } else { jets })?;
         if flipped {
-            out.extend(parts.into_iter().rev().map(|mut part| {
-                part.reverse();
-                part
-            }));
-        } else {
-            out.extend(parts);
+            Part::reverse_all(&mut parts);
         }
+        out.extend(parts);
         Ok(())
     }
 
@@ -180,8 +164,8 @@ impl SegmentFitter<'_> {
     #[inline(never)]
     fn cut(&self, seg: &Seg, [first, last]: [&Jet; 2]) -> Result<Vec<Part>, NotFinite> {
         self.spend(self.creases.splits_work(seg, self.work));
-        let (mut ends, more) = self.creases.splits_and_work(seg);
-        self.spend(more as f64 * self.work);
+        let (mut ends, evaluations) = self.creases.splits_and_work(seg);
+        self.spend(evaluations as f64 * self.work);
         if let (true, Seg::Arc(a)) = (self.is_long_arc(seg), seg) {
             let n = (a.sweep.abs() / MAX_RATIONAL_SWEEP).ceil();
             ends.extend((1..n as usize).map(|i| i as f64 / n));
@@ -192,19 +176,15 @@ impl SegmentFitter<'_> {
         let mut out = Vec::with_capacity(ends.len());
         let (mut found, mut from, mut p0) = (0, 0.0, first.p);
         while let Some(&t) = ends.last() {
-            let mut sure = true;
-            let branch = match self.branch_between(seg, from, t) {
-                Ok(b) => b,
+            let (branch, confirmed) = match self.branch_between(seg, from, t) {
+                Ok(b) => (b, true),
                 // A crease that the map does not state, or that was missed.
-                Err(at) if found < MAX_FOUND => {
+                Err(share) if found < MAX_FOUND => {
                     found += 1;
-                    ends.push(from + (t - from) * at);
+                    ends.push(from + (t - from) * share);
                     continue;
                 }
-                Err(_) => {
-                    sure = false;
-                    self.map.branch(seg.eval(0.5 * (from + t)))
-                }
+                Err(_) => (self.map.branch(seg.eval(0.5 * (from + t))), false),
             };
             ends.pop();
             let part = match seg {
@@ -212,26 +192,26 @@ impl SegmentFitter<'_> {
                 other => other.part(from, t).unwrap_or(*other),
             };
             let p3 = if t == 1.0 { last.p } else { self.map.point(part.end()) };
-            let jet = |at: Point, whole: Option<&Jet>| match (&branch, whole) {
+            let jet = |p: Point, known: Option<&Jet>| match (&branch, known) {
                 (None, Some(jet)) => *jet,
-                (None, None) => self.map.jet(at),
-                (Some(branch), _) => branch.jet(at),
+                (None, None) => self.map.jet(p),
+                (Some(branch), _) => branch.jet(p),
             };
             let mut jets =
                 [jet(part.start(), (from == 0.0).then_some(first)), jet(part.end(), (t == 1.0).then_some(last))];
             let (mut blur, mut torn) = (0.0f64, [None; 2]);
             for (k, p) in [p0, p3].into_iter().enumerate() {
-                let off = jets[k].p.distance(p);
+                let distance = jets[k].p.distance(p);
                 if !(jets[k].is_finite() && p.is_finite()) {
                     return Err(NotFinite { t: [from, t][k], at: seg.eval([from, t][k]) });
                 }
-                if off > TEAR * self.options.tolerance {
+                if distance > TEAR * self.options.tolerance {
                     torn[k] = Some(p);
                 } else {
-                    (blur, jets[k].p) = (blur.max(off), p);
+                    (blur, jets[k].p) = (blur.max(distance), p);
                 }
             }
-            out.push(Part { seg: part, jets, cut: Some(Cut { branch, blur, torn, sure }) });
+            out.push(Part { seg: part, jets, cut: Some(Cut { branch, blur, torn, confirmed }) });
             (from, p0) = (t, p3);
         }
         Ok(out)
@@ -242,30 +222,30 @@ impl SegmentFitter<'_> {
     fn branch_between(&self, seg: &Seg, from: f64, to: f64) -> Result<Option<Arc<dyn Map>>, f64> {
         /// Shares of the way that symmetrical artwork avoids, the one near the middle first.
         const PROBES: [f64; 5] = [0.483_7, 0.211_3, 0.788_9, 0.061_1, 0.939_1];
-        let place = |s: f64| seg.eval(from + (to - from) * s);
-        let at = PROBES.map(place);
-        let Some(first) = self.map.branch(at[0]) else { return Ok(None) };
+        let point = |share: f64| seg.eval(from + (to - from) * share);
+        let probes = PROBES.map(point);
+        let Some(first) = self.map.branch(probes[0]) else { return Ok(None) };
         let mut images = [[Point::ORIGIN; PROBES.len()]; 2];
-        self.map.points(&at, &mut images[0]);
-        let near = |p: Point, q: Point| {
-            let far = p.distance(q);
+        self.map.points(&probes, &mut images[0]);
+        let agree = |p: Point, q: Point| {
+            let distance = p.distance(q);
             // Where the map is not finite, the fit fails later.
-            !(far > TEAR * self.options.tolerance && far > 1e-11 * p.to_vec2().hypot())
+            !(distance > TEAR * self.options.tolerance && distance > 1e-11 * p.to_vec2().hypot())
         };
-        let mut agrees = |b: &Arc<dyn Map>| {
-            b.points(&at, &mut images[1]);
-            (0..PROBES.len()).find(|&i| !near(images[0][i], images[1][i]))
+        let mut first_difference = |b: &Arc<dyn Map>| {
+            b.points(&probes, &mut images[1]);
+            (0..PROBES.len()).find(|&i| !agree(images[0][i], images[1][i]))
         };
-        let Some(off) = agrees(&first) else { return Ok(Some(first)) };
-        let other = self.map.branch(at[off]).filter(|b| agrees(b).is_none());
+        let Some(different) = first_difference(&first) else { return Ok(Some(first)) };
+        let other = self.map.branch(probes[different]).filter(|b| first_difference(b).is_none());
         if other.is_some() {
             return Ok(other);
         }
-        let (mut inside, mut outside) = (PROBES[0], PROBES[off]);
+        let (mut inside, mut outside) = (PROBES[0], PROBES[different]);
         while (inside - outside).abs() > 1e-12 {
-            let mid = 0.5 * (inside + outside);
-            let p = place(mid);
-            *if near(self.map.point(p), first.point(p)) { &mut inside } else { &mut outside } = mid;
+            let middle = 0.5 * (inside + outside);
+            let p = point(middle);
+            *if agree(self.map.point(p), first.point(p)) { &mut inside } else { &mut outside } = middle;
         }
         Err(inside)
     }
@@ -289,8 +269,8 @@ struct Cut {
     blur: f64,
     /// The neighbour's points at ends where the map tears.
     torn: [Option<Point>; 2],
-    /// `true` if the branch was confirmed to agree with the map.
-    sure: bool,
+    /// `true` if the branch was found to agree with the map.
+    confirmed: bool,
 }
 
 impl Part {
@@ -299,19 +279,23 @@ impl Part {
         Self { seg, jets: jets.map(|j| *j), cut: None }
     }
 
-    pub(super) fn reverse(&mut self) {
-        self.jets.reverse();
-        if let Some(cut) = &mut self.cut {
-            cut.torn.reverse();
+    /// Reverses the direction of consecutive parts.
+    pub(super) fn reverse_all(parts: &mut [Self]) {
+        parts.reverse();
+        for part in parts {
+            part.jets.reverse();
+            if let Some(cut) = &mut part.cut {
+                cut.torn.reverse();
+            }
+            part.seg = part.seg.reversed();
         }
-        self.seg = self.seg.reversed();
     }
 
     /// The source curve of `seg`, the part's segment in either direction.
     pub(super) fn source<'a>(&'a self, fitter: &SegmentFitter<'a>, seg: &'a Seg) -> SourceCurve<'a> {
         let certify = fitter.options.certify;
         match self.cut.as_ref().and_then(|c| c.branch.as_ref()) {
-            None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify).known_by(fitter.overview),
+            None => SourceCurve::for_proof(seg, fitter.map, fitter.degree, certify).with_overview(fitter.overview),
             Some(b) => SourceCurve::for_proof(seg, b, b.class().degree(), certify),
         }
     }
@@ -333,7 +317,7 @@ impl Part {
 
     /// The line to the part from its neighbour at the start (0), or from the part to its neighbour at the end (1), if the map tears there.
     pub(super) fn bridge(&self, end: usize) -> Option<Piece> {
-        let (torn, own) = (self.cut.as_ref()?.torn[end]?, self.jets[end].p);
-        Some(Piece::Line(if end == 0 { Line::new(torn, own) } else { Line::new(own, torn) }))
+        let (neighbour, p) = (self.cut.as_ref()?.torn[end]?, self.jets[end].p);
+        Some(Piece::Line(if end == 0 { Line::new(neighbour, p) } else { Line::new(p, neighbour) }))
     }
 }

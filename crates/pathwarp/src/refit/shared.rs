@@ -13,11 +13,10 @@ use std::collections::HashSet;
 pub struct SharedEdges {
     /// Sorted [`fingerprint`]s, each with the smallest tolerance of the contours that have the segment. Equal fingerprints are taken for
     /// equal segments: among a million segments that is wrong once in forty million drawings, and leaves two edges unmerged.
-    twice: Vec<(u64, f64)>,
+    shared: Vec<(u64, f64)>,
     /// Sorted hashes of the nodes at which contours of different tolerances meet, each with the smallest tolerance.
     nodes: Vec<(u64, f64)>,
-    /// Sorted hashes of the nodes on shared segments at which other than two segments meet, counting a segment of several contours
-    /// once.
+    /// Sorted hashes of the nodes on shared segments at which other than two segments meet, counting a segment of several contours once.
     junctions: Vec<u64>,
     /// Sorted hashes of the nodes on shared segments at which closed contours begin.
     starts: Vec<u64>,
@@ -38,39 +37,41 @@ impl SharedEdges {
         let (mut all, mut nodes, mut whole) = (Vec::new(), Vec::new(), HashSet::new());
         for (outline, contours) in &outlines {
             for (i, s) in outline.subpaths.iter().enumerate() {
-                let held = contours.get(i).copied();
-                let directed = s.segs.iter().flat_map(|g| [mixed(&[g.start(), g.end()]), fingerprint(g)]);
-                let contour = directed.fold(u64::from(s.closed), mixed_in);
-                if !whole.insert((contour, held.map(f64::to_bits))) {
+                let tolerance = contours.get(i).copied();
+                let directed = s.segs.iter().flat_map(|g| [hash_points(&[g.start(), g.end()]), fingerprint(g)]);
+                let contour = directed.fold(u64::from(s.closed), mix);
+                if !whole.insert((contour, tolerance.map(f64::to_bits))) {
                     continue;
                 }
-                all.extend(s.segs.iter().map(|g| (fingerprint(g), held.unwrap_or(f64::INFINITY))));
-                if let Some(held) = held {
-                    nodes.extend(s.segs.iter().map(Seg::start).chain([s.end()]).map(|p| (mixed(&[p]), held)));
+                all.extend(s.segs.iter().map(|g| (fingerprint(g), tolerance.unwrap_or(f64::INFINITY))));
+                if let Some(tolerance) = tolerance {
+                    let ends = s.segs.iter().map(Seg::start).chain([s.end()]);
+                    nodes.extend(ends.map(|p| (hash_points(&[p]), tolerance)));
                 }
             }
         }
         let differ = |run: &[(u64, f64)]| run[0].1 < run[run.len() - 1].1;
-        let mut out =
-            Self { twice: smallest(all, |run| run.len() > 1), nodes: smallest(nodes, differ), ..Self::default() };
-        if !out.twice.is_empty() {
+        let shared = smallest(all, |run| run.len() > 1);
+        let mut out = Self { shared, nodes: smallest(nodes, differ), ..Self::default() };
+        if !out.shared.is_empty() {
             out.add_junctions(outlines.iter().flat_map(|(o, _)| &o.subpaths));
         }
         out
     }
 
+    /// Finds the junctions, and the nodes at which closed contours begin, on the shared segments of these subpaths.
     fn add_junctions<'a>(&mut self, subpaths: impl Iterator<Item = &'a Subpath> + Clone) {
         let shared = subpaths.clone().flat_map(|s| &s.segs).filter(|g| self.contains(g));
-        let nodes: HashSet<u64> = shared.flat_map(|g| [g.start(), g.end()].map(node)).collect();
+        let nodes: HashSet<u64> = shared.flat_map(|g| [g.start(), g.end()].map(hash_node)).collect();
         let (mut ends, mut starts) = (Vec::new(), Vec::new());
         for s in subpaths {
             for g in &s.segs {
-                let both = [g.start(), g.end()].map(node).into_iter().filter(|p| nodes.contains(p));
+                let both = [g.start(), g.end()].map(hash_node).into_iter().filter(|p| nodes.contains(p));
                 ends.extend(both.map(|p| (p, fingerprint(g))));
             }
             // Each end of an open path counts as one more segment.
-            let own = [s.start, s.end()].map(node).into_iter().filter(|p| nodes.contains(p));
-            if s.closed { starts.extend(own.take(1)) } else { ends.extend(own.map(|p| (p, 0))) }
+            let both = [s.start, s.end()].map(hash_node).into_iter().filter(|p| nodes.contains(p));
+            if s.closed { starts.extend(both.take(1)) } else { ends.extend(both.map(|p| (p, 0))) }
         }
         ends.sort_unstable();
         ends.dedup();
@@ -81,18 +82,17 @@ impl SharedEdges {
 
     /// Returns `true` if other than two segments meet at a node of a shared segment.
     pub(super) fn is_junction(&self, p: Point) -> bool {
-        self.junctions.binary_search(&node(p)).is_ok()
+        self.junctions.binary_search(&hash_node(p)).is_ok()
     }
 
     /// Returns `true` if two consecutive segments lie on one chain, or if neither is shared.
-    pub(super) fn goes_on(&self, before: &Seg, after: &Seg) -> bool {
+    pub(super) fn continues_chain(&self, before: &Seg, after: &Seg) -> bool {
         // The two directions of an arc are computed differently, so arcs end a chain.
         let is_arc = |g: &Seg| matches!(g, Seg::Arc(_));
+        let is_start = |p: Point| self.starts.binary_search(&hash_node(p)).is_ok();
         match [before, after].map(|g| self.contains(g)) {
             [true, true] => {
-                let ends =
-                    || self.is_junction(after.start()) || self.starts.binary_search(&node(after.start())).is_ok();
-                !(is_arc(before) || is_arc(after) || ends())
+                !(is_arc(before) || is_arc(after) || self.is_junction(after.start()) || is_start(after.start()))
             }
             [a, b] => a == b,
         }
@@ -105,7 +105,7 @@ impl SharedEdges {
 
     /// The smallest tolerance of the contours that share a segment.
     pub(crate) fn tolerance_of(&self, seg: &Seg) -> Option<f64> {
-        if self.twice.is_empty() { None } else { found(&self.twice, fingerprint(seg)) }
+        if self.shared.is_empty() { None } else { value_of(&self.shared, fingerprint(seg)) }
     }
 
     /// Returns `true` if one of the segments is shared.
@@ -118,10 +118,11 @@ impl SharedEdges {
     pub fn spans(&self, outline: &Outline, contours: &[f64]) -> Vec<Span> {
         let mut out: Vec<Span> = Vec::new();
         for (s, &contour) in outline.subpaths.iter().zip(contours) {
-            let at = |p: Point| found(&self.nodes, mixed(&[p])).unwrap_or(contour);
-            let (first, mut from) = (out.len(), at(s.start));
+            let node_tolerance = |p: Point| value_of(&self.nodes, hash_points(&[p])).unwrap_or(contour);
+            let (first, mut from) = (out.len(), node_tolerance(s.start));
             for g in &s.segs {
-                let (tolerance, to) = (self.tolerance_of(g).map_or(contour, |t| t.min(contour)), at(g.end()));
+                let tolerance = self.tolerance_of(g).map_or(contour, |t| t.min(contour));
+                let to = node_tolerance(g.end());
                 match out[first..].last_mut() {
                     // A node that other contours follow more closely remains a node.
                     Some(last) if last.tolerance == tolerance && from >= tolerance => {
@@ -155,7 +156,7 @@ fn smallest(mut all: Vec<(u64, f64)>, kept: impl Fn(&[(u64, f64)]) -> bool) -> V
 }
 
 /// The value of a key, if it is in the list.
-fn found(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
+fn value_of(sorted: &[(u64, f64)], key: u64) -> Option<f64> {
     sorted.binary_search_by_key(&key, |(k, _)| *k).ok().map(|i| sorted[i].1)
 }
 
@@ -164,32 +165,32 @@ pub(crate) fn fingerprint(seg: &Seg) -> u64 {
     let backwards = source::is_backwards(seg);
     let ends = |p: Point, q: Point| if backwards { [q, p] } else { [p, q] };
     match seg {
-        Seg::Line(s) => mixed(&ends(s.p0, s.p1)),
+        Seg::Line(s) => hash_points(&ends(s.p0, s.p1)),
         Seg::Quad(s) => {
             let [p, q] = ends(s.p0, s.p2);
-            mixed(&[p, s.p1, q])
+            hash_points(&[p, s.p1, q])
         }
         Seg::Cubic(s) => {
             let ([p, q], [a, b]) = (ends(s.p0, s.p3), ends(s.p1, s.p2));
-            mixed(&[p, a, b, q])
+            hash_points(&[p, a, b, q])
         }
         Seg::Arc(s) => {
             // The middle distinguishes arcs between the same ends. It is rounded, since the two directions compute it differently.
             let (canonical, _) = source::canonical(seg);
             let m = canonical.eval(0.5);
             let [p, q] = ends(s.p0, s.p1);
-            mixed(&[p, q, Point::new(f64::from(m.x as f32), f64::from(m.y as f32))])
+            hash_points(&[p, q, Point::new(f64::from(m.x as f32), f64::from(m.y as f32))])
         }
     }
 }
 
 /// A hash of a node, the same for either sign of a zero coordinate.
-fn node(p: Point) -> u64 {
-    mixed(&[Point::new(p.x + 0.0, p.y + 0.0)])
+fn hash_node(p: Point) -> u64 {
+    hash_points(&[Point::new(p.x + 0.0, p.y + 0.0)])
 }
 
 /// Returns `true` if the agreed direction of a chain is the reverse of the given one.
-pub(super) fn is_turned(chain: &[Seg]) -> bool {
+pub(super) fn is_reversed(chain: &[Seg]) -> bool {
     let key = |p: Point| (p.x, p.y);
     let (Some(first), Some(last)) = (chain.first(), chain.last()) else { return false };
     // If both ends are one node, the nodes beside it decide.
@@ -199,17 +200,17 @@ pub(super) fn is_turned(chain: &[Seg]) -> bool {
 
 /// A hash of points, in which every bit of a coordinate counts.
 #[inline(always)]
-fn mixed(points: &[Point]) -> u64 {
-    points.iter().fold(points.len() as u64, |hash, p| mixed_in(mixed_in(hash, p.x.to_bits()), p.y.to_bits()))
+fn hash_points(points: &[Point]) -> u64 {
+    points.iter().fold(points.len() as u64, |hash, p| mix(mix(hash, p.x.to_bits()), p.y.to_bits()))
 }
 
 /// Multiplies a word into a hash and folds the product.
 #[inline(always)]
-fn mixed_in(hash: u64, word: u64) -> u64 {
+fn mix(hash: u64, word: u64) -> u64 {
     /// The odd number nearest to 2⁶⁴ divided by the golden ratio.
     const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
     let product = u128::from(hash ^ word) * u128::from(FACTOR);
-    product as u64 ^ (product >> 64) as u64
+    (product as u64) ^ ((product >> 64) as u64)
 }
 
 #[cfg(test)]

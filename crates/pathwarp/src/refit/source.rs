@@ -3,7 +3,7 @@
 
 use super::limits::HIDDEN;
 use super::overview::Overview;
-use crate::map::{Enclosure, Jet, Map, RationalBezier, RationalDegree, along};
+use crate::map::{Enclosure, Jet, Map, RationalBezier, RationalDegree, enclose_segment};
 use crate::outline::Seg;
 use bezierfit::parts::{VANISHING_DERIVATIVE, fma, tangent_beside};
 use bezierfit::{BreakPoint, Lane, Lanes, NotFinite, Quotient, SlowSpots, Source};
@@ -25,7 +25,7 @@ pub(super) struct SourceCurve<'a> {
     /// The derivative at the end: exact, whereas the power basis rounds it.
     last: Vec2,
     /// The length of the control polygon: the scale against which derivatives are judged.
-    size: f64,
+    pub(super) size: f64,
     /// The denominator of an arc in rational form, in the power basis. If set, `c` holds the numerators relative to the centre.
     w: Option<[f64; 3]>,
     /// Bounds for the map around the segment.
@@ -58,7 +58,7 @@ impl<'a> SourceCurve<'a> {
     }
 
     /// Returns this curve with an overview of its map.
-    pub(super) fn known_by(self, overview: Option<&'a Overview>) -> Self {
+    pub(super) fn with_overview(self, overview: Option<&'a Overview>) -> Self {
         Self { overview, ..self }
     }
 
@@ -74,7 +74,7 @@ impl<'a> SourceCurve<'a> {
     }
 
     /// Turns an arc of less than half a turn into a rational quadratic.
-    pub(super) fn make_rational(&mut self) {
+    fn make_rational(&mut self) {
         let Seg::Arc(a) = self.seg else { return };
         // At half a turn the weight of the middle control point is zero.
         if a.sweep.abs() > 3.0 {
@@ -82,9 +82,9 @@ impl<'a> SourceCurve<'a> {
         }
         // With h half the sweep and s = sin h, c = cos h, the control points in the axes of the middle angle are (c, −s),
         // (1, 0), (c, s), with weights 1, c, 1. Numerators and denominator are converted to the power basis.
-        let (h, mid) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
+        let (h, middle) = (0.5 * a.sweep, a.start + 0.5 * a.sweep);
         let (s, c) = h.sin_cos();
-        let (sm, cm) = mid.sin_cos();
+        let (sm, cm) = middle.sin_cos();
         let (u, v) = (a.a * cm + a.b * sm, a.b * cm - a.a * sm);
         self.c = [u * c - v * s, u * (2.0 * (1.0 - c)) + v * (2.0 * s), u * (2.0 * (c - 1.0)), Vec2::ZERO];
         self.w = Some([1.0, 2.0 * (c - 1.0), 2.0 * (1.0 - c)]);
@@ -102,11 +102,6 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// Returns `true` if the source has a denominator.
-    pub(super) fn is_rational(&self) -> bool {
-        self.w.is_some()
-    }
-
     fn deriv_rational(&self, t: f64) -> Vec2 {
         let [c0, c1, c2, _] = self.c;
         let Some([w0, w1, w2]) = self.w else { return Vec2::ZERO };
@@ -115,8 +110,19 @@ impl<'a> SourceCurve<'a> {
         (dn * w - n * dw) / (w * w)
     }
 
+    /// The slow spots, as parameters of this curve.
+    pub(super) fn slow_spots(&self) -> SlowSpots {
+        let spots = match self.seg {
+            Seg::Line(_) => return SlowSpots::default(),
+            Seg::Quad(s) => SlowSpots::of_quad(s),
+            Seg::Cubic(s) => SlowSpots::of_cubic(s),
+            Seg::Arc(s) => SlowSpots::of_arc([s.a, s.b], s.start, s.sweep),
+        };
+        if self.w.is_some() { spots.map(|t| self.param(t)) } else { spots }
+    }
+
     /// Converts a parameter of the segment to one of this curve.
-    pub(super) fn param(&self, t: f64) -> f64 {
+    fn param(&self, t: f64) -> f64 {
         match (self.seg, self.w) {
             (Seg::Arc(a), Some(_)) => {
                 // The tangent of half the angle from the middle is linear in the rational parameter.
@@ -124,17 +130,6 @@ impl<'a> SourceCurve<'a> {
                 0.5 + 0.5 * (h * (2.0 * t - 1.0)).tan() / h.tan()
             }
             _ => t,
-        }
-    }
-
-    /// The degree of the source as a quotient of polynomials, and `true` if it has a denominator. `None` for an arc that is
-    /// not in rational form.
-    fn seg_degree(&self) -> Option<(usize, bool)> {
-        match self.seg {
-            Seg::Line(_) => Some((1, false)),
-            Seg::Quad(_) => Some((2, false)),
-            Seg::Cubic(_) => Some((3, false)),
-            Seg::Arc(_) => self.w.map(|_| (2, true)),
         }
     }
 
@@ -152,14 +147,9 @@ impl<'a> SourceCurve<'a> {
         }
     }
 
-    /// The length of the control polygon.
-    pub(super) fn size(&self) -> f64 {
-        self.size
-    }
-
     /// The source points at eight parameters.
     #[inline(always)]
-    pub(super) fn seg_points(&self, t: &Lane) -> Lanes {
+    fn seg_points(&self, t: &Lane) -> Lanes {
         let mut out = Lanes::default();
         if let Seg::Arc(a) = self.seg {
             if let Some([w0, w1, w2]) = self.w {
@@ -229,15 +219,14 @@ impl<'a> SourceCurve<'a> {
     #[cold]
     fn one_sided_tangent(&self, t: f64, side: f64, jet: &Jet) -> Vec2 {
         if !matches!(self.seg, Seg::Arc(_)) {
-            let v = self.deriv(t);
-            let a = self.c[2] * 2.0 + self.c[3] * (6.0 * t);
-            let b = self.c[3] * 6.0;
-            let small = (VANISHING_DERIVATIVE * self.size) * 10.0;
-            if v.hypot() <= small {
-                let w = if a.hypot() > small { a * side } else { b };
-                let d = jet.push(w);
-                let whole = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * w.hypot();
-                if d.hypot() > 1e-6 * whole {
+            let first = self.deriv(t);
+            let (second, third) = (self.c[2] * 2.0 + self.c[3] * (6.0 * t), self.c[3] * 6.0);
+            let negligible = (VANISHING_DERIVATIVE * self.size) * 10.0;
+            if first.hypot() <= negligible {
+                let v = if second.hypot() > negligible { second * side } else { third };
+                let d = jet.push(v);
+                let largest = (jet.dx.hypot2() + jet.dy.hypot2()).sqrt() * v.hypot();
+                if d.hypot() > 1e-6 * largest {
                     return d / d.hypot();
                 }
             }
@@ -271,13 +260,17 @@ impl Source for SourceCurve<'_> {
     }
 
     fn quotient(&self) -> Option<Quotient> {
-        let (degree, rational) = self.seg_degree()?;
+        let (degree, rational) = match self.seg {
+            Seg::Line(_) => (1, false),
+            Seg::Quad(_) => (2, false),
+            Seg::Cubic(_) => (3, false),
+            // Only in rational form is an arc a quotient of polynomials.
+            Seg::Arc(_) => self.w.map(|_| (2, true))?,
+        };
         if let Some(map) = self.degree {
             let degree = map.degree * degree;
-            return Some(Quotient {
-                below: if map.rational || rational { degree } else { 0 },
-                ..Quotient::polynomial(degree)
-            });
+            let below = if map.rational || rational { degree } else { 0 };
+            return Some(Quotient { below, ..Quotient::polynomial(degree) });
         }
         if rational {
             return None;
@@ -306,12 +299,13 @@ impl Source for SourceCurve<'_> {
         }
         if let (Some(overview), Seg::Line(_) | Seg::Quad(_) | Seg::Cubic(_)) = (self.overview, self.seg) {
             let ([_, c1, c2, c3], [t, h]) = (self.c, [between[0], between[1] - between[0]]);
-            let way = [(c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t) * h, (c2 + c3 * (3.0 * t)) * (h * h), c3 * (h * h * h)];
-            if overview.resolves(self.at(t), way, intervals, HIDDEN * tolerance) {
+            let coefficients =
+                [(c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t) * h, (c2 + c3 * (3.0 * t)) * (h * h), c3 * (h * h * h)];
+            if overview.resolves(self.at(t), coefficients, intervals, HIDDEN * tolerance) {
                 return Some(true);
             }
         }
-        let along = along(self.seg, between.map(|t| self.segment_param(t)));
+        let along = enclose_segment(self.seg, between.map(|t| self.segment_param(t)));
         if let Some(detail) = self.map.detail(Enclosure::area(&along)) {
             return Some(along[0].d[0].hypot(along[1].d[0]) <= 0.5 * intervals as f64 * detail);
         }
@@ -341,8 +335,7 @@ impl Source for SourceCurve<'_> {
     }
 }
 
-/// Returns the segment in the direction in which every copy of it is fitted, and `true` if that is the reverse of the given
-/// one.
+/// Returns the segment in the direction in which every copy of it is fitted, and `true` if that is the reverse of the given one.
 ///
 /// Two shapes that share an edge run along it in opposite directions. Fitting one of them and mirroring the result gives
 /// both the same curves to the last bit.
@@ -366,17 +359,6 @@ pub(super) fn is_backwards(seg: &Seg) -> bool {
 #[inline]
 fn compare(a: Point, b: Point) -> Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-}
-
-/// The slow spots of `seg`.
-#[inline]
-pub(super) fn slow_spots(seg: &Seg) -> SlowSpots {
-    match seg {
-        Seg::Line(_) => SlowSpots::default(),
-        Seg::Quad(s) => SlowSpots::of_quad(s),
-        Seg::Cubic(s) => SlowSpots::of_cubic(s),
-        Seg::Arc(s) => SlowSpots::of_arc([s.a, s.b], s.start, s.sweep),
-    }
 }
 
 #[cfg(test)]

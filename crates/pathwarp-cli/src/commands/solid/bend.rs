@@ -1,6 +1,6 @@
 //! Deforms models: meshes and curved surfaces are built, deformed, reported and drawn.
 
-use super::args::Own;
+use super::args::SolidOptions;
 use super::model::{ModelFormat, NAMES, mesh_file, pending, unread};
 use super::report::Run;
 use crate::commands::exact::dxf;
@@ -34,12 +34,12 @@ pub(super) struct Work<'a> {
     pub(super) registry: &'a Registry3,
     pub(super) recipe: &'a Recipe,
     pub(super) options: &'a CommonOptions,
-    pub(super) own: &'a Own,
+    pub(super) solid: &'a SolidOptions,
     pub(super) flags: &'a Flags,
 }
 
 /// A deformed model.
-pub(super) struct Done {
+pub(super) struct Bent {
     pub(super) files: Vec<PendingFile>,
     pub(super) warnings: Vec<String>,
     pub(super) notes: Vec<String>,
@@ -59,7 +59,7 @@ impl Work<'_> {
         budget: &Arc<Budget>,
     ) -> Result<(Frame3, BuiltRecipe3), Failure> {
         let bounds = bounds.unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
-        let frame = Frame3::new(self.own.frame.unwrap_or(bounds));
+        let frame = Frame3::new(self.solid.frame.unwrap_or(bounds));
         let built = recipe::build_within(self.recipe, self.registry, frame, points, budget).map_err(|e| match e {
             Error::Geometry(GeometryError::Limit(e)) => too_much(name, &e),
             other => Failure::of_recipe(other),
@@ -93,7 +93,7 @@ impl Work<'_> {
 }
 
 /// Fails if searches for an inverse have exceeded the limit. This takes precedence over any result or other error of the map.
-pub(super) fn check(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
+fn check_searches(name: &str, built: &BuiltRecipe3) -> Result<(), Failure> {
     built.exceeded().map_or(Ok(()), |e| Err(too_much(name, &e)))
 }
 
@@ -103,7 +103,7 @@ fn too_much(name: &str, e: &Exceeded) -> Failure {
 }
 
 /// Returns the failure of a point without image.
-pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
+fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Failure {
     Failure::Geometry(format!(
         "{name}: {what} at {x:.6},{y:.6},{z:.6} has no image: the map is infinite or undefined there; move its control points \
          less, or choose another eye or region"
@@ -111,7 +111,7 @@ pub(super) fn undefined(name: &str, what: &str, DVec3 { x, y, z }: DVec3) -> Fai
 }
 
 /// Formats a point for a message.
-pub(super) fn shown(p: DVec3) -> String {
+fn coordinates(p: DVec3) -> String {
     format!("{:.6},{:.6},{:.6}", p.x, p.y, p.z)
 }
 
@@ -121,61 +121,60 @@ pub(super) struct MeshSource {
     pub(super) mesh: Mesh,
     pub(super) format: ModelFormat,
     /// `true` if it is an extruded drawing.
-    pub(super) drawn: bool,
+    pub(super) is_drawing: bool,
 }
 
 /// Deforms a mesh.
-pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: &Arc<Budget>) -> Result<Done, Failure> {
+pub(super) fn bend_mesh(work: &Work<'_>, job: &Job, source: MeshSource, budget: &Arc<Budget>) -> Result<Bent, Failure> {
     let started = Instant::now();
     let options = work.options;
-    let MeshSource { name, mut mesh, format, drawn } = source;
+    let MeshSource { name, mut mesh, format, is_drawing } = source;
     if format.is_curved() {
         // Fail before the work begins.
         mesh_file(&mesh, format, None)?;
     }
     let before = (options.report.is_some() || job.preview.is_some()).then(|| mesh.clone());
     let (frame, built) = work.build(&name, mesh.bounds(), &mesh.positions, budget)?;
-    if let Some(length) = work.own.refine {
+    if let Some(length) = work.solid.refine {
         let within = length.in_units(Axis::X, &frame.front());
-        refine(&mut mesh, &built.map, within, budget).map_err(|e| match &e.problem {
-            MeshFault::Limit(_) => match unread(&name, &e) {
-                Failure::Input(m) => Failure::Input(m.replacen("; if", "; allow a larger --refine, or if", 1)),
-                other => other,
-            },
-            _ => unread(&name, &e),
+        refine(&mut mesh, &built.map, within, budget).map_err(|e| match (unread(&name, &e), &e.problem) {
+            (Failure::Input(message), MeshFault::Limit(_)) => {
+                Failure::Input(message.replacen("; if", "; allow a larger --refine, or if", 1))
+            }
+            (other, _) => other,
         })?;
     }
     let deformed = deform(&mut mesh, &built.map);
-    check(&name, &built)?;
+    check_searches(&name, &built)?;
     let deformed = deformed.map_err(|e| undefined(&name, &format!("vertex {}", e.vertex + 1), e.at))?;
 
     let mut warnings: Vec<String> = mesh.left_out.iter().map(|what| format!("left out: {what}")).collect();
     let partial = !warnings.is_empty();
     let mut lost = format.lost(&mesh);
     // The names of a drawing's shapes do not matter to printers.
-    lost.retain(|what| !(drawn && *what == NAMES));
+    lost.retain(|what| !(is_drawing && *what == NAMES));
     if !lost.is_empty() {
         let others = if format == ModelFormat::Obj { ".glb has" } else { ".obj and .glb have" };
         warnings.push(format!("the format of the result has no room for {}; {others}", lost.join(", ")));
     }
     warnings.extend(work.warnings(&built));
     warnings.extend(mesh_warnings(&deformed).into_iter().map(|w| work.flags.in_text(&w)));
-    if work.own.refine.is_none() {
-        warnings.extend(coarse(&deformed, &mesh));
+    if work.solid.refine.is_none() {
+        warnings.extend(straight_edges_warning(&deformed, &mesh));
     }
     let mut files = vec![pending(job.target.as_deref(), mesh_file(&mesh, format, options.precision)?)?];
     files.extend(Work::saves(&built)?);
     let run = work.run(&name, job, &warnings, started);
     let reported = before.as_ref().filter(|_| options.report.is_some());
-    let report = reported.map(|before| run.of_mesh([before, &mesh], &deformed)).transpose()?;
+    let report = reported.map(|before| run.mesh_report([before, &mesh], &deformed)).transpose()?;
     if let (Some(file), Some(before)) = (&job.preview, &before) {
         files.push(Preview::of([before, &mesh], &built).file(file, options.quality, budget)?);
     }
-    Ok(Done { files, warnings, notes: work.notes(&frame, &built), report, partial })
+    Ok(Bent { files, warnings, notes: work.notes(&frame, &built), report, partial })
 }
 
 /// Warns of straight edges that should be curved, if that is visible.
-fn coarse(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
+fn straight_edges_warning(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
     /// Distances below this share of the result's size are hardly visible.
     const SEEN: f64 = 0.02;
     /// The distance that is suggested instead, as a share of the size.
@@ -192,14 +191,13 @@ fn coarse(deformed: &Deformed, mesh: &Mesh) -> Option<String> {
 
 /// Warns of folds and tears.
 fn mesh_warnings(deformed: &Deformed) -> Vec<String> {
-    let fold = deformed.folded_at.map(|at| {
-        let (count, at) = (deformed.folded, shown(at));
-        format!("the map turns space inside out at {count} vertices, first at {at}: faces there point inwards")
+    let Deformed { folded, torn, .. } = deformed;
+    let fold = deformed.folded_at.map(coordinates).map(|at| {
+        format!("the map turns space inside out at {folded} vertices, first at {at}: faces there point inwards")
     });
-    let tear = deformed.torn_at.map(|at| {
-        let (count, at) = (deformed.torn, shown(at));
+    let tear = deformed.torn_at.map(coordinates).map(|at| {
         format!(
-            "the model is torn apart along {count} edges, first near {at}, where the moved region ends: keep the control points of \
+            "the model is torn apart along {torn} edges, first near {at}, where the moved region ends: keep the control points of \
              that face in place (`freeze` of ffd), or choose another region"
         )
     });
@@ -210,7 +208,7 @@ fn mesh_warnings(deformed: &Deformed) -> Vec<String> {
 const TOLERANCE: f64 = 1e-4;
 
 /// Distance for polygons in previews, as a share of the model's size; facets stay invisible.
-const SEEN: f64 = 3e-4;
+const PREVIEW_TOLERANCE: f64 = 3e-4;
 
 /// Surfaces as read, and the format to write.
 pub(super) struct SurfaceSource {
@@ -225,7 +223,7 @@ pub(super) fn bend_surfaces(
     job: &Job,
     source: SurfaceSource,
     budget: &Arc<Budget>,
-) -> Result<Done, Failure> {
+) -> Result<Bent, Failure> {
     let started = Instant::now();
     let options = work.options;
     let SurfaceSource { name, mut surfaces, format } = source;
@@ -235,23 +233,23 @@ pub(super) fn bend_surfaces(
     let points: Vec<DVec3> = surfaces.iter().flat_map(|s| s.points.iter().copied()).collect();
     let bounds = Box3::around(points.iter().copied());
     let (frame, built) = work.build(&name, bounds, &points, budget)?;
-    let within = work.own.refine.map(|l| l.in_units(Axis::X, &frame.front()));
+    let within = work.solid.refine.map(|l| l.in_units(Axis::X, &frame.front()));
     let tolerance = within.unwrap_or_else(|| TOLERANCE * bounds.map_or(1.0, |b| b.diagonal()));
     let before = surfaces.clone();
-    let done = deform_patches(&mut surfaces, &built.map, tolerance, budget);
-    check(&name, &built)?;
-    let done = done.map_err(|e| failed(&name, &e))?;
+    let deformed = deform_patches(&mut surfaces, &built.map, tolerance, budget);
+    check_searches(&name, &built)?;
+    let deformed = deformed.map_err(|e| patch_failure(&name, &e))?;
     let mut warnings = work.warnings(&built);
-    let shape = shape_warnings(&done, format.is_curved().then_some(tolerance));
+    let shape = surface_warnings(&deformed, format.is_curved().then_some(tolerance));
     warnings.extend(shape.into_iter().map(|w| work.flags.in_text(&w)));
     // The polygons are the source's with mapped points, so closed surfaces stay closed.
     let image = |within: Option<f64>| -> Result<Mesh, Failure> {
         let mesh = tessellate_image(&before, &built.map, within, budget).map_err(|e| surfaces_too_much(&name, &e))?;
-        check(&name, &built)?;
-        match mesh.positions.iter().all(|p| p.is_finite()) {
-            true => Ok(mesh),
-            false => Err(Failure::Input(format!("{name}: a place of the surfaces has no image"))),
+        check_searches(&name, &built)?;
+        if mesh.positions.iter().all(|p| p.is_finite()) {
+            return Ok(mesh);
         }
+        Err(Failure::Input(format!("{name}: a place of the surfaces has no image")))
     };
     let bytes = match format {
         ModelFormat::Bpt => bpt::write(&surfaces).map_err(|e| Failure::usage(format!("{name}: {e}")))?.into_bytes(),
@@ -271,64 +269,66 @@ pub(super) fn bend_surfaces(
     let mut files = vec![pending(job.target.as_deref(), bytes)?];
     files.extend(Work::saves(&built)?);
     let run = work.run(&name, job, &warnings, started);
-    let report = options.report.as_ref().map(|_| run.of_surfaces([&before, &surfaces], &done)).transpose()?;
+    let report = options.report.as_ref().map(|_| run.surface_report([&before, &surfaces], &deformed)).transpose()?;
     if let Some(file) = &job.preview {
-        let fine = bounds.map(|b| SEEN * b.diagonal());
+        let fine = bounds.map(|b| PREVIEW_TOLERANCE * b.diagonal());
         let before = tessellate(&before, fine, budget).map_err(|e| surfaces_too_much(&name, &e))?;
         let after = image(fine)?;
         files.push(Preview::of([&before, &after], &built).file(file, options.quality, budget)?);
     }
     let mut notes = work.notes(&frame, &built);
-    notes.extend(surface_notes(&done, format, surfaces.len()));
-    let partial = format.is_curved() && done.distance > tolerance;
-    Ok(Done { files, warnings, notes, report, partial })
+    notes.extend(surface_notes(&deformed, format, surfaces.len()));
+    let partial = format.is_curved() && deformed.distance > tolerance;
+    Ok(Bent { files, warnings, notes, report, partial })
 }
 
 /// Describes the changes of the surfaces; the result has `all` of them.
-fn surface_notes(done: &DeformedPatches, format: ModelFormat, all: usize) -> Vec<String> {
-    let mut notes = vec![match done.refitted {
+fn surface_notes(deformed: &DeformedPatches, format: ModelFormat, all: usize) -> Vec<String> {
+    let DeformedPatches { exact, refitted, distance, cut, .. } = deformed;
+    let mut notes = vec![match refitted {
         _ if !format.is_curved() => "the corners of all polygons are exact images".into(),
-        0 => format!("the images of {} surfaces are exact", done.exact),
-        n => format!("the images of {} surfaces are exact, and of {n} within {:.3e}", done.exact, done.distance),
+        0 => format!("the images of {exact} surfaces are exact"),
+        n => format!("the images of {exact} surfaces are exact, and of {n} within {distance:.3e}"),
     }];
-    if done.cut > 0 && format.is_curved() {
-        notes.push(format!("{} of them are cut along a crease of the map; the result has {all} surfaces", done.cut));
+    if *cut > 0 && format.is_curved() {
+        notes.push(format!("{cut} of them are cut along a crease of the map; the result has {all} surfaces"));
     }
     notes
 }
 
-fn failed(name: &str, e: &PatchError) -> Failure {
+/// Returns the failure to deform surfaces.
+fn patch_failure(name: &str, e: &PatchError) -> Failure {
     match e {
         PatchError::Undefined { surface, at } => undefined(name, &format!("surface {}", surface + 1), *at),
         PatchError::Limit(e) => surfaces_too_much(name, e),
     }
 }
 
+/// Returns the failure of surfaces that take too much work.
 fn surfaces_too_much(name: &str, e: &Exceeded) -> Failure {
     Failure::Input(format!("{name}: the surfaces take {e}; allow a larger --refine, or {}", advice::raise(e)))
 }
 
 /// Warns of inexact and folded surfaces. `tolerance` is for refitted surfaces, if they are written.
-fn shape_warnings(done: &DeformedPatches, tolerance: Option<f64>) -> Vec<String> {
-    let fold = done.folded_at.map(|at| {
-        let (count, at) = (done.folded, shown(at));
-        format!("the map turns space inside out at {count} places of the surfaces, first at {at}")
-    });
-    let far = tolerance.filter(|t| done.distance > *t).map(|tolerance| {
+fn surface_warnings(deformed: &DeformedPatches, tolerance: Option<f64>) -> Vec<String> {
+    let DeformedPatches { refitted, distance, folded, .. } = deformed;
+    let fold = deformed
+        .folded_at
+        .map(coordinates)
+        .map(|at| format!("the map turns space inside out at {folded} places of the surfaces, first at {at}"));
+    let inexact = tolerance.filter(|t| distance > t).map(|tolerance| {
         format!(
-            "{} refitted surfaces are up to {:.3e} from their images instead of {tolerance:.3e}: the map has a crease there, such as \
-             the end of a region; cut the surfaces along it, or allow a larger --refine",
-            done.refitted, done.distance
+            "{refitted} refitted surfaces are up to {distance:.3e} from their images instead of {tolerance:.3e}: the map has a crease \
+             there, such as the end of a region; cut the surfaces along it, or allow a larger --refine"
         )
     });
-    let tear = done.torn_at.map(|at| {
+    let tear = deformed.torn_at.map(coordinates).map(|at| {
         format!(
-            "the surfaces are torn apart, for example near {}, where the moved region ends: keep the control points of that face in \
-             place (`freeze` of ffd), or choose another region",
-            shown(at)
+            "the surfaces are torn apart, for example near {at}, where the moved region ends: keep the control points of that face in \
+             place (`freeze` of ffd), or choose another region"
         )
     });
-    fold.into_iter().chain(tear).chain(far).collect()
+    fold.into_iter().chain(tear).chain(inexact).collect()
 }
 
 /// Pixels along a side of a panel.
@@ -354,10 +354,9 @@ impl<'a> Preview<'a> {
     /// Draws the preview in the format of the file's extension.
     fn file(&self, file: &Path, quality: Option<u8>, budget: &Budget) -> Result<PendingFile, Failure> {
         let format = PREVIEW.format(Some(file), None)?;
-        let whole = 2 * SIDE + GAP;
-        let size = whole as u32;
+        let width = 2 * SIDE + GAP;
         let too_large = || Failure::Output(format!("{}: too large to draw", file.display()));
-        let mut picture = Pixmap::new(size, size).ok_or_else(too_large)?;
+        let mut picture = Pixmap::new(width as u32, width as u32).ok_or_else(too_large)?;
         picture.data_mut().fill(u8::MAX);
         let boxes = [self.before.bounds(), self.after.bounds()].into_iter().flatten();
         let scene = Box3::around(boxes.flat_map(|b| [b.min, b.max]));
@@ -368,18 +367,17 @@ impl<'a> Preview<'a> {
         for (row, (mesh, guides)) in [(self.before, &[][..]), (self.after, self.guides)].into_iter().enumerate() {
             for (column, camera) in [first, second].into_iter().flatten().enumerate() {
                 let counted = bitmap::count_pixels(budget, Pixel::Sampled, samples(mesh, &camera, SIDE));
-                counted.map_err(|e| preview_too_much(&e))?;
+                let advice = |e| format!("the preview takes {e}; leave it out, or {}", advice::raise(&e));
+                counted.map_err(|e| Failure::Input(advice(e)))?;
                 let panel = draw(mesh, guides, &camera, SIDE);
+                // A pixel has four bytes.
                 for (y, line) in panel.chunks(4 * SIDE).enumerate() {
-                    let at = 4 * ((row * (SIDE + GAP) + y) * whole + column * (SIDE + GAP));
-                    picture.data_mut()[at..at + line.len()].copy_from_slice(line);
+                    let (left, top) = (column * (SIDE + GAP), row * (SIDE + GAP));
+                    let start = 4 * (((top + y) * width) + left);
+                    picture.data_mut()[start..start + line.len()].copy_from_slice(line);
                 }
             }
         }
         PendingFile::new(file, &encode(picture, format, quality)?)
     }
-}
-
-fn preview_too_much(e: &Exceeded) -> Failure {
-    Failure::Input(format!("the preview takes {e}; leave it out, or {}", advice::raise(e)))
 }

@@ -6,13 +6,12 @@ mod model;
 mod report;
 mod warp;
 
-use crate::arguments;
-use crate::arguments::reading_args;
+use crate::arguments::{self, reading_args};
 use crate::commands::args::{file_arg, given_file, switch};
 use crate::commands::map::{points_args, print_images, read_points};
 use crate::ending::{Ending, Status};
 use crate::steps;
-use args::{Own, frame_arg, given_frame, model_args, options};
+use args::{SolidOptions, frame_arg, given_frame, model_args, options};
 use clap::{ArgMatches, Command};
 use pathwarp::GeometryError;
 use pathwarp::budget::Budget;
@@ -67,7 +66,7 @@ pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, End
                 given = given.joined(&part.options)?;
             }
             let given = given.joined(&arguments::given(m))?;
-            Ok(warp::run(&registry, &recipe, &given, &Own::read(m)?, None)?)
+            Ok(warp::run(&registry, &recipe, &given, &SolidOptions::read(m)?, None)?)
         }
         _ if !later.is_empty() => {
             Err(Failure::usage(format!("{name} is not a deformation of space; `+` chains deformations")).into())
@@ -115,15 +114,15 @@ fn map_command(registry: &Registry3) -> Command {
 fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
     let reading = arguments::reading(m)?;
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
-    let mut steps = Recipe { steps: vec![steps::step(registry, name, m)] };
-    steps.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
-    references::resolve_files(registry, &mut steps, &reading)?;
+    let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
+    recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
+    references::resolve_files(registry, &mut recipe, &reading)?;
     let (points, bytes) = read_points(m, "three numbers x y z")?;
     let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
-    let around = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
-    let frame = Frame3::new(given_frame(m)?.unwrap_or(around));
+    let bounds = Box3::around(points.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
+    let frame = Frame3::new(given_frame(m)?.unwrap_or(bounds));
     let budget = Arc::new(Budget::new(reading.limits.for_input(bytes)));
-    let built = recipe::build_within(&steps, registry, frame, &points, &budget).map_err(Failure::of_recipe)?;
+    let built = recipe::build_within(&recipe, registry, frame, &points, &budget).map_err(Failure::of_recipe)?;
     let map = &built.map;
     let mut creases = Creases3::default();
     map.creases(&mut creases);
@@ -132,9 +131,9 @@ fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<St
     if let Some(e) = built.exceeded() {
         return Err(Failure::of_recipe(GeometryError::Limit(e).into()).into());
     }
-    let image = |(p, j): (&DVec3, &Jet3)| {
-        let defined = creases.defined_at(*p) && j.p.is_finite();
-        (defined.then_some(j.p.to_array()), j.d.to_cols_array())
+    let image = |(p, jet): (&DVec3, &Jet3)| {
+        let is_defined = creases.defined_at(*p) && jet.p.is_finite();
+        (is_defined.then_some(jet.p.to_array()), jet.d.to_cols_array())
     };
     Ok(print_images(m, points.iter().zip(&jets).map(image))?)
 }
@@ -152,5 +151,5 @@ fn run_recipe(registry: &Registry3, m: &ArgMatches) -> Result<Status, Failure> {
     let saved = recipe_file::read(registry, file, arguments::reading(m)?.external)?;
     let given = saved.options.overridden_by(&arguments::given(m));
     let recipe = if m.get_flag(INVERSE) { saved.recipe.inverted() } else { saved.recipe };
-    warp::run(registry, &recipe, &given, &Own::read(m)?, Some(file))
+    warp::run(registry, &recipe, &given, &SolidOptions::read(m)?, Some(file))
 }

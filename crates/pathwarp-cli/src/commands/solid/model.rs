@@ -2,7 +2,7 @@
 
 use pathwarp::Outline;
 use pathwarp::budget::Budget;
-use pathwarp::kurbo::{Affine, Point};
+use pathwarp::kurbo::Affine;
 use pathwarp_engine::failure::Failure;
 use pathwarp_engine::options::Reading;
 use pathwarp_engine::output::PendingFile;
@@ -27,7 +27,7 @@ pub(super) struct Model {
     /// The format of the file, or OBJ for a drawing; the result has it, too, unless its file is named otherwise.
     pub(super) format: ModelFormat,
     /// `true` for a drawing, whose objects are named after shapes.
-    pub(super) drawn: bool,
+    pub(super) is_drawing: bool,
 }
 
 /// Polygons or curved surfaces.
@@ -47,7 +47,7 @@ impl Model {
                 return Err(Failure::Input(format!("{name}: a drawing must be a file; name it instead")));
             }
             let mesh = read_drawing(&bytes, file, reading, depth.unwrap_or(0.0))?;
-            return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj, drawn: true });
+            return Ok(Self { name, content: Content::Mesh(mesh), budget, format: ModelFormat::Obj, is_drawing: true });
         }
         if depth.is_some() {
             return Err(Failure::usage(format!("--extrude is for drawings (SVG); {name} is a model already")));
@@ -66,7 +66,7 @@ impl Model {
             ModelFormat::Ply => Content::Mesh(ply::read(&bytes).map_err(about)?),
             ModelFormat::Glb | ModelFormat::Gltf => Content::Mesh(gltf::read(&bytes, &budget).map_err(about)?),
         };
-        Ok(Self { name, content, budget, format, drawn: false })
+        Ok(Self { name, content, budget, format, is_drawing: false })
     }
 }
 
@@ -107,7 +107,8 @@ fn is_drawing(bytes: &[u8]) -> bool {
     const PROLOGUE: usize = 4096;
     const GZIP: [u8; 2] = [0x1f, 0x8b];
     let start = &bytes[..bytes.len().min(PROLOGUE)];
-    start.starts_with(&GZIP) || start.trim_ascii_start().starts_with(b"<") && start.windows(4).any(|w| w == b"<svg")
+    let is_xml = start.trim_ascii_start().starts_with(b"<");
+    start.starts_with(&GZIP) || (is_xml && start.windows(4).any(|w| w == b"<svg"))
 }
 
 /// Returns the decimals that resolve a billionth of the model's size.
@@ -206,32 +207,28 @@ impl ModelFormat {
 
     /// Returns the properties of a mesh that the format cannot store.
     pub(super) fn lost(self, mesh: &Mesh) -> Vec<&'static str> {
-        let marked = |f: fn(&Mark) -> bool| mesh.marks.iter().any(|(_, m)| f(m));
-        let kinds = |k: PolygonKind| mesh.polygons.iter().any(|p| p.kind == k);
-        let named = |t: &str| !t.is_empty() && t != "none";
-        let corners = |f: fn(&pathwarp_solid::mesh::Corner) -> u32| mesh.corners.iter().any(|c| f(c) != NONE);
+        let has_mark = |f: fn(&Mark) -> bool| mesh.marks.iter().any(|(_, m)| f(m));
+        let has_kind = |k: PolygonKind| mesh.polygons.iter().any(|p| p.kind == k);
+        let has_corner = |f: fn(&pathwarp_solid::mesh::Corner) -> u32| mesh.corners.iter().any(|c| f(c) != NONE);
         let mut out = Vec::new();
-        let mut check = |lost: bool, what: &'static str| {
-            if lost {
-                out.push(what);
-            }
-        };
         if matches!(self, Self::Stl | Self::Ply) {
-            check(marked(|m| matches!(m, Mark::Object(t) | Mark::Group(t) if !t.is_empty())), NAMES);
-            check(mesh.marks.iter().any(|(_, m)| matches!(m, Mark::Material(t) if named(t))), "materials");
+            let has_names = has_mark(|m| matches!(m, Mark::Object(t) | Mark::Group(t) if !t.is_empty()));
+            out.extend(has_names.then_some(NAMES));
+            let has_materials = has_mark(|m| matches!(m, Mark::Material(t) if !t.is_empty() && t != "none"));
+            out.extend(has_materials.then_some("materials"));
         }
         if self == Self::Stl {
-            check(corners(|c| c.uv), "texture coordinates");
-            check(corners(|c| c.normal), "normals of vertices");
-            check(!mesh.colors.is_empty(), "colours");
+            out.extend(has_corner(|c| c.uv).then_some("texture coordinates"));
+            out.extend(has_corner(|c| c.normal).then_some("normals of vertices"));
+            out.extend((!mesh.colors.is_empty()).then_some("colours"));
             let is_cloud = mesh.polygons.is_empty() && !mesh.positions.is_empty();
-            check(is_cloud || kinds(PolygonKind::Line) || kinds(PolygonKind::Points), "lines and points");
+            let has_others = is_cloud || has_kind(PolygonKind::Line) || has_kind(PolygonKind::Points);
+            out.extend(has_others.then_some("lines and points"));
         }
-        if self == Self::Obj && mesh.is_translucent() {
-            out.push("the opacity of vertices");
-        }
-        if self == Self::Obj && mesh.assets.as_deref().is_some_and(|a| !a.is_empty()) {
-            out.push("materials, except for their names");
+        if self == Self::Obj {
+            out.extend(mesh.is_translucent().then_some("the opacity of vertices"));
+            let has_assets = mesh.assets.as_deref().is_some_and(|a| !a.is_empty());
+            out.extend(has_assets.then_some("materials, except for their names"));
         }
         out
     }
@@ -246,24 +243,19 @@ fn read_drawing(bytes: &[u8], file: &Path, reading: &Reading, depth: f64) -> Res
     let page = doc.user_to_px().transform_rect_bbox(doc.view_box());
     let to_mm =
         Affine::scale_non_uniform(MM_PER_PX, -MM_PER_PX) * Affine::translate((-page.x0, -page.y1)) * doc.user_to_px();
-    let unit = to_mm.determinant().abs().sqrt(); // Millimetres in a user unit.
+    let tolerance = TOLERANCE / to_mm.determinant().abs().sqrt();
     let mut shapes = Vec::new();
     let mut add = |name: &str, outline: &Outline, even_odd: bool| -> Result<(), Failure> {
-        let named = NamedShape { name, outline, even_odd };
-        let flat = artwork::flat(&named, TOLERANCE / unit, doc.budget())
+        let flat = artwork::flat(&NamedShape { name, outline, even_odd }, tolerance, doc.budget())
             .map_err(|e| Failure::Geometry(format!("{}: {}", input::display(file), advice::surface(&e))))?;
-        let points = flat.points.iter().map(|p| {
-            let p: Point = to_mm * *p;
-            [p.x, p.y]
-        });
-        let flat = FlatShape { name: name.to_owned(), points: points.collect(), triangles: flat.triangles };
         if !flat.triangles.is_empty() {
-            shapes.push(flat);
+            let points = flat.points.iter().map(|p| to_mm * *p).map(|p| [p.x, p.y]).collect();
+            shapes.push(FlatShape { name: name.to_owned(), points, triangles: flat.triangles });
         }
         Ok(())
     };
     let all = Selection::default();
-    let strokes = doc.strokes(&all, TOLERANCE / unit);
+    let strokes = doc.strokes(&all, tolerance);
     let strokes = strokes.map_err(|e| {
         Failure::Input(format!("{}: the strokes take {e}; {}", input::display(file), advice::raise(&e)))
     })?;

@@ -53,7 +53,7 @@ impl Run<'_> {
     }
 
     /// Returns the report on a mesh.
-    pub(super) fn of_mesh(&self, meshes: [&Mesh; 2], deformed: &Deformed) -> Result<String, Failure> {
+    pub(super) fn mesh_report(&self, meshes: [&Mesh; 2], deformed: &Deformed) -> Result<String, Failure> {
         /// Vertices that moved, vertices at which the map turns space inside out, and edges across which it jumps.
         #[derive(Serialize)]
         struct Counts {
@@ -66,7 +66,7 @@ impl Run<'_> {
     }
 
     /// Returns the report on curved surfaces.
-    pub(super) fn of_surfaces(&self, all: [&[Surface]; 2], done: &DeformedPatches) -> Result<String, Failure> {
+    pub(super) fn surface_report(&self, all: [&[Surface]; 2], deformed: &DeformedPatches) -> Result<String, Failure> {
         #[derive(Serialize)]
         struct Counts {
             /// Surfaces whose images are exact.
@@ -80,7 +80,7 @@ impl Run<'_> {
             /// Points of a grid on the surfaces at which the map turns space inside out.
             folded: usize,
         }
-        let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *done;
+        let DeformedPatches { exact, refitted, cut, distance, folded, .. } = *deformed;
         self.json(all.map(SurfaceMeasures::of), Counts { exact, refitted, cut, distance, folded })
     }
 }
@@ -106,17 +106,19 @@ struct Measures {
 
 impl Measures {
     fn of(mesh: &Mesh) -> Self {
-        let t: Topology = topology(mesh);
+        let topology = topology(mesh);
+        let Topology { faces, edges, open_edges, bad_edges, area, volume, .. } = topology;
+        let closed = topology.is_closed();
         Self {
             vertices: mesh.positions.len(),
-            faces: t.faces,
-            edges: t.edges,
-            euler: t.euler(),
-            open_edges: t.open_edges,
-            bad_edges: t.bad_edges,
-            closed: t.is_closed(),
-            volume: t.is_closed().then_some(t.volume),
-            area: t.area,
+            faces,
+            edges,
+            euler: topology.euler(),
+            open_edges,
+            bad_edges,
+            closed,
+            volume: closed.then_some(volume),
+            area,
             bounds: mesh.bounds().map(|b| [b.min.to_array(), b.max.to_array()]),
         }
     }

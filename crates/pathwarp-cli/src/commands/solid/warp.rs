@@ -1,7 +1,7 @@
 //! `pathwarp solid DEFORMATION MODEL …`: deforms models by a deformation or a chain.
 
-use super::args::{Own, model_args};
-use super::bend::{Done, MeshSource, SurfaceSource, Work, bend_mesh, bend_surfaces};
+use super::args::{SolidOptions, model_args};
+use super::bend::{Bent, MeshSource, SurfaceSource, Work, bend_mesh, bend_surfaces};
 use super::model::{Content, Model, ModelFormat};
 use super::report;
 use crate::commands::warp::described;
@@ -14,6 +14,7 @@ use pathwarp::recipe::Recipe;
 use pathwarp_engine::advice::Flags;
 use pathwarp_engine::catalogue::Catalogue;
 use pathwarp_engine::failure::Failure;
+use pathwarp_engine::format::Format;
 use pathwarp_engine::input::display;
 use pathwarp_engine::options::{CommonOptions, Given};
 use pathwarp_engine::output::PendingFile;
@@ -25,12 +26,12 @@ pub(super) fn command(info: &Info) -> Command {
     described(info).args(model_args())
 }
 
-/// Deforms models by a recipe, which was read from the file `from` if there is one. `own` are the options that only solids have.
+/// Deforms models by a recipe, which was read from the file `from` if there is one.
 pub(super) fn run(
     registry: &Registry3,
     recipe: &Recipe,
     given: &Given,
-    own: &Own,
+    solid: &SolidOptions,
     from: Option<&Path>,
 ) -> Result<Status, Failure> {
     let options = given.read()?;
@@ -43,13 +44,13 @@ pub(super) fn run(
     let mut resolved = recipe.clone();
     references::resolve_files(registry, &mut resolved, &options.reading)?;
     let flags = Flags::of(registry as &dyn Catalogue);
-    let work = Work { registry, recipe: &resolved, options: &options, own, flags: &flags };
+    let work = Work { registry, recipe: &resolved, options: &options, solid, flags: &flags };
     match options.jobs {
         Some(n) => {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            pool.map_err(|e| Failure::usage(format!("--jobs: {e}")))?.install(|| work.all(&jobs, given))
+            pool.map_err(|e| Failure::usage(format!("--jobs: {e}")))?.install(|| work.run_jobs(&jobs, given))
         }
-        None => work.all(&jobs, given),
+        None => work.run_jobs(&jobs, given),
     }
 }
 
@@ -62,8 +63,7 @@ fn plan(
 ) -> Result<Vec<Job>, Failure> {
     /// Corrects the name of an output in a folder: from a drawing, an OBJ model is made.
     fn result(target: PathBuf) -> PathBuf {
-        let is_drawing =
-            target.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("svgz"));
+        let is_drawing = matches!(Format::of(&target), Some(Format::Svg | Format::Svgz));
         if is_drawing { target.with_extension("obj") } else { target }
     }
     let mut files: Vec<InputFile> = options.inputs.iter().map(InputFile::named).collect();
@@ -75,49 +75,50 @@ fn plan(
 
 impl Work<'_> {
     /// Deforms and finishes model after model, each with all threads and the whole allowance. An error that all would meet ends the run.
-    fn all(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
+    fn run_jobs(&self, jobs: &[Job], given: &Given) -> Result<Status, Failure> {
         let options = self.options;
         let _empty_ones_removed_at_the_end = Folders::create(options, jobs)?;
-        let (mut failed, mut partial, mut reports) = (Vec::new(), false, Vec::new());
+        let (mut failed, mut is_partial, mut reports) = (Vec::new(), false, Vec::new());
+        let several = jobs.len() > 1;
         for job in jobs {
-            let _batch = (jobs.len() > 1).then(watch::InBatch::begin);
-            let done = match self.one(job) {
-                Err(e) if jobs.len() > 1 && !e.is_of_recipe() => {
+            let _batch = several.then(watch::InBatch::begin);
+            let name = display(&job.input);
+            let bent = match self.run_job(job) {
+                Err(e) if several && !e.is_of_recipe() => {
                     let message = e.message(self.flags);
-                    reports.push(report::failed(&display(&job.input), &message)?);
+                    reports.push(report::failed(&name, &message)?);
                     failed.push(message);
                     continue;
                 }
                 other => other?,
             };
-            let mut files = done.files;
-            reports.extend(done.report);
-            if jobs.len() == 1 {
-                files.extend(self.common(given, &reports, false)?);
+            let mut files = bent.files;
+            reports.extend(bent.report);
+            if !several {
+                files.extend(self.common_files(given, &reports, several)?);
             }
             PendingFile::commit_all(files)?;
-            let name = display(&job.input);
             if options.explain {
-                let prefix = if jobs.len() > 1 { format!("{name}: ") } else { String::new() };
-                done.notes.iter().for_each(|n| terminal::note(&format!("{prefix}{n}")));
+                let prefix = if several { format!("{name}: ") } else { String::new() };
+                bent.notes.iter().for_each(|n| terminal::note(&format!("{prefix}{n}")));
             }
             if !options.quiet {
-                done.warnings.iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
+                bent.warnings.iter().for_each(|w| terminal::warning(&format!("{name}: {w}")));
             }
-            partial |= done.partial;
+            is_partial |= bent.partial;
         }
-        if jobs.len() > 1 {
-            PendingFile::commit_all(self.common(given, &reports, true)?)?;
+        if several {
+            PendingFile::commit_all(self.common_files(given, &reports, several)?)?;
             failed.iter().for_each(|f| terminal::error(f));
             if !failed.is_empty() {
                 terminal::error(&format!("{} of {} models failed; the others are written", failed.len(), jobs.len()));
             }
         }
-        Ok(Status::partial_if(partial || !failed.is_empty()))
+        Ok(Status::partial_if(is_partial || !failed.is_empty()))
     }
 
     /// Prepares the files of the whole run: the recipe and the report, an object for one model, a list for several.
-    fn common(&self, given: &Given, reports: &[String], several: bool) -> Result<Vec<PendingFile>, Failure> {
+    fn common_files(&self, given: &Given, reports: &[String], several: bool) -> Result<Vec<PendingFile>, Failure> {
         let mut files = Vec::new();
         if let Some(file) = &self.options.write_recipe {
             let folder = file.parent().unwrap_or(Path::new(""));
@@ -131,13 +132,14 @@ impl Work<'_> {
         Ok(files)
     }
 
-    fn one(&self, job: &Job) -> Result<Done, Failure> {
-        let Model { name, content, budget, format, drawn } =
-            Model::read(&job.input, &self.options.reading, self.own.depth)?;
+    /// Reads and deforms a model.
+    fn run_job(&self, job: &Job) -> Result<Bent, Failure> {
+        let Model { name, content, budget, format, is_drawing } =
+            Model::read(&job.input, &self.options.reading, self.solid.depth)?;
         let format = ModelFormat::of_output(job.target.as_deref(), format)?;
         match content {
-            Content::Mesh(mesh) => bend_mesh(self, job, MeshSource { name, mesh, format, drawn }, &budget),
-            Content::Surfaces(all) => bend_surfaces(self, job, SurfaceSource { name, surfaces: all, format }, &budget),
+            Content::Mesh(mesh) => bend_mesh(self, job, MeshSource { name, mesh, format, is_drawing }, &budget),
+            Content::Surfaces(surfaces) => bend_surfaces(self, job, SurfaceSource { name, surfaces, format }, &budget),
         }
     }
 }

@@ -4,12 +4,12 @@
 //! capitals on the middle of the band. Lengths are measured there, so that letters of both lines have equal distances at half their height,
 //! although the upper ones fan out and the lower ones crowd together.
 
-use super::on_path::{as_letters, drawn, line, on_page};
+use super::on_path::{as_letters, bend_line, on_page, unbent_path};
 use super::style::{Em, style};
-use crate::commands::args::choice;
-use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use crate::commands::args::{choice, option, switch};
+use clap::{Arg, ArgMatches, value_parser};
 use pathwarp::deform::Registry;
-use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _};
+use pathwarp::kurbo::{Affine, BezPath, Point, Rect, Shape as _, Vec2};
 use pathwarp::outline::boundary;
 use pathwarp::param::{Args, Frame, Letter, Param, Settings};
 use pathwarp::{Outline, Seg, Subpath};
@@ -42,13 +42,13 @@ const PARAMS: &[Param] = &[Param::path(SEPARATOR, "")];
 /// Width of a ring line as a share of half the badge's width; width of a thin line beside it, and the gap between them, as shares of that.
 const LINE: f64 = 0.026;
 const THIN: f64 = 0.4;
-const APART: f64 = 0.9;
+const LINE_GAP: f64 = 0.9;
 /// The widest band as a share of half the badge's width, around a circle and around other shapes; and the least share of it for long lines.
 const BAND: [f64; 2] = [0.36, 0.31];
-const LEAST: f64 = 0.45;
+const LEAST_BAND: f64 = 0.45;
 /// Height of capitals, and the largest distance of any letter from the middle, as shares of the band.
 const CAPITALS: f64 = 0.54;
-const REACH: f64 = 0.44;
+const LETTER_DISTANCE: f64 = 0.44;
 /// The narrowest scale of letters, and the largest space added between them, in em; its least value, as for [`BAND`]. Feet of letters crowd
 /// together in a ring, and more so at its corners.
 const NARROWEST: f64 = 0.85;
@@ -56,18 +56,15 @@ const TRACKING: f64 = 0.12;
 const LEAST_TRACKING: [f64; 2] = [0.03, 0.06];
 /// Space between the lines, or on both sides of a separator, and heights of a separator and of a dot, as shares of the capitals.
 const SPACE: f64 = 0.8;
-const HEIGHT: f64 = 0.75;
-const DOT: f64 = 0.36;
+const SEPARATOR_HEIGHT: f64 = 0.75;
+const DOT_HEIGHT: f64 = 0.36;
 /// Margin around the drawing in the middle, as a share of half the badge's width.
-const AROUND: f64 = 0.12;
+const CENTER_MARGIN: f64 = 0.12;
 /// The size of the em at which texts are measured.
 const EM: f64 = 100.0;
 
 pub(super) fn args() -> Vec<Arg> {
-    let text = |name: &'static str, value: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
-    };
-    let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    let text = |name, value, help| option(name, value, help).allow_hyphen_values(true);
     vec![
         Arg::new("WORDS")
             .value_names(["UPPER", "LOWER"])
@@ -80,31 +77,29 @@ pub(super) fn args() -> Vec<Arg> {
             "LENGTH",
             "Width of the badge; with a unit such as 60mm, the page has that unit too [default: 480]",
         ),
-        Arg::new("ring")
-            .long("ring")
-            .value_name("N")
-            .value_parser(value_parser!(u8).range(0..=4))
-            .default_value("2")
-            .help("Lines of the ring: 1 is outside, 2 on both sides of the text, 3 doubles the outer one, 4 both"),
+        option(
+            "ring",
+            "N",
+            "Lines of the ring: 1 is outside, 2 on both sides of the text, 3 doubles the outer one, 4 both",
+        )
+        .value_parser(value_parser!(u8).range(0..=4))
+        .default_value("2"),
         text(
             "band",
             "LENGTH",
             "Width of the ring between its lines; percentages refer to the width [default: 18%, less for long lines]",
         ),
-        flag("dots").help("Dots between the lines, as --separator circle"),
-        flag("stars").help("Stars between the lines, as --separator star").conflicts_with("dots"),
+        switch("dots", "Dots between the lines, as --separator circle"),
+        switch("stars", "Stars between the lines, as --separator star").conflicts_with("dots"),
         text(
             SEPARATOR,
             "PATHREF",
             "A shape between the lines: its name, such as heart or leaf, FILE#NAME or path data",
         )
         .conflicts_with_all(["dots", "stars"]),
-        Arg::new("center")
-            .long("center")
+        option("center", "FILE", "A drawing for the middle, as large as the room within the ring allows")
             .visible_alias("centre")
-            .value_name("FILE")
-            .value_parser(value_parser!(PathBuf))
-            .help("A drawing for the middle, as large as the room within the ring allows"),
+            .value_parser(value_parser!(PathBuf)),
         text("size", "LENGTH", "Size of the em [default: what the ring has room for]"),
     ]
 }
@@ -124,7 +119,7 @@ pub(super) struct Badge<'a> {
 
 /// A badge as groups of a drawing.
 #[derive(Default)]
-pub(super) struct Made {
+pub(super) struct BadgeGroups {
     pub(super) groups: Vec<SetGroup>,
     pub(super) warnings: Vec<String>,
     pub(super) missing: BTreeSet<char>,
@@ -150,15 +145,14 @@ struct Layout {
 
 impl Badge<'_> {
     /// Makes a badge from an upper text and a lower one.
-    pub(super) fn made(&self, texts: &[Option<String>; 2]) -> Result<Made, Failure> {
+    pub(super) fn draw(&self, texts: &[Option<String>; 2]) -> Result<BadgeGroups, Failure> {
         let texts: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
         let natural: Vec<OutlinedText> = texts.iter().map(|t| self.set(t, EM, 0.0)).collect::<Result<_, _>>()?;
         let separator = self.separator()?;
         let layout = self.layout(&natural, separator.as_ref())?;
-        let mut out = Made::default();
-        let paths =
-            layout.lines.iter().map(|&(inset, width)| drawn(&self.inset(inset)?, "", Some(width), self.options));
-        let paths: Vec<_> = paths.collect::<Result<_, Failure>>()?;
+        let mut out = BadgeGroups::default();
+        let ring_line = |&(inset, width): &_| unbent_path(&self.inset(inset)?, "", Some(width), self.options);
+        let paths: Vec<_> = layout.lines.iter().map(ring_line).collect::<Result<_, Failure>>()?;
         if !paths.is_empty() {
             out.groups.push(SetGroup { id: Some("ring"), label: "ring".into(), paths, ..SetGroup::default() });
         }
@@ -172,9 +166,10 @@ impl Badge<'_> {
             let (group, warnings) = self.line(text, frame, &layout, i == 1, 0.0, glyphs)?;
             out.groups.push(SetGroup { id: Some(["upper", "lower"][i]), ..group });
             // The curvature of the ring is fixed, so letters that touch need space.
-            let apart =
-                |w: &String| Some(format!("{}; --letter-spacing 6% sets them apart", w.split_once(", first near")?.0));
-            out.warnings.extend(warnings.iter().map(|w| apart(w).unwrap_or_else(|| w.clone())));
+            out.warnings.extend(warnings.into_iter().map(|w| match w.split_once(", first near") {
+                Some((problem, _)) => format!("{problem}; --letter-spacing 6% sets them apart"),
+                None => w,
+            }));
             out.missing.extend(&set.missing);
             widths.push(width);
         }
@@ -197,6 +192,7 @@ impl Badge<'_> {
         Ok(set)
     }
 
+    /// Returns half the badge's width.
     fn half(&self) -> f64 {
         0.5 * self.em.size
     }
@@ -221,10 +217,11 @@ impl Badge<'_> {
         let shape = Outline::from_svg(data).map_err(pathwarp::Error::from)?.transformed(Affine::scale(half));
         // The round corners of all lines are concentric.
         let core = self.offset(&shape, half * CORNER, "inside")?;
-        let out = half * CORNER - by;
-        self.offset(&core, out.abs(), if out > 0.0 { "outside" } else { "inside" })
+        let radius = half * CORNER - by;
+        self.offset(&core, radius.abs(), if radius > 0.0 { "outside" } else { "inside" })
     }
 
+    /// Returns a path moved to one side.
     fn offset(&self, path: &Outline, by: f64, side: &str) -> Result<Outline, Failure> {
         if by < 1e-9 * self.half() {
             return Ok(path.clone());
@@ -246,7 +243,8 @@ impl Badge<'_> {
 
 /// Returns a closed path that is symmetrical about the y axis, once around: clockwise from its lowest point on the axis, or
 /// counterclockwise from the highest.
-fn around(path: &Outline, from_top: bool) -> Outline {
+fn cut_at_axis(path: &Outline, from_top: bool) -> Outline {
+    /// Enough for all bits of a parameter.
     const HALVINGS: u32 = 60;
     let fine = 1e-7 * path.extent();
     let path = &Outline::from(&path.to_bez_path(fine));
@@ -262,21 +260,18 @@ fn around(path: &Outline, from_top: bool) -> Outline {
         }
         ((a < 0.0) != (b < 0.0)).then(|| (i, high, seg.eval(high)))
     };
-    let up = |p: Point| if from_top { p.y } else { -p.y };
+    let depth = |p: Point| if from_top { p.y } else { -p.y };
     let crossings = (0..segs.len()).filter_map(crossing);
-    let Some((i, t, start)) = crossings.min_by(|a, b| up(a.2).total_cmp(&up(b.2))) else { return path.clone() };
+    let Some((i, t, start)) = crossings.min_by(|a, b| depth(a.2).total_cmp(&depth(b.2))) else { return path.clone() };
     let (first, last) = (segs[i].part(t, 1.0), segs[i].part(0.0, t));
     let rest = segs[i + 1..].iter().chain(&segs[..i]).copied();
     let segs: Vec<Seg> = first.into_iter().chain(rest).chain(last).collect();
     let mut area = 0.0;
     boundary(path.to_bez_path(fine), 1e4 * fine, |a, b| area += a.to_vec2().cross(b.to_vec2()));
-    let run = Outline { subpaths: vec![Subpath { start, segs, closed: true }] };
+    let cut = Subpath { start, segs, closed: true };
     // Positive areas are clockwise, since y points down.
-    if (area > 0.0) == from_top {
-        Outline { subpaths: run.subpaths.iter().map(Subpath::reversed).collect() }
-    } else {
-        run
-    }
+    let is_clockwise = area > 0.0;
+    Outline { subpaths: vec![if is_clockwise == from_top { cut.reversed() } else { cut }] }
 }
 
 /// Outlines about the origin, from -1 to 1 with round corners: the height of an oval, a shield with an arched top, and a hexagon.
@@ -311,49 +306,59 @@ impl Badge<'_> {
     /// Computes the layout with the largest type that fits.
     fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
         let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
-        let w = LINE * half;
-        let from = [0.0, w, w, w * (THIN + APART + 1.0), w * (THIN + APART + 1.0)][usize::from(rings)];
+        let line_width = LINE * half;
+        // Outside of the band are a line, or a thin one, a gap and a line.
+        let band_start = match rings {
+            0 => 0.0,
+            1 | 2 => line_width,
+            _ => line_width * (THIN + LINE_GAP + 1.0),
+        };
         let heights = Heights::of(natural);
         let kind = usize::from(self.shape() != "circle");
         let widest = BAND[kind];
         let (given_band, given_size) = (self.em.length(self.m, "band")?, self.em.length(self.m, "size")?);
-        let at = |t: f64| {
+        // The share `t` reduces the band, or the size in a band that is given.
+        let band_and_size = |t: f64| {
             let band = given_band.or(given_size.map(|s| s * heights.capitals / CAPITALS)).unwrap_or(t * widest * half);
             let share = if given_band.is_some() { t } else { 1.0 };
-            let fits = (share * CAPITALS / heights.capitals).min(REACH / heights.reach) * band;
+            let fits = (share * CAPITALS / heights.capitals).min(LETTER_DISTANCE / heights.distance) * band;
             (band, given_size.unwrap_or(fits))
         };
-        let shape = separator.map_or(0.0, |s| {
+        let separator_width = separator.map_or(0.0, |s| {
             let b = s.bounding_box().unwrap_or_default();
-            HEIGHT * b.width() / b.height()
+            SEPARATOR_HEIGHT * b.width() / b.height()
         });
-        let gap = if separator.is_some() { 2.0 * SPACE + shape } else { 1.5 * SPACE } * heights.capitals;
-        let between: usize = natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
-        let is_free = self.m.get_one::<String>("letter-spacing").is_none();
-        let least = if is_free { LEAST_TRACKING[kind] } else { 0.0 };
+        // Lengths without a size are in em.
+        let gap = if separator.is_some() { 2.0 * SPACE + separator_width } else { 1.5 * SPACE } * heights.capitals;
+        let letter_gaps: usize =
+            natural.iter().flat_map(|t| &t.lines).map(|l| l.clusters.len().saturating_sub(1)).sum();
+        let may_space = self.m.get_one::<String>("letter-spacing").is_none();
+        let least = if may_space { LEAST_TRACKING[kind] } else { 0.0 };
         let widths: f64 =
-            natural.iter().filter_map(|t| Some(t.ink()?.width() / EM)).sum::<f64>() + least * between as f64;
+            natural.iter().filter_map(|t| Some(t.ink()?.width() / EM)).sum::<f64>() + least * letter_gaps as f64;
         let gaps = gap * natural.len() as f64;
-        let room = |t: f64| {
-            let (band, size) = at(t);
-            let (path, length) = self.middle(from, from + band)?;
+        let layout_at = |t: f64| {
+            let (band, size) = band_and_size(t);
+            let (path, length) = self.middle(band_start, band_start + band)?;
             Ok::<_, Failure>((path, length, band, size))
         };
-        let spare = |length: f64, size: f64| length - size * (widths + gaps);
-        let mut found = room(1.0)?;
-        if spare(found.1, found.3) < 0.0 && given_size.is_none() {
-            let (mut fits, mut too_large) = (LEAST, 1.0);
-            found = room(fits)?;
-            while spare(found.1, found.3) > 0.0 && too_large - fits > 0.01 {
+        // The length of the path that letters and gaps leave.
+        let spare = |(_, length, _, size): &(Outline, f64, f64, f64)| length - size * (widths + gaps);
+        let mut found = layout_at(1.0)?;
+        if spare(&found) < 0.0 && given_size.is_none() {
+            let (mut fits, mut too_large) = (LEAST_BAND, 1.0);
+            found = layout_at(fits)?;
+            while spare(&found) > 0.0 && too_large - fits > 0.01 {
                 let t = 0.5 * (fits + too_large);
-                let tried = room(t)?;
-                if spare(tried.1, tried.3) >= 0.0 {
+                let tried = layout_at(t)?;
+                if spare(&tried) >= 0.0 {
                     (fits, found) = (t, tried);
                 } else {
                     too_large = t;
                 }
             }
         }
+        let spare = spare(&found);
         let (path, length, band, size) = found;
         let condensed = ((length / size - gaps) / widths).min(1.0);
         if condensed < NARROWEST {
@@ -364,15 +369,16 @@ impl Badge<'_> {
                 if given_size.is_some() { ", or make --size smaller" } else { "" }
             )));
         }
-        let more = if is_free && between > 0 { 0.5 * spare(length, size) / between as f64 } else { 0.0 };
+        let more = if may_space && letter_gaps > 0 { 0.5 * spare / letter_gaps as f64 } else { 0.0 };
         let tracking = least * size + more.clamp(0.0, (TRACKING - least) * size);
         let mut lines = Vec::new();
-        let to = from + band;
-        let own =
-            [(rings >= 3, 0.5 * THIN * w, THIN), (rings >= 1, from - 0.5 * w, 1.0), (rings >= 2, to + 0.5 * w, 1.0)];
-        lines.extend(own.iter().filter(|l| l.0).map(|l| (l.1, l.2 * w)));
-        lines.extend((rings == 4).then_some((to + w * (1.0 + APART + 0.5 * THIN), THIN * w)));
-        let free = lines.last().filter(|_| rings > 1).map_or(to, |(at, width)| at + 0.5 * width);
+        let band_end = band_start + band;
+        lines.extend((rings >= 3).then_some((0.5 * THIN * line_width, THIN * line_width)));
+        lines.extend((rings >= 1).then_some((band_start - 0.5 * line_width, line_width)));
+        lines.extend((rings >= 2).then_some((band_end + 0.5 * line_width, line_width)));
+        lines
+            .extend((rings == 4).then_some((band_end + line_width * (1.0 + LINE_GAP + 0.5 * THIN), THIN * line_width)));
+        let free = lines.last().filter(|_| rings > 1).map_or(band_end, |(inset, width)| inset + 0.5 * width);
         let (middle, capitals) = (heights.middle * size, heights.capitals * size);
         Ok(Layout { lines, path, length, size, condensed, tracking, middle, capitals, free })
     }
@@ -398,21 +404,17 @@ impl Badge<'_> {
         let middle = layout.middle.to_string();
         let mut args = Args::from_pairs(&[("as-drawn", "true"), ("glyphs", glyphs), ("baseline", &middle)]);
         args.push("offset", offset.to_string());
-        line(self.registry, label, frame, args, &around(&layout.path, is_lower), self.options)
+        bend_line(self.registry, label, frame, args, &cut_at_axis(&layout.path, is_lower), self.options)
     }
 
     /// Returns the shape between the lines.
     fn separator(&self) -> Result<Option<Outline>, Failure> {
-        let flag = |name: &str| self.m.get_flag(name);
-        let own = self.m.get_one::<String>(SEPARATOR).map(String::as_str);
-        let named = if flag("dots") {
-            Some("circle")
-        } else if flag("stars") {
-            Some("star")
-        } else {
-            own
+        let reference = match (self.m.get_flag("dots"), self.m.get_flag("stars")) {
+            (true, _) => Some("circle"),
+            (false, true) => Some("star"),
+            (false, false) => self.m.get_one::<String>(SEPARATOR).map(String::as_str),
         };
-        let Some(reference) = named else { return Ok(None) };
+        let Some(reference) = reference else { return Ok(None) };
         let mut args = Args::from_pairs(&[(SEPARATOR, reference)]);
         args.resolve_paths(PARAMS, |r| on_page(r, self.em, self.options)).map_err(Failure::of_recipe)?;
         let frame = Frame::new(Rect::new(0.0, 0.0, EM, EM)).with_units_per_px(self.em.units_per_px());
@@ -426,23 +428,23 @@ impl Badge<'_> {
     /// Sets the separators halfway between the ends of the lines.
     fn separators(&self, shape: &Outline, layout: &Layout, widths: &[f64]) -> Result<SetGroup, Failure> {
         let bounds = shape.bounding_box().unwrap_or_default();
-        let height = if self.m.get_flag("dots") { DOT } else { HEIGHT } * layout.capitals;
+        let height = if self.m.get_flag("dots") { DOT_HEIGHT } else { SEPARATOR_HEIGHT } * layout.capitals;
         let centre = centroid(&shape.to_bez_path(1e-4 * bounds.height()), 1e-4 * bounds.height());
         let placed = Affine::translate((0.0, -layout.middle))
             * Affine::scale(height / bounds.height())
             * Affine::translate(-centre.map_or(bounds.center(), |c| c.0).to_vec2());
         let outline = shape.transformed(placed);
         let half = 0.5 * layout.length;
-        let places = match widths {
+        let offsets = match widths {
             [upper, lower] => vec![0.5 * (half + 0.5 * (upper - lower)), -0.5 * (half + 0.5 * (upper - lower))],
             _ => vec![half],
         };
         let mut group = SetGroup { id: Some("separators"), label: "separators".into(), ..SetGroup::default() };
-        for place in places {
+        for offset in offsets {
             let letter = Letter { name: String::new(), origin: Point::ORIGIN, advance: 0.0, outline: outline.clone() };
             let (frame, _) = self.frame(vec![letter], 0.0);
             let rect = Rect::new(-height, frame.rect.y0, height, 0.0);
-            let (set, _) = self.line("", Frame { rect, ..frame }, layout, false, place, "rotate")?;
+            let (set, _) = self.line("", Frame { rect, ..frame }, layout, false, offset, "rotate")?;
             group.paths.extend(set.paths);
         }
         Ok(group)
@@ -458,30 +460,24 @@ impl Badge<'_> {
         let doc = input::document(file, reading)?;
         let (seen, content) =
             embedded(&doc.decoded(), &input::display(file), "center-", &input::read_options(file, reading))?;
-        let room = self.inset(layout.free + AROUND * half)?.to_bez_path(1e-5 * half);
+        let room = self.inset(layout.free + CENTER_MARGIN * half)?.to_bez_path(1e-5 * half);
         let middle = centroid(&room, 1e-4 * half).filter(|_| room.bounding_box().width() < 2.0 * half);
         let (middle, _) =
             middle.ok_or_else(|| Failure::usage("--center: the ring leaves no room; make --band smaller"))?;
-        let shapes = doc.shapes();
-        let painted = shapes.iter().filter(|s| s.painted);
-        let paths: Vec<(Outline, bool)> =
-            painted.map(|s| (s.outline.transformed(doc.user_to_px()), s.filled)).collect();
+        let painted = doc.shapes().iter().filter(|s| s.painted);
+        let paths = painted.map(|s| (s.outline.transformed(doc.user_to_px()), s.filled));
+        let paths: Vec<(Outline, bool)> = paths.collect();
         let fine = 1e-3 * seen.width().max(seen.height());
-        let filled =
-            paths.iter().filter(|(_, filled)| *filled).filter_map(|(p, _)| centroid(&p.to_bez_path(fine), fine));
+        let filled = paths.iter().filter(|(_, is_filled)| *is_filled);
+        let centroids = filled.filter_map(|(p, _)| centroid(&p.to_bez_path(fine), fine));
         let (sum, area) =
-            filled.fold((pathwarp::kurbo::Vec2::ZERO, 0.0), |(s, a), (c, area)| (s + c.to_vec2() * area, a + area));
+            centroids.fold((Vec2::ZERO, 0.0), |(sum, all), (c, area)| (sum + c.to_vec2() * area, all + area));
         let weight = if area > 0.0 { (sum / area).to_point() } else { seen.center() };
         let anchor = seen.center().midpoint(weight);
         let segs = paths.iter().flat_map(|(p, _)| p.segs());
         let mut points: Vec<Point> = segs.flat_map(|s| [0.0, 0.25, 0.5, 0.75].map(|t| s.eval(t))).collect();
         if points.is_empty() {
-            points = vec![
-                seen.origin(),
-                Point::new(seen.x1, seen.y0),
-                Point::new(seen.x1, seen.y1),
-                Point::new(seen.x0, seen.y1),
-            ];
+            points.extend(Frame::new(seen).corners());
         }
         let ink = points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p));
         // Strokes extend beyond their paths.
@@ -492,10 +488,9 @@ impl Badge<'_> {
             let scale = 0.5 * (small + large);
             if fits(scale) { small = scale } else { large = scale }
         }
-        let at = middle.to_vec2() - anchor.to_vec2() * small;
+        let Vec2 { x, y } = middle.to_vec2() - anchor.to_vec2() * small;
         let drawing = format!(
-            "<g transform=\"matrix({small} 0 0 {small} {} {})\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">{content}</g>\n",
-            at.x, at.y
+            "<g transform=\"matrix({small} 0 0 {small} {x} {y})\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">{content}</g>\n"
         );
         Ok(Some(SetGroup { id: Some("center"), label: "center".into(), drawing, ..SetGroup::default() }))
     }
@@ -506,8 +501,8 @@ struct Heights {
     capitals: f64,
     /// The height of the letters' middle above the baseline.
     middle: f64,
-    /// The greatest distance of any letter from the middle.
-    reach: f64,
+    /// The greatest distance of any point of a letter from the middle.
+    distance: f64,
 }
 
 impl Heights {
@@ -522,6 +517,6 @@ impl Heights {
         let (top, bottom) = ends.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))).unwrap_or_default();
         let capitals = if top < SMALL * metrics.cap_height { metrics.x_height } else { metrics.cap_height };
         let middle = 0.5 * capitals;
-        Self { capitals, middle, reach: (top - middle).max(middle - bottom).max(middle) }
+        Self { capitals, middle, distance: (top - middle).max(middle - bottom).max(middle) }
     }
 }

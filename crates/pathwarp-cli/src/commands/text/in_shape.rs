@@ -1,6 +1,6 @@
 //! `--in` puts the lines into a shape by the deformation `envelope`.
 
-use super::on_path::{self, SetLines, as_letters, bent, text_arg};
+use super::on_path::{self, SetLines, as_letters, bend_letters, text_arg};
 use super::style::Em;
 use clap::{Arg, ArgMatches};
 use pathwarp::deform::Registry;
@@ -39,6 +39,7 @@ pub(super) fn set(
     let params = registry.get(ENVELOPE).map_or(&[][..], |e| e.info().params);
     args.resolve_paths(params, |r| on_path::on_page(r, em, options)).map_err(Failure::of_recipe)?;
     let frame = Frame::new(text.ink().unwrap_or_default()).with_units_per_px(em.units_per_px());
-    let (line, warnings) = bent(registry, ENVELOPE, &text.text, frame.with_letters(as_letters(text)), args, options)?;
+    let frame = frame.with_letters(as_letters(text));
+    let (line, warnings) = bend_letters(registry, ENVELOPE, &text.text, frame, args, options)?;
     Ok(SetLines { lines: vec![line], warnings })
 }

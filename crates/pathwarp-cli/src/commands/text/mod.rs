@@ -5,9 +5,8 @@ mod in_shape;
 mod on_path;
 mod style;
 
-use crate::arguments;
-use crate::arguments::{OF_OUTPUT, reading_args, some_options};
-use crate::commands::args::{choice, out_arg, switch, target};
+use crate::arguments::{self, OUTPUT_OPTIONS, reading_args, some_options};
+use crate::commands::args::{choice, option, out_arg, switch, target};
 use crate::ending::Status;
 use crate::{data, mistakes, terminal};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -45,9 +44,9 @@ pub(super) fn badge_command(_: &Registry) -> Command {
         .args(badge::args())
         .args(shared)
         .args(shaping().map(|a| a.help_heading(SHAPING)))
-        .args(some_options(&OF_OUTPUT))
+        .args(some_options(&OUTPUT_OPTIONS))
         .args(reading_args())
-        .arg(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("Print no warnings"))
+        .arg(switch("quiet", "Print no warnings").short('q'))
         .after_help(badge::AFTER)
 }
 
@@ -86,9 +85,10 @@ struct Drawn {
     missing: BTreeSet<char>,
 }
 
+/// Finds the fonts, and runs a job once or for each row of a table.
 fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Result<Status, Failure> {
-    let named = m.get_many::<String>("font").into_iter().flatten().map(String::as_str);
-    let names: Vec<&str> = named.chain(job.font.filter(|_| !m.contains_id("font"))).collect();
+    let given = m.get_many::<String>("font").into_iter().flatten().map(String::as_str);
+    let names: Vec<&str> = given.chain(job.font.filter(|_| !m.contains_id("font"))).collect();
     let files = ["file", "center"].into_iter().filter_map(|f| m.try_get_one::<PathBuf>(f).ok()?.map(PathBuf::as_path));
     let reads: Vec<&Path> = files.chain(names.iter().copied().map(Path::new)).collect();
     let target = target(m, &reads)?;
@@ -102,24 +102,21 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     let read = options.reading.read_options();
     let find = |name: &&str| find_font(name, weight.unwrap_or(REGULAR), italic, &read);
     let files: Vec<FontFile> = names.iter().map(find).collect::<Result<_, _>>()?;
-    let mut chosen: Vec<Font<'_>> = Vec::with_capacity(files.len() + 1);
-    for (name, file) in names.iter().zip(&files) {
-        chosen.push(read_font(name, file)?);
-    }
-    chosen.push(bundled()?);
+    let chosen = names.iter().zip(&files).map(|(name, file)| read_font(name, file));
+    let chosen: Vec<Font<'_>> = chosen.chain([bundled()]).collect::<Result<_, _>>()?;
     let first = names.first().copied().unwrap_or("the bundled font");
     let wanted = Wanted { weight, italic, synthesize };
     style::check_style(&chosen[0], first, &wanted, &read)?;
-    let mut said = Vec::new();
-    if let Some(has) = wanted.other_weight(&chosen[0]) {
+    let mut warnings = Vec::new();
+    if let Some(used) = wanted.other_weight(&chosen[0]) {
         let asked = m.get_one::<String>("weight").map_or("", String::as_str);
-        said.push(format!("--weight {asked}: {first} has no such weight; {has:.0} is used"));
+        warnings.push(format!("--weight {asked}: {first} has no such weight; {used:.0} is used"));
     }
     let fonts = with_variations(chosen, &style::axis_positions(m)?, &wanted)?;
     let lines: Vec<&str> = m.get_many::<String>("WORDS").into_iter().flatten().map(String::as_str).collect();
-    said.extend(mistakes::unit_as_text(words, &lines));
+    warnings.extend(mistakes::unit_as_text(words, &lines));
     if !m.get_flag("quiet") {
-        said.iter().for_each(|w| terminal::warning(w));
+        warnings.iter().for_each(|w| terminal::warning(w));
     }
     let fill = m.get_one::<String>("fill").filter(|f| !f.is_empty()).cloned();
     let setting =
@@ -127,8 +124,8 @@ fn run(registry: &Registry, m: &ArgMatches, words: &[OsString], job: &Job) -> Re
     if !data::is_given(m) {
         return setting.write(job.draw, &texts, fill, target);
     }
-    let named: Vec<&str> = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
-    data::for_each_row(registry, m, &named, &reads, |row, target| {
+    let templates: Vec<&str> = texts.iter().chain([&fill]).flatten().map(String::as_str).collect();
+    data::for_each_row(registry, m, &templates, &reads, |row, target| {
         let texts = texts.each_ref().map(|t| t.as_ref().map(|t| row.filled_lines(t)));
         setting.write(job.draw, &texts, fill.as_ref().map(|f| row.filled(f)), Some(target))
     })
@@ -193,17 +190,17 @@ impl Setting<'_> {
             }
         };
         let missing = text.iter().chain(&below).flat_map(|t| t.missing.iter().copied()).collect();
-        let svg = if m.get_flag("unite") { welded(registry, svg, m)? } else { svg };
+        let svg = if m.get_flag("unite") { united(registry, svg, m)? } else { svg };
         Ok(Drawn { svg, warnings, missing })
     }
 
     /// Makes a badge from an upper text and a lower one.
     fn badge(&self, texts: &[Option<String>; 2], lettering: &LetteringOptions) -> Result<Drawn, Failure> {
         let Self { registry, m, fonts, em, options, read, look, .. } = self;
-        let made = badge::Badge { registry, m, fonts, em, options, read, look: *look }.made(texts)?;
+        let badge = badge::Badge { registry, m, fonts, em, options, read, look: *look }.draw(texts)?;
         let title: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
-        let svg = write_set_groups(&title.join(" "), &made.groups, lettering)?;
-        Ok(Drawn { svg, warnings: made.warnings, missing: made.missing })
+        let svg = write_set_groups(&title.join(" "), &badge.groups, lettering)?;
+        Ok(Drawn { svg, warnings: badge.warnings, missing: badge.missing })
     }
 
     /// Returns the colour, and the page with its margin. By default, only a drawing for display has a margin; one with a size on paper, for
@@ -220,7 +217,7 @@ impl Setting<'_> {
 }
 
 /// Unites the lettering to one shape.
-fn welded(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
+fn united(registry: &Registry, svg: String, m: &ArgMatches) -> Result<String, Failure> {
     let mut unite = Warper::edit(registry, "unite", &[("by", "all")]).map_err(|e| Failure::usage(e.to_string()))?;
     if let Some(tolerance) = m.get_one::<String>("tolerance") {
         unite.set_option("tolerance", tolerance).map_err(|e| Failure::usage(e.to_string()))?;
@@ -251,7 +248,7 @@ Examples:
 
 /// An option with a value that is parsed later, and may start with a minus.
 fn value(name: &'static str, value: &'static str, help: &'static str) -> Arg {
-    Arg::new(name).long(name).value_name(value).allow_hyphen_values(true).help(help)
+    option(name, value, help).allow_hyphen_values(true)
 }
 
 /// Returns all options, in the order of help.
@@ -259,11 +256,11 @@ fn args(registry: &Registry) -> Vec<Arg> {
     let mut all = text_and_font();
     all.push(in_shape::arg());
     all.extend(on_path::args(registry));
-    all.extend(some_options(&OF_OUTPUT));
+    all.extend(some_options(&OUTPUT_OPTIONS));
     all.extend(spacing().map(|a| a.help_heading(SPACING)));
     all.extend(shaping().map(|a| a.help_heading(SHAPING)));
     all.extend(reading_args());
-    all.push(Arg::new("quiet").short('q').long("quiet").action(ArgAction::SetTrue).help("Print no warnings"));
+    all.push(switch("quiet", "Print no warnings").short('q'));
     all
 }
 
@@ -272,12 +269,9 @@ fn text_and_font() -> Vec<Arg> {
         Arg::new("WORDS").num_args(0..).help(
             "The text. \\n and every further argument start a new line; \\\\ is a backslash; - reads standard input",
         ),
-        Arg::new("file")
-            .long("file")
-            .value_name("FILE")
+        option("file", "FILE", "Read the text from a file; - is standard input")
             .value_parser(value_parser!(PathBuf))
-            .conflicts_with("WORDS")
-            .help("Read the text from a file; - is standard input"),
+            .conflicts_with("WORDS"),
         out_arg(
             "OUT.svg",
             "Write the drawing to this file: .svg, .svgz, .pdf or .dxf; - or none writes to standard output",
@@ -380,22 +374,8 @@ fn words(m: &ArgMatches) -> Result<String, Failure> {
 
 /// Replaces `\n` by a newline and `\\` by a backslash.
 fn unescaped(word: &str) -> String {
-    let mut out = String::with_capacity(word.len());
-    let mut chars = word.chars().peekable();
-    while let Some(c) = chars.next() {
-        match (c, chars.peek()) {
-            ('\\', Some('n')) => {
-                chars.next();
-                out.push('\n');
-            }
-            ('\\', Some('\\')) => {
-                chars.next();
-                out.push('\\');
-            }
-            _ => out.push(c),
-        }
-    }
-    out
+    let parts = word.split(r"\\").map(|part| part.replace(r"\n", "\n"));
+    parts.collect::<Vec<_>>().join(r"\")
 }
 
 #[cfg(test)]
@@ -405,5 +385,6 @@ mod tests {
     #[test]
     fn escapes() {
         assert_eq!(unescaped(r"a\nb\\n\t\"), "a\nb\\n\\t\\");
+        assert_eq!(unescaped(r"\\\n\n\\\"), "\\\n\n\\\\");
     }
 }

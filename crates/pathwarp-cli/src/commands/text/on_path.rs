@@ -5,6 +5,7 @@
 //! `--inside` swaps the edges that touch the path, which puts the ring inside of it.
 
 use super::style::Em;
+use crate::commands::args::switch;
 use crate::steps;
 use clap::{Arg, ArgAction, ArgMatches};
 use pathwarp::budget::Budget;
@@ -12,7 +13,7 @@ use pathwarp::deform::Registry;
 use pathwarp::kurbo::{Affine, Point, Rect, Shape as _, Vec2};
 use pathwarp::map::{AffineMap, Map};
 use pathwarp::outline::EllipticArc;
-use pathwarp::param::{Args, Frame, Kind, Letter, NamedPath, Param, Settings};
+use pathwarp::param::{Args, Axis, Frame, Kind, Letter, NamedPath, Param, Settings};
 use pathwarp::recipe::{Recipe, Step};
 use pathwarp::{Error, GeometryError, Outline, Seg, Subpath, refit};
 use pathwarp_engine::advice::Flags;
@@ -28,7 +29,7 @@ use std::sync::Arc;
 
 /// The deformation that bends the lines, and its parameters that are options here.
 const BEND: &str = "bend";
-const OF_BEND: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"];
+const BEND_OPTIONS: [&str; 5] = ["glyphs", "stretch", "spacing", "offset", "reverse"];
 
 const HEADING: &str = "On a path or in a shape";
 const ON: &str = "on";
@@ -48,19 +49,15 @@ pub(super) fn text_arg(name: &'static str, value: &'static str) -> Arg {
 }
 
 /// Draws a path as it is: filled, or as a line of the width `line`.
-pub(super) fn drawn(
+pub(super) fn unbent_path(
     path: &Outline,
     label: &str,
     line: Option<f64>,
     options: &CommonOptions,
 ) -> Result<SetPath, Failure> {
     let tolerance = options.tolerance_for(path.bounding_box(), &Frame::new(path.bounding_box().unwrap_or_default()))?;
-    let path = pathwarp_svg::warp_path(
-        path,
-        &AffineMap(Affine::IDENTITY),
-        &refit::Options::new(tolerance).with_nodes(refit::Nodes::Source),
-        options.precision,
-    );
+    let refit = refit::Options::new(tolerance).with_nodes(refit::Nodes::Source);
+    let path = pathwarp_svg::warp_path(path, &AffineMap(Affine::IDENTITY), &refit, options.precision);
     Ok(SetPath { label: label.to_owned(), path: path.map_err(Error::from)?, line })
 }
 
@@ -74,20 +71,20 @@ pub(super) fn args(registry: &Registry) -> Vec<Arg> {
             "A line on the lower side of the path, in one ring with the other: the height of its capitals lies on the path, its \
              middle at the bottom of a closed one",
         ),
-        Arg::new("inside").long("inside").action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
-            "Set the lines within the path: the height of capitals lies on it above, the baseline below",
-        ),
-        Arg::new(KEEP).long(KEEP).action(ArgAction::SetTrue).requires(ON).help_heading(HEADING).help(
-            "Leave the path in the drawing, as a line a twentieth of the size wide",
-        ),
+        switch("inside", "Set the lines within the path: the height of capitals lies on it above, the baseline below")
+            .requires(ON)
+            .help_heading(HEADING),
+        switch(KEEP, "Leave the path in the drawing, as a line a twentieth of the size wide")
+            .requires(ON)
+            .help_heading(HEADING),
         text_arg(AT, "ANGLE").requires(ON).action(ArgAction::Append).help(
             "Middle of the line on a circle or an arc, clockwise from the right, as in arc: [default: 270, the top]; --below is \
              opposite, or where a second --at says",
         ),
     ];
-    let info = registry.get(BEND).map(|e| e.info());
-    let of_bend = info.into_iter().flat_map(steps::args).filter(|a| OF_BEND.contains(&a.get_id().as_str()));
-    all.extend(of_bend.map(|a| a.requires(ON).help_heading(HEADING)));
+    let bend_args = registry.get(BEND).into_iter().flat_map(|e| steps::args(e.info()));
+    let bend_args = bend_args.filter(|a| BEND_OPTIONS.contains(&a.get_id().as_str()));
+    all.extend(bend_args.map(|a| a.requires(ON).help_heading(HEADING)));
     all
 }
 
@@ -114,26 +111,20 @@ pub(super) fn set(
     let texts: Vec<(bool, &OutlinedText)> =
         above.map(|t| (false, t)).into_iter().chain(below.map(|t| (true, t))).collect();
     let frames: Vec<Frame> = texts.iter().map(|(_, t)| frame(t, em)).collect();
-    let (path, at) = path_and_middles(m, frames.first().map_or(0.0, |f| f.rect.width()), em, options)?;
-    let curve = Curve::of(&path.outline);
+    let (path, angles) = path_and_angles(m, frames.first().map_or(0.0, |f| f.rect.width()), em, options)?;
+    let curve = Curve::new(&path.outline);
     let stretches = m.get_one::<String>("stretch").is_some_and(|s| s != "keep");
-    let both = texts.len() > 1;
-    curve.check(m, both, stretches)?;
+    let are_two = texts.len() > 1;
+    curve.check(m, are_two, stretches)?;
 
     // A lower line alone takes the first angle.
-    let first = at.first().copied();
-    let second = at.get(1).copied().or(first.map(|a| a + 180.0));
+    let first = angles.first().copied();
+    let second = angles.get(1).copied().or(first.map(|a| a + 180.0));
     let middles = if above.is_some() { [first, second] } else { [first, None] };
     let mut out = SetLines::default();
     if m.get_flag(KEEP) {
-        let width = LINE * em.size;
-        let id = Some("path");
-        out.lines.push(SetGroup {
-            id,
-            label: path.name.clone(),
-            paths: vec![drawn(&path.outline, "", Some(width), options)?],
-            ..SetGroup::default()
-        });
+        let paths = vec![unbent_path(&path.outline, "", Some(LINE * em.size), options)?];
+        out.lines.push(SetGroup { id: Some("path"), label: path.name.clone(), paths, ..SetGroup::default() });
     }
     if let ([a, b], false) = (&frames[..], stretches) {
         let middles = [middles[0].unwrap_or(TOP), middles[1].unwrap_or(BOTTOM)];
@@ -141,27 +132,25 @@ pub(super) fn set(
     }
     for (((is_below, text), frame), middle) in texts.into_iter().zip(frames).zip(middles) {
         // Two stretched lines take a half of the circle each, less a gap of the letters' size.
-        let share = (both && stretches).then_some(em.size);
-        let laid = curve.laid(is_below, m.get_flag("reverse"), middle, share);
-        let mut args = laid.args;
+        let gap_of_halves = (are_two && stretches).then_some(em.size);
+        let placement = curve.place(is_below, m.get_flag("reverse"), middle, gap_of_halves);
+        let mut args = placement.args;
         if is_below != m.get_flag("inside") {
             args.push("baseline", (frame.rect.y1 - cap_height(text)).to_string());
         }
         if !curve.closed {
             args.push("align", align(m, text));
         }
-        for name in OF_BEND.iter().filter(|n| !["reverse", "offset"].contains(n)) {
-            if let Some(value) = m.get_one::<String>(name) {
-                args.push(name, value);
-            }
+        for name in BEND_OPTIONS.iter().filter(|n| !["reverse", "offset"].contains(n)) {
+            m.get_one::<String>(name).into_iter().for_each(|value| args.push(name, value));
         }
         if let Some(gap) = em.length(m, "gap")? {
             args.push("gap", gap.to_string());
         }
-        let shift = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
-        args.push("offset", (laid.shift + shift).to_string());
-        let (set, warnings) = line(registry, &text.text, frame, args, &laid.path, options)?;
-        out.lines.push(set);
+        let offset = m.get_one::<String>("offset").map_or(Ok(0.0), |t| length(&frame, "offset", t))?;
+        args.push("offset", (placement.offset + offset).to_string());
+        let (line, warnings) = bend_line(registry, &text.text, frame, args, &placement.path, options)?;
+        out.lines.push(line);
         out.warnings.extend(warnings);
     }
     Ok(out)
@@ -181,29 +170,29 @@ struct Round {
     /// The angle of an open arc's midpoint, in radians.
     middle: f64,
     /// The direction in which `bend` runs an open arc, which is from left to right: 1 if clockwise, −1 if not.
-    way: f64,
+    direction: f64,
 }
 
-/// A path adapted to a line, the values of `bend` for it, and the shift of the line.
-struct Laid {
+/// A path adapted to a line, and the values of `bend` for it except for its offset along the path.
+struct Placement {
     path: Outline,
     args: Args,
-    shift: f64,
+    offset: f64,
 }
 
 impl<'a> Curve<'a> {
-    fn of(path: &'a Outline) -> Self {
+    fn new(path: &'a Outline) -> Self {
         let closed = matches!(&path.subpaths[..], [only] if only.closed);
-        Self { path, round: Round::of(path), closed }
+        Self { path, round: Round::from_path(path), closed }
     }
 
-    /// Refuses options that do not suit this path.
-    fn check(&self, m: &ArgMatches, both: bool, stretches: bool) -> Result<(), Failure> {
+    /// Refuses options that do not suit this path. `are_two` is `true` for an upper and a lower line.
+    fn check(&self, m: &ArgMatches, are_two: bool, stretches: bool) -> Result<(), Failure> {
         let problem = if self.round.is_none() && m.contains_id(AT) {
             "--at goes with circles and arcs; on another path --offset moves the line along"
-        } else if both && !self.closed && m.get_flag("inside") {
+        } else if are_two && !self.closed && m.get_flag("inside") {
             "--inside with --below goes with closed paths: on an open one both lines would be on the wrong side"
-        } else if both && stretches && self.closed && self.round.is_none() {
+        } else if are_two && stretches && self.closed && self.round.is_none() {
             "--stretch of two lines goes with circles and open paths: here both would take the whole path"
         } else {
             return Ok(());
@@ -216,7 +205,7 @@ impl<'a> Curve<'a> {
         let half = 0.5 * (widths[0] + widths[1]);
         let room = match &self.round {
             _ if !self.closed => return None,
-            Some(r) => r.radius * (wrapped((middles[0] - middles[1]).to_radians())).abs(),
+            Some(r) => r.radius * normalized((middles[0] - middles[1]).to_radians()).abs(),
             None => 0.5 * self.path.to_bez_path(1e-6 * half).perimeter(1e-6 * half),
         };
         (half > room * (1.0 + 1e-9)).then(|| {
@@ -227,16 +216,16 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// Returns the path for a line. For a circle, this is the whole circle from the point opposite to `middle` (degrees), or with a `gap`
-    /// the half of it around `middle`, shortened by the gap.
-    fn laid(&self, is_below: bool, reverse: bool, middle: Option<f64>, gap: Option<f64>) -> Laid {
+    /// Places a line. On a circle, its path is the whole circle from the point opposite to `middle` (degrees), or with a `gap` the half of
+    /// it around `middle`, shortened by the gap.
+    fn place(&self, is_below: bool, reverse: bool, middle: Option<f64>, gap: Option<f64>) -> Placement {
         let mut args = Args::new();
-        let (mut path, mut shift) = (self.path.clone(), 0.0);
+        let (mut path, mut offset) = (self.path.clone(), 0.0);
         match &self.round {
             Some(r) if self.closed => {
                 let middle = middle.unwrap_or(if is_below { BOTTOM } else { TOP }).to_radians();
-                let way = if is_below == reverse { 1.0 } else { -1.0 };
-                path = r.around(middle, way, gap);
+                let direction = if is_below == reverse { 1.0 } else { -1.0 };
+                path = r.around(middle, direction, gap);
                 // Without this, `bend` would choose the direction and the start.
                 args.push("as-drawn", "true");
             }
@@ -246,17 +235,18 @@ impl<'a> Curve<'a> {
                     args.push("reverse", "true");
                 }
                 if let (Some(r), Some(middle)) = (&self.round, middle) {
-                    let way = if reverse { -r.way } else { r.way };
-                    shift = way * r.radius * wrapped(middle.to_radians() - r.middle);
+                    let direction = if reverse { -r.direction } else { r.direction };
+                    offset = direction * r.radius * normalized(middle.to_radians() - r.middle);
                 }
             }
         }
-        Laid { path, args, shift }
+        Placement { path, args, offset }
     }
 }
 
 impl Round {
-    fn of(path: &Outline) -> Option<Self> {
+    /// Recognizes a path of arcs that are parts of one circle.
+    fn from_path(path: &Outline) -> Option<Self> {
         /// Relative difference of radii and centres that counts as zero.
         const SAME: f64 = 1e-9;
         let [only] = &path.subpaths[..] else { return None };
@@ -264,35 +254,37 @@ impl Round {
         let arcs: Vec<&EllipticArc> = arcs.collect::<Option<_>>()?;
         let (first, last) = (*arcs.first()?, *arcs.last()?);
         let (centre, radius) = (first.center, first.a.hypot());
-        let near = |d: f64| d.abs() <= SAME * radius;
-        let same = |a: &&EllipticArc| {
-            near(a.center.distance(centre))
-                && near(a.a.hypot() - radius)
-                && near(a.b.hypot() - radius)
-                && near(a.a.dot(a.b) / radius)
+        let is_zero = |d: f64| d.abs() <= SAME * radius;
+        let is_on_circle = |a: &&EllipticArc| {
+            is_zero(a.center.distance(centre))
+                && is_zero(a.a.hypot() - radius)
+                && is_zero(a.b.hypot() - radius)
+                && is_zero(a.a.dot(a.b) / radius)
         };
-        if !arcs.iter().all(same) {
+        if !arcs.iter().all(is_on_circle) {
             return None;
         }
+        // The sweep, positive if clockwise.
         let turn = |a: &EllipticArc| a.sweep.copysign(a.sweep * a.a.cross(a.b));
         let sweep: f64 = arcs.iter().map(|a| turn(a)).sum();
         let middle = (first.p0 - centre).atan2() + 0.5 * sweep;
-        let way = if (last.p1.x < first.p0.x) == (sweep < 0.0) { 1.0 } else { -1.0 };
-        Some(Self { centre, radius, middle, way })
+        let direction = if (last.p1.x < first.p0.x) == (sweep < 0.0) { 1.0 } else { -1.0 };
+        Some(Self { centre, radius, middle, direction })
     }
 
-    fn around(&self, middle: f64, way: f64, gap: Option<f64>) -> Outline {
+    /// Returns the circle around `middle` (radians), or with a `gap` the half of it, shortened by the gap.
+    fn around(&self, middle: f64, direction: f64, gap: Option<f64>) -> Outline {
         /// Largest part of a half circle that stays free at each end, in radians.
         const MOST_FREE: f64 = PI / 6.0;
         let half = gap.map_or(PI, |g| 0.5 * PI - (0.5 * g / self.radius).min(MOST_FREE));
         let (u, v) = (Vec2::new(self.radius, 0.0), Vec2::new(0.0, self.radius));
-        let arc = EllipticArc::new(self.centre, u, v, middle - way * half, 2.0 * way * half);
+        let arc = EllipticArc::new(self.centre, u, v, middle - direction * half, 2.0 * direction * half);
         Outline { subpaths: vec![Subpath { start: arc.p0, segs: vec![Seg::Arc(arc)], closed: gap.is_none() }] }
     }
 }
 
 /// Reduces an angle to between −π and π.
-fn wrapped(angle: f64) -> f64 {
+fn normalized(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
@@ -306,13 +298,13 @@ fn align(m: &ArgMatches, text: &OutlinedText) -> &'static str {
     }
 }
 
+/// Parses a length for the option `name`, of which percentages refer to the frame's width.
 fn length(frame: &Frame, name: &str, text: &str) -> Result<f64, Failure> {
-    let args = Args::new();
-    Ok(Settings::new(&[], &args, frame)?.length_in(name, text, pathwarp::param::Axis::X)?)
+    Ok(Settings::new(&[], &Args::new(), frame)?.length_in(name, text, Axis::X)?)
 }
 
 /// Returns the path given by `--on`, and the angles of `--at`. Percentages in the path refer to `width`.
-fn path_and_middles(
+fn path_and_angles(
     m: &ArgMatches,
     width: f64,
     em: &Em,
@@ -371,7 +363,7 @@ fn cap_height(text: &OutlinedText) -> f64 {
 }
 
 /// Bends a text onto a path.
-pub(super) fn line(
+pub(super) fn bend_line(
     registry: &Registry,
     label: &str,
     frame: Frame,
@@ -382,11 +374,11 @@ pub(super) fn line(
     let params = registry.get(BEND).map_or(&[][..], |e| e.info().params);
     args.push("along", ON);
     args.resolve_paths(params, |_| Ok(Some(path.clone()))).map_err(Failure::of_recipe)?;
-    bent(registry, BEND, label, frame, args, options)
+    bend_letters(registry, BEND, label, frame, args, options)
 }
 
-/// Bends a text by a recipe of one step, which applies to all of it (`whole`).
-pub(super) fn bent(
+/// Bends the letters of a frame by one deformation.
+pub(super) fn bend_letters(
     registry: &Registry,
     deformation: &str,
     label: &str,
@@ -407,26 +399,26 @@ pub(super) fn bent(
     let refit = refit::Options::new(tolerance).with_certify(options.certify).with_nodes(options.nodes);
     let refit = refit.with_budget(budget);
     let (copies, places) = (&built.placement.copies, &built.placement.letters);
-    let unmoved = AffineMap(Affine::IDENTITY);
-    let set = |i: usize, letter: &Letter| {
+    let identity = AffineMap(Affine::IDENTITY);
+    let set = |(i, letter): (usize, &Letter)| {
         let diagonal = letter.outline.bounding_box().map_or(0.0, |b| b.size().to_vec2().hypot());
         // By default, a letter is held to the tolerance for its size.
-        let held = if options.tolerance.is_none() { refit::suited(tolerance, diagonal) } else { tolerance };
-        let refit = refit.clone().with_tolerance(held);
+        let tolerance = if options.tolerance.is_none() { refit::suited(tolerance, diagonal) } else { tolerance };
+        let refit = refit.clone().with_tolerance(tolerance);
         // Letters are placed one by one, before the map (`before`) or instead of it; or they take the copies of the line, and the map.
         let (placed, map): (_, &dyn Map) = match places.get(i) {
-            Some(places) if !built.placement.before => (letter.outline.repeated(places), &unmoved),
+            Some(places) if !built.placement.before => (letter.outline.repeated(places), &identity),
             Some(places) => (letter.outline.repeated(places), &built.map),
             None if copies.is_empty() => (letter.outline.clone(), &built.map),
             None => (letter.outline.repeated(copies), &built.map),
         };
-        pathwarp_svg::warp_path(&placed, map, &refit, options.precision)
+        let path = pathwarp_svg::warp_path(&placed, map, &refit, options.precision)?;
+        Ok(SetPath { label: letter.name.clone(), path, line: None })
     };
-    let set = |(i, l): (usize, &Letter)| Ok(SetPath { label: l.name.clone(), path: set(i, l)?, line: None });
     let paths = letters.iter().enumerate().map(set).collect::<Result<_, GeometryError>>().map_err(Error::from)?;
-    let flags = Flags::of(registry);
+    let (flags, prefix) = (Flags::of(registry), format!("{deformation}: "));
     // Here, `--size` determines heights and widths.
-    let own = |w: &String| flags.in_text(w).replacen(&format!("{deformation}: "), "", 1).replace("--width", "--size");
-    let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(own);
+    let adapted = |w: &String| flags.in_text(w).replacen(&prefix, "", 1).replace("--width", "--size");
+    let warnings = built.steps.iter().flat_map(|s| &s.explanation.warnings).map(adapted);
     Ok((SetGroup { label: label.to_owned(), paths, ..SetGroup::default() }, warnings.collect()))
 }

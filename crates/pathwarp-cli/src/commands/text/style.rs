@@ -59,14 +59,13 @@ fn word<'m>(m: &'m ArgMatches, name: &str) -> Option<&'m str> {
     m.try_get_one::<String>(name).ok().flatten().map(String::as_str)
 }
 
+/// Reads the options for the style.
 pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
-    let word = |name: &str| word(m, name);
-    let mut all = Vec::new();
-    for list in m.get_many::<String>("features").into_iter().flatten() {
-        all.extend(features(list).map_err(|e| Failure::usage(format!("--features: {e}")))?);
-    }
     /// Distance between lines in a shape, as a share of the size.
     const GAP: f64 = 0.06;
+    let word = |name: &str| word(m, name);
+    let lists = m.get_many::<String>("features").into_iter().flatten().map(|list| features(list));
+    let lists: Vec<Vec<_>> = lists.collect::<Result<_, _>>().map_err(|e| Failure::usage(format!("--features: {e}")))?;
     let gap = (word("in").is_some() && word("line-height").is_none()).then_some(GAP * em.size);
     Ok(TextStyle {
         size: em.size,
@@ -97,7 +96,7 @@ pub(super) fn style(m: &ArgMatches, em: &Em) -> Result<TextStyle, Failure> {
             Some("off") => Ligatures::Off,
             _ => Ligatures::Auto,
         },
-        features: all,
+        features: lists.concat(),
     })
 }
 
@@ -113,19 +112,18 @@ pub(super) fn weight_of(text: &str) -> Result<u16, Failure> {
 
 /// Returns the positions on variation axes given by `--variation`.
 pub(super) fn axis_positions(m: &ArgMatches) -> Result<Vec<Variation>, Failure> {
-    let mut all = Vec::new();
-    for list in m.get_many::<String>("variation").into_iter().flatten() {
-        all.extend(variations(list).map_err(|e| Failure::usage(format!("--variation: {e}")))?);
-    }
-    Ok(all)
+    let lists = m.get_many::<String>("variation").into_iter().flatten().map(|list| variations(list));
+    let lists: Vec<Vec<_>> =
+        lists.collect::<Result<_, _>>().map_err(|e| Failure::usage(format!("--variation: {e}")))?;
+    Ok(lists.concat())
 }
 
 /// Checks that the first font has the requested weight and slant, as it is, by an axis, or by synthesis if that is allowed.
 pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &ReadOptions) -> Result<(), Failure> {
     let lacking = wanted.weight_lacking(font);
-    let bolder = lacking.is_some_and(|w| f64::from(w) > font.weight());
+    let is_bolder = lacking.is_some_and(|w| f64::from(w) > font.weight());
     let problem = match lacking {
-        Some(w) if !(wanted.synthesize && bolder) => format!("--weight: {name} has no weight near {w}"),
+        Some(w) if !(wanted.synthesize && is_bolder) => format!("--weight: {name} has no weight near {w}"),
         _ if wanted.italic_lacking(font) && !wanted.synthesize => format!("--italic: {name} has no italic"),
         _ => return Ok(()),
     };
@@ -137,7 +135,7 @@ pub(super) fn check_style(font: &Font<'_>, name: &str, wanted: &Wanted, read: &R
     let shown = shown.collect::<Vec<_>>().join(", ");
     let advice = match (wanted.synthesize, lacking) {
         (true, _) => "; only bolder weights can be synthesised",
-        (false, Some(_)) if !bolder => "",
+        (false, Some(_)) if !is_bolder => "",
         (false, _) => ", or make it with --synthesize",
     };
     Err(Failure::usage(format!("{problem}, only {shown}; name a font that has it with --font{advice}")))

@@ -6,8 +6,8 @@
 //!
 //! J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), equations 6, 8 and 10.
 
-use super::beyond;
 use super::reference::{Eye3, Reference3};
+use super::signed_side;
 use crate::map::{Chart, Local, Poly3, Tensor};
 use glam::{DMat4, DVec3, DVec4};
 use std::sync::Arc;
@@ -39,14 +39,14 @@ pub(super) enum Net {
 
 impl Net {
     /// Returns the value and its three partial derivatives.
-    fn jet(&self, at: [f64; 3]) -> (f64, [f64; 3]) {
+    fn jet(&self, u: [f64; 3]) -> (f64, [f64; 3]) {
         match self {
             Self::Triangle(terms) => {
-                let (value, [x, y, z, _]) = terms.jet([at[0], at[1], at[2], 0.0]);
+                let (value, [x, y, z, _]) = terms.jet([u[0], u[1], u[2], 0.0]);
                 (value, [x, y, z])
             }
             Self::Rectangle(tensor) => {
-                let [[value, x, y, z]] = tensor.jet(at.into());
+                let [[value, x, y, z]] = tensor.jet(u.into());
                 (value, [x, y, z])
             }
         }
@@ -182,18 +182,18 @@ impl Dilation3 {
                 if sum.is_nan() || sum <= 0.0 {
                     return (f64::NAN, DVec3::NAN);
                 }
-                let at = [u, v, w].map(|u| u / sum);
-                let (value, slope) = net.jet(at);
+                let u = [u, v, w].map(|u| u / sum);
+                let (value, slope) = net.jet(u);
                 // ∂(u'ᵢ/Σ) = (∇u'ᵢ − uᵢ·∇Σ)/Σ.
                 let g = forms.map(DVec4::truncate);
-                (value, (0..3).map(|a| (g[a] - g[3] * at[a]) * (slope[a] / sum)).sum())
+                (value, (0..3).map(|a| (g[a] - g[3] * u[a]) * (slope[a] / sum)).sum())
             }
             Self::Cuboid { local, tensor } => {
-                let [[value, x, y, z]] = tensor.jet((p - local.middle) * local.scale);
+                let [[value, x, y, z]] = tensor.jet(local.coordinates(p));
                 (value, DVec3::new(x, y, z) * local.scale)
             }
             Self::Tetrahedra(all) => {
-                let around = all.iter().find(|t| t.0.iter().all(|f| beyond(f, p) >= 0.0));
+                let around = all.iter().find(|t| t.0.iter().all(|f| signed_side(f, p) >= 0.0));
                 around.map_or((1.0, DVec3::ZERO), |(_, delta)| (delta.dot(p.extend(1.0)), delta.truncate()))
             }
         }
@@ -219,7 +219,7 @@ impl Dilation3 {
             Self::Sheet { forms, net } => {
                 let [u, v, w, sum] = forms.map(|f| chart.linear(f));
                 let total = self.degree();
-                let below = sum.powers(total);
+                let denominators = sum.powers(total);
                 let delta = match net {
                     Net::Triangle(terms) => terms.in_terms_of(&[u, v, w, Poly3::default()]),
                     Net::Rectangle(tensor) => {
@@ -227,12 +227,12 @@ impl Dilation3 {
                         let mut delta = Poly3::default();
                         for ([i, j, k], [c]) in tensor.terms() {
                             let product = powers[0][i].times(&powers[1][j]).times(&powers[2][k]);
-                            delta.add(*c, &product.times(&below[total - i - j - k]));
+                            delta.add(*c, &product.times(&denominators[total - i - j - k]));
                         }
                         delta
                     }
                 };
-                (delta, below[total].clone())
+                (delta, denominators[total].clone())
             }
             Self::Cuboid { local, tensor } => {
                 let [delta] = tensor.in_terms_of(&chart.local(local));
@@ -244,9 +244,9 @@ impl Dilation3 {
     }
 
     /// Returns δ at `p`.
-    pub(super) fn at(&self, p: DVec3) -> f64 {
+    pub(super) fn value(&self, p: DVec3) -> f64 {
         match self {
-            Self::Cuboid { local, tensor } => tensor.at((p - local.middle) * local.scale)[0],
+            Self::Cuboid { local, tensor } => tensor.value(local.coordinates(p).to_array())[0],
             _ => self.jet(p).0,
         }
     }
@@ -272,8 +272,8 @@ impl Dilation3 {
     /// Returns δ of the tetrahedron that contains a box, or 1 if none touches it. `None` if a face may cross it, or for another kind of δ.
     pub(super) fn around(&self, corners: &[DVec3; 8]) -> Option<DVec4> {
         let Self::Tetrahedra(all) = self else { return None };
-        let inside = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) >= 0.0);
-        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p) <= 0.0);
+        let inside = |f: &DVec4| corners.iter().all(|p| signed_side(f, *p) >= 0.0);
+        let behind = |f: &DVec4| corners.iter().all(|p| signed_side(f, *p) <= 0.0);
         match all.iter().find(|t| t.0.iter().all(inside)) {
             Some((_, delta)) => Some(*delta),
             None => all.iter().all(|t| t.0.iter().any(behind)).then_some(DVec4::W),

@@ -110,7 +110,7 @@ impl Anamorph3 {
     pub fn build(&self) -> Result<Built3, Error> {
         let base = self.base();
         Self { eye: self.eye.relative_to(base), reference: self.reference.clone().relative_to(base), ..self.clone() }
-            .about(base)
+            .build_relative(base)
     }
 
     /// Returns the point relative to which the map is computed: the origin or, if that is far away, the middle of the reference.
@@ -122,7 +122,7 @@ impl Anamorph3 {
     }
 
     /// Builds the map with eye and reference relative to `base`; pushes are absolute.
-    fn about(&self, base: DVec3) -> Result<Built3, Error> {
+    fn build_relative(&self, base: DVec3) -> Result<Built3, Error> {
         let nodes = self.reference.nodes();
         let mut values = vec![1.0; nodes.len()];
         for push in &self.pushes {
@@ -138,7 +138,7 @@ impl Anamorph3 {
                 let mut lattice = rest.clone();
                 for ([i, j, k, _], delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
                     let node = [*i, *j, *k];
-                    lattice.place(node, self.eye.moved(rest.point(node) - base, *delta) + base);
+                    lattice.place(node, self.eye.image(rest.point(node) - base, *delta) + base);
                     if let Eye3::At(_) = self.eye {
                         lattice.set_weight(node, *delta * rest.weight(node));
                     }
@@ -150,8 +150,8 @@ impl Anamorph3 {
             }
             (None, reference) => {
                 let range = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
-                let within = self.local.then(|| dilation.sides(reference).into());
-                Arc::new(RadialMap { eye: self.eye, base, dilation, within, range })
+                let sides = self.local.then(|| dilation.sides(reference).into());
+                Arc::new(RadialMap { eye: self.eye, base, dilation, sides, range })
             }
         };
         let mut built = Built3::new(map);
@@ -161,23 +161,22 @@ impl Anamorph3 {
         built.note(format!("{} control points; {}", nodes.len(), self.reference.numbers()));
         if let Some(form) = linear {
             let d = form.truncate();
-            let (at, place) = match self.eye {
+            let (constant, center) = match self.eye {
                 Eye3::At(eye) => (form.dot(eye.extend(1.0)), "the eye"),
                 Eye3::Infinite(_) => (form.w - d.dot(base), "the origin"),
             };
-            built.note(format!("collineation: {},{},{},{at} about {place} (d and its constant)", d.x, d.y, d.z));
+            built.note(format!("collineation: {},{},{},{constant} about {center} (d and its constant)", d.x, d.y, d.z));
         }
         if let Some([shared, torn]) = self.reference.faces(&values) {
             built.note(format!("continuous across the faces {shared}"));
             if !torn.is_empty() {
-                built.note(format!(
-                    "outer faces with corners that move, at which a model is torn that crosses them: {torn}"
-                ));
+                let problem = "outer faces with corners that move, at which a model is torn that crosses them";
+                built.note(format!("{problem}: {torn}"));
             }
         }
         for (node, delta) in nodes.iter().zip(&values).filter(|(_, v)| **v != 1.0) {
             let from = self.reference.point(*node);
-            let to = self.eye.moved(from, *delta);
+            let to = self.eye.image(from, *delta);
             built.note(format!("control point at {} moves to {}", show(from + base), show(to + base)));
             built.guides.push([self.eye.before(from, 0.0), from, to].map(|p| p + base).to_vec());
         }
@@ -204,39 +203,37 @@ impl Anamorph3 {
                 }
                 _ => Some(p),
             };
-            local
-                .map_or_else(Vec::new, |u| lattice.influence(u))
-                .into_iter()
-                .for_each(|(node, v)| out[lattice.index(node)] = v);
+            for (node, v) in local.into_iter().flat_map(|u| lattice.influence(u)) {
+                out[lattice.index(node)] = v;
+            }
             return out;
         }
         let unit = |i: usize| (0..nodes.len()).map(|k| if k == i { 1.0 } else { 0.0 }).collect::<Vec<_>>();
-        (0..nodes.len()).for_each(|i| out[i] = Dilation3::new(&self.reference, self.eye, &unit(i)).at(p));
+        (0..nodes.len()).for_each(|i| out[i] = Dilation3::new(&self.reference, self.eye, &unit(i)).value(p));
         out
     }
 
+    /// Changes δ at a control point, of which `values` holds one for each of `nodes`.
     fn apply(&self, push: Push3, base: DVec3, nodes: &[[usize; 4]], values: &mut [f64]) -> Result<(), Error> {
         let wrong = |problem: String| Error::usage(push.param(), push.text(&self.reference), problem);
-        let sound = |delta: f64| {
+        let check_delta = |delta: f64| {
             let range = if let Eye3::At(_) = self.eye { 1e-6..1e6 } else { -1e12..1e12 };
-            if range.contains(&delta) {
-                return Ok(delta);
-            }
-            Err(wrong("would go through the eye, or out of reach; push it less".into()))
+            let out_of_reach = || wrong("would go through the eye, or out of reach; push it less".into());
+            range.contains(&delta).then_some(delta).ok_or_else(out_of_reach)
         };
         let find = |node: [usize; 4]| {
             let missing = || wrong(format!("is not a control point: {}", self.reference.numbers()));
             nodes.iter().position(|n| *n == node).ok_or_else(missing)
         };
-        let by = |factor: f64| match self.eye {
-            Eye3::At(_) => sound(1.0 / factor),
+        let delta_by = |factor: f64| match self.eye {
+            Eye3::At(_) => check_delta(1.0 / factor),
             Eye3::Infinite(_) => Err(wrong(
                 "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`"
                     .into(),
             )),
         };
-        let away = |from: DVec3, length: f64| {
-            sound(match self.eye {
+        let delta_away = |from: DVec3, length: f64| {
+            check_delta(match self.eye {
                 Eye3::At(eye) => {
                     let distance = (from - eye).length();
                     distance / (distance + length)
@@ -245,26 +242,26 @@ impl Anamorph3 {
             })
         };
         match push {
-            Push3::By(node, factor) => values[find(node)?] = by(factor)?,
-            Push3::Away(node, length) => values[find(node)?] = away(self.reference.point(node), length)?,
+            Push3::By(node, factor) => values[find(node)?] = delta_by(factor)?,
+            Push3::Away(node, length) => values[find(node)?] = delta_away(self.reference.point(node), length)?,
             Push3::To(node, to) => {
                 let (i, from, to) = (find(node)?, self.reference.point(node), to - base);
-                values[i] = sound(match self.eye {
+                values[i] = check_delta(match self.eye {
                     Eye3::At(eye) => (from - eye).length_squared() / (to - eye).dot(from - eye),
                     Eye3::Infinite(towards) => 1.0 + (to - from).dot(towards),
                 })?;
             }
             Push3::Prescribe(p, value) => {
                 let p = p - base;
-                let wanted = if let Eye3::At(_) = self.eye { by(value)? } else { away(p, value)? };
+                let wanted = if let Eye3::At(_) = self.eye { delta_by(value)? } else { delta_away(p, value)? };
                 let influence = self.influence(p, nodes);
                 let here: f64 = influence.iter().zip(&*values).map(|(b, v)| b * v).sum();
-                let free = (0..nodes.len()).filter(|i| !self.reference.held(nodes[*i], self.local));
+                let free = (0..nodes.len()).filter(|i| !self.reference.is_held(nodes[*i], self.local));
                 let strongest = free.map(|i| (i, influence[i])).max_by(|a, b| a.1.total_cmp(&b.1));
                 let (i, b) = strongest.filter(|(_, b)| *b > 1e-9).ok_or_else(|| {
                     wrong("is on a fixed face, or no control point is free to move; raise `degree` or choose another `reference`".into())
                 })?;
-                values[i] = sound(values[i] + (wanted - here) / b)?;
+                values[i] = check_delta(values[i] + (wanted - here) / b)?;
             }
         }
         Ok(())
@@ -283,8 +280,8 @@ fn perspective(eye: Eye3, delta: DVec4) -> DMat4 {
 /// Distance from a side of the moved region, relative to the coordinates, within which points count as on it.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns the value of a form in (x, y, z, 1) that is 0 on a side of the moved region.
-fn beyond(form: &DVec4, p: DVec3) -> f64 {
+/// Returns the value of a linear form in (x, y, z, 1), or 0 if that is rounding. Forms are positive inside the side that they describe.
+fn signed_side(form: &DVec4, p: DVec3) -> f64 {
     let q = p.extend(1.0);
     let v = form.dot(q);
     if v.abs() <= ROUNDING * form.abs().dot(q.abs()) { 0.0 } else { v }
@@ -293,12 +290,12 @@ fn beyond(form: &DVec4, p: DVec3) -> f64 {
 /// The map that moves every point along its ray through the eye.
 #[derive(Debug, Clone)]
 struct RadialMap {
-    /// The eye, relative to `base`, as are `dilation` and `within`.
+    /// The eye, relative to `base`, as are `dilation` and `sides`.
     eye: Eye3,
     base: DVec3,
     dilation: Dilation3,
     /// For a local map, forms in (x, y, z, 1) that are all nonnegative where points move.
-    within: Option<Arc<[DVec4]>>,
+    sides: Option<Arc<[DVec4]>>,
     /// The smallest and the largest δ of a control point.
     range: (f64, f64),
 }
@@ -306,11 +303,11 @@ struct RadialMap {
 impl RadialMap {
     /// Returns `true` if a point may move.
     fn moves(&self, p: DVec3) -> bool {
-        self.within.as_deref().is_none_or(|forms| forms.iter().all(|f| beyond(f, p - self.base) >= 0.0))
+        self.sides.as_deref().is_none_or(|forms| forms.iter().all(|f| signed_side(f, p - self.base) >= 0.0))
     }
 
-    /// Returns δ of the tetrahedron around a box, or 1 outside all of them; `None` if a face may cross the box.
-    fn tetrahedron(&self, on: &Box3) -> Option<DVec4> {
+    /// Returns δ of the tetrahedron around a box as a linear form, or 1 outside all of them; `None` if a face may cross the box.
+    fn linear_on(&self, on: &Box3) -> Option<DVec4> {
         self.dilation.around(&on.corners().map(|p| p - self.base))
     }
 
@@ -329,8 +326,8 @@ impl RadialMap {
         if corners.iter().all(|p| self.moves(*p)) {
             return Some(true);
         }
-        let behind = |f: &DVec4| corners.iter().all(|p| beyond(f, *p - self.base) <= 0.0);
-        self.within.as_deref().is_some_and(|forms| forms.iter().any(behind)).then_some(false)
+        let behind = |f: &DVec4| corners.iter().all(|p| signed_side(f, *p - self.base) <= 0.0);
+        self.sides.as_deref().is_some_and(|forms| forms.iter().any(behind)).then_some(false)
     }
 }
 
@@ -339,13 +336,13 @@ impl Map3 for RadialMap {
         if !self.moves(p) {
             return Jet3::identity(p);
         }
-        let own = p - self.base;
-        let (delta, slope) = self.dilation.jet(own);
+        let local = p - self.base;
+        let (delta, slope) = self.dilation.jet(local);
         let outer = |v: DVec3| DMat3::from_cols(v * slope.x, v * slope.y, v * slope.z);
         match self.eye {
             Eye3::At(eye) => {
-                let d = (DMat3::IDENTITY - outer(own - eye) * (1.0 / delta)) * (1.0 / delta);
-                Jet3 { p: self.eye.moved(own, delta) + self.base, d }
+                let d = (DMat3::IDENTITY - outer(local - eye) * (1.0 / delta)) * (1.0 / delta);
+                Jet3 { p: self.eye.image(local, delta) + self.base, d }
             }
             Eye3::Infinite(towards) => Jet3 { p: p + towards * (delta - 1.0), d: DMat3::IDENTITY + outer(towards) },
         }
@@ -355,14 +352,14 @@ impl Map3 for RadialMap {
         if !self.moves(p) {
             return p;
         }
-        let own = p - self.base;
-        self.eye.moved(own, self.dilation.at(own)) + self.base
+        let local = p - self.base;
+        self.eye.image(local, self.dilation.value(local)) + self.base
     }
 
     fn points(&self, ps: &mut [DVec3]) {
         match (&self.dilation, self.eye) {
             (Dilation3::Cuboid { local, tensor }, Eye3::At(eye))
-                if self.within.is_none() && self.base == DVec3::ZERO =>
+                if self.sides.is_none() && self.base == DVec3::ZERO =>
             {
                 for_all(&Radial { local: *local, eye, tensor }, ps);
             }
@@ -370,16 +367,16 @@ impl Map3 for RadialMap {
         }
     }
 
-    fn fraction(&self, on: &Box3, most: usize) -> Option<Fraction3> {
+    fn fraction(&self, on: &Box3, max: usize) -> Option<Fraction3> {
         let chart = Chart::on(on);
         if let Dilation3::Tetrahedra(_) = self.dilation {
-            let delta = chart.relative_to(self.base).linear(self.tetrahedron(on)?);
+            let delta = chart.relative_to(self.base).linear(self.linear_on(on)?);
             return Some(self.along_rays(chart, delta, Poly3::constant(1.0)));
         }
         if !self.moves_on(on)? {
             return Some(Fraction3::identity(chart));
         }
-        if self.dilation.degree() > most {
+        if self.dilation.degree() > max {
             return None;
         }
         let (divisor, common) = self.dilation.fraction(&chart.relative_to(self.base));
@@ -388,28 +385,27 @@ impl Map3 for RadialMap {
 
     fn branch(&self, on: &Box3) -> Option<Arc<dyn Map3>> {
         if let Dilation3::Tetrahedra(_) = self.dilation {
-            return Some(Arc::new(Collineation::about(perspective(self.eye, self.tetrahedron(on)?), self.base)));
+            return Some(Arc::new(Collineation::about(perspective(self.eye, self.linear_on(on)?), self.base)));
         }
         Some(match self.moves_on(on)? {
-            true => Arc::new(Self { within: None, ..self.clone() }),
+            true => Arc::new(Self { sides: None, ..self.clone() }),
             false => Arc::new(Collineation::IDENTITY),
         })
     }
 
     fn creases(&self, out: &mut Creases3) {
         let base = self.base;
-        for form in self.within.iter().flat_map(|forms| forms.iter().copied()) {
+        let mut forms = self.sides.as_deref().unwrap_or_default().to_vec();
+        if let Dilation3::Tetrahedra(all) = &self.dilation {
+            forms.extend(all.iter().flat_map(|t| t.0));
+        }
+        for form in forms {
             out.kink(move |p| form.dot((p - base).extend(1.0)));
         }
-        if let Dilation3::Tetrahedra(all) = &self.dilation {
-            for form in all.iter().flat_map(|t| t.0) {
-                out.kink(move |p| form.dot((p - base).extend(1.0)));
-            }
-        }
         if let Eye3::At(_) = self.eye {
-            let own = self.clone();
+            let map = self.clone();
             out.edge(move |p| {
-                let delta = if own.moves(p) { own.dilation.at(p - base) } else { 1.0 };
+                let delta = if map.moves(p) { map.dilation.value(p - base) } else { 1.0 };
                 if delta.is_nan() { -1.0 } else { delta }
             });
         }
@@ -431,84 +427,80 @@ const INTERVALS: u32 = 96;
 /// Factor by which the searched range exceeds that of the control points' δ.
 const BEYOND: f64 = 8.0;
 
-/// A point q and the points from which it may have come, relative to the base: O + s·(q − O), or q − (s − 1)·O for O at infinity.
-struct Line {
+/// The points from which a point q may have come, relative to the base: O + s·(q − O), or q − (s − 1)·O for O at infinity.
+struct Ray {
     from: DVec3,
     along: DVec3,
 }
 
 impl RadialInverse {
-    fn line(&self, q: DVec3) -> Line {
+    fn ray(&self, q: DVec3) -> Ray {
         match self.0.eye {
-            Eye3::At(eye) => Line { from: eye, along: q - self.0.base - eye },
-            Eye3::Infinite(towards) => Line { from: q - self.0.base + towards, along: -towards },
+            Eye3::At(eye) => Ray { from: eye, along: q - self.0.base - eye },
+            Eye3::Infinite(towards) => Ray { from: q - self.0.base + towards, along: -towards },
         }
     }
 
-    /// Returns δ − s at the parameter s of a line, and its derivative.
-    fn off(&self, r: &Line, s: f64) -> (f64, f64) {
+    /// Returns δ − s at the parameter s of a ray, and its derivative.
+    fn residual(&self, r: &Ray, s: f64) -> (f64, f64) {
         let (delta, slope) = self.0.dilation.jet(r.from + r.along * s);
         (delta - s, slope.dot(r.along) - 1.0)
     }
 
     /// Finds the root near `s` by Newton's method. The slope must be negative: then the map keeps the order of points along the ray.
-    fn newton(&self, r: &Line, mut s: f64) -> Option<f64> {
-        let ahead = |s: f64| s.is_finite() && (s > 0.0 || matches!(self.0.eye, Eye3::Infinite(_)));
+    fn newton(&self, r: &Ray, mut s: f64) -> Option<f64> {
+        let is_ahead = |s: f64| s.is_finite() && (s > 0.0 || matches!(self.0.eye, Eye3::Infinite(_)));
         for _ in 0..MAX_STEPS {
-            let (off, slope) = self.off(r, s);
-            let next = s - off / slope;
-            if !ahead(next) {
+            let (residual, slope) = self.residual(r, s);
+            let next = s - residual / slope;
+            if !is_ahead(next) {
                 return None;
             }
-            let still = (next - s).abs() <= 2.0 * f64::EPSILON * s.abs();
+            let is_still = (next - s).abs() <= 2.0 * f64::EPSILON * s.abs();
             s = next;
-            if still {
+            if is_still {
                 return (slope < 0.0).then_some(s);
             }
         }
-        let (off, slope) = self.off(r, s);
-        (off.abs() <= 64.0 * f64::EPSILON * s.abs().max(1.0) && slope < 0.0).then_some(s)
+        let (residual, slope) = self.residual(r, s);
+        (residual.abs() <= 64.0 * f64::EPSILON * s.abs().max(1.0) && slope < 0.0).then_some(s)
     }
 
-    fn factor(&self, q: DVec3) -> Option<f64> {
-        let r = self.line(q);
+    /// Returns the parameter s of the source of `q`, at which s = δ.
+    fn parameter(&self, q: DVec3) -> Option<f64> {
+        let r = self.ray(q);
         let (least, most) = self.0.range;
-        let infinite = matches!(self.0.eye, Eye3::Infinite(_));
+        let is_infinite = matches!(self.0.eye, Eye3::Infinite(_));
         if self.0.dilation.is_sheet() {
-            return Some(self.0.dilation.at(q - self.0.base)).filter(|d| *d > 0.0 || infinite);
+            return Some(self.0.dilation.value(q - self.0.base)).filter(|d| *d > 0.0 || is_infinite);
         }
-        let (min, max) = match self.0.eye {
-            Eye3::At(_) => (least / BEYOND, most * BEYOND),
-            Eye3::Infinite(_) => {
-                let room = BEYOND * (most - least + 1e-9);
-                (least - room, most + room)
-            }
-        };
+        let margin = BEYOND * (most - least + 1e-9);
+        let (min, max) = if is_infinite { (least - margin, most + margin) } else { (least / BEYOND, most * BEYOND) };
         let found = self.newton(&r, 1.0).filter(|s| (min..=max).contains(s));
         found.or_else(|| {
-            let place = |i: u32| {
+            let sample = |i: u32| {
                 let t = f64::from(i) / f64::from(INTERVALS);
-                if infinite { min + t * (max - min) } else { min * (max / min).powf(t) }
+                if is_infinite { min + t * (max - min) } else { min * (max / min).powf(t) }
             };
-            let falls = |i: &u32| self.off(&r, place(*i)).0 >= 0.0 && self.off(&r, place(i + 1)).0 < 0.0;
-            (0..INTERVALS).filter(falls).find_map(|i| self.bisected(&r, place(i), place(i + 1)))
+            let falls = |i: &u32| self.residual(&r, sample(*i)).0 >= 0.0 && self.residual(&r, sample(i + 1)).0 < 0.0;
+            (0..INTERVALS).filter(falls).find_map(|i| self.bisect(&r, sample(i), sample(i + 1)))
         })
     }
 
-    /// Bisects between `a`, where the difference is positive, and `b`, where it is negative.
-    fn bisected(&self, r: &Line, mut a: f64, mut b: f64) -> Option<f64> {
+    /// Bisects between `a`, where the residual is positive, and `b`, where it is negative.
+    fn bisect(&self, r: &Ray, mut a: f64, mut b: f64) -> Option<f64> {
         for _ in 0..64 {
             let m = 0.5 * (a + b);
-            if self.off(r, m).0 >= 0.0 { a = m } else { b = m }
+            if self.residual(r, m).0 >= 0.0 { a = m } else { b = m }
         }
         let s = 0.5 * (a + b);
-        (self.off(r, s).0.abs() <= 1e-12 * s.abs().max(1.0)).then_some(s)
+        (self.residual(r, s).0.abs() <= 1e-12 * s.abs().max(1.0)).then_some(s)
     }
 
     fn source(&self, q: DVec3) -> Option<DVec3> {
-        let line = self.line(q);
-        let place = |s: f64| line.from + line.along * s + self.0.base;
-        let source = self.factor(q).map(place).filter(|p| self.0.moves(*p));
+        let ray = self.ray(q);
+        let point_at = |s: f64| ray.from + ray.along * s + self.0.base;
+        let source = self.parameter(q).map(point_at).filter(|p| self.0.moves(*p));
         // Points outside the moved region stay, unless points from inside have moved there.
         source.or_else(|| (!self.0.moves(q)).then_some(q))
     }
@@ -681,19 +673,15 @@ const LOCAL: Pairs = &[
 /// Reads the deformation from text.
 pub(in crate::deform) const ENTRY: Entry = Entry(&ABOUT, |s| {
     let eye = eye(s)?;
-    let mut built = built(s, eye)?;
+    let mut built = build(s, eye)?;
     let rod = s.last("sight-hole").map(|name| sight::rod(eye, &s.bounds(), &built, name));
     built.saves.extend(rod);
     Ok(built)
 });
 
 /// Builds the map for these settings.
-fn built(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
-    let listed = |name: &str| -> Result<Vec<DVec3>, Error> {
-        let words = s.words(name).into_iter().flat_map(|w| w.split(';')).filter(|w| !w.is_empty());
-        words.map(|w| s.point_in(name, w)).collect()
-    };
-    let (mut points, axis, form) = (listed("reference")?, listed("axis")?, numbers(s)?);
+fn build(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
+    let (mut points, axis, form) = (s.listed_points("reference")?, s.listed_points("axis")?, collineation_form(s)?);
     let degree = s.counts_if("degree", MAX_DEGREE)?.unwrap_or([1; 3]);
     let cells = match s.counts_if("cells", MAX_CELLS)? {
         None if s.flat().flag("spline")? => Some([4; 3]),
@@ -701,16 +689,12 @@ fn built(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
     };
     let local = s.flat().flag("local")?;
     if let Some(form) = form {
-        if let Some(name) =
-            ["reference", "axis", "cells", "push", "point", "away", "at"].iter().find(|n| s.flat().given(n))
-        {
-            return Err(Error::usage(
-                name,
-                "",
-                "does not go with `collineation`, which has all numbers already; omit one of them",
-            ));
+        let others = ["reference", "axis", "cells", "push", "point", "away", "at"];
+        if let Some(name) = others.iter().find(|n| s.flat().given(n)) {
+            let problem = "does not go with `collineation`, which has all numbers already; omit one of them";
+            return Err(Error::usage(name, "", problem));
         }
-        return Ok(typed(eye, form));
+        return Ok(build_collineation(eye, form));
     }
     let mut pushes = Vec::new();
     if let [a, b, c] = axis[..] {
@@ -738,7 +722,7 @@ fn built(s: &Settings3<'_>, eye: Eye3) -> Result<Built3, Error> {
         (None, _) => Reference3::new(&points, degree, eye)?,
     };
     if pushes.is_empty() {
-        pushes = nodes_pushed(s, &reference)?;
+        pushes = node_pushes(s, &reference)?;
         pushes.extend(prescribed(s)?);
     }
     pushes.into_iter().fold(Anamorph3::new(eye, reference).local(local), Anamorph3::push).build()
@@ -753,8 +737,8 @@ fn eye(s: &Settings3<'_>) -> Result<Eye3, Error> {
     let number = |text: &str| s.flat().number_in("eye", text);
     let towards = match parts[..] {
         [right, up] => {
-            let [right, up] =
-                [s.flat().angle_in("eye", right)?.to_radians(), s.flat().angle_in("eye", up)?.to_radians()];
+            let angle = |text: &str| s.flat().angle_in("eye", text).map(f64::to_radians);
+            let (right, up) = (angle(right)?, angle(up)?);
             DVec3::new(right.sin() * up.cos(), up.sin(), right.cos() * up.cos())
         }
         [x, y, z] => DVec3::new(number(x)?, number(y)?, number(z)?),
@@ -765,7 +749,7 @@ fn eye(s: &Settings3<'_>) -> Result<Eye3, Error> {
 }
 
 /// Reads the numbers of a collineation.
-fn numbers(s: &Settings3<'_>) -> Result<Option<DVec4>, Error> {
+fn collineation_form(s: &Settings3<'_>) -> Result<Option<DVec4>, Error> {
     let Some(text) = s.last("collineation") else { return Ok(None) };
     let all: Result<Vec<f64>, Error> = text.split(',').map(|t| s.flat().number_in("collineation", t)).collect();
     match all?[..] {
@@ -775,10 +759,10 @@ fn numbers(s: &Settings3<'_>) -> Result<Option<DVec4>, Error> {
 }
 
 /// Builds the collineation with δ(p) = d·(p − O) + d₀, or d·p + d₀ for an eye at infinity.
-fn typed(eye: Eye3, form: DVec4) -> Built3 {
-    let about = eye.before(DVec3::ZERO, 0.0);
-    let mut built = Built3::new(Arc::new(Collineation::about(perspective(eye.relative_to(about), form), about)));
-    built.eye = matches!(eye, Eye3::At(_)).then_some(about);
+fn build_collineation(eye: Eye3, form: DVec4) -> Built3 {
+    let base = eye.before(DVec3::ZERO, 0.0);
+    let mut built = Built3::new(Arc::new(Collineation::about(perspective(eye.relative_to(base), form), base)));
+    built.eye = matches!(eye, Eye3::At(_)).then_some(base);
     built
 }
 
@@ -796,7 +780,7 @@ fn tetrahedra(s: &Settings3<'_>, points: Vec<DVec3>) -> Result<Reference3, Error
 const MAX_CELLS: usize = 16;
 
 /// Reads the pushes of control points.
-fn nodes_pushed(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {
+fn node_pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, Error> {
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
@@ -821,9 +805,9 @@ fn prescribed(s: &Settings3<'_>) -> Result<Vec<Push3>, Error> {
     for word in s.words("point") {
         let wrong = || Error::usage("point", word, "is not X,Y,Z:FACTOR, such as 10,20,30:150%");
         let (p, factor) = word.split_once(':').ok_or_else(wrong)?;
-        let p: DVec3 = s.point_in("point", p)?;
-        let infinite = s.last("eye").is_some_and(|t| t.starts_with("inf"));
-        let value = match infinite {
+        let p = s.point_in("point", p)?;
+        let is_infinite = s.last("eye").is_some_and(|t| t.starts_with("inf"));
+        let value = match is_infinite {
             true => s.length_in("point", factor, Extent::Diagonal)?,
             false => s.flat().number_in("point", factor)?,
         };

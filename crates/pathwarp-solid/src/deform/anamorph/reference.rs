@@ -2,7 +2,7 @@
 
 use super::dilation::Dilation3;
 use crate::lattice::Lattice3;
-use crate::settings::{Box3, show};
+use crate::settings::{Box3, grid, show};
 use glam::{DVec3, DVec4};
 use pathwarp::Error;
 use pathwarp::engine::bspline;
@@ -48,7 +48,7 @@ impl Eye3 {
     }
 
     /// Returns the image of a point that moves along its ray: O + (p − O)/δ, or p + (δ − 1)·O for O at infinity.
-    pub(super) fn moved(self, p: DVec3, delta: f64) -> DVec3 {
+    pub(super) fn image(self, p: DVec3, delta: f64) -> DVec3 {
         match self {
             Self::At(_) if delta == 1.0 => p,
             Self::At(eye) => eye + (p - eye) / delta,
@@ -87,11 +87,11 @@ impl Reference3 {
     ///
     /// # Errors
     /// [`Error::Usage`] when the points do not span such a reference, or the eye lies in the plane of a sheet.
-    pub fn new(points: &[DVec3], degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
+    pub fn new(points: &[DVec3], mut degree: [usize; 3], eye: impl Into<Eye3>) -> Result<Self, Error> {
         let eye = eye.into();
         let wrong = |problem: &str| Error::usage("reference", "", problem);
-        let even = degree[0] == degree[1] && (degree[1] == degree[2] || points.len() == 6);
-        if points.len() > 2 && !even {
+        let fits = degree[0] == degree[1] && (degree[1] == degree[2] || points.len() == 6);
+        if points.len() > 2 && !fits {
             let text = format!("{}x{}x{}", degree[0], degree[1], degree[2]);
             let problem = "must be one number for a tetrahedron or a triangle, NxNxM for a pentahedron";
             return Err(Error::usage("degree", text, problem));
@@ -102,9 +102,9 @@ impl Reference3 {
                 let (edge, base) = (d - a, (b - a).cross(c - a));
                 let size = edge.length().max((b - a).length()).max((c - a).length());
                 if (e - b - edge).length().max((f - c - edge).length()) > 1e3 * FLAT * size {
-                    return Err(wrong(
-                        "has six corners whose edges from the first three to the last are not parallel and equal; cut it into tetrahedra (`tetrahedra`)",
-                    ));
+                    let problem =
+                        "has six corners whose edges from the first three to the last are not parallel and equal";
+                    return Err(wrong(&format!("{problem}; cut it into tetrahedra (`tetrahedra`)")));
                 }
                 let volume = base.dot(edge).abs();
                 if volume.is_nan() || volume <= FLAT * size.powi(3) {
@@ -126,11 +126,11 @@ impl Reference3 {
                 if normal.length().is_nan() || normal.length() <= FLAT * size * size {
                     return Err(wrong("has three corners on one line; move one of them"));
                 }
-                let off = match eye {
+                let distance = match eye {
                     Eye3::At(eye) => (eye - a).dot(normal.normalize()) / size,
                     Eye3::Infinite(towards) => towards.dot(normal.normalize()),
                 };
-                if off.abs() <= FLAT {
+                if distance.abs() <= FLAT {
                     return Err(in_plane());
                 }
                 Ok(Self::Triangle([a, b, c], degree[0]))
@@ -148,7 +148,6 @@ impl Reference3 {
                         Err(in_plane())
                     }
                     [axis] => {
-                        let mut degree = degree;
                         degree[axis] = 0;
                         Ok(Self::Rectangle(b, axis, degree))
                     }
@@ -177,33 +176,28 @@ impl Reference3 {
     /// # Errors
     /// [`Error::Usage`] when there is no such point, a tetrahedron is flat, or the middle of one lies in another.
     pub fn tetrahedra(points: Vec<DVec3>, all: Vec<[usize; 4]>) -> Result<Self, Error> {
-        const MOST: usize = 1000;
+        const MAX_TETRAHEDRA: usize = 1000;
         let wrong =
             |t: &[usize; 4], problem: &str| Error::usage("tetrahedra", t.map(|i| i.to_string()).join(","), problem);
-        if let Some(t) = all.get(MOST) {
+        if let Some(t) = all.get(MAX_TETRAHEDRA) {
             return Err(wrong(t, "is one too many: 1000 at most"));
         }
         for t in &all {
             if t.iter().any(|i| *i >= points.len()) {
-                return Err(wrong(
-                    t,
-                    &format!("has a point that the `reference` lacks: 0 to {}", points.len().max(1) - 1),
-                ));
+                let last = points.len().max(1) - 1;
+                return Err(wrong(t, &format!("has a point that the `reference` lacks: 0 to {last}")));
             }
             Self::new(&t.map(|i| points[i]), [1; 3], DVec3::ZERO)
                 .map_err(|_| wrong(t, "has its four corners in one plane, or one twice"))?;
         }
-        let own = Self::Tetrahedra(points, all);
-        let Self::Tetrahedra(points, all) = &own else { return Ok(own) };
         for (k, t) in all.iter().enumerate() {
             let middle = t.iter().map(|i| points[*i]).sum::<DVec3>() * 0.25;
-            let others: Vec<[usize; 4]> = all.iter().enumerate().filter(|(n, _)| *n != k).map(|(_, t)| *t).collect();
-            let others = Self::Tetrahedra(points.clone(), others);
-            if Dilation3::new(&others, Eye3::At(DVec3::ZERO), &vec![2.0; points.len()]).at(middle) != 1.0 {
+            let others = Self::Tetrahedra(points.clone(), [&all[..k], &all[k + 1..]].concat());
+            if Dilation3::new(&others, Eye3::At(DVec3::ZERO), &vec![2.0; points.len()]).value(middle) != 1.0 {
                 return Err(wrong(t, &format!("lies in another one at {}; let them share faces", show(middle))));
             }
         }
-        Ok(own)
+        Ok(Self::Tetrahedra(points, all))
     }
 
     /// Names the faces that two tetrahedra share, and the outer ones with a corner whose δ is not 1.
@@ -215,30 +209,30 @@ impl Reference3 {
             face.sort_unstable();
             *faces.entry(face).or_default() += 1;
         }
-        let named = |wanted: &dyn Fn(&[usize], usize) -> bool| {
-            let text = |f: &Vec<usize>| f.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
-            faces.iter().filter(|(f, n)| wanted(f, **n)).map(|(f, _)| text(f)).collect::<Vec<_>>().join(" ")
+        let names_of = |wanted: &dyn Fn(&[usize], usize) -> bool| {
+            let name = |f: &Vec<usize>| f.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+            faces.iter().filter(|(f, n)| wanted(f, **n)).map(|(f, _)| name(f)).collect::<Vec<_>>().join(" ")
         };
-        Some([named(&|_, n| n > 1), named(&|f, n| n == 1 && f.iter().any(|i| values[*i] != 1.0))])
+        Some([names_of(&|_, n| n > 1), names_of(&|f, n| n == 1 && f.iter().any(|i| values[*i] != 1.0))])
     }
 
     /// Returns the bounding box.
     pub(super) fn bounds(&self) -> Box3 {
-        let corners =
+        let around =
             |all: &[DVec3]| Box3::around(all.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
         match self {
-            Self::Tetrahedron(c, _) => corners(c),
-            Self::Triangle(c, _) => corners(c),
-            Self::Prism([a, b, c, d], _) => corners(&[*a, *b, *c, *d, *b + (*d - *a), *c + (*d - *a)]),
-            Self::Hull(lattice) => corners(&lattice.nodes().map(|n| lattice.point(n)).collect::<Vec<_>>()),
-            Self::Tetrahedra(points, _) => corners(points),
+            Self::Tetrahedron(c, _) => around(c),
+            Self::Triangle(c, _) => around(c),
+            Self::Prism([a, b, c, d], _) => around(&[*a, *b, *c, *d, *b + (*d - *a), *c + (*d - *a)]),
+            Self::Hull(lattice) => around(&lattice.nodes().map(|n| lattice.point(n)).collect::<Vec<_>>()),
+            Self::Tetrahedra(points, _) => around(points),
             Self::Cuboid(b, _) | Self::Spline(b, ..) | Self::Rectangle(b, ..) => *b,
         }
     }
 
     /// Returns the net in coordinates relative to a point.
     pub(super) fn relative_to(self, base: DVec3) -> Self {
-        let less = |b: Box3| Box3 { min: b.min - base, max: b.max - base };
+        let shifted = |b: Box3| Box3 { min: b.min - base, max: b.max - base };
         match self {
             Self::Tetrahedron(c, n) => Self::Tetrahedron(c.map(|p| p - base), n),
             Self::Triangle(c, n) => Self::Triangle(c.map(|p| p - base), n),
@@ -248,9 +242,9 @@ impl Reference3 {
                 Self::Hull(lattice)
             }
             Self::Tetrahedra(points, all) => Self::Tetrahedra(points.iter().map(|p| *p - base).collect(), all),
-            Self::Cuboid(b, d) => Self::Cuboid(less(b), d),
-            Self::Spline(b, d, c) => Self::Spline(less(b), d, c),
-            Self::Rectangle(b, axis, d) => Self::Rectangle(less(b), axis, d),
+            Self::Cuboid(b, d) => Self::Cuboid(shifted(b), d),
+            Self::Spline(b, d, c) => Self::Spline(shifted(b), d, c),
+            Self::Rectangle(b, axis, d) => Self::Rectangle(shifted(b), axis, d),
         }
     }
 
@@ -269,9 +263,7 @@ impl Reference3 {
             }
             Self::Tetrahedra(ref points, _) => (0..points.len()).map(|i| [i, 0, 0, 0]).collect(),
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) | Self::Hull(_) => {
-                let [l, m, n] = self.last();
-                let rows = (0..=n).flat_map(|k| (0..=m).map(move |j| (j, k)));
-                rows.flat_map(|(j, k)| (0..=l).map(move |i| [i, j, k, 0])).collect()
+                grid(self.last().map(|n| n + 1)).map(|[i, j, k]| [i, j, k, 0]).collect()
             }
         }
     }
@@ -336,7 +328,7 @@ impl Reference3 {
     /// Returns `true` if a prescribed point must not move a control point: on the face ABC of a tetrahedron or pentahedron, on the side AB
     /// of a triangle and, if `local`, on the boundary of a box or rectangle.
     #[must_use]
-    pub(super) fn held(&self, node: [usize; 4], local: bool) -> bool {
+    pub(super) fn is_held(&self, node: [usize; 4], local: bool) -> bool {
         match self {
             Self::Tetrahedra(..) => false,
             Self::Tetrahedron(..) | Self::Prism(..) => node[3] == 0,

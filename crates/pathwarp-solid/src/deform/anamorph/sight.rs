@@ -3,7 +3,7 @@
 
 use super::Eye3;
 use crate::deform::entry::Built3;
-use crate::settings::Box3;
+use crate::settings::{Box3, grid};
 use glam::DVec3;
 use pathwarp::deform::SavedFile;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ const BEYOND: f64 = 0.1;
 /// Sides of the rod.
 const SIDES: usize = 24;
 /// Samples of the model's box along each axis.
-const SAMPLES: u32 = 5;
+const SAMPLES: usize = 5;
 
 /// Returns the rod as OBJ: a prism around the ray from the eye through the middle of the model's box, long enough for the model and
 /// its image.
@@ -25,10 +25,8 @@ pub(super) fn rod(eye: Eye3, bounds: &Box3, built: &Built3, name: &str) -> Saved
         Eye3::At(eye) => (middle - eye).normalize_or(DVec3::Z),
         Eye3::Infinite(towards) => -towards,
     };
-    let share = |i: u32| f64::from(i) / f64::from(SAMPLES - 1);
-    let grid =
-        (0..SAMPLES.pow(3)).map(|i| DVec3::from([i, i / SAMPLES, i / SAMPLES.pow(2)].map(|k| share(k % SAMPLES))));
-    let points = grid.map(|t| bounds.min + bounds.size() * t).flat_map(|p| [p, built.map.point(p)]);
+    let samples = grid([SAMPLES; 3]).map(|n| DVec3::from_array(n.map(|i| i as f64 / (SAMPLES - 1) as f64)));
+    let points = samples.map(|t| bounds.min + bounds.size() * t).flat_map(|p| [p, built.map.point(p)]);
     let depths = points.filter(|p| p.is_finite()).map(|p| (p - middle).dot(along));
     let (near, far) = depths.fold((0.0, 0.0), |(a, b): (f64, f64), d| (a.min(d), b.max(d)));
     let (across, up) = along.any_orthonormal_pair();
@@ -40,14 +38,12 @@ pub(super) fn rod(eye: Eye3, bounds: &Box3, built: &Built3, name: &str) -> Saved
             let _ = writeln!(text, "v {x} {y} {z}");
         }
     }
-    let face = |corners: &mut dyn Iterator<Item = usize>| {
-        format!("f{}\n", corners.map(|k| format!(" {k}")).collect::<String>())
-    };
-    text += &face(&mut (1..=SIDES).rev());
-    text += &face(&mut (SIDES + 1..=2 * SIDES));
-    for k in 0..SIDES {
-        let next = (k + 1) % SIDES;
-        text += &face(&mut [k + 1, next + 1, next + SIDES + 1, k + SIDES + 1].into_iter());
+    let mut faces: Vec<Vec<usize>> = vec![(1..=SIDES).rev().collect(), (SIDES + 1..=2 * SIDES).collect()];
+    faces.extend(
+        (0..SIDES).map(|k| (k, (k + 1) % SIDES)).map(|(k, l)| vec![k + 1, l + 1, l + SIDES + 1, k + SIDES + 1]),
+    );
+    for face in faces {
+        let _ = writeln!(text, "f {}", face.iter().map(usize::to_string).collect::<Vec<_>>().join(" "));
     }
     SavedFile { name: name.to_owned(), text }
 }

@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Assets, Corner, Mark, Mesh, MeshError, NONE, PolygonKind};
+use super::{Assets, Corner, Mark, Mesh, MeshError, NONE, PolygonKind, fan, index32};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::{DMat3, DMat4, DVec3};
@@ -26,8 +26,8 @@ const METRE: f64 = 1000.0;
 /// Returns `true` if the file begins like binary glTF, or is JSON with a key `asset`.
 #[must_use]
 pub fn sniff(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"glTF")
-        || bytes.trim_ascii_start().starts_with(b"{") && bytes.windows(7).any(|w| w == b"\"asset\"")
+    let is_json = bytes.trim_ascii_start().starts_with(b"{");
+    bytes.starts_with(b"glTF") || (is_json && bytes.windows(7).any(|w| w == b"\"asset\""))
 }
 
 /// Reads the meshes of the default scene, or of the first, in its coordinates as millimetres.
@@ -38,16 +38,15 @@ pub fn sniff(bytes: &[u8]) -> bool {
 pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     let damaged =
         |e: String| MeshError::whole(format!("is a damaged glTF file: {}", e.chars().take(200).collect::<String>()));
-    let mut file = checked(bytes).map_err(damaged)?;
+    let mut file = parse(bytes).map_err(damaged)?;
     let root = json(bytes).ok_or_else(|| damaged("its JSON cannot be read".into()))?;
-    let buffers = Buffers::of(&mut file)?;
+    let buffers = Buffers::from_file(&mut file)?;
     let document = &file.document;
-    let mut assets = Assets::of(&root);
+    let mut assets = Assets::from_json(&root);
     for (i, image) in document.images().enumerate() {
         if let gltf::image::Source::View { view, .. } = image.source() {
-            let bytes =
-                buffers.view(&view).ok_or_else(|| MeshError::whole(format!("picture {i} is outside its buffer")))?;
-            assets.pictures.push((i, bytes.to_vec()));
+            let outside = || MeshError::whole(format!("picture {i} is outside its buffer"));
+            assets.pictures.push((i, buffers.view(&view).ok_or_else(outside)?.to_vec()));
         }
     }
     let scene = document.default_scene().or_else(|| document.scenes().next());
@@ -60,9 +59,9 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
     while let Some((node, parent)) = open.pop() {
         // Without a limit, a node that is its descendant would be visited for ever.
         budget.take(Limit::Elements, 1.0)?;
-        let own = node.transform().matrix().map(|column| column.map(f64::from));
-        let to_scene = parent * DMat4::from_cols_array_2d(&own);
-        object(&mut mesh, &node, &to_scene, &assets, &buffers, budget, &mut lost)?;
+        let to_parent = node.transform().matrix().map(|column| column.map(f64::from));
+        let to_scene = parent * DMat4::from_cols_array_2d(&to_parent);
+        append_node(&mut mesh, &node, &to_scene, &assets, &buffers, budget, &mut lost)?;
         let children: Vec<_> = node.children().map(|c| (c, to_scene)).collect();
         open.extend(children.into_iter().rev());
     }
@@ -80,7 +79,7 @@ pub fn read(bytes: &[u8], budget: &Budget) -> Result<Mesh, MeshError> {
 }
 
 /// Parses a file and checks its references.
-fn checked(bytes: &[u8]) -> Result<Gltf, String> {
+fn parse(bytes: &[u8]) -> Result<Gltf, String> {
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|e| e.to_string())?;
     // gltf 1.4.1 panics when it checks a primitive whose positions are not among the accessors.
     let root = document.into_json();
@@ -92,7 +91,8 @@ fn checked(bytes: &[u8]) -> Result<Gltf, String> {
     Ok(Gltf { document, blob })
 }
 
-fn object(
+/// Appends the mesh of a node as an object.
+fn append_node(
     mesh: &mut Mesh,
     node: &Node<'_>,
     to_scene: &DMat4,
@@ -103,14 +103,12 @@ fn object(
 ) -> Result<(), MeshError> {
     let Some(shape) = node.mesh() else { return Ok(()) };
     let name = node.name().or(shape.name()).map_or_else(|| format!("node {}", node.index() + 1), str::to_owned);
-    let mark =
-        |mesh: &mut Mesh, mark: Mark| mesh.marks.push((u32::try_from(mesh.polygons.len()).unwrap_or(NONE), mark));
-    mark(mesh, Mark::Object(name));
+    mesh.mark(Mark::Object(name));
     for p in shape.primitives() {
         let material = p.material().index().and_then(|i| assets.materials.get(i));
         // Without this mark, the material of the previous object would still apply.
-        mark(mesh, Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
-        append(mesh, &p, to_scene, buffers, lost)?;
+        mesh.mark(Mark::Material(material.cloned().unwrap_or_else(|| "none".into())));
+        append_primitive(mesh, &p, to_scene, buffers, lost)?;
         // Many nodes may show one mesh; each time, its vertices are more points to map.
         let count = |a: Option<Accessor<'_>>| a.map_or(0, |a| a.count()) as f64;
         budget.spend(count(p.get(&Semantic::Positions)) + count(p.indices()))?;
@@ -128,7 +126,7 @@ fn json(bytes: &[u8]) -> Option<Value> {
 }
 
 /// Appends a primitive with its vertices in scene coordinates. `lost` collects the names of omitted features.
-fn append(
+fn append_primitive(
     mesh: &mut Mesh,
     primitive: &Primitive<'_>,
     to_scene: &DMat4,
@@ -140,9 +138,8 @@ fn append(
         return Ok(());
     };
     let count = positions.count();
-    let own = buffers.floats::<3>(&positions)?;
     let first = mesh.positions.len();
-    for p in own {
+    for p in buffers.floats::<3>(&positions)? {
         let p = to_scene.transform_point3(DVec3::from_array(p));
         // The square of a larger number would overflow.
         if p.abs().max_element().is_nan() || p.abs().max_element() > 1e100 {
@@ -150,7 +147,7 @@ fn append(
         }
         mesh.positions.push(p);
     }
-    let [normals, uvs] = attributes(mesh, primitive, to_scene, buffers, lost)?;
+    let [normals, uvs] = append_attributes(mesh, primitive, to_scene, buffers, lost)?;
     if !mesh.colors.is_empty() {
         mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
     }
@@ -159,22 +156,20 @@ fn append(
     }
     let indices = match primitive.indices() {
         Some(accessor) => buffers.indices(&accessor)?,
-        None => (0..u32::try_from(count).unwrap_or(NONE)).collect(),
+        None => (0..index32(count)).collect(),
     };
     if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
         return Err(MeshError::whole(format!("an index is out of range: {i}, and there are {count} vertices")));
     }
-    let shifted =
-        |from: Option<usize>, i: u32| from.map_or(NONE, |f| u32::try_from(f).unwrap_or(NONE).saturating_add(i));
-    let corner =
-        |i: &u32| Corner { vertex: shifted(Some(first), *i), uv: shifted(uvs, *i), normal: shifted(normals, *i) };
-    polygons(mesh, primitive.mode(), &indices, to_scene.determinant() < 0.0, corner);
+    let index = |first: Option<usize>, i: u32| first.map_or(NONE, |first| index32(first).saturating_add(i));
+    let corner = |i: &u32| Corner { vertex: index(Some(first), *i), uv: index(uvs, *i), normal: index(normals, *i) };
+    append_polygons(mesh, primitive.mode(), &indices, to_scene.determinant() < 0.0, corner);
     Ok(())
 }
 
 /// Appends normals, texture coordinates and colours of the vertices added last. Returns the indices of the first normal and of the first
 /// texture coordinates.
-fn attributes(
+fn append_attributes(
     mesh: &mut Mesh,
     primitive: &Primitive<'_>,
     to_scene: &DMat4,
@@ -182,33 +177,32 @@ fn attributes(
     lost: &mut BTreeSet<String>,
 ) -> Result<[Option<usize>; 2], MeshError> {
     let count = primitive.get(&Semantic::Positions).map_or(0, |a| a.count());
-    let same = |n: usize, what: &str| {
-        let problem = || format!("has {n} {what} for {count} vertices");
-        if n == count { Ok(()) } else { Err(MeshError::whole(problem())) }
+    let check_count = |n: usize, what: &str| {
+        if n == count { Ok(()) } else { Err(MeshError::whole(format!("has {n} {what} for {count} vertices"))) }
     };
     let (mut normals, mut uvs) = (None, None);
     for (semantic, accessor) in primitive.attributes() {
         match semantic {
             Semantic::Positions => {}
             Semantic::Normals => {
-                same(accessor.count(), "normals")?;
+                check_count(accessor.count(), "normals")?;
                 normals = Some(mesh.normals.len());
                 let m = DMat3::from_mat4(*to_scene);
                 // The cofactor matrix is the inverse transpose up to a factor, which is negative if the node mirrors.
-                let side = 1f64.copysign(m.determinant());
-                let cofactors = [m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)];
-                let turned = DMat3::from_cols(cofactors[0], cofactors[1], cofactors[2]) * side;
+                let sign = 1f64.copysign(m.determinant());
+                let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+                let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
                 let all = buffers.floats::<3>(&accessor)?.into_iter().map(DVec3::from_array);
-                mesh.normals.extend(all.map(|n| (turned * n).try_normalize().unwrap_or(n)));
+                mesh.normals.extend(all.map(|n| (cofactors * n).try_normalize().unwrap_or(n)));
             }
             Semantic::TexCoords(0) => {
-                same(accessor.count(), "texture coordinates")?;
+                check_count(accessor.count(), "texture coordinates")?;
                 uvs = Some(mesh.uvs.len());
                 // glTF counts v from the top, [`Mesh`] from the bottom.
                 mesh.uvs.extend(buffers.floats::<2>(&accessor)?.into_iter().map(|[u, v]| [u, 1.0 - v, 0.0]));
             }
             Semantic::Colors(0) => {
-                same(accessor.count(), "colours")?;
+                check_count(accessor.count(), "colours")?;
                 mesh.colors.resize(mesh.positions.len() - count, [1.0; 4]);
                 if accessor.dimensions() == Dimensions::Vec4 {
                     mesh.colors.extend(buffers.floats::<4>(&accessor)?);
@@ -231,21 +225,19 @@ fn attributes(
 }
 
 /// Appends the polygons; mirrored triangles are turned over.
-fn polygons(mesh: &mut Mesh, mode: Mode, indices: &[u32], mirrored: bool, corner: impl Fn(&u32) -> Corner) {
-    let mut triangle = |[a, b, c]: [&u32; 3]| {
+fn append_polygons(mesh: &mut Mesh, mode: Mode, indices: &[u32], mirrored: bool, corner: impl Fn(&u32) -> Corner) {
+    let mut triangle = |[a, b, c]: [u32; 3]| {
         let t = if mirrored { [a, c, b] } else { [a, b, c] };
         if a != b && b != c && c != a {
-            mesh.push(PolygonKind::Face, t.map(&corner));
+            mesh.push(PolygonKind::Face, t.map(|i| corner(&i)));
         }
     };
     match mode {
-        Mode::Triangles => indices.chunks_exact(3).for_each(|t| triangle([&t[0], &t[1], &t[2]])),
+        Mode::Triangles => indices.as_chunks().0.iter().for_each(|t| triangle(*t)),
         Mode::TriangleStrip => indices.windows(3).enumerate().for_each(|(i, t)| {
-            triangle(if i % 2 == 0 { [&t[0], &t[1], &t[2]] } else { [&t[1], &t[0], &t[2]] });
+            triangle(if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] });
         }),
-        Mode::TriangleFan => {
-            indices.windows(2).skip(1).for_each(|t| triangle([&indices[0], &t[0], &t[1]]));
-        }
+        Mode::TriangleFan => fan(indices).for_each(triangle),
         Mode::Lines => indices.chunks_exact(2).for_each(|t| mesh.push(PolygonKind::Line, t.iter().map(&corner))),
         Mode::LineStrip if indices.len() > 1 => mesh.push(PolygonKind::Line, indices.iter().map(&corner)),
         Mode::LineLoop if indices.len() > 1 => {
@@ -260,19 +252,18 @@ fn polygons(mesh: &mut Mesh, mode: Mode, indices: &[u32], mirrored: bool, corner
 struct Buffers(Vec<Vec<u8>>);
 
 impl Buffers {
-    /// # Errors
-    /// [`MeshFault::Text`](super::MeshFault::Text) when a buffer is outside the file, or shorter than announced.
-    fn of(file: &mut Gltf) -> Result<Self, MeshError> {
+    /// Takes the buffers of a file, which must be in it and as long as announced.
+    fn from_file(file: &mut Gltf) -> Result<Self, MeshError> {
         let mut blob = file.blob.take();
         let mut out = Vec::new();
         for (i, buffer) in file.document.buffers().enumerate() {
             let bytes = match buffer.source() {
                 Source::Bin => blob.take().ok_or_else(|| MeshError::whole(format!("buffer {i} is missing")))?,
-                Source::Uri(uri) => inside(uri).map_err(|e| MeshError::whole(format!("buffer {i} {e}")))?,
+                Source::Uri(uri) => data_of(uri).map_err(|e| MeshError::whole(format!("buffer {i} {e}")))?,
             };
-            if bytes.len() < buffer.length() {
-                let (have, want) = (bytes.len(), buffer.length());
-                return Err(MeshError::whole(format!("buffer {i} has {have} bytes, and announces {want}")));
+            let (have, announced) = (bytes.len(), buffer.length());
+            if have < announced {
+                return Err(MeshError::whole(format!("buffer {i} has {have} bytes, and announces {announced}")));
             }
             out.push(bytes);
         }
@@ -287,25 +278,28 @@ impl Buffers {
 
     /// Returns the numbers of an accessor, `N` at a time; missing components are 0.
     fn floats<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, MeshError> {
-        let normalized = accessor.normalized();
+        // Normalized integers are fractions of the largest one.
+        let largest = largest(accessor.data_type()).filter(|_| accessor.normalized());
         let mut out = Vec::new();
         self.each(accessor, |numbers| {
             let mut item = [0.0; N];
-            item.iter_mut().zip(numbers).for_each(|(o, v)| *o = v.float(normalized));
+            let values = numbers.iter().map(|v| largest.map_or(*v, |largest| (v / largest).max(-1.0)));
+            item.iter_mut().zip(values).for_each(|(o, v)| *o = v);
             out.push(item);
         })?;
         Ok(out)
     }
 
-    /// Returns the indices of an accessor.
+    /// Returns the indices of an accessor, out of range if its type is not one for indices.
     fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, MeshError> {
+        let is_unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
         let mut out = Vec::new();
-        self.each(accessor, |numbers| out.extend(numbers.first().map(Number::index)))?;
+        self.each(accessor, |numbers| out.extend(numbers.first().map(|v| if is_unsigned { *v as u32 } else { NONE })))?;
         Ok(out)
     }
 
     /// Calls `f` with the components of every item.
-    fn each(&self, accessor: &Accessor<'_>, mut f: impl FnMut(&[Number])) -> Result<(), MeshError> {
+    fn each(&self, accessor: &Accessor<'_>, mut f: impl FnMut(&[f64])) -> Result<(), MeshError> {
         let wrong = |what: &str| MeshError::whole(format!("accessor {} {what}", accessor.index()));
         if accessor.sparse().is_some() {
             return Err(wrong("is sparse, which is not read; save the model without sparse accessors"));
@@ -327,12 +321,12 @@ impl Buffers {
         if accessor.count() > 0 && end.is_none_or(|end| end > bytes.len()) {
             return Err(wrong(&format!("announces {} items, and its data ends before", accessor.count())));
         }
-        let mut numbers = [Number::U8(0); 4];
+        let mut numbers = [0.0; 4];
         for i in 0..accessor.count() {
             let start = accessor.offset() + i * stride;
             let item = &bytes[start..start + size];
             for (n, part) in numbers.iter_mut().zip(item.chunks_exact(size / components)) {
-                *n = Number::read(kind, part).ok_or_else(|| wrong("is damaged"))?;
+                *n = number(kind, part).ok_or_else(|| wrong("is damaged"))?;
             }
             f(&numbers[..components]);
         }
@@ -340,55 +334,32 @@ impl Buffers {
     }
 }
 
-/// A number of the type in which the file stores it.
-#[derive(Clone, Copy)]
-enum Number {
-    I8(i8),
-    U8(u8),
-    I16(i16),
-    U16(u16),
-    U32(u32),
-    F32(f32),
+/// Decodes a number of this type.
+fn number(kind: DataType, bytes: &[u8]) -> Option<f64> {
+    Some(match kind {
+        DataType::I8 => i8::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U8 => u8::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::I16 => i16::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U16 => u16::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::U32 => u32::from_le_bytes(bytes.try_into().ok()?).into(),
+        DataType::F32 => f32::from_le_bytes(bytes.try_into().ok()?).into(),
+    })
 }
 
-impl Number {
-    fn read(kind: DataType, bytes: &[u8]) -> Option<Self> {
-        Some(match kind {
-            DataType::I8 => Self::I8(i8::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U8 => Self::U8(u8::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::I16 => Self::I16(i16::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U16 => Self::U16(u16::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::U32 => Self::U32(u32::from_le_bytes(bytes.try_into().ok()?)),
-            DataType::F32 => Self::F32(f32::from_le_bytes(bytes.try_into().ok()?)),
-        })
-    }
-
-    /// Returns the value; normalized integers are fractions of the largest one.
-    fn float(self, normalized: bool) -> f64 {
-        let (value, largest) = match self {
-            Self::I8(v) => (f64::from(v), f64::from(i8::MAX)),
-            Self::U8(v) => (f64::from(v), f64::from(u8::MAX)),
-            Self::I16(v) => (f64::from(v), f64::from(i16::MAX)),
-            Self::U16(v) => (f64::from(v), f64::from(u16::MAX)),
-            Self::U32(v) => (f64::from(v), f64::from(u32::MAX)),
-            Self::F32(v) => return f64::from(v),
-        };
-        if normalized { (value / largest).max(-1.0) } else { value }
-    }
-
-    /// Returns the value as an index, out of range if the type is not one for indices.
-    fn index(&self) -> u32 {
-        match self {
-            Self::U8(v) => u32::from(*v),
-            Self::U16(v) => u32::from(*v),
-            Self::U32(v) => *v,
-            Self::I8(_) | Self::I16(_) | Self::F32(_) => u32::MAX,
-        }
+/// Returns the largest integer of this type.
+fn largest(kind: DataType) -> Option<f64> {
+    match kind {
+        DataType::I8 => Some(i8::MAX.into()),
+        DataType::U8 => Some(u8::MAX.into()),
+        DataType::I16 => Some(i16::MAX.into()),
+        DataType::U16 => Some(u16::MAX.into()),
+        DataType::U32 => Some(u32::MAX.into()),
+        DataType::F32 => None,
     }
 }
 
 /// Returns the bytes of a data URI.
-fn inside(uri: &str) -> Result<Vec<u8>, String> {
+fn data_of(uri: &str) -> Result<Vec<u8>, String> {
     let shown: String = uri.chars().take(60).collect();
     let outside =
         || format!("is outside the file (`{shown}`), and only the file itself is read; save the model as .glb");
@@ -419,23 +390,26 @@ pub fn write_text(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
 }
 
 /// Polygons that share an object, a material and a kind.
-#[derive(Default)]
 struct Part {
+    /// Index of the material.
     material: Option<usize>,
-    kind: Option<PolygonKind>,
-    index: HashMap<Corner, u32>,
+    kind: PolygonKind,
+    /// The distinct corners, which become the vertices.
     corners: Vec<Corner>,
+    /// Index in `corners` of each.
+    known: HashMap<Corner, u32>,
+    /// The polygons, as indices into `corners`.
     indices: Vec<u32>,
 }
 
 impl Part {
     fn add(&mut self, c: &Corner) {
-        let next = u32::try_from(self.corners.len()).unwrap_or(NONE);
-        let n = *self.index.entry(*c).or_insert_with(|| {
+        let next = index32(self.corners.len());
+        let index = *self.known.entry(*c).or_insert(next);
+        if index == next {
             self.corners.push(*c);
-            next
-        });
-        self.indices.push(n);
+        }
+        self.indices.push(index);
     }
 }
 
@@ -443,12 +417,12 @@ impl Part {
 fn parts(mesh: &Mesh, assets: &Assets) -> (Vec<(String, Vec<Part>)>, Vec<String>) {
     let mut objects: Vec<(String, Vec<Part>)> = Vec::new();
     let mut added: Vec<String> = Vec::new();
-    let (mut name, mut material, mut fresh) = (String::new(), None, true);
+    let (mut name, mut material, mut begins) = (String::new(), None, true);
     let mut marks = mesh.marks.iter().peekable();
     for (n, (kind, corners)) in mesh.polygons().enumerate() {
         while let Some((_, mark)) = marks.next_if(|(first, _)| *first as usize <= n) {
             match mark {
-                Mark::Object(t) | Mark::Group(t) => (name, fresh) = (t.clone(), true),
+                Mark::Object(t) | Mark::Group(t) => (name, begins) = (t.clone(), true),
                 Mark::Material(t) if t == "none" => material = None,
                 Mark::Material(t) => {
                     let all = || assets.materials.iter().chain(&added);
@@ -460,22 +434,19 @@ fn parts(mesh: &Mesh, assets: &Assets) -> (Vec<(String, Vec<Part>)>, Vec<String>
                 Mark::Smoothing(_) | Mark::Library(_) => {}
             }
         }
-        if std::mem::take(&mut fresh) || objects.is_empty() {
+        if std::mem::take(&mut begins) {
             objects.push((name.clone(), Vec::new()));
         }
         let Some((_, parts)) = objects.last_mut() else { continue };
-        let found = parts.iter().position(|p| p.material == material && p.kind == Some(kind));
-        let at = found.unwrap_or_else(|| {
-            parts.push(Part { material, kind: Some(kind), ..Part::default() });
+        let found = parts.iter().position(|p| p.material == material && p.kind == kind);
+        let i = found.unwrap_or_else(|| {
+            let (corners, known, indices) = Default::default();
+            parts.push(Part { material, kind, corners, known, indices });
             parts.len() - 1
         });
-        let part = &mut parts[at];
+        let part = &mut parts[i];
         match kind {
-            PolygonKind::Face => {
-                for w in corners.windows(2).skip(1) {
-                    [corners[0], w[0], w[1]].iter().for_each(|c| part.add(c));
-                }
-            }
+            PolygonKind::Face => fan(corners).flatten().for_each(|c| part.add(&c)),
             PolygonKind::Line => corners.windows(2).flatten().for_each(|c| part.add(c)),
             PolygonKind::Points => corners.iter().for_each(|c| part.add(c)),
         }
@@ -533,8 +504,8 @@ impl Store {
 fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
     let mut attributes = Map::new();
     let corners = || part.corners.iter();
-    let at = |c: &Corner| (mesh.positions[c.vertex as usize] / METRE).to_array();
-    attributes.insert("POSITION".into(), json!(store.floats(corners().map(at), true)));
+    let positions = corners().map(|c| (mesh.positions[c.vertex as usize] / METRE).to_array());
+    attributes.insert("POSITION".into(), json!(store.floats(positions, true)));
     if corners().all(|c| (c.normal as usize) < mesh.normals.len()) {
         let normals = corners().map(|c| mesh.normals[c.normal as usize].normalize_or_zero().to_array());
         attributes.insert("NORMAL".into(), json!(store.floats(normals, false)));
@@ -544,7 +515,7 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
         let uvs = corners().map(|c| mesh.uvs[c.uv as usize]).map(|[u, v, _]| [u, 1.0 - v]);
         attributes.insert("TEXCOORD_0".into(), json!(store.floats(uvs, false)));
     }
-    if !mesh.colors.is_empty() && mesh.colors.len() == mesh.positions.len() {
+    if mesh.is_colored() {
         let colors = corners().map(|c| mesh.colors[c.vertex as usize]);
         let opaque = |[r, g, b, _]: [f64; 4]| [r, g, b];
         let accessor =
@@ -552,9 +523,9 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
         attributes.insert("COLOR_0".into(), json!(accessor));
     }
     let mode = match part.kind {
-        Some(PolygonKind::Points) => 0,
-        Some(PolygonKind::Line) => 1,
-        _ => 4,
+        PolygonKind::Points => 0,
+        PolygonKind::Line => 1,
+        PolygonKind::Face => 4,
     };
     let mut out = json!({"attributes": attributes, "indices": store.indices(&part.indices), "mode": mode});
     if let Some(m) = part.material {
@@ -563,6 +534,7 @@ fn primitive(mesh: &Mesh, part: &Part, store: &mut Store) -> Value {
     out
 }
 
+/// Returns the JSON and the buffer, which the JSON contains as base64 after the prefix `inline`, if there is one.
 fn build(mesh: &Mesh, inline: Option<&str>) -> (Value, Vec<u8>) {
     let none = Assets::default();
     let assets = mesh.assets.as_deref().unwrap_or(&none);

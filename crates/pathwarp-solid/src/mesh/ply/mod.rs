@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Corner, Mesh, MeshError, NONE, PolygonKind, unify};
+use super::{Corner, Mesh, MeshError, NONE, PolygonKind, fan, index32, unify};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
@@ -42,7 +42,7 @@ const TEXTURE: &str = "texcoord";
 const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 
 /// Returns the index of a vertex property in [`Element::values`].
-fn place(name: &str) -> Option<usize> {
+fn value_index(name: &str) -> Option<usize> {
     NAMES.iter().position(|all| all.contains(&name))
 }
 
@@ -76,7 +76,7 @@ impl PropertyAccess for Element {
             Property::Double(v) => Some(*v),
             _ => None,
         };
-        if let (Some(v), Some(i)) = (single, place(name)) {
+        if let (Some(v), Some(i)) = (single, value_index(name)) {
             // Colours in single bytes range up to 255.
             let is_byte = (COLOR..UV).contains(&i) && matches!(property, Property::UChar(_));
             self.values[i] = if is_byte { v / 255.0 } else { v };
@@ -99,16 +99,16 @@ impl PropertyAccess for Element {
     }
 
     fn get_float(&self, name: &str) -> Option<f32> {
-        place(name).map(|i| self.values[i] as f32)
+        value_index(name).map(|i| self.values[i] as f32)
     }
 
     fn get_double(&self, name: &str) -> Option<f64> {
-        place(name).map(|i| self.values[i])
+        value_index(name).map(|i| self.values[i])
     }
 
     fn get_uchar(&self, name: &str) -> Option<u8> {
         // The cast saturates.
-        place(name).map(|i| (self.values[i] * 255.0).round() as u8)
+        value_index(name).map(|i| (self.values[i] * 255.0).round() as u8)
     }
 
     fn get_uint(&self, name: &str) -> Option<u32> {
@@ -122,9 +122,9 @@ impl PropertyAccess for Element {
 
 impl Element {
     fn set_indices(&mut self, property: Property) {
-        let mut bad = false;
+        let mut is_damaged = false;
         let mut index = |v: Option<u32>| {
-            bad |= v.is_none();
+            is_damaged |= v.is_none();
             v.unwrap_or(u32::MAX)
         };
         self.indices = match property {
@@ -136,7 +136,7 @@ impl Element {
             Property::ListUInt(v) => v,
             _ => vec![index(None)],
         };
-        self.damaged |= bad;
+        self.damaged |= is_damaged;
     }
 }
 
@@ -155,13 +155,13 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
         let text: String = e.to_string().lines().next().unwrap_or_default().chars().take(200).collect();
         MeshError::whole(format!("is a damaged PLY file: {text}"))
     };
-    let bytes = plain(bytes);
+    let bytes = normalized(bytes);
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(&*bytes);
     let header = parser.read_header(&mut reader).map_err(damaged)?;
     let mut mesh = Mesh::default();
     for element in header.elements.values() {
-        check_announced(element, &header, reader.get_ref().len())?;
+        check_count(element, &header, reader.get_ref().len())?;
         let all = parser.read_payload_for_element(&mut reader, element, &header).map_err(damaged)?;
         match element.name.as_str() {
             "vertex" => vertices(&mut mesh, element, &all)?,
@@ -169,7 +169,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
             "edge" => edges(&mut mesh, &all)?,
             other => mesh.left_out.push(format!("{} elements `{other}`", all.len())),
         }
-        mesh.left_out.extend(unknown(element));
+        mesh.left_out.extend(unknown_properties(element));
     }
     if mesh.positions.is_empty() {
         return Err(MeshError::whole("holds no vertices"));
@@ -178,7 +178,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, MeshError> {
 }
 
 /// Returns text that the parser can read: numbers like `.5` and `5.` get their zeros, empty lines go. Binary files are unchanged.
-fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
+fn normalized(bytes: &[u8]) -> Cow<'_, [u8]> {
     /// Bytes at the beginning within which the format is declared.
     const HEAD: usize = 1024;
     const ASCII: &[u8] = b"format ascii";
@@ -208,23 +208,21 @@ fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
 }
 
 /// Checks, before elements are read, that as many as announced fit into the `left` bytes of the file.
-fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result<(), MeshError> {
+fn check_count(element: &ElementDef, header: &Header, left: usize) -> Result<(), MeshError> {
     let bytes = |t: &ScalarType| match t {
         ScalarType::Char | ScalarType::UChar => 1,
         ScalarType::Short | ScalarType::UShort => 2,
         ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
         ScalarType::Double => 8,
     };
+    // A list takes at least the bytes of its length.
+    let min_bytes = |p: &PropertyDef| match &p.data_type {
+        PropertyType::Scalar(t) | PropertyType::List(t, _) => bytes(t),
+    };
     let min_size: usize = match header.encoding {
         // A digit and a space or line end for each property.
         Encoding::Ascii => 2 * element.properties.len(),
-        _ => element
-            .properties
-            .values()
-            .map(|p| match &p.data_type {
-                PropertyType::Scalar(t) | PropertyType::List(t, _) => bytes(t),
-            })
-            .sum(),
+        _ => element.properties.values().map(min_bytes).sum(),
     };
     let name = &element.name;
     if min_size == 0 && element.count > 0 {
@@ -239,9 +237,9 @@ fn check_announced(element: &ElementDef, header: &Header, left: usize) -> Result
 }
 
 /// Names the properties that are not read.
-fn unknown(element: &ElementDef) -> Option<String> {
+fn unknown_properties(element: &ElementDef) -> Option<String> {
     let known = |name: &str| match element.name.as_str() {
-        "vertex" => place(name).is_some(),
+        "vertex" => value_index(name).is_some(),
         "face" => INDICES.contains(&name) || name == TEXTURE,
         "edge" => ENDS.contains(&name),
         _ => true,
@@ -251,7 +249,8 @@ fn unknown(element: &ElementDef) -> Option<String> {
 }
 
 fn vertices(mesh: &mut Mesh, element: &ElementDef, all: &[Element]) -> Result<(), MeshError> {
-    let has = |from: usize, n: usize| (from..from + n).all(|i| element.properties.keys().any(|k| place(k) == Some(i)));
+    let known: Vec<usize> = element.properties.keys().filter_map(|k| value_index(k)).collect();
+    let has = |first: usize, n: usize| (first..first + n).all(|i| known.contains(&i));
     if !has(0, 3) {
         return Err(MeshError::whole("has vertices without x, y and z"));
     }
@@ -280,7 +279,7 @@ fn faces(mesh: &mut Mesh, element: &ElementDef, all: &[Element]) -> Result<(), M
     if !INDICES.iter().any(|n| element.properties.contains_key(*n)) {
         return Err(MeshError::whole("has faces without vertex_indices"));
     }
-    let (normals, uvs) = (!mesh.normals.is_empty(), mesh.uvs.len() == mesh.positions.len());
+    let (has_normals, has_uvs) = (!mesh.normals.is_empty(), mesh.uvs.len() == mesh.positions.len());
     let mut small = 0;
     for (i, e) in all.iter().enumerate() {
         check_indices(mesh, e, "face", i)?;
@@ -288,21 +287,15 @@ fn faces(mesh: &mut Mesh, element: &ElementDef, all: &[Element]) -> Result<(), M
             small += 1;
             continue;
         }
-        let first = u32::try_from(mesh.uvs.len()).unwrap_or(NONE);
-        let cornered = e.uvs.len() == 2 * e.indices.len();
-        if cornered {
+        let first_uv = index32(mesh.uvs.len());
+        let corners_have_uvs = e.uvs.len() == 2 * e.indices.len();
+        if corners_have_uvs {
             mesh.uvs.extend(e.uvs.chunks(2).map(|c| [f64::from(c[0]), f64::from(c[1]), 0.0]));
         }
-        let corner = |(k, v): (usize, &u32)| Corner {
-            vertex: *v,
-            uv: if cornered {
-                first.saturating_add(u32::try_from(k).unwrap_or(NONE))
-            } else if uvs {
-                *v
-            } else {
-                NONE
-            },
-            normal: if normals { *v } else { NONE },
+        let corner = |(k, v): (usize, &u32)| {
+            let by_vertex = |has: bool| if has { *v } else { NONE };
+            let uv = if corners_have_uvs { first_uv.saturating_add(index32(k)) } else { by_vertex(has_uvs) };
+            Corner { vertex: *v, uv, normal: by_vertex(has_normals) }
         };
         mesh.push(PolygonKind::Face, e.indices.iter().enumerate().map(corner));
     }
@@ -326,10 +319,8 @@ fn edges(mesh: &mut Mesh, all: &[Element]) -> Result<(), MeshError> {
 fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), MeshError> {
     let n = mesh.positions.len();
     if e.damaged || e.indices.iter().any(|v| *v as usize >= n) {
-        return Err(MeshError::whole(format!(
-            "an index of {kind} {} is out of range: there are {n} vertices before it",
-            i + 1
-        )));
+        let problem = format!("is out of range: there are {n} vertices before it");
+        return Err(MeshError::whole(format!("an index of {kind} {} {problem}", i + 1)));
     }
     Ok(())
 }
@@ -341,9 +332,8 @@ fn check_indices(mesh: &Mesh, e: &Element, kind: &str, i: usize) -> Result<(), M
 /// [`MeshFault::Text`](super::MeshFault::Text) with the message of the crate that writes the file.
 pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
     let unified = unify(mesh);
-    let colored = mesh.colors.len() == mesh.positions.len() && !mesh.colors.is_empty();
-    let (with_uvs, with_normals) =
-        (unified.corners.iter().any(|c| c.uv != NONE), unified.corners.iter().any(|c| c.normal != NONE));
+    let has_uvs = unified.corners.iter().any(|c| c.uv != NONE);
+    let has_normals = unified.corners.iter().any(|c| c.normal != NONE);
     let mut vertices = Vec::with_capacity(unified.corners.len());
     for c in &unified.corners {
         let mut e = Element::default();
@@ -351,7 +341,7 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         if let Some(n) = mesh.normals.get(c.normal as usize) {
             e.values[NORMAL..NORMAL + 3].copy_from_slice(&n.to_array());
         }
-        if colored {
+        if mesh.is_colored() {
             e.values[COLOR..=ALPHA].copy_from_slice(&mesh.colors[c.vertex as usize]);
         }
         if let Some(uv) = mesh.uvs.get(c.uv as usize) {
@@ -359,26 +349,22 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         }
         vertices.push(e);
     }
+    let element = |indices: &[u32]| Element { indices: indices.to_vec(), ..Element::default() };
     let (mut faces, mut edges) = (Vec::new(), Vec::new());
     let mut rest = &unified.index[..];
     for (kind, corners) in mesh.polygons() {
-        let (own, after) = rest.split_at(corners.len().min(rest.len()));
+        let (indices, after) = rest.split_at(corners.len().min(rest.len()));
         rest = after;
-        let element = |own: &[u32]| Element { indices: own.to_vec(), ..Element::default() };
         match kind {
-            PolygonKind::Face => faces.push(element(own)),
-            PolygonKind::Line => edges.extend(own.windows(2).map(element)),
+            PolygonKind::Face => faces.push(element(indices)),
+            PolygonKind::Line => edges.extend(indices.windows(2).map(element)),
             // Points need no element: a vertex without a face is read as one.
             PolygonKind::Points => {}
         }
     }
     // Some readers, such as trimesh, accept faces of one size only.
     if faces.windows(2).any(|w| w[0].indices.len() != w[1].indices.len()) {
-        let fan = |f: &Element| -> Vec<Element> {
-            let [first, rest @ ..] = f.indices.as_slice() else { return Vec::new() };
-            rest.windows(2).map(|w| Element { indices: vec![*first, w[0], w[1]], ..Element::default() }).collect()
-        };
-        faces = faces.iter().flat_map(fan).collect();
+        faces = faces.iter().flat_map(|f| fan(&f.indices).map(|t| element(&t))).collect();
     }
     let largest = faces.iter().map(|f| f.indices.len()).max().unwrap_or(0);
     let count = if u8::try_from(largest).is_ok() { ScalarType::UChar } else { ScalarType::UInt };
@@ -388,13 +374,13 @@ pub fn write(mesh: &Mesh) -> Result<Vec<u8>, MeshError> {
         names.iter().map(|n| (*n, PropertyType::Scalar(t.clone()))).collect()
     };
     let mut properties = scalars(&["x", "y", "z"], ScalarType::Double);
-    if with_normals {
+    if has_normals {
         properties.extend(scalars(&["nx", "ny", "nz"], ScalarType::Float));
     }
-    if with_uvs {
+    if has_uvs {
         properties.extend(scalars(&["s", "t"], ScalarType::Float));
     }
-    if colored {
+    if mesh.is_colored() {
         let opacity: &[&str] = if mesh.is_translucent() { &["alpha"] } else { &[] };
         properties.extend(scalars(&[&["red", "green", "blue"], opacity].concat(), ScalarType::UChar));
     }

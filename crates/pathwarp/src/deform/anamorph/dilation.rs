@@ -11,10 +11,10 @@
 //! perspective collineation about O with the matrix [I 0; d d₀], whose axis is the line δ = 1.
 
 use super::scene::Eye;
-use crate::deform::triangle;
+use crate::deform::triangle::{self, polygon};
 use crate::map::bspline::bernstein;
 use crate::map::{Plane, Quotient, powers, source_coordinates};
-use kurbo::{Affine, BezPath, Point, Rect, Shape};
+use kurbo::{Affine, BezPath, Point, Rect};
 
 /// A regular net of control points in the plane of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,8 +54,8 @@ impl Reference {
         match *self {
             Self::Triangle(corners, _) => triangle::regular_point(corners, node),
             Self::Rectangle(r, [m, n]) => {
-                let at = |k: usize, n: usize| k as f64 / n.max(1) as f64;
-                Point::new(r.x0 + r.width() * at(node[0], m), r.y0 + r.height() * at(node[1], n))
+                let share = |k: usize, n: usize| k as f64 / n.max(1) as f64;
+                Point::new(r.x0 + r.width() * share(node[0], m), r.y0 + r.height() * share(node[1], n))
             }
         }
     }
@@ -103,12 +103,13 @@ impl Reference {
         match *self {
             Self::Triangle(corners, _) => triangle::coordinates(corners),
             Self::Rectangle(r, _) => {
-                let (c, kx, ky) = (r.center(), 2.0 / r.width(), 2.0 / r.height());
-                Affine::new([kx, 0.0, 0.0, ky, -c.x * kx, -c.y * ky])
+                let (c, scale_x, scale_y) = (r.center(), 2.0 / r.width(), 2.0 / r.height());
+                Affine::new([scale_x, 0.0, 0.0, scale_y, -c.x * scale_x, -c.y * scale_y])
             }
         }
     }
 
+    /// Returns the polynomial with these values at the control points.
     fn expanded(&self, values: &[f64]) -> Plane {
         match *self {
             Self::Triangle(_, n) => triangle::expanded(n, values),
@@ -123,7 +124,8 @@ impl Reference {
 /// δ over a reference, given at the control points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dilation {
-    reference: Reference,
+    /// The net.
+    pub(super) reference: Reference,
     values: Vec<f64>,
 }
 
@@ -133,13 +135,8 @@ impl Dilation {
         Self { reference, values: vec![1.0; reference.nodes().len()] }
     }
 
-    /// Returns the net.
-    pub(super) fn reference(&self) -> &Reference {
-        &self.reference
-    }
-
     /// Returns δ of a control point.
-    pub(super) fn of(&self, node: [usize; 3]) -> f64 {
+    pub(super) fn delta_of(&self, node: [usize; 3]) -> f64 {
         self.values[self.reference.index(node)]
     }
 
@@ -150,7 +147,7 @@ impl Dilation {
     }
 
     /// Returns δ at a point.
-    pub(super) fn at(&self, p: Point) -> f64 {
+    pub(super) fn delta_at(&self, p: Point) -> f64 {
         self.reference.basis(p).iter().zip(&self.values).map(|(b, d)| b * d).sum()
     }
 
@@ -162,19 +159,14 @@ impl Dilation {
         let all = self.reference.nodes().into_iter().zip(self.reference.basis(p));
         let free = all.filter(|(node, _)| !held(*node));
         let (node, b) = free.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, b)| *b > MIN_BASIS)?;
-        self.set(node, self.of(node) + (delta - self.at(p)) / b);
+        self.set(node, self.delta_of(node) + (delta - self.delta_at(p)) / b);
         Some(node)
     }
 
     /// Returns `true` if no control point of a side moves.
     pub(super) fn side_is_fixed(&self, side: usize) -> bool {
-        let on = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
-        on.into_iter().all(|node| (self.of(node) - 1.0).abs() <= 1e-12)
-    }
-
-    /// Returns `true` if all δ are positive, so that there is no pole inside the reference.
-    pub(super) fn is_positive(&self) -> bool {
-        self.values.iter().all(|d| *d > 0.0)
+        let mut nodes = self.reference.nodes().into_iter().filter(|node| self.reference.on_side(*node, side));
+        nodes.all(|node| (self.delta_of(node) - 1.0).abs() <= 1e-12)
     }
 
     /// Returns the polynomial δ, with the map from a point to its coordinates.
@@ -190,51 +182,37 @@ impl Dilation {
 
     /// Returns the map of the plane for an eye in that plane. If `bounded`, it is used only inside the reference.
     pub(super) fn about(&self, eye: Eye, bounded: bool) -> Quotient {
-        let (pre, delta) = self.plane();
+        let (to_coordinates, delta) = self.plane();
+        let minus = |p: Plane, constant: f64| p.plus(-constant, &Plane::linear([1.0, 0.0, 0.0]));
         let eye = match eye {
             Eye::At(eye, _) => eye,
             Eye::Infinite([x, y, _]) => {
-                let m = delta.plus(-1.0, &Plane::linear([1.0, 0.0, 0.0]));
-                return Quotient::polynomial(pre, m.scaled(x), m.scaled(y), self.domain());
+                let shift = minus(delta, 1.0);
+                return Quotient::polynomial(to_coordinates, shift.scaled(x), shift.scaled(y), self.domain());
             }
         };
-        let [x, y] = source_coordinates(pre).map(Plane::linear);
-        let less = |p: Plane, o: f64| p.plus(-o, &Plane::linear([1.0, 0.0, 0.0]));
+        let [x, y] = source_coordinates(to_coordinates).map(Plane::linear);
         let domain = if bounded { self.reference.bounds() } else { self.domain() };
-        let q = Quotient::rational(pre, eye, less(x, eye.x), less(y, eye.y), delta, domain);
-        if bounded && self.is_positive() { q.without_poles() } else { q }
+        let q = Quotient::rational(to_coordinates, eye, minus(x, eye.x), minus(y, eye.y), delta, domain);
+        // If all δ are positive, there is no pole inside the reference.
+        if bounded && self.values.iter().all(|d| *d > 0.0) { q.without_poles() } else { q }
     }
 
-    /// Draws the net's lines. `place` takes every control point and its δ to a point.
-    pub(super) fn lines(&self, place: impl Fn(Point, f64) -> Point) -> BezPath {
-        let at = |node: [usize; 3]| place(self.reference.point(node), self.of(node));
+    /// Draws the net's lines. `image` takes every control point and its δ to a point.
+    pub(super) fn lines(&self, image: impl Fn(Point, f64) -> Point) -> BezPath {
+        let point = |node: [usize; 3]| image(self.reference.point(node), self.delta_of(node));
         let mut path = BezPath::new();
         for [i, j, k] in self.reference.nodes() {
             match self.reference {
                 Reference::Triangle(..) if i > 0 => {
-                    path.move_to(at([i, j, k]));
-                    path.line_to(at([i - 1, j + 1, k]));
-                    path.line_to(at([i - 1, j, k + 1]));
-                    path.close_path();
+                    path.extend(polygon(&[[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(point)));
                 }
                 Reference::Rectangle(_, [m, n]) if i < m && j < n => {
-                    path.move_to(at([i, j, 0]));
-                    path.line_to(at([i + 1, j, 0]));
-                    path.line_to(at([i + 1, j + 1, 0]));
-                    path.line_to(at([i, j + 1, 0]));
-                    path.close_path();
+                    path.extend(polygon(&[[i, j, 0], [i + 1, j, 0], [i + 1, j + 1, 0], [i, j + 1, 0]].map(point)));
                 }
                 _ => {}
             }
         }
         path
-    }
-
-    /// Draws the reference.
-    pub(super) fn outline(&self) -> BezPath {
-        match self.reference {
-            Reference::Rectangle(r, _) => r.to_path(0.1),
-            Reference::Triangle(corners, _) => triangle::outline(corners),
-        }
     }
 }

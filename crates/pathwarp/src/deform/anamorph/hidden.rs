@@ -226,6 +226,10 @@ impl Map for FoldedView {
         Some(Arc::new(Front(Arc::clone(&self.0))))
     }
 
+    fn cost(&self) -> Cost<'_> {
+        self.0.map.cost()
+    }
+
     forward_common!(self => Map, &*self.0.map);
 }
 

@@ -13,6 +13,7 @@
 
 use super::scene::{Eye, Scene};
 use super::surface::{Space, cross, dot, length, minus, picture_axes};
+use crate::deform::triangle::polygon;
 use crate::error::{Error, show};
 use crate::map::{Cost, Crease, Creases, Formula, Jet, Level, Map, Real};
 use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
@@ -61,6 +62,7 @@ impl Mirror {
         at(at: impl Into<Point>) => at: Some(at.into());
     }
 
+    /// Returns the mirror in the notation of `--mirror`, for messages.
     fn text(self) -> String {
         match self.shape {
             MirrorShape::Cylinder(r, _) => format!("cylinder:radius={r}"),
@@ -110,15 +112,18 @@ impl Mirror {
 #[derive(Debug, Clone)]
 pub(super) struct Reflection {
     mirror: Mirror,
-    /// The eye in space, or the direction towards it.
+    /// The eye in space, or the direction towards it if it is `infinite`.
     eye: Space,
     infinite: bool,
-    /// The middle Q of the picture, the point of the artwork there, and the picture's directions right and down.
+    /// The middle Q of the picture.
     middle: Space,
+    /// The point of the artwork at Q.
     anchor: Point,
+    /// The picture's directions right and down.
     axes: [Space; 2],
     /// The foot on the page.
     pub(super) foot: Point,
+    /// The artwork's box.
     domain: Rect,
 }
 
@@ -128,8 +133,7 @@ const TIP: f64 = 2e-3;
 impl Reflection {
     pub(super) fn new(mirror: Mirror, scene: &Scene) -> Result<Self, Error> {
         let r = mirror.radius();
-        let all = [r, mirror.height().unwrap_or(r)];
-        if !all.iter().all(|v| (1e-9..1e9).contains(v)) {
+        if ![r, mirror.height().unwrap_or(r)].iter().all(|v| (1e-9..1e9).contains(v)) {
             return Err(mirror.wrong("has a size that is not positive"));
         }
         if mirror.tilt.is_nan() || mirror.tilt.abs() > 60.0 || !mirror.lift.is_finite() {
@@ -147,7 +151,7 @@ impl Reflection {
         }
         let mut out =
             Self { mirror, eye, infinite, middle: [0.0; 3], anchor, axes: [[0.0; 3]; 2], foot, domain: scene.frame };
-        if !infinite && out.off(eye) <= 0.0 {
+        if !infinite && out.outside(eye) <= 0.0 {
             let problem = "contains the eye; move the eye away (`distance`, `eye-height`) or make the mirror smaller";
             return Err(mirror.wrong(problem));
         }
@@ -172,7 +176,7 @@ impl Reflection {
     }
 
     /// Returns a number that is positive if the point is outside the mirror.
-    fn off(&self, q: Space) -> f64 {
+    fn outside(&self, q: Space) -> f64 {
         if let MirrorShape::Sphere(r) = self.mirror.shape {
             return q[0] * q[0] + (q[1] + r).powi(2) + q[2] * q[2] - r * r;
         }
@@ -182,21 +186,21 @@ impl Reflection {
     }
 
     /// Returns the point in space of a point of the picture.
-    fn picture<S: Real>(&self, x: S, y: S) -> [S; 3] {
+    fn picture_point<S: Real>(&self, x: S, y: S) -> [S; 3] {
         let (u, v) = (x - self.anchor.x, y - self.anchor.y);
         std::array::from_fn(|i| u * self.axes[0][i] + v * self.axes[1][i] + self.middle[i])
     }
 
-    /// Follows the ray through (x, y) to the mirror: the point there, the direction after it, the discriminant, and s.
-    fn bounce<S: Real>(&self, x: S, y: S) -> Bounce<S> {
+    /// Follows the ray through (x, y) to the mirror.
+    fn reflect<S: Real>(&self, x: S, y: S) -> ReflectedRay<S> {
         let dot = |a: [S; 3], b: [S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let p = self.picture(x, y);
+        let p = self.picture_point(x, y);
         // Rays start near the mirror, since a far eye would cost digits.
-        let reach = 8.0 * (self.mirror.radius() + self.mirror.height().unwrap_or(0.0) + self.domain.height());
+        let most = 8.0 * (self.mirror.radius() + self.mirror.height().unwrap_or(0.0) + self.domain.height());
         let d: [S; 3] = std::array::from_fn(|i| if self.infinite { S::from(-self.eye[i]) } else { p[i] - self.eye[i] });
-        let n = dot(d, d).sqrt();
-        let d = d.map(|v| v / n);
-        let back = if self.infinite || n.value() > reach { S::from(reach) } else { n };
+        let distance = dot(d, d).sqrt();
+        let d = d.map(|v| v / distance);
+        let back = if self.infinite || distance.value() > most { S::from(most) } else { distance };
         let from: [S; 3] = std::array::from_fn(|i| p[i] - d[i] * back);
         let (a, g) = (self.mirror.axis().map(S::from), self.mirror.slope());
         let centre = if let MirrorShape::Sphere(r) = self.mirror.shape { -r } else { 0.0 };
@@ -204,50 +208,52 @@ impl Reflection {
         let is_sphere = centre != 0.0;
         let (os, ds) = if is_sphere { (S::from(0.0), S::from(0.0)) } else { (dot(o, a), dot(d, a)) };
         let radius = -os * g + self.mirror.radius();
+        // The nearer root of qa·λ² + 2qb·λ + qc = 0, in the form that does not cancel.
         let qa = dot(d, d) - ds * ds * (1.0 + g * g);
         let qb = dot(o, d) - os * ds + radius * ds * g;
         let qc = dot(o, o) - os * os - radius * radius;
-        let disc = qb * qb - qa * qc;
-        let k = qc / (disc.sqrt() - qb);
-        let w: [S; 3] = std::array::from_fn(|i| o[i] + d[i] * k);
-        let s = os + ds * k;
+        let discriminant = qb * qb - qa * qc;
+        let lambda = qc / (discriminant.sqrt() - qb);
+        let w: [S; 3] = std::array::from_fn(|i| o[i] + d[i] * lambda);
+        let s = os + ds * lambda;
         let radius = -s * g + self.mirror.radius();
         let n: [S; 3] = std::array::from_fn(|i| if is_sphere { w[i] } else { w[i] - a[i] * s + a[i] * radius * g });
         let turn = dot(d, n) / dot(n, n) * 2.0;
-        let r = std::array::from_fn(|i| d[i] - n[i] * turn);
-        Bounce { hit: [w[0], w[1] + centre, w[2]], along: r, disc, s, ahead: k, facing: -dot(d, n) }
+        let direction = std::array::from_fn(|i| d[i] - n[i] * turn);
+        ReflectedRay { hit: [w[0], w[1] + centre, w[2]], direction, discriminant, s, lambda, facing: -dot(d, n) }
     }
 
     /// Returns the point of the table, x and z, at which the ray through (x, y) arrives.
     fn table<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let b = self.bounce(x, y);
-        let t = -b.hit[1] / b.along[1];
-        (b.hit[0] + b.along[0] * t, b.hit[2] + b.along[2] * t)
+        let b = self.reflect(x, y);
+        let t = -b.hit[1] / b.direction[1];
+        (b.hit[0] + b.direction[0] * t, b.hit[2] + b.direction[2] * t)
     }
 
     /// Returns a number that is positive if a point of the artwork is seen in the mirror, and the reason why it is not seen otherwise.
     pub(super) fn fault(&self, p: Point) -> (f64, &'static str) {
-        let b: Bounce<f64> = self.bounce(p.x, p.y);
+        let b: ReflectedRay<f64> = self.reflect(p.x, p.y);
         let r = self.mirror.radius();
         let top = self.mirror.height().map_or(1.0, |h| (h - b.s) / r);
         let tip = match self.mirror.shape {
             MirrorShape::Cone(r, h) => {
-                let (at, p) = (self.mirror.axis().map(|v| v * h), self.picture(p.x, p.y));
+                let (tip, p) = (self.mirror.axis().map(|v| v * h), self.picture_point(p.x, p.y));
                 let ray = if self.infinite { self.eye } else { minus(p, self.eye) };
-                length(cross(minus(at, p), ray)) / (length(ray) * r) - TIP
+                length(cross(minus(tip, p), ray)) / (length(ray) * r) - TIP
             }
             _ => 1.0,
         };
-        let all = [
+        // Numbers that must be positive.
+        let conditions = [
             (
                 tip,
                 "the eye sees the cone's tip, where the mirror has no direction; leave a hole in the artwork there, or move it (`lift`)",
             ),
             (
-                b.disc / (r * r),
+                b.discriminant / (r * r),
                 "the ray misses the mirror; make the artwork smaller (`picture-width`) or the mirror larger",
             ),
-            (b.ahead / r, "the mirror begins behind the eye; move the eye away (`distance`)"),
+            (b.lambda / r, "the mirror begins behind the eye; move the eye away (`distance`)"),
             (
                 if matches!(self.mirror.shape, MirrorShape::Sphere(_)) { 1.0 } else { top },
                 "the ray passes over the mirror's top; make the mirror higher, or the artwork smaller (`picture-width`)",
@@ -258,23 +264,23 @@ impl Reflection {
                 "the mirror is under the table there and hides itself; make the artwork smaller (`picture-width`), lift it (`lift`), or lessen the tilt",
             ),
             (
-                b.along[1],
+                b.direction[1],
                 "the mirror reflects no table, but what is above it; lower the artwork (`lift`), raise the eye, or tilt the mirror towards it",
             ),
         ];
-        let undefined = all.iter().find(|f| f.0.is_nan() || f.0 <= 0.0);
-        *undefined.unwrap_or_else(|| all.iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&all[0]))
+        let unmet = conditions.iter().find(|f| f.0.is_nan() || f.0 <= 0.0);
+        *unmet.or(conditions.iter().min_by(|a, b| a.0.total_cmp(&b.0))).unwrap_or(&conditions[0])
     }
 
     /// Returns the height along the axis up to which the mirror shows the artwork.
     pub(super) fn needed_height(&self) -> f64 {
-        super::surface::samples(self.domain).map(|p| self.bounce(p.x, p.y).s).fold(0.0, f64::max)
+        super::surface::box_samples(self.domain).map(|p| self.reflect(p.x, p.y).s).fold(0.0, f64::max)
     }
 
     /// Refuses a mirror that does not show all of the artwork, except around the tip of a cone, which is returned.
     pub(super) fn check(&self) -> Result<Option<Point>, Error> {
         let mut tip = None;
-        for p in super::surface::samples(self.domain) {
+        for p in super::surface::box_samples(self.domain) {
             match self.fault(p) {
                 (v, _) if v > 0.0 => {}
                 (_, why) if why.contains("tip") => tip = Some(p),
@@ -300,16 +306,14 @@ impl Reflection {
             return Circle::new(self.foot, r).to_path(1e-4 * r);
         }
         let (a, g) = (self.mirror.axis(), self.mirror.slope());
-        let mut path = BezPath::new();
-        for k in 0..CORNERS {
+        let corner = |k: u32| {
             let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(CORNERS)).sin_cos();
+            // The distance from F at which the table's direction (cos, sin) leaves the mirror, from |q|² − (q·a)² = R(q·a)².
             let c = sin * a[2];
-            let reach = r / ((1.0 - c * c).sqrt() + g * c);
-            let p = self.on_page([reach * cos, 0.0, reach * sin]);
-            if k == 0 { path.move_to(p) } else { path.line_to(p) }
-        }
-        path.close_path();
-        path
+            let distance = r / ((1.0 - c * c).sqrt() + g * c);
+            self.on_page([distance * cos, 0.0, distance * sin])
+        };
+        polygon(&(0..CORNERS).map(corner).collect::<Vec<_>>())
     }
 
     /// Returns the eye's position on the page, its distance from the foot and its height; `None` at infinity.
@@ -319,14 +323,14 @@ impl Reflection {
     }
 
     /// Returns the point in space of a point of the drawing, of the picture, or of the mirror, there as (angle, share of the height).
-    pub(super) fn in_space(&self, what: Part, p: Point) -> Option<Space> {
-        match what {
-            Part::Table => {
+    pub(super) fn in_space(&self, part: ScenePart, p: Point) -> Option<Space> {
+        match part {
+            ScenePart::Table => {
                 let (x, z) = self.table(p.x, p.y);
                 (self.fault(p).0 > 0.0).then_some([x, 0.0, z])
             }
-            Part::Picture => Some(self.picture(p.x, p.y)),
-            Part::Mirror(height) => {
+            ScenePart::Picture => Some(self.picture_point(p.x, p.y)),
+            ScenePart::Mirror(height) => {
                 let (sin, cos) = (2.0 * PI * p.x).sin_cos();
                 if let MirrorShape::Sphere(r) = self.mirror.shape {
                     let (up, out) = (PI * p.y).sin_cos();
@@ -349,7 +353,7 @@ impl Reflection {
 
 /// A part of a mirror's scene in space.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Part {
+pub(super) enum ScenePart {
     /// The drawing on the table.
     Table,
     /// The picture in the mirror.
@@ -359,12 +363,18 @@ pub(super) enum Part {
 }
 
 /// A ray reflected by the mirror.
-struct Bounce<S> {
+struct ReflectedRay<S> {
+    /// The point H of the mirror.
     hit: [S; 3],
-    along: [S; 3],
-    disc: S,
+    /// The direction after the reflection.
+    direction: [S; 3],
+    /// The discriminant of the quadratic for λ; negative if the ray misses the mirror.
+    discriminant: S,
+    /// The position along the axis of H.
     s: S,
-    ahead: S,
+    /// The distance from the ray's start to H.
+    lambda: S,
+    /// Positive where the mirror faces the eye.
     facing: S,
 }
 
@@ -375,33 +385,32 @@ impl Formula for Reflection {
     }
 
     fn creases(&self, out: &mut Creases) {
-        let own = self.clone();
-        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.fault(p).0))));
+        let reflection = self.clone();
+        out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| reflection.fault(p).0))));
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(Back::new(self.clone())))
+        Some(Arc::new(MirrorInverse::new(self.clone())))
     }
 }
 
 /// The inverse. A convex mirror shows each point of the table at most once, so any solution is the only one.
-struct Back {
-    of: Reflection,
+struct MirrorInverse {
+    reflection: Reflection,
     /// Points of the artwork, and their images.
     starts: Vec<[Point; 2]>,
 }
 
-impl Back {
-    fn new(of: Reflection) -> Self {
+impl MirrorInverse {
+    fn new(reflection: Reflection) -> Self {
+        /// Starts along either axis of the artwork's box.
         const SIDE: u32 = 24;
-        let r = of.domain;
-        let at = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE);
-        let place = |k: u32| {
-            let (u, v) = (at(k % SIDE), at(k / SIDE));
-            Point::new(r.x0 + u * r.width(), r.y0 + v * r.height())
-        };
-        let starts = (0..SIDE * SIDE).map(place).filter(|p| of.fault(*p).0 > 0.0).map(|p| [p, Map::point(&of, p)]);
-        Self { starts: starts.collect(), of }
+        let r = reflection.domain;
+        let share = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE);
+        let point = |k: u32| Point::new(r.x0 + share(k % SIDE) * r.width(), r.y0 + share(k / SIDE) * r.height());
+        let starts = (0..SIDE * SIDE).map(point).filter(|p| reflection.fault(*p).0 > 0.0);
+        let starts = starts.map(|p| [p, Map::point(&reflection, p)]).collect();
+        Self { reflection, starts }
     }
 
     /// Solves by damped Newton steps, from the points of the artwork whose images are nearest.
@@ -410,32 +419,32 @@ impl Back {
         const TRIES: usize = 4;
         let mut starts: Vec<(f64, Point)> = self.starts.iter().map(|[p, image]| (image.distance(q), *p)).collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        starts.into_iter().take(TRIES).find_map(|(mut off, mut p)| {
+        starts.into_iter().take(TRIES).find_map(|(mut distance, mut p)| {
             for _ in 0..STEPS {
-                let jet = Map::jet(&self.of, p);
+                let jet = Map::jet(&self.reflection, p);
                 let gap = q - jet.p;
                 let step = Vec2::new(gap.cross(jet.dy), jet.dx.cross(gap)) / jet.det();
                 let halved = (0..12).map(|k| p + step * 0.5_f64.powi(k));
-                let better = halved.map(|p| (Map::point(&self.of, p).distance(q), p)).find(|(next, _)| *next < off);
-                let Some((next, to)) = better else { break };
-                (off, p) = (next, to);
+                let mut halved = halved.map(|p| (Map::point(&self.reflection, p).distance(q), p));
+                let Some(nearer) = halved.find(|(next, _)| *next < distance) else { break };
+                (distance, p) = nearer;
             }
-            let jet = Map::jet(&self.of, p);
-            let size = (q - self.of.foot).hypot() + self.of.mirror.radius();
-            let found = jet.p.distance(q) <= 1e-10 * size && self.of.fault(p).0 > 0.0;
+            let jet = Map::jet(&self.reflection, p);
+            let size = (q - self.reflection.foot).hypot() + self.reflection.mirror.radius();
+            let found = jet.p.distance(q) <= 1e-10 * size && self.reflection.fault(p).0 > 0.0;
             let det = jet.det();
             found.then(|| Jet { p, dx: Vec2::new(jet.dy.y, -jet.dx.y) / det, dy: Vec2::new(-jet.dy.x, jet.dx.x) / det })
         })
     }
 }
 
-impl Map for Back {
+impl Map for MirrorInverse {
     fn jet(&self, q: Point) -> Jet {
         self.solve(q).unwrap_or(Jet::UNDEFINED)
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        Some(Arc::new(self.of.clone()))
+        Some(Arc::new(self.reflection.clone()))
     }
 
     fn cost(&self) -> Cost<'_> {

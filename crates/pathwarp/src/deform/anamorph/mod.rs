@@ -29,6 +29,7 @@ mod surface;
 mod tests;
 
 use super::entry::{Built, ByHand, Case, Entry, Example, InSpace, Info, Law, Pairs, Role, SightMark, SpaceFile};
+use super::triangle::polygon;
 use crate::error::Error;
 use crate::map::{AffineMap, Chain, Local, Map};
 use crate::param::{Axis, Kind, Settings, parameters};
@@ -36,7 +37,7 @@ use hidden::{FoldedView, Sheet};
 use kurbo::{Affine, Point, Rect, Shape, Vec2};
 use net::{Push, PushedNet};
 use reading::{eye, look, mirror, net, onto};
-use scene::{Eye, HERE, Scene, measured};
+use scene::{Eye, HERE, Scene, format_length};
 use std::sync::Arc;
 use surface::{Anamorphosis, Radial, Surface};
 
@@ -202,8 +203,8 @@ impl Anamorph {
     /// Builds the map, and for an eye in front of the drawing its surface ([`Built::space`]).
     ///
     /// # Errors
-    /// [`Error::Usage`] for values out of range or that contradict each other, and for surfaces that a ray misses; [`Error::Missing`] for a
-    /// value that another one needs, and without a view of a surface that cannot be laid flat.
+    /// [`Error::Usage`] when values are out of range or contradict each other, or a ray misses the surface; [`Error::Missing`] when another
+    /// value is needed, such as the view of a surface that cannot be laid flat.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         if let Some(mirror) = self.mirror {
@@ -227,7 +228,7 @@ impl Anamorph {
     }
 
     /// Marks the position of the eye beside the image on a surface laid flat.
-    fn sighted(&self, cast: &Anamorphosis, scene: &Scene, map: &dyn Map) -> Result<Option<SightMark>, Error> {
+    fn sight(&self, projection: &Anamorphosis, scene: &Scene, map: &dyn Map) -> Result<Option<SightMark>, Error> {
         if !self.sight_mark {
             return Ok(None);
         }
@@ -235,28 +236,29 @@ impl Anamorph {
             return Err(Error::usage("sight-mark", "", "is for what is printed; omit it, or `view` and `seen`"));
         }
         let units = self.units_per_px;
-        let (at, label) = match (&cast.surface, scene.eye) {
+        let (at, label) = match (&projection.surface, scene.eye) {
             (Surface::Plane(p), eye) => {
                 let Some((at, height)) = p.nearest(eye) else { return Ok(None) };
                 match eye {
                     Eye::At(..) => {
-                        let height = measured(height, units);
+                        let height = format_length(height, units);
                         let here = format!("eye {height} straight above the round mark");
                         (at, [here, format!("eye {height} above the sheet{HERE}")])
                     }
                     Eye::Infinite(_) => (at, far_away(height)),
                 }
             }
-            (Surface::Round(r), Eye::At(foot, distance)) => {
+            (Surface::Cone(r), Eye::At(foot, distance)) => {
                 // The mark lies straight in front of the axis, at the eye's height.
-                let k = distance / (distance + r.axis());
-                let front = match r.level {
-                    true => Point::new(foot.x, foot.y + (r.middle.y - foot.y) * k),
-                    false => Point::new(foot.x + (r.middle.x - foot.x) * k, foot.y),
+                let share = distance / (distance + r.axis());
+                let front = match r.horizontal {
+                    true => Point::new(foot.x, foot.y + (r.middle.y - foot.y) * share),
+                    false => Point::new(foot.x + (r.middle.x - foot.x) * share, foot.y),
                 };
-                let apart = surface::length(surface::minus(cast.point(front), [foot.x, foot.y, -distance]));
-                let here = format!("eye {} in front of the round mark", measured(apart, units));
-                let there = format!("eye {} in front of the surface{HERE}", measured(apart, units));
+                let apart = surface::length(surface::minus(projection.point(front), [foot.x, foot.y, -distance]));
+                let distance = format_length(apart, units);
+                let here = format!("eye {distance} in front of the round mark");
+                let there = format!("eye {distance} in front of the surface{HERE}");
                 (map.point(front), [here, there])
             }
             (_, Eye::At(..)) => return Ok(None),
@@ -266,7 +268,7 @@ impl Anamorph {
                 (map.point(scene.frame.center()), [here.clone(), here])
             }
         };
-        Ok(Some(scene::mark(at, label, scene.extent(map), units)))
+        Ok(Some(scene::sight_mark(at, label, scene.extent(map), units)))
     }
 
     /// Builds the map for an eye in the plane of the drawing.
@@ -282,42 +284,37 @@ impl Anamorph {
             ("curves", self.files.iter().any(|f| !f.filled)),
         ];
         if let Some((name, _)) = needs_distance.iter().find(|n| n.1) {
-            return Err(Error::missing(
-                "distance",
-                format!("the eye's distance in front of the drawing; `{name}` needs it"),
-            ));
+            let hint = format!("the eye's distance in front of the drawing; `{name}` needs it");
+            return Err(Error::missing("distance", hint));
         }
         let scene = Scene { frame: self.frame, scale: Affine::IDENTITY, eye };
         let dilation = self.net.clone().unwrap_or_default().dilation(&scene, self.local)?;
         let map = dilation.about(eye, self.local);
-        let pushed = dilation.lines(|p, delta| match eye {
+        let pushed_net = dilation.lines(|p, delta| match eye {
             Eye::At(eye, _) => eye + (p - eye) / delta,
             Eye::Infinite([x, y, _]) => p + Vec2::new(x, y) * (delta - 1.0),
         });
         let map: Arc<dyn Map> = if self.local {
-            Arc::new(Local::new(&dilation.reference().corners(), Arc::new(map)))
+            Arc::new(Local::new(&dilation.reference.corners(), Arc::new(map)))
         } else {
             map.simplest()
         };
         let mut built = Built::new(Arc::clone(&map));
         if self.sight_mark {
-            let at = match eye {
-                Eye::At(at, _) => at,
-                Eye::Infinite([x, y, _]) => scene.frame.center() + Vec2::new(x, y) * 1e9,
+            let (at, there) = match eye {
+                Eye::At(at, _) => (at, "eye in the plane of the drawing, from here"),
+                Eye::Infinite([x, y, _]) => {
+                    (scene.frame.center() + Vec2::new(x, y) * 1e9, "eye far away in this direction")
+                }
             };
-            let all = scene.extent(&*map);
-            let there = if matches!(eye, Eye::At(..)) {
-                "eye in the plane of the drawing, from here"
-            } else {
-                "eye far away in this direction"
-            };
-            built.sight = Some(Box::new(scene::mark(at, ["eye".into(), there.into()], all, self.units_per_px)));
+            let label = ["eye".into(), there.into()];
+            built.sight = Some(Box::new(scene::sight_mark(at, label, scene.extent(&*map), self.units_per_px)));
         }
         if self.local {
             net::warn_of_torn_sides(&dilation, scene.frame, &mut built);
         }
-        built.overlay(Role::Base, dilation.outline());
-        built.overlay(Role::Cage, pushed);
+        built.overlay(Role::Base, polygon(&dilation.reference.corners()));
+        built.overlay(Role::Cage, pushed_net);
         Ok(built)
     }
 
@@ -340,41 +337,44 @@ impl Anamorph {
             }
             (None, net) => {
                 let dilation = net.clone().unwrap_or_default().dilation(&scene, self.local)?;
-                let flat = net::flat(&dilation, scene.eye);
+                let flat = net::plane_of_corners(&dilation, scene.eye);
                 flat.map_or_else(|| Surface::Radial(Radial::net(&dilation)), Surface::Plane)
             }
         };
-        let cast = Anamorphosis { eye: scene.eye, surface };
-        surface::check_met(self.onto, &cast, scene.frame)?;
-        let own = match self.look {
-            Look::Unrolled if !self.files.is_empty() && cast.unrolled().is_none() => self.beside(&cast, &scene),
+        let projection = Anamorphosis { eye: scene.eye, surface };
+        surface::check_hit(self.onto, &projection, scene.frame)?;
+        // Files in space need no view; the drawing then shows one that is chosen.
+        let chosen = match self.look {
+            Look::Unrolled if !self.files.is_empty() && projection.unrolled().is_none() => {
+                self.side_view(&projection, &scene)
+            }
             _ => None,
         };
-        let map = own.as_ref().unwrap_or(self).shown(&cast, &scene)?;
-        let mut built =
-            Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
-        let (scale, solid) = (scene.scale, cast.clone());
+        let map = chosen.as_ref().unwrap_or(self).view_map(&projection, &scene)?;
+        let scale = Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>;
+        let mut built = Built::new(Arc::new(Chain::new([scale, Arc::clone(&map)])));
+        let (scale, surface) = (scene.scale, projection.clone());
         let place = Arc::new(move |p| {
             let p = scale * p;
-            (solid.defined(p) > 0.0).then(|| solid.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
+            (surface.defined(p) > 0.0).then(|| surface.point(p)).filter(|q| q.iter().all(|v| v.is_finite()))
         });
         built.space = Some(InSpace { place, besides: Vec::new(), files: self.files.clone() });
-        if let Look::From(at) = own.as_ref().unwrap_or(self).look {
-            let (camera, solid, scale) = (surface::camera(at, &cast, &scene)?, cast.clone(), scene.scale);
-            let depth = Box::new(move |p| camera.depth(solid.point(scale * p)));
+        if let Look::From(at) = chosen.as_ref().unwrap_or(self).look {
+            let (camera, surface) = (surface::camera(at, &projection, &scene)?, projection.clone());
+            let depth = Box::new(move |p| camera.depth(surface.point(scale * p)));
             if let Some(sheet) = Sheet::folded(Arc::clone(&built.map), depth, self.frame) {
                 let sheet = Arc::new(sheet);
                 built.map = Arc::new(FoldedView(Arc::clone(&sheet)));
                 built.hidden = Some(Arc::new(move |tolerance| sheet.hidden(tolerance)));
             }
         }
-        built.sight = self.sighted(&cast, &scene, &*map)?.map(Box::new);
-        if let Some(Self { look: Look::From([x, y, z]), .. }) = own {
+        built.sight = self.sight(&projection, &scene, &*map)?.map(Box::new);
+        if let Some(Self { look: Look::From([x, y, z]), .. }) = chosen {
             built.note(format!(
                 "such a surface cannot be laid flat: the drawing is the view from {x:.4},{y:.4},{z:.4} (`view`)"
             ));
         }
-        built.note(scene.size(&*map, self.units_per_px));
+        built.note(scene.describe_sizes(&*map, self.units_per_px));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
@@ -384,52 +384,52 @@ impl Anamorph {
 
     /// Returns this anamorphosis with a view from the side, for a sheet that cannot be laid flat. Of some cameras, the first is taken for
     /// which no part of the sheet hides another.
-    fn beside(&self, cast: &Anamorphosis, scene: &Scene) -> Option<Self> {
-        const SIDES: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
-        let middle = cast.point(scene.frame.center());
-        let away = scene.eye.apart(middle);
+    fn side_view(&self, projection: &Anamorphosis, scene: &Scene) -> Option<Self> {
+        /// Positions to the right and down from the sheet's middle, in units of the eye's distance from it.
+        const POSITIONS: [[f64; 2]; 5] = [[0.5, -0.35], [-0.5, -0.35], [0.25, -0.2], [-0.25, -0.2], [0.05, -0.05]];
+        let middle = projection.point(scene.frame.center());
+        let distance = scene.eye.distance_to(middle);
         let from = |[x, y]: [f64; 2]| {
-            let p = scene.scale.inverse() * Point::new(middle[0] + x * away, middle[1] + y * away);
-            Self { look: Look::From([p.x, p.y, 0.8 * away - middle[2]]), ..self.clone() }
+            let p = scene.scale.inverse() * Point::new(middle[0] + x * distance, middle[1] + y * distance);
+            Self { look: Look::From([p.x, p.y, 0.8 * distance - middle[2]]), ..self.clone() }
         };
-        let shows_all = |own: &Self| {
-            let map = own.shown(cast, scene);
-            map.is_ok_and(|m| surface::samples(scene.frame).all(|p| m.jet(p).det() > 0.0))
+        let shows_all = |view: &Self| {
+            let map = view.view_map(projection, scene);
+            map.is_ok_and(|m| surface::box_samples(scene.frame).all(|p| m.jet(p).det() > 0.0))
         };
-        SIDES.map(from).into_iter().find(shows_all)
+        POSITIONS.map(from).into_iter().find(shows_all)
     }
 
     /// Returns the requested view of the surface.
-    fn shown(&self, cast: &Anamorphosis, scene: &Scene) -> Result<Arc<dyn Map>, Error> {
+    fn view_map(&self, projection: &Anamorphosis, scene: &Scene) -> Result<Arc<dyn Map>, Error> {
         match self.look {
-            Look::Eye => Ok(cast.seen()),
-            Look::From(at) => Ok(cast.viewed(&surface::camera(at, cast, scene)?, scene.frame)),
-            Look::Unrolled => cast.unrolled().ok_or_else(|| {
+            Look::Eye => Ok(projection.eye_view()),
+            Look::From(at) => Ok(projection.camera_view(&surface::camera(at, projection, scene)?, scene.frame)),
+            Look::Unrolled => projection.unrolled().ok_or_else(|| {
                 let hint = "such a surface cannot be laid flat; give the camera's position X,Y,Z with Z in front of the drawing, or `seen`";
                 Error::missing("view", hint)
             }),
         }
     }
 
-    /// Returns the artwork at its apparent size, and the eye.
+    /// Returns the artwork at its apparent size, scaled about the middle of its bottom edge, and the eye.
     fn scene(&self, eye: Eye) -> Result<Scene, Error> {
         let drawn = self.frame;
+        let conflict = |name, problem| Err(Error::usage(name, "", problem));
         if self.eye_height.is_some() && self.eye_given {
-            return Err(Error::usage("eye-height", "", "and `eye` both place the eye; give one"));
+            return conflict("eye-height", "and `eye` both place the eye; give one");
         }
-        let k = match (self.picture_width, self.length) {
-            (Some(_), Some(_)) => {
-                return Err(Error::usage("length", "", "and `picture-width` both size the artwork; give one"));
-            }
+        let factor = match (self.picture_width, self.length) {
+            (Some(_), Some(_)) => return conflict("length", "and `picture-width` both size the artwork; give one"),
             (Some(w), None) => w / drawn.width(),
             (None, Some(length)) => surface::scale_for(self.onto, length, drawn.height(), self.eye_height, eye)?,
             (None, None) => 1.0,
         };
-        if !k.is_finite() || k <= 0.0 {
-            return Err(Error::usage("picture-width", "", "cannot be given to artwork that has no size"));
+        if !factor.is_finite() || factor <= 0.0 {
+            return conflict("picture-width", "cannot be given to artwork that has no size");
         }
         let anchor = Point::new(drawn.center().x, drawn.y1);
-        let scale = if k == 1.0 { Affine::IDENTITY } else { Affine::scale_about(k, anchor) };
+        let scale = if factor == 1.0 { Affine::IDENTITY } else { Affine::scale_about(factor, anchor) };
         let eye = match (eye, self.eye_height) {
             (Eye::At(_, distance), Some(h)) => Eye::At(anchor - Vec2::new(0.0, h), distance),
             (Eye::At(foot, distance), None) => Eye::At(scale * foot, distance),

@@ -5,7 +5,7 @@ use super::scene::{Eye, Scene};
 use super::surface::{Anamorphosis, Radial, SpacePlane, Surface, cross, minus};
 use crate::deform::entry::Built;
 use crate::error::{Error, GeometryError, show};
-use kurbo::{Point, Rect, Shape, Vec2};
+use kurbo::{Point, Rect, Vec2};
 
 /// A net of control points, and the pushes along rays through the eye.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,13 +49,11 @@ impl Push {
     /// Describes the control point, or the prescribed point, for messages.
     fn text(self, reference: &Reference) -> String {
         match (self, reference) {
-            (Self::By(n, _) | Self::Away(n, _) | Self::To(n, _), Reference::Triangle(..)) => {
-                format!("{},{},{}", n[0], n[1], n[2])
-            }
-            (Self::By(n, _) | Self::Away(n, _) | Self::To(n, _), Reference::Rectangle(..)) => {
-                format!("{},{}", n[0], n[1])
-            }
             (Self::Prescribe(p, by), _) => format!("{}:{by}", show(p)),
+            (Self::By([i, j, k], _) | Self::Away([i, j, k], _) | Self::To([i, j, k], _), Reference::Triangle(..)) => {
+                format!("{i},{j},{k}")
+            }
+            (Self::By([i, j, _], _) | Self::Away([i, j, _], _) | Self::To([i, j, _], _), _) => format!("{i},{j}"),
         }
     }
 }
@@ -67,27 +65,26 @@ impl PushedNet {
         let mut out = Dilation::none(reference);
         for push in &self.pushes {
             let wrong = |problem: String| Error::usage(push.param(), push.text(&reference), problem);
-            let sound = |delta: f64| {
+            let check_delta = |delta: f64| {
                 let range = if scene.eye.is_infinite() { -1e9..1e9 } else { 1e-6..1e6 };
-                if range.contains(&delta) {
-                    return Ok(delta);
-                }
-                Err(wrong("would go through the eye, or out of reach; push it less".into()))
+                let out_of_range = || wrong("would go through the eye, or out of reach; push it less".into());
+                range.contains(&delta).then_some(delta).ok_or_else(out_of_range)
             };
             if let Push::By(node, _) | Push::Away(node, _) | Push::To(node, _) = *push
                 && !reference.has(node)
             {
-                return Err(wrong(format!("is not a control point: {}", numbers(&reference))));
+                return Err(wrong(format!("is not a control point: {}", describe_numbers(&reference))));
             }
+            // δ of a push to so many times the distance, and of one away from a point by a length.
             let by = |factor: f64| {
                 if scene.eye.is_infinite() {
                     let problem = "multiplies the distance of an eye at infinity; give a length instead, by `away`, or after a `point`";
                     return Err(wrong(problem.into()));
                 }
-                sound(1.0 / factor)
+                check_delta(1.0 / factor)
             };
             let away = |from: Point, length: f64| {
-                sound(match scene.eye {
+                check_delta(match scene.eye {
                     Eye::At(foot, distance) => {
                         let d = (from - foot).hypot().hypot(distance);
                         d / (d + length)
@@ -108,21 +105,21 @@ impl PushedNet {
                             return Err(wrong(problem.into()));
                         }
                     };
-                    out.set(node, sound(delta)?);
+                    out.set(node, check_delta(delta)?);
                 }
                 Push::Prescribe(p, value) => {
                     let p = scene.scale * p;
                     let delta = if scene.eye.is_infinite() { away(p, value)? } else { by(value)? };
-                    let moved = out.prescribe(p, delta, |node| fixed(&reference, node, local)).ok_or_else(|| {
-                        wrong("is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`".into())
-                    })?;
-                    sound(out.of(moved))?;
+                    let problem = "is on a fixed side, or no control point is free to move; raise `degree` or choose another `reference`";
+                    let node = out.prescribe(p, delta, |node| is_held(&reference, node, local));
+                    check_delta(out.delta_of(node.ok_or_else(|| wrong(problem.into()))?))?;
                 }
             }
         }
         Ok(out)
     }
 
+    /// Returns the regular net at the artwork's apparent size.
     fn reference(&self, scene: &Scene) -> Result<Reference, Error> {
         let points = match &self.reference[..] {
             [] => vec![scene.frame.origin(), Point::new(scene.frame.x1, scene.frame.y1)],
@@ -155,7 +152,7 @@ impl PushedNet {
 }
 
 /// Returns `true` for control points that a prescribed point must not move.
-fn fixed(reference: &Reference, node: [usize; 3], local: bool) -> bool {
+fn is_held(reference: &Reference, node: [usize; 3], local: bool) -> bool {
     match reference {
         Reference::Triangle(..) => reference.on_side(node, 0),
         Reference::Rectangle(..) => local && (0..reference.corners().len()).any(|k| reference.on_side(node, k)),
@@ -163,7 +160,7 @@ fn fixed(reference: &Reference, node: [usize; 3], local: bool) -> bool {
 }
 
 /// Describes the numbers of a reference's control points.
-fn numbers(reference: &Reference) -> String {
+fn describe_numbers(reference: &Reference) -> String {
     match reference {
         Reference::Triangle(_, n) => format!("I, J and K must add up to {n}, the degree"),
         Reference::Rectangle(_, [m, n]) => format!("I runs from 0 to {m} across, J from 0 to {n} down"),
@@ -171,33 +168,30 @@ fn numbers(reference: &Reference) -> String {
 }
 
 /// Returns the plane of a triangle's three corners after their pushes, if the net has degree 1.
-pub(super) fn flat(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
-    let Reference::Triangle([a, b, c], 1) = *d.reference() else { return None };
+pub(super) fn plane_of_corners(d: &Dilation, eye: Eye) -> Option<SpacePlane> {
+    let Reference::Triangle([a, b, c], 1) = d.reference else { return None };
     let middle = a + ((b - a) + (c - a)) / 3.0;
-    let cast = Anamorphosis { eye, surface: Surface::Radial(Radial::net(d)) };
-    let [a, b, c, through] = [a, b, c, middle].map(|p| cast.point(p));
-    let normal = cross(minus(b, a), minus(c, a));
     // The orientation of the corners in the drawing, as seen from the eye.
-    let sense = (d.reference().corners()[1] - d.reference().corners()[0])
-        .cross(d.reference().corners()[2] - d.reference().corners()[0]);
-    Some(SpacePlane::new(through, normal.map(|v| v * sense.signum()), middle))
+    let orientation = (b - a).cross(c - a).signum();
+    let projection = Anamorphosis { eye, surface: Surface::Radial(Radial::net(d)) };
+    let [a, b, c, through] = [a, b, c, middle].map(|p| projection.point(p));
+    let normal = cross(minus(b, a), minus(c, a));
+    Some(SpacePlane::new(through, normal.map(|v| v * orientation), middle))
 }
 
 /// Warns of sides at which artwork is torn.
 pub(super) fn warn_of_torn_sides(d: &Dilation, frame: Rect, built: &mut Built) {
-    let corners = d.reference().corners();
+    let corners = d.reference.corners();
     // Artwork along the edge of the box counts, as strokes reach past it.
-    let room = 1e-9 * (frame.width() + frame.height());
-    let frame = frame.inflate(room, room);
+    let rounding = 1e-9 * (frame.width() + frame.height());
+    let frame = frame.inflate(rounding, rounding);
     for k in 0..corners.len() {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        let meets = Rect::from_points(a, b).bounding_box().overlaps(frame);
-        if meets && !d.side_is_fixed(k) {
+        if Rect::from_points(a, b).overlaps(frame) && !d.side_is_fixed(k) {
+            let [a, b] = [a, b].map(show);
             built.warn(format!(
-                "the side of the reference from {} to {} has control points moved: artwork that crosses it is torn apart; keep that side's \
-points in place, choose another `reference`, or omit `local`",
-                show(a),
-                show(b)
+                "the side of the reference from {a} to {b} has control points moved: artwork that crosses it is torn apart; keep that \
+side's points in place, choose another `reference`, or omit `local`"
             ));
         }
     }

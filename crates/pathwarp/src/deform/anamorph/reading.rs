@@ -52,7 +52,10 @@ pub(super) fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
     let text = s.texts("degree").pop().unwrap_or("1");
     let triangle = reference.as_ref().is_some_and(|r| r.len() == 3);
     let (m, n) = if triangle { (text, text) } else { text.split_once('x').unwrap_or((text, text)) };
-    let degree = [degree(text, m)?, degree(text, n)?];
+    let wrong = || Error::usage("degree", text, "is not a degree: a number from 1 to 10, or for a box two such as 3x2");
+    let degree = |part: &str| part.trim().parse().ok().filter(|n| (1..=10).contains(n)).ok_or_else(wrong);
+    let degree = [degree(m)?, degree(n)?];
+    // The control point that a value begins with, and the rest of the value.
     let node = |name: &str, text: &str| -> Result<([usize; 3], String), Error> {
         if triangle {
             return s.node_in::<3>(name, text).map(|(node, rest)| (node, rest.to_owned()));
@@ -73,20 +76,13 @@ pub(super) fn net(s: &Settings<'_>) -> Result<Option<PushedNet>, Error> {
         pushes.push(Push::To(node, s.point_in("at", &rest)?));
     }
     for text in s.texts("point") {
-        let (place, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
+        let (point, factor) = text.rsplit_once(':').ok_or_else(|| Error::usage("point", text, "is not X,Y:FACTOR"))?;
         let infinite = s.texts("eye").pop().is_some_and(|t| t.starts_with("inf"));
         let value =
             if infinite { s.length_in("point", factor, Axis::Diagonal)? } else { s.number_in("point", factor)? };
-        pushes.push(Push::Prescribe(s.point_in("point", place)?, value));
+        pushes.push(Push::Prescribe(s.point_in("point", point)?, value));
     }
     Ok(Some(PushedNet { reference: reference.unwrap_or_default(), degree, pushes }))
-}
-
-fn degree(text: &str, part: &str) -> Result<usize, Error> {
-    let n = part.trim().parse().ok().filter(|n| (1..=10).contains(n));
-    n.ok_or_else(|| {
-        Error::usage("degree", text, "is not a degree: a number from 1 to 10, or for a box two such as 3x2")
-    })
 }
 
 /// The parts of `KIND:WORD,NAME=VALUE,…`.
@@ -94,6 +90,7 @@ struct Words<'t> {
     param: &'static str,
     text: &'t str,
     kind: &'t str,
+    /// Words, and names with their values.
     list: Vec<(&'t str, Option<&'t str>)>,
 }
 
@@ -117,18 +114,14 @@ impl<'t> Words<'t> {
         Error::usage(self.param, self.text, problem)
     }
 
-    /// Refuses words other than these.
-    fn only(&self, switches: &[&str], values: &[&str]) -> Result<(), Error> {
+    /// Refuses words other than these `words`, and values of other names than `names`.
+    fn only(&self, words: &[&str], names: &[&str]) -> Result<(), Error> {
         for (name, value) in &self.list {
-            let known = if value.is_some() { values } else { switches };
+            let known = if value.is_some() { names } else { words };
             if !known.contains(name) {
-                let all: Vec<String> =
-                    switches.iter().map(|s| (*s).to_owned()).chain(values.iter().map(|v| format!("{v}=…"))).collect();
-                return Err(self.wrong(format!(
-                    "has “{name}”, which a {} does not have; it has {}",
-                    self.kind,
-                    all.join(", ")
-                )));
+                let (kind, names) = (self.kind, names.iter().map(|n| format!("{n}=…")));
+                let all = words.iter().map(|w| (*w).to_owned()).chain(names).collect::<Vec<_>>().join(", ");
+                return Err(self.wrong(format!("has “{name}”, which a {kind} does not have; it has {all}")));
             }
             if self.list.iter().filter(|w| w.0 == *name).count() > 1 {
                 return Err(self.wrong(format!("has “{name}” twice; give it once")));
@@ -137,6 +130,7 @@ impl<'t> Words<'t> {
         Ok(())
     }
 
+    /// Reads a positive length.
     fn size(&self, s: &Settings<'_>, name: &str) -> Result<Option<f64>, Error> {
         let Some(text) = self.value(name) else { return Ok(None) };
         let v = s.length_in(self.param, text, Axis::X)?;
@@ -174,9 +168,9 @@ pub(super) fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
                     format!("has “{end}”, which could be a radius or a diameter: {end}-radius=… or {end}-diameter=…");
                 return Err(w.wrong(problem));
             }
-            let ends = ["top-radius", "top-diameter", "bottom-radius", "bottom-diameter"];
-            w.only(&["inside"], &[&ends[..], &["height", "slant"]].concat())?;
-            let (top, bottom) = (w.radius_at(s, ends[0], ends[1])?, w.radius_at(s, ends[2], ends[3])?);
+            let names = ["top-radius", "top-diameter", "bottom-radius", "bottom-diameter", "height", "slant"];
+            w.only(&["inside"], &names)?;
+            let (top, bottom) = (w.radius_at(s, names[0], names[1])?, w.radius_at(s, names[2], names[3])?);
             let height = match (w.size(s, "height")?, w.size(s, "slant")?) {
                 (Some(_), Some(_)) => return Err(w.wrong("has a height and a slant; give one")),
                 (height, None) => height,
@@ -202,10 +196,10 @@ pub(super) fn onto(s: &Settings<'_>, text: &str) -> Result<Onto, Error> {
 
 /// Reads the mirror.
 pub(super) fn mirror(s: &Settings<'_>) -> Result<Option<Mirror>, Error> {
-    let at = if s.given("foot") { Some(s.point("foot")?) } else { None };
+    let foot = if s.given("foot") { Some(s.point("foot")?) } else { None };
     let Some(text) = s.texts("mirror").pop() else {
         let missing = || Error::missing("mirror", "the mirror whose foot this is");
-        return if at.is_some() { Err(missing()) } else { Ok(None) };
+        return if foot.is_some() { Err(missing()) } else { Ok(None) };
     };
     let w = Words::new("mirror", text);
     let known = ["radius", "diameter", "height", "lift", "tilt"];
@@ -227,9 +221,10 @@ pub(super) fn mirror(s: &Settings<'_>) -> Result<Option<Mirror>, Error> {
     };
     let tilt = w.value("tilt").map_or(Ok(0.0), |text| s.angle_in("mirror", text))?;
     let lift = w.value("lift").map_or(Ok(0.0), |text| s.length_in("mirror", text, Axis::Y))?;
-    Ok(Some(Mirror { shape, tilt, lift, at }))
+    Ok(Some(Mirror { shape, tilt, lift, at: foot }))
 }
 
+/// Reads a plane.
 fn plane(s: &Settings<'_>, w: &Words<'_>) -> Result<Onto, Error> {
     w.only(&["floor", "ceiling", "left", "right"], &["ramp", "wall"])?;
     let angle = |text: &Option<&str>| s.angle_in("onto", text.unwrap_or("0"));

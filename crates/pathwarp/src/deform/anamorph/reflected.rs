@@ -1,7 +1,7 @@
 //! Builds anamorphoses that are seen in mirrors.
 
-use super::mirror::{Part, Reflection};
-use super::scene::{self, Eye, measured};
+use super::mirror::{Reflection, ScenePart};
+use super::scene::{self, Eye, format_length};
 use super::{Anamorph, Look, Mirror, direction, far_away};
 use crate::deform::entry::{Built, InSpace, Place, Role, SightMark};
 use crate::error::Error;
@@ -20,11 +20,8 @@ impl Anamorph {
             ("local", self.local),
         ];
         if let Some((name, _)) = others.iter().find(|o| o.1) {
-            return Err(Error::usage(
-                name,
-                "",
-                "does not go with `mirror`, whose drawing lies on the table; omit one of them",
-            ));
+            let problem = "does not go with `mirror`, whose drawing lies on the table; omit one of them";
+            return Err(Error::usage(name, "", problem));
         }
         let eye = match (self.eye, self.distance, self.eye_height) {
             (Eye::Infinite(towards), None, None) => Eye::Infinite(direction(towards)?),
@@ -44,24 +41,23 @@ impl Anamorph {
         if let (Eye::At(_, distance), Some(height)) = (eye, self.eye_height) {
             scene.eye = Eye::At(mirror.anchor(scene.frame) - Vec2::new(0.0, height), distance);
         }
-        let cast = Reflection::new(mirror, &scene)?;
-        let tip = cast.check()?;
-        let map: Arc<dyn Map> = Arc::new(cast.clone());
-        let mut built =
-            Built::new(Arc::new(Chain::new([Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>, Arc::clone(&map)])));
+        let reflection = Reflection::new(mirror, &scene)?;
+        let tip = reflection.check()?;
+        let map: Arc<dyn Map> = Arc::new(reflection.clone());
+        let scale = Arc::new(AffineMap(scene.scale)) as Arc<dyn Map>;
+        let mut built = Built::new(Arc::new(Chain::new([scale, Arc::clone(&map)])));
         let units = self.units_per_px;
-        built.note(scene.size(&*map, units));
-        let needed = cast.needed_height();
+        built.note(scene.describe_sizes(&*map, units));
+        let needed = reflection.needed_height();
         if needed > 0.0 {
-            built.note(format!("the mirror shows it up to {} above its foot", measured(needed, units)));
+            built.note(format!("the mirror shows it up to {} above its foot", format_length(needed, units)));
         }
         if tip.is_some() {
             built.warn("the cone's tip shows inside the artwork's box: what covers it lacks the outer edge; leave a hole there");
         }
-        let scale = scene.scale;
-        let all = scene.extent(&*map).union(cast.footprint().bounding_box());
-        built.space = Some(InSpace { files: self.files.clone(), ..in_space(&cast, scale, all) });
-        built.sight = self.sight_mark.then(|| Box::new(sight(&cast, eye, all, units)));
+        let extent = scene.extent(&*map).union(reflection.footprint().bounding_box());
+        built.space = Some(InSpace { files: self.files.clone(), ..in_space(&reflection, scene.scale, extent) });
+        built.sight = self.sight_mark.then(|| Box::new(sight(&reflection, eye, extent, units)));
         built.overlay(Role::Base, self.frame.to_path(0.1));
         if let Some(path) = scene.outline(&*map) {
             built.overlay(Role::Target, path);
@@ -70,37 +66,38 @@ impl Anamorph {
     }
 }
 
-/// Returns the drawing on the table in space, with the table, the mirror, and the artwork as the eye sees it.
-fn in_space(cast: &Reflection, scale: Affine, all: Rect) -> InSpace {
-    let part = |what: Part, scale: Affine| -> Place {
-        let cast = cast.clone();
-        Arc::new(move |p| cast.in_space(what, scale * p).filter(|q| q.iter().all(|v| v.is_finite())))
+/// Returns the drawing on the table in space, with the table, the mirror, and the artwork as the eye sees it. `extent` is the box of the
+/// drawing and the mirror's foot.
+fn in_space(reflection: &Reflection, scale: Affine, extent: Rect) -> InSpace {
+    let part = |part: ScenePart, scale: Affine| -> Place {
+        let reflection = reflection.clone();
+        Arc::new(move |p| reflection.in_space(part, scale * p).filter(|q| q.iter().all(|v| v.is_finite())))
     };
-    let (room, foot) = (all.inflate(0.05 * all.width(), 0.05 * all.height()), cast.foot);
+    let (table, foot) = (extent.inflate(0.05 * extent.width(), 0.05 * extent.height()), reflection.foot);
     // The sheet lies a hair under the drawing.
-    let hair = 1e-3 * cast.height();
+    let hair = 1e-3 * reflection.height();
     let sheet: Place = Arc::new(move |p: Point| Some([p.x - foot.x, hair, foot.y - p.y]));
     let besides = vec![
-        ("table", Some(room), sheet),
-        ("mirror", Some(Rect::new(0.0, 0.0, 1.0, 1.0)), part(Part::Mirror(cast.height()), Affine::IDENTITY)),
-        ("seen", None, part(Part::Picture, scale)),
+        ("table", Some(table), sheet),
+        ("mirror", Some(Rect::new(0.0, 0.0, 1.0, 1.0)), part(ScenePart::Mirror(reflection.height()), Affine::IDENTITY)),
+        ("seen", None, part(ScenePart::Picture, scale)),
     ];
-    InSpace { place: part(Part::Table, scale), besides, files: Vec::new() }
+    InSpace { place: part(ScenePart::Table, scale), besides, files: Vec::new() }
 }
 
 /// Marks the eye's position on the table, and the mirror's foot.
-fn sight(cast: &Reflection, eye: Eye, all: Rect, units: [f64; 2]) -> SightMark {
-    let (at, words) = match (cast.eye(), eye) {
+fn sight(reflection: &Reflection, eye: Eye, extent: Rect, units: [f64; 2]) -> SightMark {
+    let (at, label) = match (reflection.eye(), eye) {
         (Some((at, [distance, height])), _) => {
-            let [distance, height] = [distance, height].map(|v| measured(v, units));
+            let [distance, height] = [distance, height].map(|v| format_length(v, units));
             let here = format!("eye {height} above the round mark");
             let there = format!("eye {height} above the table, {distance} from the mirror's middle");
             (at, [here, there])
         }
-        (None, Eye::Infinite([x, y, z])) => (cast.foot + Vec2::new(x, -z) * 1e9, far_away(-y)),
-        (None, Eye::At(..)) => (cast.foot, far_away(1.0)),
+        (None, Eye::Infinite([x, y, z])) => (reflection.foot + Vec2::new(x, -z) * 1e9, far_away(-y)),
+        (None, Eye::At(..)) => (reflection.foot, far_away(1.0)),
     };
-    let mut sight = scene::mark(at, words, all, units);
-    sight.path.extend(cast.footprint());
+    let mut sight = scene::sight_mark(at, label, extent, units);
+    sight.path.extend(reflection.footprint());
     sight
 }

@@ -1,4 +1,30 @@
 //! Surfaces onto which artwork is projected, and views of them.
+//!
+//! Coordinates in space are in user units, x to the right, y down, z away from the viewer. The drawing lies in z = 0 and the eye O at
+//! (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
+//!
+//! - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
+//! - a net of control points on rays: δ is a polynomial; also a sphere with the eye on its near pole, whose far pole touches the drawing
+//!   (δ = |d|²/distance², the inverse of the stereographic projection);
+//! - cylinders, cones and other spheres: λ is the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
+//!   computed in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
+//!
+//! In homogeneous coordinates, an eye at infinity in the direction of the unit vector e is (e, 0) instead of (O, 1). The paper's points
+//! (p, 1) + (δ − 1)·(O, 1) become p + (δ − 1)·e, so that control points move by the lengths 1 − δ. On planes δ − 1 = n·(P − p)/n·e. On
+//! curved surfaces, rays start in front of the whole surface and run along the line of sight. Polynomial δ are in J. Sánchez-Reyes,
+//! J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3.
+//!
+//! There are three views. **Unrolled**, a plane has two coordinates; a cylinder or cone is cut along its far line and rolled out. With
+//! the radius R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y has, relative to the middle (x₀, y₀),
+//! the coordinates
+//!
+//! > X = R·sin(κθ)/κ,  Y = σ·(y − y₀) + 2R·sin²(κθ/2)/κ
+//!
+//! which are polar coordinates about the cone's apex, in a form that includes the cylinder (κ → 0: X = rθ, Y = y − y₀). The inverse is in
+//! closed form, too: (κX, r − κY) has the length R and the angle κθ, and σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R). **From the eye**, a point
+//! q in space at the depth z is seen at O + (q − O)·D/(z + D), where D is the eye's distance. **From elsewhere**, a pinhole camera looks
+//! at the image of the drawing's middle, scaled so that the neighbourhood of that point is true to size. If δ is a polynomial of degree
+//! n, so are the numerators and the denominator of the view.
 
 use super::dilation::Dilation;
 use super::scene::{Eye, Scene};
@@ -57,7 +83,7 @@ pub enum Onto {
 }
 
 impl Onto {
-    /// Returns the text of `--onto` for this surface.
+    /// Returns the surface in the notation of `--onto`, for messages.
     fn text(self) -> String {
         let inside = |inside: bool| if inside { ",inside" } else { "" };
         match self {
@@ -101,7 +127,7 @@ impl Onto {
         match self {
             Self::Cylinder { radius, level, inside } => {
                 let radius = positive("radius", radius)?;
-                Ok(Surface::Round(Round { middle, radius, slope: 0.0, level, inside }))
+                Ok(Surface::Cone(Cone { middle, radius, slope: 0.0, horizontal: level, inside }))
             }
             Self::Cone { top, bottom, height, inside } => {
                 let (top, bottom) = (positive("top", top)?, positive("bottom", bottom)?);
@@ -110,7 +136,7 @@ impl Onto {
                     return Err(self.wrong("needs a height=… for artwork that has none"));
                 }
                 let (radius, slope) = ((top + bottom) / 2.0, (bottom - top) / height);
-                Ok(Surface::Round(Round { middle, radius, slope, level: false, inside }))
+                Ok(Surface::Cone(Cone { middle, radius, slope, horizontal: false, inside }))
             }
             Self::Sphere { radius, inside } => {
                 Ok(Surface::Sphere(Sphere { middle, radius: positive("radius", radius)?, inside }))
@@ -128,12 +154,12 @@ impl Onto {
         let c = r.center();
         let upright = |angle: f64| [-angle.sin(), 0.0, angle.cos()];
         let (at, normal) = match (self, self.rise()) {
-            (_, Some(a)) => (Point::new(c.x, r.y1), [0.0, exact(a.cos()), a.sin()]),
+            (_, Some(a)) => (Point::new(c.x, r.y1), [0.0, snap_to_zero(a.cos()), a.sin()]),
             (Self::Ceiling, _) => (Point::new(c.x, r.y0), [0.0, -1.0, 0.0]),
             (Self::LeftWall, _) => (Point::new(r.x0, c.y), [-1.0, 0.0, 0.0]),
             (Self::RightWall, _) => (Point::new(r.x1, c.y), [1.0, 0.0, 0.0]),
-            (Self::Wall(a), _) => (c, upright(a.to_radians()).map(exact)),
-            _ => (c, upright(0.0).map(exact)),
+            (Self::Wall(a), _) => (c, upright(a.to_radians()).map(snap_to_zero)),
+            _ => (c, upright(0.0).map(snap_to_zero)),
         };
         let through = [at.x, at.y, 0.0];
         let (gap, size) = match scene.eye {
@@ -151,11 +177,11 @@ impl Onto {
 }
 
 /// Rounds the cosine of a right angle to zero.
-fn exact(v: f64) -> f64 {
+fn snap_to_zero(v: f64) -> f64 {
     if v.abs() < 1e-15 { 0.0 } else { v }
 }
 
-/// Returns the scale at which artwork `drawn` high becomes `length` long on the floor or ramp.
+/// Returns the scale at which artwork `drawn` high becomes `length` long on the floor or ramp; the parent module has the formula.
 pub(super) fn scale_for(
     onto: Option<Onto>,
     length: f64,
@@ -169,7 +195,7 @@ pub(super) fn scale_for(
     };
     let (up, away) = (length * angle.sin(), length * angle.cos());
     let (seen, in_front) = match (eye, eye_height) {
-        (Eye::Infinite(_), _) => (up + away * eye.sight()[1], true),
+        (Eye::Infinite(_), _) => (up + away * eye.line_of_sight()[1], true),
         (Eye::At(_, distance), Some(eye)) => (eye + (up - eye) * distance / (distance + away), distance + away > 0.0),
         (Eye::At(..), None) => {
             return Err(Error::missing("eye-height", "the height of the eye above the floor; `length` needs it"));
@@ -183,20 +209,18 @@ pub(super) fn scale_for(
 }
 
 /// Samples the artwork's box.
-pub(super) fn samples(r: Rect) -> impl Iterator<Item = Point> {
+pub(super) fn box_samples(r: Rect) -> impl Iterator<Item = Point> {
     const N: u32 = 16;
-    let at = move |i: u32, j: u32| {
-        let (u, v) = (f64::from(i) / f64::from(N), f64::from(j) / f64::from(N));
-        Point::new(r.x0 + u * r.width(), r.y0 + v * r.height())
-    };
-    (0..=N).flat_map(move |i| (0..=N).map(move |j| at(i, j)))
+    let share = |k: u32| f64::from(k) / f64::from(N);
+    let point = move |i, j| Point::new(r.x0 + share(i) * r.width(), r.y0 + share(j) * r.height());
+    (0..=N).flat_map(move |i| (0..=N).map(move |j| point(i, j)))
 }
 
 /// Refuses a surface that a ray through the artwork's box misses.
-pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) -> Result<(), Error> {
-    let missed = samples(frame).find(|p| cast.defined(*p).max(0.0) == 0.0);
+pub(super) fn check_hit(onto: Option<Onto>, projection: &Anamorphosis, frame: Rect) -> Result<(), Error> {
+    let missed = box_samples(frame).find(|p| projection.defined(*p).max(0.0) == 0.0);
     let Some(p) = missed else { return Ok(()) };
-    let advice = match cast.surface {
+    let advice = match projection.surface {
         Surface::Plane(_) => {
             "the ray there never comes down on the plane; raise the eye, go nearer, or make the artwork smaller (`picture-width`, `length`)"
         }
@@ -208,34 +232,17 @@ pub(super) fn check_met(onto: Option<Onto>, cast: &Anamorphosis, frame: Rect) ->
 }
 
 /// Returns the camera at `at`, whose z is in front of the drawing. Refuses one that has a part of the image behind it.
-pub(super) fn camera(at: Space, cast: &Anamorphosis, scene: &Scene) -> Result<Camera, Error> {
+pub(super) fn camera(at: Space, projection: &Anamorphosis, scene: &Scene) -> Result<Camera, Error> {
     let [x, y, z] = at;
     let wrong = |problem: String| Error::usage("view", format!("{x},{y},{z}"), problem);
     let (p, middle) = (scene.scale * Point::new(x, y), scene.frame.center());
-    let camera = Camera::new([p.x, p.y, -z], cast.point(middle), middle)
+    let camera = Camera::new([p.x, p.y, -z], projection.point(middle), middle)
         .ok_or_else(|| wrong("is on the surface itself; move it away".into()))?;
-    match samples(scene.frame).find(|p| camera.depth(cast.point(*p)) <= 0.0) {
+    match box_samples(scene.frame).find(|p| camera.depth(projection.point(*p)) <= 0.0) {
         Some(p) => Err(wrong(format!("is too near: the image of {} lies behind it; go further away", show(p)))),
         None => Ok(camera),
     }
 }
-
-// Surfaces in front of the eye, and their intersections with the rays through a drawing.
-//
-// Coordinates in space are in user units, x to the right, y down, z away from the viewer. The drawing lies in z = 0 and the eye O at
-// (x, y, −distance). The ray through the drawing's point p is O + λ·d, d = (p, 0) − O, and the surface determines λ = 1/δ:
-//
-// - a plane through P with normal n: δ = n·d / n·(P − O), linear in p;
-// - a net of control points on rays: δ is a polynomial; also a sphere with the eye on its near pole, whose far pole touches the drawing
-//   (δ = |d|²/distance², the inverse of the stereographic projection);
-// - cylinders, cones and other spheres: λ is the nearer root of a quadratic aλ² + 2bλ + c = 0, or the further one for a hollow,
-//   computed in the form that does not cancel, λ = c/(−b ± √(b² − ac)).
-//
-// In homogeneous coordinates, an eye at infinity in the direction of the unit vector e is (e, 0) instead of (O, 1). The paper's points
-// (p, 1) + (δ − 1)·(O, 1) become p + (δ − 1)·e, so that control points move by the lengths 1 − δ. On planes δ − 1 = n·(P − p)/n·e. On
-// curved surfaces, rays start in front of the whole surface and run along the line of sight.
-//
-// Polynomial δ are in J. Sánchez-Reyes, J. M. Chacón, *Anamorphic free-form deformation*, CAGD 46 (2016), §3.
 
 /// A vector or point in space.
 pub(super) type Space = [f64; 3];
@@ -256,7 +263,7 @@ pub(super) fn length(a: Space) -> f64 {
     dot(a, a).sqrt()
 }
 
-fn unit(a: Space) -> Space {
+fn unit_vector(a: Space) -> Space {
     let n = length(a);
     a.map(|v| v / n)
 }
@@ -266,7 +273,7 @@ fn unit(a: Space) -> Space {
 pub(super) fn picture_axes(forward: Space) -> [Space; 2] {
     const DOWN: Space = [0.0, 1.0, 0.0];
     let right = cross(DOWN, forward);
-    let right = if length(right) < 1e-12 { [1.0, 0.0, 0.0] } else { unit(right) };
+    let right = if length(right) < 1e-12 { [1.0, 0.0, 0.0] } else { unit_vector(right) };
     [right, cross(forward, right)]
 }
 
@@ -279,19 +286,17 @@ pub(super) struct SpacePlane {
     pub(super) normal: Space,
     /// Unit vectors: rightwards and down the page, as seen from the eye's side.
     pub(super) axes: [Space; 2],
-    /// The coordinates of `through` in the plane.
+    /// The position of `through` on the sheet that is laid flat.
     pub(super) at: Point,
 }
 
 impl SpacePlane {
     /// Creates the plane through a point; `normal` points away from the eye.
     pub(super) fn new(through: Space, normal: Space, at: Point) -> Self {
-        let normal = unit(normal);
+        let normal = unit_vector(normal);
         Self { through, normal, axes: picture_axes(normal), at }
     }
-}
 
-impl SpacePlane {
     /// Returns the point of the plane nearest to the eye, in its coordinates, and the distance. For an eye at infinity, returns a far point
     /// in the eye's direction, and the sine of the eye's elevation; `None` if the direction is square to the plane.
     pub(super) fn nearest(&self, eye: Eye) -> Option<(Point, f64)> {
@@ -309,9 +314,9 @@ impl SpacePlane {
     }
 }
 
-/// A cylinder or cone with a vertical or horizontal axis, which touches the plane of the drawing along a line or at a point.
+/// A cone, or a cylinder as one of slope 0, with a vertical or horizontal axis, which touches the drawing along a line or at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Round {
+pub(super) struct Cone {
     /// A point of contact, `radius` away from the axis.
     pub(super) middle: Point,
     /// The radius at the point of contact.
@@ -319,7 +324,7 @@ pub(super) struct Round {
     /// Growth of the radius per unit downwards (rightwards for a horizontal axis); 0 for a cylinder.
     pub(super) slope: f64,
     /// The axis is horizontal.
-    pub(super) level: bool,
+    pub(super) horizontal: bool,
     /// It is seen from inside.
     pub(super) inside: bool,
 }
@@ -338,30 +343,26 @@ pub(super) struct Sphere {
 /// A surface given by a polynomial δ.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Radial {
-    pub(super) pre: Affine,
+    /// The map from the drawing to the coordinates of `delta`.
+    pub(super) to_coordinates: Affine,
     pub(super) delta: Plane,
+    /// The region in which the inverse is sought.
     pub(super) domain: Rect,
 }
 
 /// A surface with its position in space.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Surface {
-    /// A plane.
     Plane(SpacePlane),
-    /// A cylinder or cone.
-    Round(Round),
-    /// A sphere.
+    Cone(Cone),
     Sphere(Sphere),
-    /// Control points moved along rays.
     Radial(Radial),
 }
 
 /// An eye and a surface: takes points of the drawing along their rays to the surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Anamorphosis {
-    /// The eye, in front of the drawing.
     pub(super) eye: Eye,
-    /// The surface onto which the drawing is projected.
     pub(super) surface: Surface,
 }
 
@@ -374,9 +375,9 @@ fn plane_form(eye: Eye, p: &SpacePlane) -> (Point, [f64; 3]) {
             (foot, [nz * distance / across, nx / across, ny / across])
         }
         Eye::Infinite(towards) => {
-            let k = dot(p.normal, towards);
-            let off = dot(p.normal, minus([p.at.x, p.at.y, 0.0], p.through));
-            (p.at, [1.0 - off / k, -nx / k, -ny / k])
+            let across = dot(p.normal, towards);
+            let distance = dot(p.normal, minus([p.at.x, p.at.y, 0.0], p.through));
+            (p.at, [1.0 - distance / across, -nx / across, -ny / across])
         }
     }
 }
@@ -396,6 +397,7 @@ impl<S: Real> Quadratic<S> {
         self.c.value() > 0.0 && !self.hollow
     }
 
+    /// Returns λ at the visible intersection.
     fn root(&self) -> S {
         let root = (self.b * self.b - self.a * self.c).sqrt();
         self.c / (if self.is_near() { root } else { -root } - self.b)
@@ -418,11 +420,12 @@ impl Quadratic<f64> {
     }
 }
 
-impl Round {
+impl Cone {
     /// Returns the intersections with a ray, given by its start and its direction.
-    fn met<S: Real>(&self, [from, along]: [[S; 3]; 2]) -> Quadratic<S> {
-        let turned = |[x, y, z]: [S; 3]| if self.level { [y, x, z] } else { [x, y, z] };
-        let middle = if self.level { swap(self.middle) } else { self.middle };
+    fn intersections<S: Real>(&self, [from, along]: [[S; 3]; 2]) -> Quadratic<S> {
+        // The axis turned vertical.
+        let turned = |[x, y, z]: [S; 3]| if self.horizontal { [y, x, z] } else { [x, y, z] };
+        let middle = if self.horizontal { swapped(self.middle) } else { self.middle };
         let ([x, y, z], [dx, dy, dz]) = (turned(from), turned(along));
         let g = self.slope;
         let (ox, oz) = (x - middle.x, z - self.axis());
@@ -435,11 +438,6 @@ impl Round {
         }
     }
 
-    /// Returns a distance in front of the drawing at which rays may start, outside the surface.
-    fn reach(&self) -> f64 {
-        4.0 * self.radius
-    }
-
     /// Returns the depth z of the axis.
     pub(super) fn axis(&self) -> f64 {
         if self.inside { -self.radius } else { self.radius }
@@ -447,18 +445,19 @@ impl Round {
 
     /// Returns the radius at a point in space.
     pub(super) fn radius_at(&self, q: Space) -> f64 {
-        let along = if self.level { q[0] - self.middle.x } else { q[1] - self.middle.y };
+        let along = if self.horizontal { q[0] - self.middle.x } else { q[1] - self.middle.y };
         self.radius + self.slope * along
     }
 }
 
-pub(super) fn swap(p: Point) -> Point {
+/// Exchanges x and y.
+fn swapped(p: Point) -> Point {
     Point::new(p.y, p.x)
 }
 
 impl Sphere {
     /// Returns the intersections with a ray, given by its start and its direction.
-    fn met<S: Real>(&self, [from, d]: [[S; 3]; 2]) -> Quadratic<S> {
+    fn intersections<S: Real>(&self, [from, d]: [[S; 3]; 2]) -> Quadratic<S> {
         let centre = self.centre();
         let o: [S; 3] = std::array::from_fn(|i| from[i] - centre[i]);
         let dot = |a: [S; 3], b: [S; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -474,155 +473,136 @@ impl Sphere {
 impl Radial {
     /// Returns the surface of a net whose control points are moved along rays.
     pub(super) fn net(dilation: &Dilation) -> Self {
-        let (pre, delta) = dilation.plane();
-        Self { pre, delta, domain: dilation.domain() }
+        let (to_coordinates, delta) = dilation.plane();
+        Self { to_coordinates, delta, domain: dilation.domain() }
     }
 
     /// Returns the sphere that has the eye on its near pole and touches the drawing with its far pole: δ = 1 + |p − foot|²/distance².
     pub(super) fn stereographic(foot: Point, distance: f64, domain: Rect) -> Self {
-        let pre = Affine::scale(1.0 / distance) * Affine::translate(-foot.to_vec2());
-        Self { pre, delta: Plane::new(vec![vec![1.0, 0.0, 1.0], vec![], vec![1.0]]), domain }
+        let to_coordinates = Affine::scale(1.0 / distance) * Affine::translate(-foot.to_vec2());
+        Self { to_coordinates, delta: Plane::new(vec![vec![1.0, 0.0, 1.0], vec![], vec![1.0]]), domain }
     }
 
-    fn at<S: Real>(&self, x: S, y: S) -> S {
-        let [a, b, c, d, e, f] = self.pre.as_coeffs();
+    fn delta_at<S: Real>(&self, x: S, y: S) -> S {
+        let [a, b, c, d, e, f] = self.to_coordinates.as_coeffs();
         self.delta.at(x * a + y * c + e, x * b + y * d + f)
     }
 }
 
+/// Distance in front of the drawing at which rays start outside a surface, in units of its radius.
+const RAY_START: f64 = 4.0;
+
 impl Anamorphosis {
-    /// Returns the start and the direction of the ray through (x, y). It starts at the eye, but at most `reach` in front of the drawing.
-    fn ray<S: Real>(&self, x: S, y: S, reach: f64) -> [[S; 3]; 2] {
+    /// Returns the start and the direction of the ray through (x, y). It starts at the eye, but at most `most` in front of the drawing.
+    fn ray<S: Real>(&self, x: S, y: S, most: f64) -> [[S; 3]; 2] {
         match self.eye {
             // A ray from a far eye would lose digits on the way to the surface.
-            Eye::At(foot, distance) if distance > reach => {
+            Eye::At(foot, distance) if distance > most => {
                 let [u, v] = [(x - foot.x) / distance, (y - foot.y) / distance];
-                [[x - u * reach, y - v * reach, S::from(-reach)], [u, v, S::from(1.0)]]
+                [[x - u * most, y - v * most, S::from(-most)], [u, v, S::from(1.0)]]
             }
             Eye::At(foot, distance) => {
                 let from = [foot.x, foot.y, -distance].map(S::from);
                 [from, [x - foot.x, y - foot.y, S::from(distance)]]
             }
             Eye::Infinite(_) => {
-                let v = self.eye.sight();
-                [[x - reach * v[0], y - reach * v[1], S::from(-reach)], v.map(S::from)]
+                let v = self.eye.line_of_sight();
+                [[x - most * v[0], y - most * v[1], S::from(-most)], v.map(S::from)]
             }
         }
     }
 
     /// Returns the image of (x, y) in space.
-    pub(super) fn at<S: Real>(&self, x: S, y: S) -> [S; 3] {
-        let from = |ray: [[S; 3]; 2], k: S| -> [S; 3] { std::array::from_fn(|i| ray[0][i] + ray[1][i] * k) };
+    pub(super) fn image<S: Real>(&self, x: S, y: S) -> [S; 3] {
+        let on_ray =
+            |[start, direction]: [[S; 3]; 2], lambda: S| std::array::from_fn(|i| start[i] + direction[i] * lambda);
         let delta = match &self.surface {
             Surface::Plane(p) => {
                 let (at, [d, dx, dy]) = plane_form(self.eye, p);
                 (x - at.x) * dx + (y - at.y) * dy + d
             }
-            Surface::Radial(r) => r.at(x, y),
-            Surface::Round(r) => {
-                let ray = self.ray(x, y, r.reach());
-                return from(ray, r.met(ray).root());
+            Surface::Radial(r) => r.delta_at(x, y),
+            Surface::Cone(r) => {
+                let ray = self.ray(x, y, RAY_START * r.radius);
+                return on_ray(ray, r.intersections(ray).root());
             }
             Surface::Sphere(s) => {
-                let ray = self.ray(x, y, 4.0 * s.radius);
-                return from(ray, s.met(ray).root());
+                let ray = self.ray(x, y, RAY_START * s.radius);
+                return on_ray(ray, s.intersections(ray).root());
             }
         };
         match self.eye {
             Eye::At(foot, distance) => {
-                let k = S::from(1.0) / delta;
-                [(x - foot.x) * k + foot.x, (y - foot.y) * k + foot.y, (k - 1.0) * distance]
+                let lambda = S::from(1.0) / delta;
+                [(x - foot.x) * lambda + foot.x, (y - foot.y) * lambda + foot.y, (lambda - 1.0) * distance]
             }
             Eye::Infinite(towards) => {
-                let m = delta - 1.0;
-                [x + m * towards[0], y + m * towards[1], m * towards[2]]
+                let shift = delta - 1.0;
+                [x + shift * towards[0], y + shift * towards[1], shift * towards[2]]
             }
         }
     }
 
     /// Returns the point of the surface that the eye sees at the point `p` of the drawing.
     pub(super) fn point(&self, p: Point) -> Space {
-        self.at(p.x, p.y)
+        self.image(p.x, p.y)
     }
 
     /// Returns a number that is positive if the ray through `p` meets the surface.
     pub(super) fn defined(&self, p: Point) -> f64 {
         match (&self.surface, self.eye) {
-            (Surface::Round(r), _) => {
-                let d = r.met(self.ray(p.x, p.y, r.reach())).defined();
+            (Surface::Cone(r), _) => {
+                let d = r.intersections(self.ray(p.x, p.y, RAY_START * r.radius)).defined();
                 if d > 0.0 { d.min(r.radius_at(self.point(p))) } else { d }
             }
-            (Surface::Sphere(s), _) => s.met(self.ray(p.x, p.y, 4.0 * s.radius)).defined(),
+            (Surface::Sphere(s), _) => s.intersections(self.ray(p.x, p.y, RAY_START * s.radius)).defined(),
             (_, Eye::Infinite(_)) => 1.0,
             (Surface::Plane(s), _) => {
                 let (at, [d, dx, dy]) = plane_form(self.eye, s);
                 d + dx * (p.x - at.x) + dy * (p.y - at.y)
             }
-            (Surface::Radial(r), _) => r.at(p.x, p.y),
+            (Surface::Radial(r), _) => r.delta_at(p.x, p.y),
         }
     }
 }
-
-// Views of an anamorphosis: unrolled true to size, from the eye, and from elsewhere.
-//
-// **Unrolled.** A plane has two coordinates. A cylinder or cone is cut along its far line and rolled out. With the radius
-// R(y) = r + g·(y − y₀), σ = √(1 + g²) and κ = −g/σ, the point at angle θ and height y has, relative to the middle (x₀, y₀), the
-// coordinates
-//
-// > X = R·sin(κθ)/κ,  Y = σ·(y − y₀) + 2R·sin²(κθ/2)/κ
-//
-// which are polar coordinates about the cone's apex, in a form that includes the cylinder (κ → 0: X = rθ, Y = y − y₀). The inverse is in
-// closed form, too: (κX, r − κY) has the length R and the angle κθ, and σ(y − y₀) = (2rY − κ(X² + Y²))/(r + R). A point q in space,
-// at the depth z, is seen at O + (q − O)·D/(z + D), where D is the eye's distance.
-//
-// **From elsewhere.** A pinhole camera looks at the image of the drawing's middle, scaled so that the neighbourhood of that point is
-// true to size. If δ is a polynomial of degree n, so are the numerators and the denominator of the view.
 
 /// A pinhole camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Camera {
-    /// Its position.
-    pub(super) at: Space,
+    position: Space,
+    /// The unit vector of the direction in which it looks.
     forward: Space,
+    /// The directions right and down of its picture.
     axes: [Space; 2],
-    reach: f64,
+    /// The distance from the point at which it looks.
+    distance: f64,
+    /// The point of the picture where that point appears.
     centre: Point,
 }
 
 impl Camera {
-    /// Creates a camera at `at` that looks towards `target`, which appears at `centre`, true to size. `None` if the two coincide.
-    pub(super) fn new(at: Space, target: Space, centre: Point) -> Option<Self> {
-        let along = minus(target, at);
-        let reach = length(along);
-        let forward = along.map(|v| v / reach);
-        (reach > 0.0 && reach.is_finite()).then(|| Self { at, forward, axes: picture_axes(forward), reach, centre })
+    /// Creates a camera that looks towards `target`, which appears at `centre`, true to size. `None` if the two coincide.
+    pub(super) fn new(position: Space, target: Space, centre: Point) -> Option<Self> {
+        let along = minus(target, position);
+        let distance = length(along);
+        let forward = along.map(|v| v / distance);
+        let axes = picture_axes(forward);
+        (distance > 0.0 && distance.is_finite()).then_some(Self { position, forward, axes, distance, centre })
     }
 
     /// Returns the distance of a point in front of the camera.
     pub(super) fn depth<S: Real>(&self, q: [S; 3]) -> S {
-        project(self.forward, self.at, q)
+        component(self.forward, self.position, q)
     }
 }
 
 /// Returns n·(q − o), where q = (x, y, z).
-fn project<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
+fn component<S: Real>(n: Space, o: Space, [x, y, z]: [S; 3]) -> S {
     (x - o[0]) * n[0] + (y - o[1]) * n[1] + (z - o[2]) * n[2]
 }
 
 impl Anamorphosis {
-    /// Returns δ, if it is a polynomial, with the map to its coordinates and its domain.
-    fn polynomial(&self) -> Option<(Affine, Plane, Rect)> {
-        match &self.surface {
-            Surface::Radial(Radial { pre, delta, domain }) => Some((*pre, delta.clone(), *domain)),
-            Surface::Plane(p) => {
-                let (at, form) = plane_form(self.eye, p);
-                Some((Affine::translate(-at.to_vec2()), Plane::linear(form), Rect::ZERO))
-            }
-            _ => None,
-        }
-    }
-
-    /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / depth + origin of the image q, if δ is a polynomial.
+    /// Returns the quotient (axis₀·(q − from), axis₁·(q − from))·scale / (depth·(q − from)) + origin of the image q, if δ is a polynomial.
     /// Without a `depth` direction there is no division.
     fn flattened(
         &self,
@@ -632,14 +612,21 @@ impl Anamorphosis {
         depth: Option<Space>,
         origin: Point,
     ) -> Option<Quotient> {
-        let (pre, delta, domain) = self.polynomial()?;
+        let (to_coordinates, delta, domain) = match &self.surface {
+            Surface::Radial(r) => (r.to_coordinates, r.delta.clone(), r.domain),
+            Surface::Plane(p) => {
+                let (at, form) = plane_form(self.eye, p);
+                (Affine::translate(-at.to_vec2()), Plane::linear(form), Rect::ZERO)
+            }
+            _ => return None,
+        };
         let one = Plane::linear([1.0, 0.0, 0.0]);
-        // The paper's point (p, 1) + (δ − 1)·(O, w) of a ray.
-        let (eye, below) = match self.eye {
+        // The paper's point (p, 1) + (δ − 1)·(O, w) of a ray, whose weight is δ, or 1 for an eye at infinity with w = 0.
+        let (eye, weight) = match self.eye {
             Eye::At(foot, distance) => ([foot.x, foot.y, -distance], delta.clone()),
             Eye::Infinite(towards) => (towards, one.clone()),
         };
-        let [x, y] = source_coordinates(pre);
+        let [x, y] = source_coordinates(to_coordinates);
         // Times the point's weight, n·(q − from) is n·(p − from) + (δ − 1)·n·(O − w·from).
         let along = |n: Space| {
             let d = Plane::linear(std::array::from_fn(|i| {
@@ -650,10 +637,9 @@ impl Anamorphosis {
             d.plus(o, &delta).plus(-o, &one)
         };
         let [u, v] = axes.map(|n| along(n).scaled(scale));
-        let guard = if self.eye.is_infinite() { one.clone() } else { delta.clone() };
         Some(match depth {
-            None => Quotient::rational(pre, origin, u, v, below, domain),
-            Some(n) => Quotient::rational(pre, origin, u, v, along(n), domain).guarded(guard),
+            None => Quotient::rational(to_coordinates, origin, u, v, weight, domain),
+            Some(n) => Quotient::rational(to_coordinates, origin, u, v, along(n), domain).guarded(weight),
         })
     }
 
@@ -661,38 +647,39 @@ impl Anamorphosis {
     pub(super) fn unrolled(&self) -> Option<Arc<dyn Map>> {
         match &self.surface {
             Surface::Plane(p) => Some(self.flattened(p.through, p.axes, 1.0, None, p.at)?.simplest()),
-            Surface::Round(r) => Some(Arc::new(Unrolled { of: self.clone(), round: *r })),
+            Surface::Cone(r) => Some(Arc::new(Unrolled { projection: self.clone(), cone: *r })),
             _ => None,
         }
     }
 
     /// Returns the eye's view, which is the drawing itself, computed through space.
-    pub(super) fn seen(&self) -> Arc<dyn Map> {
+    pub(super) fn eye_view(&self) -> Arc<dyn Map> {
         Arc::new(EyeView(self.clone()))
     }
 
     /// Returns a camera's view. The inverse is sought over `domain`.
-    pub(super) fn viewed(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
-        match self.flattened(camera.at, camera.axes, camera.reach, Some(camera.forward), camera.centre) {
+    pub(super) fn camera_view(&self, camera: &Camera, domain: Rect) -> Arc<dyn Map> {
+        match self.flattened(camera.position, camera.axes, camera.distance, Some(camera.forward), camera.centre) {
             Some(q) => q.simplest(),
-            None => Arc::new(CameraView { of: self.clone(), camera: *camera, domain }),
+            None => Arc::new(CameraView { projection: self.clone(), camera: *camera, domain }),
         }
     }
 
-    fn edge(&self) -> Crease {
-        let own = self.clone();
-        Crease::edge(Level::Field(Arc::new(move |p: Point| own.defined(p))))
+    /// Returns the edge of the part of the drawing whose rays meet the surface.
+    fn edge_crease(&self) -> Crease {
+        let projection = self.clone();
+        Crease::edge(Level::Field(Arc::new(move |p: Point| projection.defined(p))))
     }
 
     /// Returns the point of the drawing at which the eye sees a point in space.
-    fn back<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
+    fn seen_at<S: Real>(&self, [x, y, z]: [S; 3]) -> (S, S) {
         match self.eye {
             Eye::At(foot, distance) => {
-                let k = S::from(distance) / (z + distance);
-                ((x - foot.x) * k + foot.x, (y - foot.y) * k + foot.y)
+                let scale = S::from(distance) / (z + distance);
+                ((x - foot.x) * scale + foot.x, (y - foot.y) * scale + foot.y)
             }
             Eye::Infinite(_) => {
-                let v = self.eye.sight();
+                let v = self.eye.line_of_sight();
                 (x - z * v[0], y - z * v[1])
             }
         }
@@ -704,11 +691,11 @@ struct EyeView(Anamorphosis);
 
 impl Formula for EyeView {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        self.0.back(self.0.at(x, y))
+        self.0.seen_at(self.0.image(x, y))
     }
 
     fn creases(&self, out: &mut Creases) {
-        out.push(self.0.edge());
+        out.push(self.0.edge_crease());
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -719,55 +706,55 @@ impl Formula for EyeView {
 /// A camera's view of a surface.
 #[derive(Clone)]
 struct CameraView {
-    of: Anamorphosis,
+    projection: Anamorphosis,
     camera: Camera,
     domain: Rect,
 }
 
 impl Formula for CameraView {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let q = self.of.at(x, y);
+        let q = self.projection.image(x, y);
         let c = &self.camera;
-        let k = S::from(c.reach) / c.depth(q);
-        let [u, v] = c.axes.map(|n| project(n, c.at, q) * k);
+        let scale = S::from(c.distance) / c.depth(q);
+        let [u, v] = c.axes.map(|n| component(n, c.position, q) * scale);
         (u + c.centre.x, v + c.centre.y)
     }
 
     fn creases(&self, out: &mut Creases) {
-        out.push(self.of.edge());
-        let (of, camera) = (self.of.clone(), self.camera);
+        out.push(self.projection.edge_crease());
+        let (projection, camera) = (self.projection.clone(), self.camera);
         out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| {
-            if of.defined(p) > 0.0 { camera.depth(of.point(p)) } else { 1.0 }
+            if projection.defined(p) > 0.0 { camera.depth(projection.point(p)) } else { 1.0 }
         }))));
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
-        let reach = 1e-9 * (self.domain.width() + self.domain.height());
-        Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, reach, [1, 1])))
+        let margin = 1e-9 * (self.domain.width() + self.domain.height());
+        Some(Arc::new(NewtonInverse::new(Arc::new(self.clone()), self.domain, margin, [1, 1])))
     }
 }
 
 /// A cylinder or cone that is rolled out.
 #[derive(Clone)]
 struct Unrolled {
-    of: Anamorphosis,
-    round: Round,
+    projection: Anamorphosis,
+    cone: Cone,
 }
 
 impl Unrolled {
-    /// Returns the surface, κ, σ, and the middle after the axis is turned vertical.
-    fn round(&self) -> (Round, f64, f64, Point) {
-        let r = self.round;
+    /// Returns the cone, κ, σ, and the middle after the axis is turned vertical.
+    fn constants(&self) -> (Cone, f64, f64, Point) {
+        let r = self.cone;
         let sigma = r.slope.hypot(1.0);
-        (r, -r.slope / sigma, sigma, if r.level { swap(r.middle) } else { r.middle })
+        (r, -r.slope / sigma, sigma, if r.horizontal { swapped(r.middle) } else { r.middle })
     }
 }
 
 impl Formula for Unrolled {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let (r, kappa, sigma, m) = self.round();
-        let [x, y, z] = self.of.at(x, y);
-        let (x, y) = if r.level { (y, x) } else { (x, y) };
+        let (r, kappa, sigma, m) = self.constants();
+        let [x, y, z] = self.projection.image(x, y);
+        let (x, y) = if r.horizontal { (y, x) } else { (x, y) };
         let (dx, dy) = (x - m.x, y - m.y);
         let towards = z - r.axis();
         let angle = dx.atan2(if r.inside { towards } else { -towards });
@@ -779,11 +766,11 @@ impl Formula for Unrolled {
             (radius * (angle * kappa).sin() / kappa, dy * sigma + radius * half * half * (2.0 / kappa))
         };
         let (u, v) = (u + m.x, v + m.y);
-        if r.level { (v, u) } else { (u, v) }
+        if r.horizontal { (v, u) } else { (u, v) }
     }
 
     fn creases(&self, out: &mut Creases) {
-        out.push(self.of.edge());
+        out.push(self.projection.edge_crease());
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {
@@ -796,21 +783,21 @@ struct RolledUp(Unrolled);
 
 impl Formula for RolledUp {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
-        let (r, kappa, sigma, m) = self.0.round();
-        let (x, y) = if r.level { (y, x) } else { (x, y) };
+        let (r, kappa, sigma, m) = self.0.constants();
+        let (x, y) = if r.horizontal { (y, x) } else { (x, y) };
         let (u, v) = (x - m.x, y - m.y);
         let (radius, angle, dy) = if kappa == 0.0 {
             (S::from(r.radius), u / r.radius, v)
         } else {
             let (p, q) = (u * kappa, v * -kappa + r.radius);
             let radius = p.hypot(q);
-            let t = (v * (2.0 * r.radius) - (u * u + v * v) * kappa) / (radius + r.radius);
-            (radius, p.atan2(q) / kappa, t / sigma)
+            let slant = (v * (2.0 * r.radius) - (u * u + v * v) * kappa) / (radius + r.radius);
+            (radius, p.atan2(q) / kappa, slant / sigma)
         };
         let towards = radius * angle.cos();
         let z = if r.inside { towards } else { -towards } + r.axis();
         let (x, y) = (radius * angle.sin() + m.x, dy + m.y);
-        self.0.of.back(if r.level { [y, x, z] } else { [x, y, z] })
+        self.0.projection.seen_at(if r.horizontal { [y, x, z] } else { [x, y, z] })
     }
 
     fn inverse(&self) -> Option<Arc<dyn Map>> {

@@ -2,7 +2,7 @@
 
 use super::dilation::{Dilation, Reference};
 use super::scene::Eye;
-use super::surface::{Camera, Round, Space, SpacePlane, Sphere};
+use super::surface::{Camera, Cone, Space, SpacePlane, Sphere};
 use super::*;
 use crate::check;
 use crate::deform::Deformation;
@@ -19,7 +19,7 @@ struct SpaceJet {
 }
 
 fn space_jet(cast: &Anamorphosis, p: Point) -> SpaceJet {
-    let q = cast.at(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
+    let q = cast.image(Dual { v: p.x, x: 1.0, y: 0.0 }, Dual { v: p.y, x: 0.0, y: 1.0 });
     SpaceJet { dx: q.map(|d| d.x), dy: q.map(|d| d.y) }
 }
 
@@ -112,7 +112,7 @@ const CORNERS: [Point; 3] = [Point::new(-20.0, 0.0), Point::new(130.0, 10.0), Po
 
 fn surfaces() -> Vec<Surface> {
     let middle = Point::new(50.0, 60.0);
-    let round = |radius, slope, level, inside| Surface::Round(Round { middle, radius, slope, level, inside });
+    let round = |radius, slope, horizontal, inside| Surface::Cone(Cone { middle, radius, slope, horizontal, inside });
     vec![
         Surface::Plane(SpacePlane::new([0.0, 400.0, 0.0], [0.05, 1.0, 0.3], Point::ORIGIN)),
         Surface::Plane(SpacePlane::new([0.0, 0.0, 90.0], [0.5, 0.2, 1.0], Point::ORIGIN)),
@@ -138,7 +138,7 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
     let away = |a: Space, b: Space| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
     for surface in surfaces() {
         let cast = cast(surface);
-        let seen = cast.seen();
+        let seen = cast.eye_view();
         for p in grid() {
             assert!(cast.defined(p) > 0.0, "{cast:?} {p:?}");
             let q = cast.point(p);
@@ -147,9 +147,9 @@ fn every_image_is_on_the_surface_and_seen_where_it_was_drawn() {
             assert!(k > 0.0 && (FOOT + (Point::new(q[0], q[1]) - FOOT) * k).distance(p) < 1e-12 * 250.0);
             let off = match &cast.surface {
                 Surface::Plane(s) => (0..3).map(|i| s.normal[i] * (q[i] - s.through[i])).sum::<f64>(),
-                Surface::Round(r) => {
-                    let across = if r.level { q[1] - r.middle.y } else { q[0] - r.middle.x };
-                    let along = if r.level { q[0] - r.middle.x } else { q[1] - r.middle.y };
+                Surface::Cone(r) => {
+                    let across = if r.horizontal { q[1] - r.middle.y } else { q[0] - r.middle.x };
+                    let along = if r.horizontal { q[0] - r.middle.x } else { q[1] - r.middle.y };
                     let axis = if r.inside { -r.radius } else { r.radius };
                     across.hypot(q[2] - axis) - (r.radius + r.slope * along)
                 }
@@ -248,8 +248,8 @@ fn degree_two_lies_on_a_quadric_through_the_eye() {
 #[test]
 fn the_matrix_of_degree_one_is_the_bezier_form() {
     let d = net(Reference::Triangle(CORNERS, 1));
-    let d0 = d.at(FOOT);
-    let along = Vec2::new(d.at(FOOT + Vec2::new(1.0, 0.0)) - d0, d.at(FOOT + Vec2::new(0.0, 1.0)) - d0);
+    let d0 = d.delta_at(FOOT);
+    let along = Vec2::new(d.delta_at(FOOT + Vec2::new(1.0, 0.0)) - d0, d.delta_at(FOOT + Vec2::new(0.0, 1.0)) - d0);
     let o = FOOT;
     // The matrix [I 0; d d₀] about the eye.
     let m = [
@@ -269,7 +269,7 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
         let area = |a: Point, b: Point, c: Point| (b - a).cross(c - a);
         let [a, b, c] = CORNERS;
         let u = [area(p, b, c), area(a, p, c), area(a, b, p)].map(|v| v / area(a, b, c));
-        let delta = u[0] * d.of([1, 0, 0]) + u[1] * d.of([0, 1, 0]) + u[2] * d.of([0, 0, 1]);
+        let delta = u[0] * d.delta_of([1, 0, 0]) + u[1] * d.delta_of([0, 1, 0]) + u[2] * d.delta_of([0, 0, 1]);
         let paper = FOOT + (p - FOOT) / delta;
         let bezier = d.about(Eye::At(FOOT, 0.0), false).simplest();
         assert!(bezier.point(p).distance(paper) < 1e-12 * 100.0 && matrix.point(p).distance(paper) < 1e-12 * 100.0);
@@ -279,7 +279,8 @@ fn the_matrix_of_degree_one_is_the_bezier_form() {
     for (q, w) in image.points.iter().zip(&source.points) {
         let p = Point::new(w[0], w[1]);
         assert!(
-            (q[2] - d.at(p)).abs() < 1e-12 && Point::new(q[0] / q[2], q[1] / q[2]).distance(matrix.point(p)) < 1e-11
+            (q[2] - d.delta_at(p)).abs() < 1e-12
+                && Point::new(q[0] / q[2], q[1] / q[2]).distance(matrix.point(p)) < 1e-11
         );
     }
 }
@@ -339,11 +340,11 @@ fn labels_are_as_long_as_their_arcs() {
         }
     }
     // A cone whose half angle has the sine ½, so that half a turn unrolls to a quarter turn.
-    let cone = Surface::Round(Round {
+    let cone = Surface::Cone(Cone {
         middle: Point::ORIGIN,
         radius: 100.0,
         slope: -(1.0 / 3.0f64.sqrt()),
-        level: false,
+        horizontal: false,
         inside: true,
     });
     let cast = Anamorphosis { eye: Eye::At(Point::ORIGIN, 100.0), surface: cone };
@@ -363,7 +364,7 @@ fn views_are_central_projections_and_exact_where_they_can_be() {
         let middle = Point::new(50.0, 50.0);
         let target = cast.point(middle);
         let camera = Camera::new(at, target, middle).unwrap();
-        let view = cast.viewed(&camera, Rect::new(0.0, 0.0, 100.0, 100.0));
+        let view = cast.camera_view(&camera, Rect::new(0.0, 0.0, 100.0, 100.0));
         assert!(view.point(middle).distance(middle) < 1e-10);
         let minus = |a: Space, b: Space| -> Space { std::array::from_fn(|i| a[i] - b[i]) };
         let dot = |a: Space, b: Space| (0..3).map(|i| a[i] * b[i]).sum::<f64>();

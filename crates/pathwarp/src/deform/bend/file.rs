@@ -20,20 +20,18 @@ struct PieceHandles {
 
 /// Reads the levels of handles of every piece, or the handles at points. Handles of deeper levels may vanish.
 pub(super) fn read(name: &str, text: &str) -> Result<Handles, Error> {
-    let wrong = |problem: String| Error::input(name, problem);
-    let file: HandlesFile = serde_json::from_str(text).map_err(|e| wrong(format!("is not a file of handles: {e}")))?;
+    let error = |problem: String| Error::input(name, problem);
+    let file: HandlesFile = serde_json::from_str(text).map_err(|e| error(format!("is not a file of handles: {e}")))?;
     let vector = |[x, y]: [f64; 2]| Vec2::new(x, y);
-    let first = |p: &PieceHandles| p.levels.first().is_some_and(|l| l.contains(&[0.0; 2]));
+    let first_level_vanishes = |p: &PieceHandles| p.levels.first().is_some_and(|l| l.contains(&[0.0; 2]));
     let (kind, vanishes) = match (&file.pieces, &file.points) {
-        (Some(pieces), None) => ("piece", pieces.iter().position(first)),
+        (Some(pieces), None) => ("piece", pieces.iter().position(first_level_vanishes)),
         (None, Some(points)) => ("point", points.iter().position(|h| *h == Some([0.0; 2]))),
-        _ => return Err(wrong("is not a file of handles: it needs either `pieces` or, for a spline, `points`".into())),
+        _ => return Err(error("is not a file of handles: it needs either `pieces` or, for a spline, `points`".into())),
     };
     if let Some(i) = vanishes {
-        return Err(wrong(format!(
-            "has a handle that vanishes, of {kind} {}; the artwork would collapse there",
-            i + 1
-        )));
+        let number = i + 1;
+        return Err(error(format!("has a handle that vanishes, of {kind} {number}; the artwork would collapse there")));
     }
     let vectors = |level: Vec<[f64; 2]>| level.into_iter().map(vector).collect();
     let piece = |p: PieceHandles| p.levels.into_iter().map(vectors).collect();

@@ -12,7 +12,7 @@
 //!
 //! These are the type-on-a-path effects Rainbow, Skew, 3D Ribbon and Stair Step of Adobe Illustrator's manual.
 
-use super::map::{BendMap, ToStrip, listed, normal};
+use super::map::{BendMap, ToStrip, list_names, normal};
 use crate::error::show;
 use crate::outline::{Outline, Seg, boundary};
 use crate::param::{Letter, choice};
@@ -34,6 +34,7 @@ choice! {
 }
 
 impl LetterSetting {
+    /// Returns X and Y of the table for the unit tangent `t`.
     fn axes(self, t: Vec2) -> (Vec2, Vec2) {
         let (right, down) = (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0));
         match self {
@@ -44,44 +45,46 @@ impl LetterSetting {
         }
     }
 
-    /// Returns the map that takes `x0` on the baseline to distance `s`.
-    fn place(self, map: &BendMap, x0: f64, s: f64) -> Affine {
-        let (c, t) = map.stand(s);
+    /// Returns the map of a letter that takes the anchor at `x0` on the baseline to distance `s`.
+    fn letter_map(self, map: &BendMap, x0: f64, s: f64) -> Affine {
+        let (c, t) = map.frame_at(s);
         let (x, y) = self.axes(t);
-        let (x, y) = (x * map.to_strip.up, y * map.to_strip.up);
-        let at = c.to_vec2() - x * x0 - y * map.to_strip.base;
-        Affine::new([x.x, x.y, y.x, y.y, at.x, at.y])
+        let (x, y) = (x * map.to_strip.y_scale, y * map.to_strip.y_scale);
+        let shift = c.to_vec2() - x * x0 - y * map.to_strip.baseline;
+        Affine::new([x.x, x.y, y.x, y.y, shift.x, shift.y])
     }
 
+    /// Returns the x of the point of a letter that comes to the skeleton.
     fn anchor(self, letter: &Letter) -> f64 {
         if self == Self::Stair { letter.origin.x } else { letter.middle().x }
     }
 
-    /// Returns the distances along the skeleton of letters spread over it. The gaps of every line grow by the same amount, gaps between
-    /// words by twice as much, until the line reaches from end to end. A closed skeleton has one more gap between words.
-    fn spread(self, to_strip: &ToStrip, closed: bool, letters: &[Letter]) -> Vec<f64> {
+    /// Returns the distances along the skeleton at which letters spread over it have their anchors. The gaps of every line grow by the same
+    /// amount, gaps between words by twice as much, until the line reaches from end to end. A closed skeleton has one more gap between
+    /// words, half of it before the first letter.
+    fn spread_distances(self, to_strip: &ToStrip, closed: bool, letters: &[Letter]) -> Vec<f64> {
         /// A gap wider than this share of its line's mean advance separates words.
         const BETWEEN_WORDS: f64 = 0.2;
-        let up = to_strip.up;
+        let scale = to_strip.y_scale;
         let mut out = vec![0.0; letters.len()];
         for line in lines(letters) {
             let end = |i: usize| letters[i].origin.x + letters[i].advance;
             let (Some(&first), Some(&last)) = (line.first(), line.last()) else { continue };
             let gaps: Vec<f64> = line.windows(2).map(|p| letters[p[1]].origin.x - end(p[0])).collect();
             let advances: f64 = line.iter().map(|i| letters[*i].advance).sum();
-            let wide = BETWEEN_WORDS * advances / line.len() as f64;
-            let weight = |gap: f64| if gap > wide { 2.0 } else { 1.0 };
-            let round = if closed { weight(f64::INFINITY) } else { 0.0 };
-            let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + round;
+            let word_gap = BETWEEN_WORDS * advances / line.len() as f64;
+            let weight = |gap: f64| if gap > word_gap { 2.0 } else { 1.0 };
+            let closing_weight = if closed { weight(f64::INFINITY) } else { 0.0 };
+            let weights = gaps.iter().map(|g| weight(*g)).sum::<f64>() + closing_weight;
             let (from, to) = (to_strip.s(letters[first].origin.x), to_strip.s(end(last)));
-            let spare = to - from - up * (end(last) - letters[first].origin.x);
+            let spare = to - from - scale * (end(last) - letters[first].origin.x);
             // A single letter is centred.
-            let (more, mut at) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
-            at += 0.5 * round * more;
+            let (growth, mut s) = if weights > 0.0 { (spare / weights, from) } else { (0.0, from + 0.5 * spare) };
+            s += 0.5 * closing_weight * growth;
             for (k, i) in line.into_iter().enumerate() {
-                out[i] = at + up * (self.anchor(&letters[i]) - letters[i].origin.x);
+                out[i] = s + scale * (self.anchor(&letters[i]) - letters[i].origin.x);
                 let gap = gaps.get(k).copied().unwrap_or_default();
-                at += up * (letters[i].advance + gap) + more * weight(gap);
+                s += scale * (letters[i].advance + gap) + growth * weight(gap);
             }
         }
         out
@@ -111,107 +114,108 @@ fn lines(letters: &[Letter]) -> Vec<Vec<usize>> {
     out
 }
 
-/// Returns the map of every letter for each of the copies. `spread` distributes the letters over the whole skeleton.
-pub(super) fn places(
+/// Returns the maps of every letter, one for each of the copies. `spread` distributes the letters over the whole skeleton.
+pub(super) fn letter_maps(
     map: &BendMap,
     setting: LetterSetting,
     letters: &[Letter],
     copies: &[Affine],
     spread: bool,
 ) -> Vec<Vec<Affine>> {
-    let at = if spread {
-        setting.spread(&map.to_strip, map.closed, letters)
+    let distances = if spread {
+        setting.spread_distances(&map.to_strip, map.closed, letters)
     } else {
         letters.iter().map(|l| map.to_strip.s(setting.anchor(l))).collect()
     };
-    let all = |(l, s): (&Letter, f64)| {
-        let further = or_identity(copies).iter().map(|c| map.to_strip.k * c.translation().x);
-        further.map(|by| setting.place(map, setting.anchor(l), s + by)).collect()
+    let maps = |(l, s): (&Letter, f64)| {
+        let shifts = or_identity(copies).iter().map(|c| map.to_strip.x_scale * c.translation().x);
+        shifts.map(|shift| setting.letter_map(map, setting.anchor(l), s + shift)).collect()
     };
-    letters.iter().zip(at).map(all).collect()
+    letters.iter().zip(distances).map(maps).collect()
 }
 
-/// Returns the translations of letters in the source plane that spread them around a closed skeleton by larger spaces. `whole` is the
-/// map to the strip that would stretch the artwork around it.
-pub(super) fn apart(map: &BendMap, letters: &[Letter], whole: ToStrip) -> Vec<Vec<Affine>> {
-    let at = LetterSetting::Rotate.spread(&whole, true, letters);
-    let by =
-        |(l, s): (&Letter, f64)| vec![Affine::translate(((s - map.to_strip.s(l.middle().x)) / map.to_strip.k, 0.0))];
-    letters.iter().zip(at).map(by).collect()
+/// Returns the translations of letters in the source plane that spread them around a closed skeleton by larger spaces, one for each
+/// letter. `ring_strip` is the map to the strip that would stretch the artwork around it.
+pub(super) fn ring_translations(map: &BendMap, letters: &[Letter], ring_strip: ToStrip) -> Vec<Vec<Affine>> {
+    let distances = LetterSetting::Rotate.spread_distances(&ring_strip, true, letters);
+    let dx = |l: &Letter, s: f64| (s - map.to_strip.s(l.middle().x)) / map.to_strip.x_scale;
+    letters.iter().zip(distances).map(|(l, s)| vec![Affine::translate((dx(l, s), 0.0))]).collect()
 }
 
-/// Returns the map of every object for each of `count` copies of the row, with equal gaps between all objects. The first begins at
+/// Returns the maps of every object, one for each of `count` copies of the row, with equal gaps between all objects. The first begins at
 /// `first`; on a closed skeleton its middle is there. Without `count`, there is one copy, at the distances drawn.
-pub(super) fn row(
+pub(super) fn object_maps(
     map: &BendMap,
     setting: LetterSetting,
     objects: &[Letter],
     count: Option<usize>,
     first: f64,
 ) -> Vec<Vec<Affine>> {
-    let ToStrip { up, .. } = map.to_strip;
-    let place = |o: &Letter, s: f64| setting.place(map, o.middle().x, s);
+    let scale = map.to_strip.y_scale;
+    let object_map = |o: &Letter, s: f64| setting.letter_map(map, o.middle().x, s);
     let Some(count) = count else {
-        return objects.iter().map(|o| vec![place(o, map.to_strip.s(o.middle().x))]).collect();
+        return objects.iter().map(|o| vec![object_map(o, map.to_strip.s(o.middle().x))]).collect();
     };
-    let width: f64 = objects.iter().map(|o| up * o.advance).sum();
-    let all = (count * objects.len()) as f64;
+    let width: f64 = objects.iter().map(|o| scale * o.advance).sum();
+    let total = (count * objects.len()) as f64;
     let spare = map.length - count as f64 * width;
-    let (gap, mut at) = match objects.first() {
-        Some(o) if map.closed => (spare / all, first - 0.5 * up * o.advance),
-        _ if all > 1.0 => (spare / (all - 1.0), first),
+    let (gap, mut s) = match objects.first() {
+        Some(o) if map.closed => (spare / total, first - 0.5 * scale * o.advance),
+        _ if total > 1.0 => (spare / (total - 1.0), first),
         _ => (0.0, first + 0.5 * spare),
     };
     let mut out = vec![Vec::with_capacity(count); objects.len()];
     for _ in 0..count {
-        for (o, places) in objects.iter().zip(&mut out) {
-            places.push(place(o, at + 0.5 * up * o.advance));
-            at += up * o.advance + gap;
+        for (o, maps) in objects.iter().zip(&mut out) {
+            maps.push(object_map(o, s + 0.5 * scale * o.advance));
+            s += scale * o.advance + gap;
         }
     }
     out
 }
 
 /// Warns of letters that are squeezed or mirrored, and of letters that collide.
-pub(super) fn warnings(letters: &[Letter], places: &[Vec<Affine>]) -> Vec<String> {
+pub(super) fn warnings(letters: &[Letter], maps: &[Vec<Affine>]) -> Vec<String> {
     let mut out = Vec::new();
-    /// Share of its width below which a letter is illegible.
+    /// Share of its width below which a sheared letter is illegible.
     const THIN: f64 = 0.1;
-    let share = |m: &Affine| {
+    // The sine of the angle between the images of horizontals and verticals.
+    let width_share = |m: &Affine| {
         let [a, b, c, d, ..] = m.as_coeffs();
         m.determinant() / (a.hypot(b) * c.hypot(d))
     };
-    let lost = letters.iter().zip(places).filter(|(_, p)| p.iter().any(|m| share(m) < THIN));
-    let lost: Vec<&str> = lost.map(|(l, _)| l.name.as_str()).collect();
-    if !lost.is_empty() {
+    let illegible = letters.iter().zip(maps).filter(|(_, m)| m.iter().any(|m| width_share(m) < THIN));
+    let illegible: Vec<&str> = illegible.map(|(l, _)| l.name.as_str()).collect();
+    if !illegible.is_empty() {
         out.push(format!(
             "bend: the skeleton is too steep or runs backwards at the letters {}: they are squeezed flat or mirrored; `glyphs rotate` \
 and `glyphs stair` keep every letter legible",
-            listed(&lost)
+            list_names(&illegible)
         ));
     }
-    let mut crowded: Vec<(String, Point)> = Vec::new();
-    let mut look = |a: usize, b: usize, next: usize| {
-        let pairs = places[a].iter().zip(places[b].iter().cycle().skip(next));
+    let mut collisions: Vec<(String, Point)> = Vec::new();
+    // Compares letter a with letter b of the copy that is so many further.
+    let mut compare = |a: usize, b: usize, further: usize| {
+        let pairs = maps[a].iter().zip(maps[b].iter().cycle().skip(further));
         if let Some(at) = collision(&letters[a], &letters[b], pairs) {
-            crowded.push((format!("{}{}", letters[a].name, letters[b].name), at));
+            collisions.push((format!("{}{}", letters[a].name, letters[b].name), at));
         }
     };
     for line in lines(letters) {
-        line.windows(2).for_each(|p| look(p[0], p[1], 0));
+        line.windows(2).for_each(|p| compare(p[0], p[1], 0));
         // The end of every copy meets the start of the next, or its start on a closed skeleton.
         if let (Some(&first), Some(&last)) = (line.first(), line.last())
-            && (line.len() > 1 || places[first].len() > 1)
+            && (line.len() > 1 || maps[first].len() > 1)
         {
-            look(last, first, 1);
+            compare(last, first, 1);
         }
     }
-    if let Some((_, at)) = crowded.first() {
-        let names: Vec<&str> = crowded.iter().map(|(n, _)| n.as_str()).collect();
+    if let Some((_, at)) = collisions.first() {
+        let names: Vec<&str> = collisions.iter().map(|(n, _)| n.as_str()).collect();
         out.push(format!(
             "bend: the letters {} collide, first near {}: the skeleton is too short for them or bends too tightly; a \
 smaller `width`, `spacing even` or a gentler bend avoids that",
-            listed(&names),
+            list_names(&names),
             show(*at)
         ));
     }
@@ -219,7 +223,7 @@ smaller `width`, `spacing even` or a gentler bend avoids that",
 }
 
 /// Samples the outlines of letters in all their copies, letter by letter.
-pub(super) fn points<'a>(
+pub(super) fn samples<'a>(
     letters: &'a [Letter],
     copies: &'a [Affine],
 ) -> impl Iterator<Item = (Point, Option<&'a Letter>)> {
@@ -228,17 +232,15 @@ pub(super) fn points<'a>(
     let copies = or_identity(copies);
     let each = letters.iter().flat_map(move |l| copies.iter().map(move |c| (l, *c)));
     each.flat_map(|(l, c)| {
-        let on = |s: &'a Seg| (0..SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES)));
-        l.outline.segs().flat_map(on).map(move |p| (c * p, Some(l)))
+        let on_segment = |s: &'a Seg| (0..SAMPLES).map(move |i| s.eval(f64::from(i) / f64::from(SAMPLES)));
+        l.outline.segs().flat_map(on_segment).map(move |p| (c * p, Some(l)))
     })
 }
 
-/// Returns a point where two letters, apart in the source, cross under one of the pairs of maps in `places`.
-fn collision<'a>(a: &Letter, b: &Letter, places: impl Iterator<Item = (&'a Affine, &'a Affine)>) -> Option<Point> {
-    let (left, right) = (Chords::of(&a.outline)?, Chords::of(&b.outline)?);
-    let mut places = places.peekable();
-    places.peek()?;
-    let at = places.find_map(|(p, q)| left.crossing(*p, &right, *q))?;
+/// Returns a point where two letters, which do not cross in the source, cross under one of the pairs of maps.
+fn collision<'a>(a: &Letter, b: &Letter, mut maps: impl Iterator<Item = (&'a Affine, &'a Affine)>) -> Option<Point> {
+    let (left, right) = (Chords::from_outline(&a.outline)?, Chords::from_outline(&b.outline)?);
+    let at = maps.find_map(|(p, q)| left.crossing(*p, &right, *q))?;
     left.crossing(Affine::IDENTITY, &right, Affine::IDENTITY).is_none().then_some(at)
 }
 
@@ -249,35 +251,35 @@ struct Chords {
 }
 
 impl Chords {
-    fn of(outline: &Outline) -> Option<Self> {
+    fn from_outline(outline: &Outline) -> Option<Self> {
         /// Tolerance as a share of the letter's size. Letters closer than this touch.
-        const FINE: f64 = 1e-3;
+        const TOLERANCE: f64 = 1e-3;
         let rect = outline.bounding_box()?;
-        let fine = (FINE * rect.width().max(rect.height())).max(f64::MIN_POSITIVE);
+        let tolerance = (TOLERANCE * rect.width().max(rect.height())).max(f64::MIN_POSITIVE);
         let mut lines = Vec::new();
-        boundary(outline.to_bez_path(fine), fine, |a, b| lines.push(Line::new(a, b)));
+        boundary(outline.to_bez_path(tolerance), tolerance, |a, b| lines.push(Line::new(a, b)));
         Some(Self { lines, rect })
     }
 
-    /// Returns the images of the chords that overlap `rect`.
-    fn within(&self, m: Affine, rect: Rect) -> Vec<Line> {
-        let there = self.lines.iter().map(|l| m * *l);
-        there.filter(|l| l.bounding_box().overlaps(rect)).collect()
+    /// Returns the images of the chords under `m` that overlap `rect`.
+    fn images_overlapping(&self, m: Affine, rect: Rect) -> Vec<Line> {
+        let images = self.lines.iter().map(|l| m * *l);
+        images.filter(|l| l.bounding_box().overlaps(rect)).collect()
     }
 
-    /// Returns a point where the two cross.
+    /// Returns a point where the image under `m` crosses that of `other` under `n`.
     fn crossing(&self, m: Affine, other: &Self, n: Affine) -> Option<Point> {
         let (a, b) = (m.transform_rect_bbox(self.rect), n.transform_rect_bbox(other.rect));
         if !a.overlaps(b) {
             return None;
         }
         let both = a.intersect(b);
-        let others = other.within(n, both);
-        self.within(m, both).into_iter().find_map(|l| others.iter().find_map(|o| cross(l, *o)))
+        let others = other.images_overlapping(n, both);
+        self.images_overlapping(m, both).into_iter().find_map(|l| others.iter().find_map(|o| intersection(l, *o)))
     }
 }
 
-fn cross(a: Line, b: Line) -> Option<Point> {
+fn intersection(a: Line, b: Line) -> Option<Point> {
     let (u, v) = (a.p1 - a.p0, b.p1 - b.p0);
     let det = u.cross(v);
     let (s, t) = ((b.p0 - a.p0).cross(v) / det, (b.p0 - a.p0).cross(u) / det);

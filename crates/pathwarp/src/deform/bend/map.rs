@@ -1,4 +1,6 @@
-//! The bend as a map: the pieces of the skeleton, and the artwork's position on them. The paper is that of Chang & Rockwood, as in `super`.
+//! The bend as a map. Artwork is laid on a straight strip by an affine map ([`ToStrip`]): s is the distance along the skeleton, d the
+//! height above it. Each piece of the skeleton maps its part of the strip by F(s, d) = C + d·S ([`StripMap`]), with a point C of the
+//! curve and its *side* S: a unit normal, or what the handles of the paper of Chang & Rockwood (named in `super`) make of it.
 
 use crate::error::show;
 use crate::map::bspline::bernstein;
@@ -10,37 +12,37 @@ use crate::param::Letter;
 use kurbo::{Affine, BezPath, CubicBez, Line, Point, QuadBez, Rect, Vec2};
 use std::sync::Arc;
 
-/// The map from the artwork to the strip: distance s = k·x + origin, with k > 0, and height d = up·(base − y).
+/// The map from the artwork to the strip: s = x_scale·x + offset and d = y_scale·(baseline − y), with positive scales.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ToStrip {
-    pub(super) k: f64,
-    pub(super) origin: f64,
-    pub(super) up: f64,
-    pub(super) base: f64,
+    pub(super) x_scale: f64,
+    pub(super) offset: f64,
+    pub(super) y_scale: f64,
+    pub(super) baseline: f64,
 }
 
 impl ToStrip {
     pub(super) fn s(&self, x: f64) -> f64 {
-        self.k * x + self.origin
+        self.x_scale * x + self.offset
     }
 
     fn d(&self, y: f64) -> f64 {
-        (self.base - y) * self.up
+        (self.baseline - y) * self.y_scale
     }
 
-    /// Returns the point on `piece`, which begins at distance `begin`.
-    fn point(&self, piece: &SkeletonPiece, begin: f64, p: Point) -> Point {
-        piece.point(self.s(p.x) - begin, self.d(p.y))
+    /// Returns the point on `piece`, which begins at distance `start`.
+    fn point(&self, piece: &SkeletonPiece, start: f64, p: Point) -> Point {
+        piece.point(self.s(p.x) - start, self.d(p.y))
     }
 
-    /// Returns the jet on `piece`, which begins at distance `begin`.
-    fn jet(&self, piece: &SkeletonPiece, begin: f64, p: Point) -> Jet {
-        let (at, ds, dd) = piece.jet(self.s(p.x) - begin, self.d(p.y));
-        Jet { p: at, dx: ds * self.k, dy: dd * -self.up }
+    /// Returns the jet on `piece`, which begins at distance `start`.
+    fn jet(&self, piece: &SkeletonPiece, start: f64, p: Point) -> Jet {
+        let (image, ds, dd) = piece.jet(self.s(p.x) - start, self.d(p.y));
+        Jet { p: image, dx: ds * self.x_scale, dy: dd * -self.y_scale }
     }
 }
 
-/// The bend: pieces in a row.
+/// The bend: the pieces of a skeleton in a row.
 #[derive(Clone)]
 pub(super) struct BendMap {
     pub(super) pieces: Vec<Arc<SkeletonPiece>>,
@@ -48,94 +50,93 @@ pub(super) struct BendMap {
     pub(super) closed: bool,
     pub(super) to_strip: ToStrip,
     /// The range of x in which creases are reported.
-    pub(super) reach: (f64, f64),
+    pub(super) crease_range: (f64, f64),
 }
 
 impl BendMap {
-    /// Returns the piece at distance `s`, and the distance of its start.
+    /// Returns the piece at distance `s`, and the distance of its start. On a closed skeleton, distances go on in every turn around it.
     fn piece(&self, s: f64) -> (&Arc<SkeletonPiece>, f64) {
         let turn = if self.closed { (s / self.length).floor() * self.length } else { 0.0 };
-        let i = self.pieces.partition_point(|p| p.from <= s - turn).max(1) - 1;
-        (&self.pieces[i], self.pieces[i].anchor + turn)
+        let i = self.pieces.partition_point(|p| p.applies_from <= s - turn).max(1) - 1;
+        (&self.pieces[i], self.pieces[i].start + turn)
     }
 
     /// Returns the point at distance `s` on the skeleton, and the unit tangent there.
-    pub(super) fn stand(&self, s: f64) -> (Point, Vec2) {
-        let (piece, begin) = self.piece(s);
-        let (at, along, _) = piece.jet(s - begin, 0.0);
-        (at, along / along.hypot())
+    pub(super) fn frame_at(&self, s: f64) -> (Point, Vec2) {
+        let (piece, start) = self.piece(s);
+        let (point, along, _) = piece.jet(s - start, 0.0);
+        (point, along / along.hypot())
     }
 
-    /// Returns the first level of de Casteljau's generalised algorithm on every piece with handles, if there are any.
+    /// Draws the first level of de Casteljau's generalised algorithm on every piece with handles, if there are any.
     pub(super) fn first_level(&self, heights: [f64; 2]) -> Option<BezPath> {
         let ribbon = |p: &Arc<SkeletonPiece>| match &p.strip {
-            Strip::Ribbon { ribbon, .. } => ribbon.first_level(heights),
+            StripMap::Ribbon { ribbon, .. } => ribbon.first_level(heights),
             _ => Vec::new(),
         };
         let all: BezPath = self.pieces.iter().flat_map(ribbon).flatten().collect();
         (!all.elements().is_empty()).then_some(all)
     }
 
-    /// Returns an affine map if the skeleton is one straight line.
+    /// Returns the map, as an affine one if the skeleton is one straight line.
     pub(super) fn simplest(&self) -> Arc<dyn Map> {
-        match &self.pieces[..] {
-            [only] if !self.closed => match OnPiece::new(only, only.anchor, self.to_strip).affine() {
-                Some(m) => Arc::new(AffineMap(m)),
-                None => Arc::new(self.clone()),
-            },
-            _ => Arc::new(self.clone()),
-        }
+        let affine = match &self.pieces[..] {
+            [only] if !self.closed => OnPiece::new(only, only.start, self.to_strip).affine(),
+            _ => None,
+        };
+        affine.map_or_else(|| Arc::new(self.clone()) as Arc<dyn Map>, |m| Arc::new(AffineMap(m)))
     }
 
     /// Returns a warning if the artwork folds over itself. `points` are samples of the outlines of letters, each with its letter, or of the
-    /// box of other artwork ([`edges`]); those of a letter follow one another. The determinant is linear in the height, and so least at the
-    /// highest or lowest points.
-    pub(super) fn fold<'a>(&self, points: impl Iterator<Item = (Point, Option<&'a Letter>)>) -> Option<String> {
-        let det = |x: f64, y: f64| self.jet(Point::new(x, y)).det() / (self.to_strip.k * self.to_strip.up);
+    /// box of other artwork ([`box_samples`]); those of a letter follow one another. The determinant is linear in the height, and so
+    /// least at the highest or lowest points.
+    pub(super) fn fold_warning<'a>(&self, points: impl Iterator<Item = (Point, Option<&'a Letter>)>) -> Option<String> {
+        // The determinant ∂F/∂s × ∂F/∂d: 1 + κd along unit normals.
+        let det = |x: f64, y: f64| self.jet(Point::new(x, y)).det() / (self.to_strip.x_scale * self.to_strip.y_scale);
         let mut worst: Option<(f64, Point)> = None;
-        let mut over: Vec<&Letter> = Vec::new();
+        let mut folded: Vec<&Letter> = Vec::new();
         for (p, letter) in points {
-            let there = det(p.x, p.y);
-            if there >= 0.0 {
+            let here = det(p.x, p.y);
+            if here >= 0.0 {
                 continue;
             }
-            if worst.is_none_or(|(w, _)| there < w) {
-                worst = Some((there, p));
+            if worst.is_none_or(|(least, _)| here < least) {
+                worst = Some((here, p));
             }
-            over.extend(letter.filter(|l| over.last().is_none_or(|o| !std::ptr::eq(*o, *l))));
+            folded.extend(letter.filter(|l| folded.last().is_none_or(|f| !std::ptr::eq(*f, *l))));
         }
-        let (there, p) = worst?;
-        let on = det(p.x, self.to_strip.base);
-        let names: Vec<&str> = over.iter().map(|l| l.name.as_str()).collect();
+        let (least, p) = worst?;
+        let on_skeleton = det(p.x, self.to_strip.baseline);
+        let names: Vec<&str> = folded.iter().map(|l| l.name.as_str()).collect();
         let (who, reaches) = match names.len() {
             0 => ("the artwork folds over itself".to_owned(), "it reaches"),
-            1 => (format!("the letter {} folds over itself", listed(&names)), "it reaches"),
-            _ => (format!("the letters {} fold over themselves", listed(&names)), "they reach"),
+            1 => (format!("the letter {} folds over itself", list_names(&names)), "it reaches"),
+            _ => (format!("the letters {} fold over themselves", list_names(&names)), "they reach"),
         };
-        let why = if on > 0.0 {
+        let why = if on_skeleton > 0.0 {
             // The linear determinant vanishes at the centre of curvature.
-            let centre = self.to_strip.d(p.y).abs() * on / (on - there);
-            format!("{reaches} more than {centre:.6} away from it, beyond the centre of curvature")
+            let radius = self.to_strip.d(p.y).abs() * on_skeleton / (on_skeleton - least);
+            format!("{reaches} more than {radius:.6} away from it, beyond the centre of curvature")
         } else {
             "what lies on the skeleton is turned over already".to_owned()
         };
         Some(format!(
             "bend: {who}, worst near {} of the skeleton, where {why}; a smaller `width`, another `baseline` or a gentler \
 bend avoids that",
-            show(self.point(Point::new(p.x, self.to_strip.base)))
+            show(self.point(Point::new(p.x, self.to_strip.baseline)))
         ))
     }
 }
 
-/// Lists names for a message, up to a limit.
-pub(super) fn listed(names: &[&str]) -> String {
+/// Lists the first names for a message.
+pub(super) fn list_names(names: &[&str]) -> String {
     const SHOWN: usize = 8;
     let shown = names.iter().take(SHOWN).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
     if names.len() > SHOWN { format!("{shown} and {} more", names.len() - SHOWN) } else { shown }
 }
 
 /// Samples the top and the bottom of a box.
-pub(super) fn edges(rect: Rect) -> impl Iterator<Item = Point> {
+pub(super) fn box_samples(rect: Rect) -> impl Iterator<Item = Point> {
     const SAMPLES: u32 = 1024;
     (0..=SAMPLES).flat_map(move |i| {
         let x = rect.x0 + rect.width() * (f64::from(i) + 0.5) / f64::from(SAMPLES + 1);
@@ -155,20 +156,20 @@ impl Map for BendMap {
     }
 
     fn jet(&self, p: Point) -> Jet {
-        let (piece, begin) = self.piece(self.to_strip.s(p.x));
-        self.to_strip.jet(piece, begin, p)
+        let (piece, start) = self.piece(self.to_strip.s(p.x));
+        self.to_strip.jet(piece, start, p)
     }
 
     fn point(&self, p: Point) -> Point {
-        let (piece, begin) = self.piece(self.to_strip.s(p.x));
-        self.to_strip.point(piece, begin, p)
+        let (piece, start) = self.piece(self.to_strip.s(p.x));
+        self.to_strip.point(piece, start, p)
     }
 
     /// Adds the verticals at the skeleton's joints.
     fn creases(&self, out: &mut Creases) {
         /// Limit on the turns around a closed skeleton whose joints are reported.
         const MAX_TURNS: f64 = 64.0;
-        let (a, b) = (self.to_strip.s(self.reach.0), self.to_strip.s(self.reach.1));
+        let (a, b) = (self.to_strip.s(self.crease_range.0), self.to_strip.s(self.crease_range.1));
         let turns = |s: f64| if self.closed { (s / self.length).floor() } else { 0.0 };
         let (first, last) = (turns(a), turns(b));
         if first > last || (first - last).is_nan() {
@@ -176,16 +177,16 @@ impl Map for BendMap {
         }
         // Far out, adding one to a turn may not change it, so the turns are counted.
         for turn in (0..=(last - first).min(MAX_TURNS) as usize).map(|n| first + n as f64) {
-            for s in self.pieces.iter().map(|p| p.from).filter(|s| s.is_finite()) {
-                let c = self.to_strip.origin - s - turn * self.length;
-                out.push(Crease::kink(Level::Line { a: self.to_strip.k, b: 0.0, c }));
+            for s in self.pieces.iter().map(|p| p.applies_from).filter(|s| s.is_finite()) {
+                let c = self.to_strip.offset - s - turn * self.length;
+                out.push(Crease::kink(Level::Line { a: self.to_strip.x_scale, b: 0.0, c }));
             }
         }
     }
 
     fn branch(&self, inside: Point) -> Option<Arc<dyn Map>> {
-        let (piece, begin) = self.piece(self.to_strip.s(inside.x));
-        Some(Arc::new(OnPiece::new(piece, begin, self.to_strip)))
+        let (piece, start) = self.piece(self.to_strip.s(inside.x));
+        Some(Arc::new(OnPiece::new(piece, start, self.to_strip)))
     }
 
     fn detail(&self, _: Rect) -> Option<f64> {
@@ -196,20 +197,20 @@ impl Map for BendMap {
 /// The smooth map on one piece.
 struct OnPiece {
     piece: Arc<SkeletonPiece>,
-    begin: f64,
+    start: f64,
     to_strip: ToStrip,
 }
 
 impl OnPiece {
-    fn new(piece: &Arc<SkeletonPiece>, begin: f64, to_strip: ToStrip) -> Self {
-        Self { piece: Arc::clone(piece), begin, to_strip }
+    fn new(piece: &Arc<SkeletonPiece>, start: f64, to_strip: ToStrip) -> Self {
+        Self { piece: Arc::clone(piece), start, to_strip }
     }
 
     fn affine(&self) -> Option<Affine> {
-        let Strip::Straight { p, t, n } = &self.piece.strip else { return None };
-        let ToStrip { k, up, .. } = self.to_strip;
-        let at = *p + *t * (self.to_strip.s(0.0) - self.begin) + *n * self.to_strip.d(0.0);
-        Some(Affine::new([t.x * k, t.y * k, -n.x * up, -n.y * up, at.x, at.y]))
+        let StripMap::Straight { p, t, n } = &self.piece.strip else { return None };
+        let ToStrip { x_scale, y_scale, .. } = self.to_strip;
+        let origin = *p + *t * (self.to_strip.s(0.0) - self.start) + *n * self.to_strip.d(0.0);
+        Some(Affine::new([t.x * x_scale, t.y * x_scale, -n.x * y_scale, -n.y * y_scale, origin.x, origin.y]))
     }
 }
 
@@ -219,11 +220,11 @@ impl Map for OnPiece {
     }
 
     fn jet(&self, p: Point) -> Jet {
-        self.to_strip.jet(&self.piece, self.begin, p)
+        self.to_strip.jet(&self.piece, self.start, p)
     }
 
     fn point(&self, p: Point) -> Point {
-        self.to_strip.point(&self.piece, self.begin, p)
+        self.to_strip.point(&self.piece, self.start, p)
     }
 
     fn class(&self) -> Class {
@@ -238,38 +239,36 @@ impl Map for OnPiece {
         if let Some(m) = self.affine() {
             return AffineMap(m).image(curve);
         }
-        let Strip::Ribbon { ribbon, unit, table: None } = &self.piece.strip else { return None };
-        let ToStrip { k, origin, up, base } = self.to_strip;
-        let (length, v) = (self.piece.length, up / unit);
-        let to_uv = Affine::new([k / length, 0.0, 0.0, -v, (origin - self.begin) / length, base * v]);
+        let StripMap::Ribbon { ribbon, unit, table: None } = &self.piece.strip else { return None };
+        let ToStrip { x_scale, offset, y_scale, baseline } = self.to_strip;
+        let (length, v) = (self.piece.length, y_scale / unit);
+        let to_uv = Affine::new([x_scale / length, 0.0, 0.0, -v, (offset - self.start) / length, baseline * v]);
         Some(ribbon.image(&AffineMap(to_uv).image(curve)?))
     }
 }
 
-// One piece of a bent strip: a piece of the skeleton, and the sides that stand on it.
-
-/// The strip along a piece of skeleton.
+/// The map F(s, d) of the strip along a piece, where s counts from the piece's start.
 #[derive(Debug, Clone)]
-pub(super) enum Strip {
-    /// F = p + s·t + d·n.
+pub(super) enum StripMap {
+    /// F = p + s·t + d·n with the unit tangent t.
     Straight { p: Point, t: Vec2, n: Vec2 },
     /// F = C(u(s)) + d·S, where S is the unit normal plus shares of `mitres`, the differences between the mitres at the two ends and the
     /// normals there. A share falls to 0 at the other end: linearly, or quadratically if `smooth`, so that a straight side can follow.
-    /// s is the length of the offset curve at height `even`.
-    Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even: f64, smooth: bool },
+    /// s is the length of the offset curve at height `even_height`, and `table` inverts it.
+    Normals { spine: Spine, table: ArcLength, mitres: [Vec2; 2], even_height: f64, smooth: bool },
     /// The paper's polynomial F(u, v) with v = d / unit. u comes from the arc length by `table`, or without one is s / length.
     Ribbon { ribbon: Ribbon, unit: f64, table: Option<ArcLength> },
 }
 
-/// A piece of the skeleton and its strip.
+/// A piece of the skeleton and the map of its strip.
 #[derive(Debug, Clone)]
 pub(super) struct SkeletonPiece {
-    /// The distance from which the piece applies; −∞ for the first piece of an open skeleton.
-    pub(super) from: f64,
+    /// The distance along the skeleton from which the piece applies; −∞ for the first piece of an open skeleton.
+    pub(super) applies_from: f64,
     /// The distance of its start.
-    pub(super) anchor: f64,
+    pub(super) start: f64,
     pub(super) length: f64,
-    pub(super) strip: Strip,
+    pub(super) strip: StripMap,
 }
 
 impl SkeletonPiece {
@@ -277,21 +276,21 @@ impl SkeletonPiece {
     /// take twice as long as a net.
     pub(super) fn work(&self) -> f64 {
         match &self.strip {
-            Strip::Normals { spine, .. } if matches!(spine.curve, Curve::Seg(Seg::Arc(_)) | Curve::Bezier(_)) => 2.0,
-            Strip::Straight { .. } | Strip::Normals { .. } => 1.0,
-            Strip::Ribbon { .. } => 2.0,
+            StripMap::Normals { spine, .. } if matches!(spine.curve, Curve::Seg(Seg::Arc(_)) | Curve::Bezier(_)) => 2.0,
+            StripMap::Straight { .. } | StripMap::Normals { .. } => 1.0,
+            StripMap::Ribbon { .. } => 2.0,
         }
     }
 
     /// Returns F at distance `s` from the piece's start and height `d`.
     pub(super) fn point(&self, s: f64, d: f64) -> Point {
         match &self.strip {
-            Strip::Straight { p, t, n } => *p + *t * s + *n * d,
-            Strip::Normals { spine, table, mitres, smooth, .. } => {
+            StripMap::Straight { p, t, n } => *p + *t * s + *n * d,
+            StripMap::Normals { spine, table, mitres, smooth, .. } => {
                 let (p, t) = spine.frame(table.parameter(s));
                 p + self.side(t, mitres, *smooth, s).0 * d
             }
-            Strip::Ribbon { .. } => self.jet(s, d).0,
+            StripMap::Ribbon { .. } => self.jet(s, d).0,
         }
     }
 
@@ -309,20 +308,20 @@ impl SkeletonPiece {
     /// Returns F, ∂F/∂s and ∂F/∂d at distance `s` from the piece's start and height `d`.
     pub(super) fn jet(&self, s: f64, d: f64) -> (Point, Vec2, Vec2) {
         match &self.strip {
-            Strip::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
-            Strip::Normals { spine, table, mitres, even, smooth } => {
-                let MovingFrame { p, t, bend } = spine.moving(table.parameter(s));
+            StripMap::Straight { p, t, n } => (*p + *t * s + *n * d, *t, *n),
+            StripMap::Normals { spine, table, mitres, even_height, smooth } => {
+                let MovingFrame { p, t, curvature } = spine.moving_frame(table.parameter(s));
                 let (side, slope) = self.side(t, mitres, *smooth, s);
-                let along = t * ((1.0 + bend * d) / (1.0 + bend * even)) + slope * d;
+                let along = t * ((1.0 + curvature * d) / (1.0 + curvature * even_height)) + slope * d;
                 (p + side * d, along, side)
             }
-            Strip::Ribbon { ribbon, unit, table } => {
+            StripMap::Ribbon { ribbon, unit, table } => {
                 let u = table.as_ref().map_or(s / self.length, |t| t.parameter(s));
-                let [x, y] = ribbon.at(Dual { v: u, x: 1.0, y: 0.0 }, Dual { v: d / unit, x: 0.0, y: 1.0 });
+                let [x, y] = ribbon.eval(Dual { v: u, x: 1.0, y: 0.0 }, Dual { v: d / unit, x: 0.0, y: 1.0 });
                 let slope = match table {
                     None => 1.0 / self.length,
                     Some(_) => {
-                        let [x, y] = ribbon.at(Dual { v: u, x: 1.0, y: 0.0 }, Dual::from(0.0));
+                        let [x, y] = ribbon.eval(Dual { v: u, x: 1.0, y: 0.0 }, Dual::from(0.0));
                         1.0 / x.x.hypot(y.x).max(f64::MIN_POSITIVE)
                     }
                 };
@@ -405,7 +404,7 @@ impl Curve {
         }
     }
 
-    /// Returns segments for a preview; for a curve of higher degree, cubics near it.
+    /// Returns segments for a preview; for a curve of higher degree, eight cubics with its points and tangents at their ends.
     pub(super) fn segs(&self) -> Vec<Seg> {
         if let Self::Seg(s) = self {
             return vec![*s];
@@ -416,7 +415,7 @@ impl Curve {
     }
 }
 
-pub(super) fn polyline(points: impl Iterator<Item = Point>) -> BezPath {
+fn polyline(points: impl Iterator<Item = Point>) -> BezPath {
     let mut out = BezPath::new();
     points.enumerate().for_each(|(i, p)| if i == 0 { out.move_to(p) } else { out.line_to(p) });
     out
@@ -436,28 +435,28 @@ fn derivative(points: &[Point], u: f64, order: usize) -> Vec2 {
 #[derive(Debug, Clone)]
 pub(super) struct Spine {
     pub(super) curve: Curve,
-    /// A lower speed counts as zero.
-    still: f64,
+    /// A lower speed |C′(u)| counts as zero.
+    min_speed: f64,
 }
 
-/// The moving frame of a piece. With T the tangent and N its [`normal`], dT/ds = −bend·N, dN/ds = bend·T.
+/// The moving frame of a piece. With T the tangent and N its [`normal`], dT/ds = −κN, dN/ds = κT.
 pub(super) struct MovingFrame {
     pub(super) p: Point,
     /// Unit tangent.
     pub(super) t: Vec2,
     /// Curvature, positive where the curve turns clockwise on the screen: away from the normal.
-    pub(super) bend: f64,
+    pub(super) curvature: f64,
 }
 
 impl Spine {
     pub(super) fn new(curve: Curve) -> Self {
-        /// A lower speed counts as zero, as a share of the piece's size.
-        const STILL: f64 = 1e-9;
+        /// Minimum speed as a share of the piece's size.
+        const MIN_SPEED: f64 = 1e-9;
         let b = match &curve {
             Curve::Seg(seg) => seg.bounding_box(),
             Curve::Bezier(points) => points.iter().fold(Rect::from_points(points[0], points[0]), |r, p| r.union_pt(*p)),
         };
-        Self { curve, still: STILL * (b.width() + b.height()) }
+        Self { curve, min_speed: MIN_SPEED * (b.width() + b.height()) }
     }
 
     /// Returns the point and the unit tangent at a parameter.
@@ -467,23 +466,23 @@ impl Spine {
     }
 
     /// Returns the moving frame at a parameter.
-    pub(super) fn moving(&self, u: f64) -> MovingFrame {
-        let (at, v, speed) = self.velocity(u);
-        MovingFrame { p: self.curve.eval(u), t: v / speed, bend: v.cross(self.curve.second(at)) / speed.powi(3) }
+    pub(super) fn moving_frame(&self, u: f64) -> MovingFrame {
+        let (inside, v, speed) = self.velocity(u);
+        let curvature = v.cross(self.curve.second(inside)) / speed.powi(3);
+        MovingFrame { p: self.curve.eval(u), t: v / speed, curvature }
     }
 
     /// Returns a parameter, and the derivative there with its length. It is `u`, or a little further inside if the speed vanishes.
     fn velocity(&self, u: f64) -> (f64, Vec2, f64) {
         /// Distance from `u` to the other parameter.
-        const ASIDE: f64 = 1e-5;
+        const STEP_INSIDE: f64 = 1e-5;
         let v = self.curve.deriv(u);
-        let speed = v.hypot();
-        if speed > self.still {
-            return (u, v, speed);
+        if v.hypot() > self.min_speed {
+            return (u, v, v.hypot());
         }
-        let at = if u < 0.5 { u + ASIDE } else { u - ASIDE };
-        let v = self.curve.deriv(at);
-        (at, v, v.hypot())
+        let inside = if u < 0.5 { u + STEP_INSIDE } else { u - STEP_INSIDE };
+        let v = self.curve.deriv(inside);
+        (inside, v, v.hypot())
     }
 }
 
@@ -494,8 +493,8 @@ impl Spine {
 // (the paper's equations 2 and 3). Terms with v stay linear in v through all levels: in the plane F(u, v) = C(u) + v·S(u), where C is
 // the Bézier curve of the control points, and S is the sum, over the levels j, of the Bézier curves of degree n−j of their handles.
 
-/// Returns the image of u under the affine map of one step: p + u₀·(q − p) + Σ uₖ·hₖ.
-fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: &[S]) -> [S; D] {
+/// Returns the image of u = (u, v) or (u, v, w) under the affine map of one step: p + u₀·(q − p) + Σ uₖ·hₖ.
+fn affine_step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: &[S]) -> [S; D] {
     std::array::from_fn(|i| {
         let along = p[i] + u[0] * (q[i] - p[i]);
         handles.iter().zip(&u[1..]).fold(along, |sum, (h, v)| sum + *v * S::from(h[i]))
@@ -503,14 +502,14 @@ fn step<S: Real, const D: usize>(p: [S; D], q: [S; D], handles: &[[f64; D]], u: 
 }
 
 /// Returns the point at parameters `u` for a control polygon and handles, given by `handles(level, i)` with levels from 1.
-fn eval<'a, S: Real, const D: usize>(
+fn de_casteljau<'a, S: Real, const D: usize>(
     row: &mut [[S; D]],
     handles: impl Fn(usize, usize) -> &'a [[f64; D]],
     u: &[S],
 ) -> [S; D] {
     for level in 1..row.len() {
         for i in 0..row.len() - level {
-            row[i] = step(row[i], row[i + 1], handles(level, i), u);
+            row[i] = affine_step(row[i], row[i + 1], handles(level, i), u);
         }
     }
     row[0]
@@ -547,7 +546,7 @@ impl Ribbon {
     }
 
     /// Returns F(u, v).
-    pub(super) fn at<S: Real>(&self, u: S, v: S) -> [S; 2] {
+    pub(super) fn eval<S: Real>(&self, u: S, v: S) -> [S; 2] {
         let mut row = [[S::from(0.0); 2]; MAX_DEGREE + 1];
         for (r, p) in row.iter_mut().zip(&self.points) {
             *r = [S::from(p.x), S::from(p.y)];
@@ -560,7 +559,7 @@ impl Ribbon {
             Some(l) => std::slice::from_ref(&l[i]),
             None => &[],
         };
-        eval(&mut row[..self.points.len()], handles, &[u, v])
+        de_casteljau(&mut row[..self.points.len()], handles, &[u, v])
     }
 
     /// Returns S(u) at an end: 0 or 1.
@@ -590,31 +589,28 @@ impl Ribbon {
     /// Returns the exact image of a curve in (u, v). Its degree is n times that of the curve, or n + 1 times with handles at the points.
     pub(super) fn image(&self, curve: &RationalBezier) -> RationalBezier {
         let n = self.points.len() - 1;
-        let whole = n + usize::from(!self.at_points.is_empty());
+        let degree = n + usize::from(!self.at_points.is_empty());
         let [u, v, w] = [0, 1, 2].map(|k| curve.coordinate(k));
-        let rest = {
-            let mut r = w.clone();
-            r.add_scaled(-1.0, &u);
-            r
-        };
+        let mut rest = w.clone();
+        rest.add_scaled(-1.0, &u);
         // Homogeneous Bernstein terms: C(k, i)·uⁱ(w−u)^(k−i), times v for handles, times powers of w to raise the degree.
-        let (up, rp, wp) = (u.powers(n), rest.powers(n), w.powers(whole));
-        let (mut x, mut y) = (Scaled::zero(whole * curve.degree()), Scaled::zero(whole * curve.degree()));
-        let mut add = |[px, py]: [f64; 2], k: usize, i: usize, with: &Scaled| {
-            let (c, t) = (binomial(k, i), up[i].times(&rp[k - i]).times(with));
-            x.add_scaled(px * c, &t);
-            y.add_scaled(py * c, &t);
+        let (u_powers, rest_powers, w_powers) = (u.powers(n), rest.powers(n), w.powers(degree));
+        let (mut x, mut y) = (Scaled::zero(degree * curve.degree()), Scaled::zero(degree * curve.degree()));
+        let mut add = |[px, py]: [f64; 2], k: usize, i: usize, factor: &Scaled| {
+            let (c, term) = (binomial(k, i), u_powers[i].times(&rest_powers[k - i]).times(factor));
+            x.add_scaled(px * c, &term);
+            y.add_scaled(py * c, &term);
         };
         for (i, p) in self.points.iter().enumerate() {
-            add([p.x, p.y], n, i, &wp[whole - n]);
+            add([p.x, p.y], n, i, &w_powers[degree - n]);
         }
         // The terms of S have degree n for handles at points, and n − j for the handles of level j.
         for (j, level) in [&self.at_points].into_iter().chain(&self.levels).enumerate() {
             for (i, h) in level.iter().enumerate() {
-                add(*h, n - j, i, &v.times(&wp[whole + j - n - 1]));
+                add(*h, n - j, i, &v.times(&w_powers[degree + j - n - 1]));
             }
         }
-        RationalBezier::from_coordinates([&x, &y, &wp[whole]], curve.is_polynomial())
+        RationalBezier::from_coordinates([&x, &y, &w_powers[degree]], curve.is_polynomial())
     }
 }
 
@@ -636,14 +632,14 @@ mod tests {
             let handles = [[0.5, 1.0, 0.0], [0.0, 0.3, 1.0]];
             let [products, sums, differences] = operations(|| {
                 let mut row: Vec<_> = (0..=degree).map(point).collect();
-                let _ = eval(&mut row, |_, _| &handles[..], &[0.3, 0.4, 0.5].map(Counted));
+                let _ = de_casteljau(&mut row, |_, _| &handles[..], &[0.3, 0.4, 0.5].map(Counted));
             });
             assert_eq!((products, sums, differences), (expected, expected, expected / 3), "degree {degree}");
 
             let levels: Vec<_> = (1..=degree).map(|j| vec![Vec2::new(1.0, 2.0); degree + 1 - j]).collect();
             let ribbon = Ribbon::new((0..=degree).map(|i| Point::new(i as f64, 1.0)).collect(), &levels).unwrap();
             let [products, ..] = operations(|| {
-                let _ = ribbon.at(Counted(0.3), Counted(0.4));
+                let _ = ribbon.eval(Counted(0.3), Counted(0.4));
             });
             assert_eq!(products, 4 * degree * (degree + 1) / 2);
         }
@@ -668,7 +664,7 @@ mod tests {
         let r = ribbon();
         let curve = CubicBez::new(r.points[0], r.points[1], r.points[2], r.points[3]);
         for (u, v) in [(0.0, 0.0), (0.3, 0.8), (1.0, -1.0), (1.2, 2.0)] {
-            let [x, y] = r.at(u, v);
+            let [x, y] = r.eval(u, v);
             let w = 1.0 - u;
             let l = levels();
             let side =
@@ -691,7 +687,7 @@ mod tests {
             for i in 0..=10 {
                 let t = f64::from(i) / 10.0;
                 let p = source.eval(t);
-                let [x, y] = r.at(p.x, p.y);
+                let [x, y] = r.eval(p.x, p.y);
                 assert!(image.eval(t).distance(Point::new(x, y)) < 1e-11, "{t}");
             }
         }

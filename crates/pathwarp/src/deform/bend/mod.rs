@@ -182,19 +182,20 @@ impl Bend {
         let middle = if closed && !self.is_as_drawn() { skeleton.extreme(self.reverse) } else { 0.5 * length };
         let Joined { pieces, corners, notes, warning } = self.joined(skeleton)?;
 
-        let spreads = self.spreads_letters(closed);
-        let k = match self.stretch {
-            Stretch::Scale | Stretch::Fit if !spreads => length / rect.width(),
+        let spreads_letters = self.spreads_letters(closed);
+        let x_scale = match self.stretch {
+            Stretch::Scale | Stretch::Fit if !spreads_letters => length / rect.width(),
             _ => 1.0,
         };
-        let placed = self.setting.is_some() && (self.sets_objects || self.letters.is_empty());
+        let sets_objects = self.setting.is_some() && (self.sets_objects || self.letters.is_empty());
         let copies = self.copies.or((self.stretch == Stretch::Repeat).then_some(None));
-        let gaps = if placed { self.objects.len().max(1) } else { 1 };
-        let width = if placed { self.objects.iter().map(|o| self.width * o.advance).sum() } else { rect.width() };
+        let gaps = if sets_objects { self.objects.len().max(1) } else { 1 };
+        let width = if sets_objects { self.objects.iter().map(|o| self.width * o.advance).sum() } else { rect.width() };
         let repeats = match copies {
             Some(count) => Repeats::new(count, (width, gaps as f64, self.gap), length, closed)?,
             None => Repeats::ONE,
         };
+        // This x of the artwork comes to this distance along the skeleton.
         let (from, to) = match self.align {
             // Copies on an open skeleton begin at its start.
             _ if repeats.count > 1 && !closed => (rect.x0, 0.0),
@@ -202,54 +203,57 @@ impl Bend {
             Align::End => (rect.x1, length),
             Align::Middle => (rect.center().x, middle),
         };
-        let strip = |k: f64, up: f64| ToStrip { k, origin: to + self.offset - k * from, up, base: self.baseline };
-        let to_strip = strip(k, self.width * if self.stretch == Stretch::Scale { k } else { 1.0 });
-        let spreads = spreads.then(|| strip(length / rect.width(), 1.0));
+        let strip = |x_scale: f64, y_scale: f64| {
+            let offset = to + self.offset - x_scale * from;
+            ToStrip { x_scale, offset, y_scale, baseline: self.baseline }
+        };
+        let to_strip = strip(x_scale, self.width * if self.stretch == Stretch::Scale { x_scale } else { 1.0 });
+        let ring_strip = spreads_letters.then(|| strip(length / rect.width(), 1.0));
         let pieces = pieces.into_iter().map(Arc::new).collect();
         let shift = repeats.spacing * (repeats.count - 1) as f64;
         let rect = Rect { x1: rect.x1 + shift, ..rect };
-        let reach = (rect.x0 - rect.width(), rect.x1 + rect.width());
-        let map = BendMap { pieces, length, closed, to_strip, reach };
+        let crease_range = (rect.x0 - rect.width(), rect.x1 + rect.width());
+        let map = BendMap { pieces, length, closed, to_strip, crease_range };
 
         let mut built = Built::new(map.simplest());
         (built.explanation.notes, built.explanation.warnings) = (notes, warning.into_iter().collect());
-        let spread = placed && (copies.is_some() || self.stretch == Stretch::Fit);
-        explain(&mut built, &map, &corners, if spread { [rect.x0; 2] } else { self.seen(rect, shift) });
+        // Objects that are spread over the skeleton are never longer than it.
+        let spreads_objects = sets_objects && (copies.is_some() || self.stretch == Stretch::Fit);
+        let visible = if spreads_objects { [rect.x0; 2] } else { self.visible_range(rect, shift) };
+        explain(&mut built, &map, &corners, visible);
         if copies.is_some() {
             built.note(format!("artwork repeated: {} times, one every {:.6}", repeats.count, repeats.spacing));
             let most = Repeats::new(None, (width, gaps as f64, self.gap), length, closed)?.count;
             if repeats.count > most {
-                built.warn(format!(
-                    "bend: only {most} copies fit with this gap between them; {} are nearer",
-                    repeats.count
-                ));
+                let count = repeats.count;
+                built.warn(format!("bend: only {most} copies fit with this gap between them; {count} are nearer"));
             }
         }
-        if copies.is_some() && !placed {
-            built.placement.copies =
-                (0..repeats.count).map(|i| Affine::translate((repeats.spacing * i as f64, 0.0))).collect();
+        if copies.is_some() && !sets_objects {
+            let copy = |i| Affine::translate((repeats.spacing * i as f64, 0.0));
+            built.placement.copies = (0..repeats.count).map(copy).collect();
         }
-        if placed {
-            let count = spread.then_some(repeats.count);
+        if sets_objects {
+            let count = spreads_objects.then_some(repeats.count);
             let setting = self.setting.unwrap_or(LetterSetting::Rotate);
             let first = if closed { middle } else { 0.0 } + self.offset;
-            built.placement.letters = letters::row(&map, setting, &self.objects, count, first);
+            built.placement.letters = letters::object_maps(&map, setting, &self.objects, count, first);
             built.placement.of_objects = true;
         } else {
-            self.explain_letters(&mut built, &map, rect, spreads);
+            self.set_letters(&mut built, &map, rect, ring_strip);
         }
         built.overlay(Role::Cage, cage);
         let heights = self.heights(1.0).map(|d| d / self.unit());
-        map.first_level(heights).into_iter().for_each(|tool| built.overlay(Role::Cage, tool));
+        map.first_level(heights).into_iter().for_each(|quads| built.overlay(Role::Cage, quads));
         Ok(built)
     }
 
     /// Builds the skeleton.
     fn skeleton(&self) -> Result<Skeleton, Error> {
         let sub = anchors::only_subpath(&self.along, "a single connected run of them")?;
-        let (closed, given) = (sub.closed, self.points()?);
+        let (closed, given) = (sub.closed, self.handles_at_spline_points()?);
         let parts = match (self.spline, self.interpolate) {
-            (None, false) => skeleton::drawn(sub),
+            (None, false) => skeleton::parts_of_segments(sub),
             (None, true) => Spline::Through.parts(&sub, given, self.unit())?,
             (Some(degree), false) => Spline::Near(degree).parts(&sub, given, self.unit())?,
             (Some(n), true) => return Err(Error::usage("spline", n.to_string(), "cannot go with `interpolate`")),
@@ -262,29 +266,29 @@ impl Bend {
         if self.frame.height() > 0.0 { self.frame.height() } else { 1.0 }
     }
 
-    /// Returns the heights of the artwork's top and bottom over the skeleton, if the artwork is scaled by `k`.
-    fn heights(&self, k: f64) -> [f64; 2] {
-        [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y) * self.width * k)
+    /// Returns the heights of the artwork's top and bottom over the skeleton, if the artwork is scaled by `scale`.
+    fn heights(&self, scale: f64) -> [f64; 2] {
+        [self.frame.y0, self.frame.y1].map(|y| (self.baseline - y) * self.width * scale)
     }
 
     /// Returns the handles at the points of a spline, if there are any.
-    fn points(&self) -> Result<&[Option<Vec2>], Error> {
-        let wrong = |problem| Err(Error::input("handles", problem));
-        match &self.handles {
-            Some(Handles::Points(_)) if self.spline.is_none() && !self.interpolate => {
-                wrong("are of a spline's points, and the skeleton is none: it needs `spline` or `interpolate`")
-            }
-            Some(Handles::Points(_)) if self.reverse => {
-                wrong("say where up is at every point; draw the skeleton the other way instead of using `reverse`")
-            }
-            Some(Handles::Points(given)) => Ok(given),
-            _ => Ok(&[]),
+    fn handles_at_spline_points(&self) -> Result<&[Option<Vec2>], Error> {
+        let Some(Handles::Points(given)) = &self.handles else { return Ok(&[]) };
+        let refused = |problem| Err(Error::input("handles", problem));
+        if self.spline.is_none() && !self.interpolate {
+            return refused("are of a spline's points, and the skeleton is none: it needs `spline` or `interpolate`");
         }
+        if self.reverse {
+            return refused(
+                "say where up is at every point; draw the skeleton the other way instead of using `reverse`",
+            );
+        }
+        Ok(given)
     }
 
     /// Returns the left and the right edge of the visible artwork in all copies, which have the frame `rect`. The last copy is `shift`
-    /// further right. Advances of letters are wider than the letters.
-    fn seen(&self, rect: Rect, shift: f64) -> [f64; 2] {
+    /// further right. Lettering is taken by its outlines, since the advances in its frame are wider.
+    fn visible_range(&self, rect: Rect, shift: f64) -> [f64; 2] {
         let letters = self.letters.iter().filter(|_| self.around_letters).filter_map(|l| l.outline.bounding_box());
         letters.reduce(|a, b| a.union(b)).map_or([rect.x0, rect.x1], |ink| [ink.x0, ink.x1 + shift])
     }
@@ -310,12 +314,7 @@ impl Bend {
             return Err(Error::usage("copies", "N", "are spread evenly, and cannot be stretched as well"));
         }
         if self.stretch != Stretch::Keep && self.frame.width() <= 0.0 {
-            let name = match self.stretch {
-                Stretch::Scale => "scale",
-                Stretch::Fit => "fit",
-                _ => "repeat",
-            };
-            return Err(Error::usage("stretch", name, "cannot stretch artwork that has no width"));
+            return Err(Error::usage("stretch", self.stretch.name(), "cannot stretch artwork that has no width"));
         }
         if self.even && (self.handles.is_some() || self.by_parameter) {
             return Err(Error::usage("spacing", "even", "goes with lengths (`by arclength`) and without `handles`"));
@@ -337,14 +336,11 @@ impl Bend {
         } else {
             skeleton
         };
-        match &self.handles {
-            Some(_) if skeleton.has_arcs() => {
-                Err(Error::input("handles", "are of lines and Bézier curves; the skeleton has arcs"))
-            }
-            Some(_) => Ok(skeleton),
-            None if !self.by_parameter => Ok(skeleton),
-            None => Ok(skeleton.polynomial(ARC_TOLERANCE * size)),
+        if self.handles.is_some() && skeleton.has_arcs() {
+            return Err(Error::input("handles", "are of lines and Bézier curves; the skeleton has arcs"));
         }
+        let needs_cubics = self.handles.is_none() && self.by_parameter;
+        Ok(if needs_cubics { skeleton.polynomial(ARC_TOLERANCE * size) } else { skeleton })
     }
 
     /// Returns the pieces with their sides.
@@ -359,40 +355,37 @@ impl Bend {
         skeleton.with_handles(given, (self.unit(), heights), !self.by_parameter)
     }
 
-    /// Sets the letters one by one, or warns where the artwork folds.
-    fn explain_letters(&self, built: &mut Built, map: &BendMap, rect: Rect, spreads: Option<ToStrip>) {
+    /// Sets the letters one by one, or warns where artwork in the box `rect` folds. With a `ring_strip`, letters that are bent stand apart.
+    fn set_letters(&self, built: &mut Built, map: &BendMap, rect: Rect, ring_strip: Option<ToStrip>) {
         let letters = &self.letters;
         let copies = &built.placement.copies;
-        let warnings: Vec<String> = match self.setting {
-            Some(setting) => {
-                let places = letters::places(map, setting, letters, copies, self.stretch == Stretch::Fit);
-                let warnings = letters::warnings(letters, &places);
-                built.placement.letters = places;
-                warnings
+        if let Some(setting) = self.setting {
+            let maps = letters::letter_maps(map, setting, letters, copies, self.stretch == Stretch::Fit);
+            built.explanation.warnings.extend(letters::warnings(letters, &maps));
+            built.placement.letters = maps;
+            return;
+        }
+        let warning = if self.around_letters && !letters.is_empty() {
+            if let Some(ring_strip) = ring_strip {
+                built.placement.letters = letters::ring_translations(map, letters, ring_strip);
+                built.placement.before = true;
             }
-            None if self.around_letters && !letters.is_empty() => {
-                if let Some(whole) = spreads {
-                    built.placement.letters = letters::apart(map, letters, whole);
-                    built.placement.before = true;
-                }
-                map.fold(letters::points(letters, copies)).into_iter().collect()
-            }
-            None if self.ink.is_empty() => map.fold(map::edges(rect).map(|p| (p, None))).into_iter().collect(),
-            None => {
-                let copies = letters::or_identity(copies);
-                // The more copies, the fewer samples of each.
-                let points = self.ink.iter().step_by(1 + copies.len() / 64);
-                let all = points.flat_map(|p| copies.iter().map(move |c| (*c * *p, None)));
-                map.fold(all).into_iter().collect()
-            }
+            map.fold_warning(letters::samples(letters, copies))
+        } else if self.ink.is_empty() {
+            map.fold_warning(map::box_samples(rect).map(|p| (p, None)))
+        } else {
+            let copies = letters::or_identity(copies);
+            // The more copies, the fewer samples of each.
+            let points = self.ink.iter().step_by(1 + copies.len() / 64);
+            map.fold_warning(points.flat_map(|p| copies.iter().map(move |c| (*c * *p, None))))
         };
-        built.explanation.warnings.extend(warnings);
+        built.explanation.warnings.extend(warning);
     }
 }
 
 /// Describes the skeleton and its corners. Warns of artwork longer than the skeleton; with all copies it reaches from `x0` to `x1`.
 fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], [x0, x1]: [f64; 2]) {
-    /// Excess of length that still fits, as a share.
+    /// Excess of length that still fits, as a share of the skeleton's length.
     const CLOSE: f64 = 1e-3;
     let (length, closed) = (map.length, map.closed);
     let skeleton = format!("skeleton: length {length:.6}, {}", if closed { "closed" } else { "open" });
@@ -402,12 +395,12 @@ fn explain(built: &mut Built, map: &BendMap, corners: &[Corner], [x0, x1]: [f64;
         built.note(format!("the artwork turns by {turn:.1}° at the corner {} of the skeleton", show(c.at)));
     }
     let [from, to] = [x0, x1].map(|x| map.to_strip.s(x));
-    let more = to - from - length;
-    if more > CLOSE * length {
+    let excess = to - from - length;
+    if excess > CLOSE * length {
         let what = if closed { "runs over itself" } else { "continues straight beyond its ends" };
         built.warn(format!(
-            "bend: the artwork is longer than the path by {more:.3} ({:.0} % of the path), and {what}; `stretch scale` makes it fit",
-            (100.0 * more / length).max(1.0)
+            "bend: the artwork is longer than the path by {excess:.3} ({:.0} % of the path), and {what}; `stretch scale` makes it fit",
+            (100.0 * excess / length).max(1.0)
         ));
     }
 }
@@ -512,8 +505,8 @@ level of the algorithm.\n\n\
     .cases(&[
         // Half a circle of radius 50 about 50,50: 45 degrees from the top, on it and 20 above.
         Case { args: ON_ARC, at: (50.0, 100.0), to: (50.0, 0.0), tolerance: 1e-11 },
-        Case { args: ON_ARC, at: (EIGHTH, 100.0), to: (50.0 + 50.0 * R2, 50.0 - 50.0 * R2), tolerance: 1e-11 },
-        Case { args: ON_ARC, at: (EIGHTH, 80.0), to: (50.0 + 70.0 * R2, 50.0 - 70.0 * R2), tolerance: 1e-11 },
+        Case { args: ON_ARC, at: (EIGHTH_TURN, 100.0), to: (50.0 + 50.0 * SIN_45, 50.0 - 50.0 * SIN_45), tolerance: 1e-11 },
+        Case { args: ON_ARC, at: (EIGHTH_TURN, 80.0), to: (50.0 + 70.0 * SIN_45, 50.0 - 70.0 * SIN_45), tolerance: 1e-11 },
         // A right angle: the mitre, and beyond it the offset.
         Case { args: CORNER, at: (50.0, 40.0), to: (60.0, -10.0), tolerance: 1e-12 },
         Case { args: CORNER, at: (100.0, 40.0), to: (60.0, 50.0), tolerance: 1e-12 },
@@ -537,8 +530,8 @@ const SPLINE: Pairs = &[
     ("stretch", "fit"),
     ("as-drawn", "true"),
 ];
-const EIGHTH: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
-const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const EIGHTH_TURN: f64 = 50.0 + 50.0 * std::f64::consts::FRAC_PI_4;
+const SIN_45: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
@@ -547,8 +540,9 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
         return preset.build();
     }
     let bend = Bend::read(s, s.path_if("along")?.ok_or_else(missing)?)?;
-    let drawn = s.texts("along").last().is_some_and(|t| is_spiral(t));
-    if drawn { bend.as_drawn(true).build() } else { bend.build() }
+    // A spiral is run from its inside or outside, as it is described.
+    let spiral = s.texts("along").last().is_some_and(|t| is_spiral(t));
+    if spiral { bend.as_drawn(true).build() } else { bend.build() }
 });
 
 /// Barr's deformations, except the twist, which needs space.
@@ -567,21 +561,22 @@ fn preset(s: &Settings<'_>) -> Result<Option<Bend>, Error> {
         let problem = "cannot go with `preset`, which has its own skeleton";
         return Err(Error::usage(name, s.texts(name).join(" "), problem));
     }
-    let word = s.choice("preset")?;
-    let factor = s.number_if("factor")?.unwrap_or(if word == "taper" { 0.5 } else { 1.5 });
-    // The middle of the quadratic (1, m, 1) is (1 + m)/2.
-    let (sizes, length) = match word {
+    let name = s.choice("preset")?;
+    let factor = s.number_if("factor")?.unwrap_or(if name == "taper" { 0.5 } else { 1.5 });
+    // The heights at the skeleton's control points and its length, relative to the artwork's. In a swell, the middle of the quadratic
+    // with the control points 1, m, 1 is (1 + m)/2.
+    let (heights, length) = match name {
         "stretch" => (vec![1.0, 1.0], factor),
         "taper" => (vec![1.0, factor], 1.0),
         _ => (vec![1.0, 2.0 * factor - 1.0, 1.0], 1.0),
     };
-    let bend = Bend::read(s, NamedPath { name: word.into(), outline: Outline::default() })?;
-    let (rect, degree) = (bend.frame, sizes.len() - 1);
-    let at = |i: usize| Point::new(rect.x0 + rect.width() * length * i as f64 / degree as f64, bend.baseline);
-    let points: Vec<Point> = (0..=degree).map(at).collect();
-    let handles = sizes.iter().map(|k| Some(Vec2::new(0.0, -bend.unit()) * *k)).collect();
+    let bend = Bend::read(s, NamedPath { name: name.into(), outline: Outline::default() })?;
+    let (rect, degree) = (bend.frame, heights.len() - 1);
+    let point = |i: usize| Point::new(rect.x0 + rect.width() * length * i as f64 / degree as f64, bend.baseline);
+    let points: Vec<Point> = (0..=degree).map(point).collect();
+    let handles = heights.iter().map(|h| Some(Vec2::new(0.0, -bend.unit()) * *h)).collect();
     Ok(Some(Bend {
-        along: NamedPath { name: word.into(), outline: Outline::from_points(&points, false) },
+        along: NamedPath { name: name.into(), outline: Outline::from_points(&points, false) },
         spline: Some(degree),
         handles: Some(Handles::Points(handles)),
         by_parameter: true,
@@ -597,13 +592,10 @@ enum Handles {
     Points(Vec<Option<Vec2>>),
 }
 
-#[cfg(feature = "serde")]
 fn handles(file: &NamedText) -> Result<Handles, Error> {
-    file::read(&file.name, &file.text)
-}
-
-#[cfg(not(feature = "serde"))]
-fn handles(file: &NamedText) -> Result<Handles, Error> {
+    #[cfg(feature = "serde")]
+    return file::read(&file.name, &file.text);
+    #[cfg(not(feature = "serde"))]
     Err(crate::error::no_json(&file.name))
 }
 
@@ -635,9 +627,7 @@ fn setting(s: &Settings<'_>) -> Result<Option<LetterSetting>, Error> {
     Ok(given.first().and_then(|name| LetterSetting::named(name)))
 }
 
-// Copies of the artwork along a skeleton.
-
-/// Copies of the artwork side by side.
+/// Copies of the artwork side by side along the skeleton.
 #[derive(Debug, Clone, Copy)]
 struct Repeats {
     count: usize,
@@ -648,8 +638,8 @@ struct Repeats {
 impl Repeats {
     const ONE: Self = Self { count: 1, spacing: 0.0 };
 
-    /// Returns `count` copies of `width` with `gaps` gaps each, or as many as fit on `length` if a gap is at least `gap`. They are spread
-    /// evenly, on an open skeleton from its start to its end, on a closed one all the way around.
+    /// Returns `count` copies of `width` with `gaps` gaps each, or as many as fit on `length` if every gap is at least `gap`. They are
+    /// spread evenly, on an open skeleton from its start to its end, on a closed one all the way around.
     fn new(
         count: Option<usize>,
         (width, gaps, gap): (f64, f64, f64),
@@ -660,24 +650,21 @@ impl Repeats {
         const MAX_COPIES: f64 = 10_000.0;
         let period = width + gaps * gap;
         if period <= 0.0 {
-            return Err(Error::usage(
-                "gap",
-                gap.to_string(),
-                format!("is so negative that copies of artwork {width:.6} wide would not advance"),
-            ));
+            let problem = format!("is so negative that copies of artwork {width:.6} wide would not advance");
+            return Err(Error::usage("gap", gap.to_string(), problem));
         }
         // Rounding must not exclude a copy that just fits.
-        let room = ((if closed { length } else { length + gap }) / period * (1.0 + 1e-9)).floor().max(1.0);
-        let room = count.map_or(room, |n| n as f64);
-        if room > MAX_COPIES {
-            let problem = format!("would take {room} copies of artwork {width:.6} wide; the limit is {MAX_COPIES}");
+        let most = ((if closed { length } else { length + gap }) / period * (1.0 + 1e-9)).floor().max(1.0);
+        let count = count.map_or(most, |n| n as f64);
+        if count > MAX_COPIES {
+            let problem = format!("would take {count} copies of artwork {width:.6} wide; the limit is {MAX_COPIES}");
             return Err(Error::usage("stretch", "repeat", problem));
         }
-        let spacing = match (closed, room > 1.0) {
-            (true, _) => length / room,
-            (false, true) => (length - width) / (room - 1.0),
+        let spacing = match (closed, count > 1.0) {
+            (true, _) => length / count,
+            (false, true) => (length - width) / (count - 1.0),
             (false, false) => 0.0,
         };
-        Ok(Self { count: room as usize, spacing })
+        Ok(Self { count: count as usize, spacing })
     }
 }

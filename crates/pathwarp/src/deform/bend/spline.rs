@@ -44,7 +44,8 @@ impl Part {
 }
 
 impl Spline {
-    /// Returns the pieces. `given` has a handle for every anchor, or `None` for the default one, `unit` long; if empty, all are defaults.
+    /// Returns the pieces of the spline of a subpath's anchors. `given` has a handle for every anchor, or `None` for the default one,
+    /// `unit` long; if empty, all are defaults.
     pub(super) fn parts(self, sub: &Subpath, given: &[Option<Vec2>], unit: f64) -> Result<Vec<Part>, Error> {
         let (points, closed) = (sub.anchors(), sub.closed);
         let n = points.len();
@@ -58,15 +59,16 @@ impl Spline {
             let problem = format!("has handles for {} points; the skeleton has {n}", given.len());
             return Err(Error::input("handles", problem));
         }
-        let handle = |i: usize, own: Vec2| given.get(i).copied().flatten().unwrap_or(own * unit);
+        let handle = |i: usize, side: Vec2| given.get(i).copied().flatten().unwrap_or(side * unit);
         if let Self::Near(degree) = self {
-            let frame = |(i, own): (usize, Vec2)| [points[i].to_vec2(), handle(i, own)];
-            let frames = mitres(&points, closed).into_iter().enumerate().map(frame).map(|[p, h]| [p.x, p.y, h.x, h.y]);
-            let part = |f: Vec<[f64; 4]>| {
-                let (points, handles) = f.iter().map(|f| (Point::new(f[0], f[1]), Vec2::new(f[2], f[3]))).unzip();
+            let with_handle = |(i, side): (usize, Vec2)| (points[i], handle(i, side));
+            let controls = mitres(&points, closed).into_iter().enumerate().map(with_handle);
+            let controls: Vec<[f64; 4]> = controls.map(|(p, h)| [p.x, p.y, h.x, h.y]).collect();
+            let part = |c: Vec<[f64; 4]>| {
+                let (points, handles) = c.iter().map(|c| (Point::new(c[0], c[1]), Vec2::new(c[2], c[3]))).unzip();
                 Part { curve: Curve::bezier(points), handles, width: 1.0 }
             };
-            return Ok(bspline::pieces(degree, &frames.collect::<Vec<_>>(), closed).into_iter().map(part).collect());
+            return Ok(bspline::pieces(degree, &controls, closed).into_iter().map(part).collect());
         }
         let legs = if closed { n } else { n - 1 };
         let distances: Vec<f64> = (0..legs).map(|i| points[i].distance(points[(i + 1) % n])).collect();
@@ -76,13 +78,13 @@ impl Spline {
         }
         let widths = bspline::centripetal(&distances);
         let flat: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
-        let part = |(i, (f, width)): (usize, (Vec<[f64; 2]>, f64))| {
-            let p: Vec<Point> = f.into_iter().map(|p| Point::new(p[0], p[1])).collect();
+        let part = |(i, (cubic, width)): (usize, (Vec<[f64; 2]>, f64))| {
+            let p: Vec<Point> = cubic.into_iter().map(|[x, y]| Point::new(x, y)).collect();
             let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[3] - p[2]];
-            let own = |t: Vec2| normal(if t.hypot() > 0.0 { t / t.hypot() } else { (p[3] - p[0]).normalize() });
-            let (g, h) = (handle(i, own(a)), handle((i + 1) % n, own(c)));
-            let eased = |h: Vec2, a: Vec2| h - a * (h.dot(b - a) / (1.5 * a.hypot2()).max(1e-18 * b.hypot2()));
-            Part { curve: Curve::bezier(p), handles: vec![g, eased(g, a), eased(h, c), h], width }
+            let side = |t: Vec2| normal(if t.hypot() > 0.0 { t / t.hypot() } else { (p[3] - p[0]).normalize() });
+            let (start, end) = (handle(i, side(a)), handle((i + 1) % n, side(c)));
+            let eased = |h: Vec2, leg: Vec2| h - leg * (h.dot(b - leg) / (1.5 * leg.hypot2()).max(1e-18 * b.hypot2()));
+            Part { curve: Curve::bezier(p), handles: vec![start, eased(start, a), eased(end, c), end], width }
         };
         let pieces = bspline::through(&flat, &widths, closed);
         Ok(pieces.into_iter().zip(widths).enumerate().map(part).collect())
@@ -96,14 +98,15 @@ pub(super) fn directions(points: &[Point], closed: bool) -> Vec<Vec2> {
     let size = legs.iter().map(|l| l.hypot()).fold(0.0, f64::max);
     let unit = |l: &Vec2| (l.hypot() > 1e-9 * size).then(|| *l / l.hypot());
     let mut last = legs.iter().find_map(unit).unwrap_or(Vec2::new(1.0, 0.0));
-    let fill = |l: &Vec2| {
+    let direction = |l: &Vec2| {
         last = unit(l).unwrap_or(last);
         last
     };
-    legs.iter().map(fill).collect()
+    legs.iter().map(direction).collect()
 }
 
-/// Returns the mitre of two unit normals: the vector whose component along either is 1. At turns over a right angle its length stays √2.
+/// Returns the mitre of two unit normals: the vector whose component along either is 1. At turns over a right angle its length stays √2;
+/// where the polygon turns back, it is the first normal.
 pub(super) fn mitre(n: Vec2, m: Vec2) -> Vec2 {
     let c = 1.0 + n.dot(m);
     if c < 1e-9 { n } else { (n + m) / c.max(c.sqrt()) }
@@ -113,8 +116,8 @@ pub(super) fn mitre(n: Vec2, m: Vec2) -> Vec2 {
 fn mitres(points: &[Point], closed: bool) -> Vec<Vec2> {
     let sides: Vec<Vec2> = directions(points, closed).into_iter().map(normal).collect();
     let (n, last) = (points.len(), sides.len() - 1);
-    let at = |i: usize| if closed { sides[(i + n - 1) % n] } else { sides[i.saturating_sub(1)] };
-    (0..n).map(|i| mitre(at(i), sides[i.min(last)])).collect()
+    let before = |i: usize| if closed { sides[(i + n - 1) % n] } else { sides[i.saturating_sub(1)] };
+    (0..n).map(|i| mitre(before(i), sides[i.min(last)])).collect()
 }
 
 #[cfg(test)]

@@ -4,14 +4,15 @@
 //!
 //! Every vertical line meets the inside in intervals. The columns are a sequence of adjacent intervals from left to right, with the
 //! largest area; short thin ends beyond a jump are cut off. Where the outline jumps from one height to another, the lower height
-//! continues level, or a slope leads to the greater one. Rows are the columns of the path with x and y exchanged.
+//! continues level, or a slope leads to the greater one. Rows are the columns of the path with x and y exchanged. In what follows, the
+//! low end of an interval is the one of smaller y, which is the upper one on the screen.
 
-use super::fit::{SAMPLES, bounds, part, reversed, shown, to_unit};
+use super::fit::{SAMPLES, bounds, part, preview, reversed, to_unit};
 use crate::deform::entry::{Built, Role};
 use crate::error::{Error, show};
 use crate::map::{AffineMap, Coons, Pace, Side, Sides, increasing_root};
 use crate::outline::{Outline, Seg, Subpath};
-use kurbo::{Affine, Line, Point, Rect, StrokeOpts, common::solve_quadratic};
+use kurbo::{Affine, Line, Point, Rect, Size, StrokeOpts, common::solve_quadratic};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -26,11 +27,11 @@ const JUMP: f64 = 1e-6;
 /// Exchanges x and y.
 const TRANSPOSED: Affine = Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
 
-/// The room that artwork leaves free in a shape.
+/// The parts of a shape that artwork leaves free.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::deform) struct Room {
+pub(in crate::deform) struct Margins {
     /// The artwork ends in columns lower than this share of the greatest height.
-    pub(super) ends: Option<f64>,
+    pub(super) ends: f64,
     /// The distance between the artwork and the outline.
     pub(super) padding: f64,
 }
@@ -53,9 +54,9 @@ struct Piece {
     from: f64,
     to: f64,
     /// `true` if it was drawn to the left.
-    turned: bool,
-    /// `true` if it bounds the band that `padding` keeps free.
-    band: bool,
+    runs_left: bool,
+    /// `true` if it bounds the band that `padding` keeps free, instead of the shape.
+    bounds_band: bool,
 }
 
 /// A part of a piece: the piece's index and a range of x.
@@ -83,46 +84,48 @@ impl Interval {
     }
 }
 
-/// A vertical line: its x, the neighbouring ends of pieces on both sides, the width that it represents, and its intervals.
+/// A vertical line.
 struct VerticalLine {
     x: f64,
+    /// The neighbouring ends of pieces on both sides.
     between: [f64; 2],
+    /// The width of the column that it represents.
     width: f64,
     intervals: Vec<Interval>,
 }
 
 impl Columns {
-    /// Fills a closed path in columns, or in rows. `None` if `room` leaves nothing.
-    pub(super) fn new(shape: &Subpath, upright: bool, room: &Room) -> Option<Self> {
-        let (padding, ends) = (room.padding, room.ends.unwrap_or(0.0));
+    /// Fills a closed path in columns, or in rows unless `upright`. `None` if the margins leave nothing.
+    pub(super) fn new(shape: &Subpath, upright: bool, margins: &Margins) -> Option<Self> {
+        // The transposition is its own inverse.
         let turn = if upright { Affine::IDENTITY } else { TRANSPOSED };
-        let mut all = Region::new(shape, turn, padding)?;
-        let lines = all.lines();
-        let chosen = largest(&lines)?;
+        let mut region = Region::new(shape, turn, margins.padding)?;
+        let lines = region.lines();
+        let chosen = largest_sequence(&lines)?;
         let area: f64 = lines.iter().map(|l| l.width * l.intervals.iter().map(Interval::height).sum::<f64>()).sum();
-        let mut curves = [0, 1].map(|end| all.traced(&chosen, end));
-        all.trim(&mut curves);
-        let sloping = all.smoothed(curves.clone(), RAMP)?;
-        let level = all.smoothed(curves, 0.0).filter(|l| l.area >= LEVEL * sloping.area);
+        let mut curves = [0, 1].map(|end| region.trace(&chosen, end));
+        region.trim(&mut curves);
+        let sloping = region.smoothed(curves.clone(), RAMP)?;
+        let level = region.smoothed(curves, 0.0).filter(|l| l.area >= LEVEL * sloping.area);
         let best = level.unwrap_or(sloping);
         let SmoothCurves { curves: [low, high], jumps, heights, area: held } = &best;
         let (from, to) = (low.first()?.from, low.last()?.to);
-        let lowest = ends * heights.iter().map(|h| h.1).fold(0.0, f64::max);
-        let height = |x: f64| all.at(high, x) - all.at(low, x) - lowest;
+        let least = margins.ends * heights.iter().map(|h| h.1).fold(0.0, f64::max);
+        let excess = |x: f64| region.y_at(high, x) - region.y_at(low, x) - least;
         let step = (to - from) / heights.len() as f64;
         // Extends an end of a run outwards to where the shape is just high enough.
-        let inner = |end: f64, by: f64| {
+        let extended = |end: f64, by: f64| {
             let beyond = (end + by).clamp(from, to);
-            if height(beyond) >= 0.0 { beyond } else { bisected(beyond, end, height) }
+            if excess(beyond) >= 0.0 { beyond } else { bisect(beyond, end, excess) }
         };
         // Lettering does not run through a waist.
-        let runs = heights.chunk_by(|a, b| (a.1 >= lowest) == (b.1 >= lowest));
+        let runs = heights.chunk_by(|a, b| (a.1 >= least) == (b.1 >= least));
         let size = |run: &[(f64, f64)]| run.iter().map(|h| h.1).sum::<f64>();
-        let run = runs.filter(|r| r[0].1 >= lowest).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let run = runs.filter(|r| r[0].1 >= least).max_by(|a, b| size(a).total_cmp(&size(b)))?;
         let (first, last) = (run[0].0, run[run.len() - 1].0);
-        let range = [inner(first, -step), inner(last, step)].map(|x| (x - from) / (to - from));
-        let back = |c: &[Span]| -> Vec<Seg> { all.cut(c).iter().map(|s| s.transformed(turn)).collect() };
-        let (low, high) = (back(low), back(high));
+        let range = [extended(first, -step), extended(last, step)].map(|x| (x - from) / (to - from));
+        let turned_back = |c: &[Span]| -> Vec<Seg> { region.segments(c).iter().map(|s| s.transformed(turn)).collect() };
+        let (low, high) = (turned_back(low), turned_back(high));
         Some(Self {
             curves: if upright { [high, low] } else { [low, high].map(|c| reversed(&c)) },
             range: if upright { range } else { [1.0 - range[1], 1.0 - range[0]] },
@@ -153,28 +156,28 @@ impl Region {
     pub(super) fn new(shape: &Subpath, turn: Affine, padding: f64) -> Option<Self> {
         let segs: Vec<Seg> = shape.segs.iter().map(|s| s.transformed(turn)).collect();
         let bounds = segs.iter().map(Seg::bounding_box).reduce(|a, b| a.union(b))?;
-        let mut all = Self { pieces: Vec::new(), bounds };
-        all.add(&segs, false);
+        let mut region = Self { pieces: Vec::new(), bounds };
+        region.add(&segs, false);
         if padding > 0.0 {
-            all.add(&band(&segs, padding, bounds), true);
+            region.add(&padding_band(&segs, padding, bounds), true);
         }
-        Some(all)
+        Some(region)
     }
 
     /// Returns the intervals of a vertical line that are inside, in the order of y.
     pub(super) fn spans(&self, x: f64) -> Vec<[f64; 2]> {
-        self.intervals(&self.crossed(x), x).iter().map(|v| v.ys).collect()
+        self.intervals(&self.pieces_at(x), x).iter().map(|v| v.ys).collect()
     }
 
     /// Returns the indices of the pieces that a vertical line crosses.
-    fn crossed(&self, x: f64) -> Vec<usize> {
+    fn pieces_at(&self, x: f64) -> Vec<usize> {
         (0..self.pieces.len()).filter(|i| (self.pieces[*i].from..self.pieces[*i].to).contains(&x)).collect()
     }
 
     /// Adds an outline, cut where its direction along x changes.
-    fn add(&mut self, segs: &[Seg], band: bool) {
+    fn add(&mut self, segs: &[Seg], bounds_band: bool) {
         for s in segs {
-            let mut ts = turns(s);
+            let mut ts = vertical_tangents(s);
             ts.retain(|t| *t > 1e-9 && *t < 1.0 - 1e-9);
             ts.sort_by(f64::total_cmp);
             ts.insert(0, 0.0);
@@ -183,9 +186,9 @@ impl Region {
                 let part = part(s, t[0], t[1]);
                 let (a, b) = (part.start().x, part.end().x);
                 if (b - a).abs() > 1e-12 * self.bounds.width() {
-                    let turned = b < a;
-                    let seg = if turned { part.reversed() } else { part };
-                    self.pieces.push(Piece { seg, from: a.min(b), to: a.max(b), turned, band });
+                    let runs_left = b < a;
+                    let seg = if runs_left { part.reversed() } else { part };
+                    self.pieces.push(Piece { seg, from: a.min(b), to: a.max(b), runs_left, bounds_band });
                 }
             }
         }
@@ -199,7 +202,7 @@ impl Region {
         let mut out = Vec::new();
         for e in events.windows(2) {
             let middle = 0.5 * (e[0] + e[1]);
-            let here = self.crossed(middle);
+            let here = self.pieces_at(middle);
             let n = (COLUMNS * (e[1] - e[0]) / self.bounds.width()).ceil().max(1.0);
             let width = (e[1] - e[0]) / n;
             for i in 0..n as u32 {
@@ -210,15 +213,16 @@ impl Region {
         out
     }
 
-    /// Returns the intervals of a vertical line that are inside the shape and outside the band.
+    /// Returns the intervals of a vertical line that are inside the shape and outside the band. The line crosses the pieces `here`.
     fn intervals(&self, here: &[usize], x: f64) -> Vec<Interval> {
-        let mut crossed: Vec<(f64, usize)> = here.iter().map(|i| (self.pieces[*i].y(x), *i)).collect();
-        crossed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut crossings: Vec<(f64, usize)> = here.iter().map(|i| (self.pieces[*i].y(x), *i)).collect();
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // The winding numbers of both outlines.
         let (mut shape, mut band, mut start, mut out) = (0, 0, None, Vec::new());
-        for (y, i) in crossed {
+        for (y, i) in crossings {
             let p = &self.pieces[i];
-            let winding = if p.band { &mut band } else { &mut shape };
-            *winding += if p.turned { -1 } else { 1 };
+            let winding = if p.bounds_band { &mut band } else { &mut shape };
+            *winding += if p.runs_left { -1 } else { 1 };
             match (shape != 0 && band == 0, start) {
                 (true, None) => start = Some((y, i)),
                 (false, Some((from, first))) => {
@@ -233,7 +237,7 @@ impl Region {
     }
 
     /// Returns the low (0) or high (1) ends of the chosen intervals as parts of pieces.
-    fn traced(&self, chosen: &[(&VerticalLine, Interval)], end: usize) -> Vec<Span> {
+    fn trace(&self, chosen: &[(&VerticalLine, Interval)], end: usize) -> Vec<Span> {
         let mut out: Vec<Span> = Vec::new();
         let (first, last) = (&chosen[0], &chosen[chosen.len() - 1]);
         let mut from = self.outer_end(first, first.0.between[0]);
@@ -241,11 +245,13 @@ impl Region {
             let ((l, a), (m, b)) = (&w[0], &w[1]);
             let (i, j) = (a.ends[end], b.ends[end]);
             if i != j {
+                // One piece follows the other where one of them ends, or where they cross.
                 let event = l.between[1];
-                let near = |x: f64| (x - event).abs() <= 1e-10 * self.bounds.width();
+                let is_event = |x: f64| (x - event).abs() <= 1e-10 * self.bounds.width();
                 let over = |x: f64| self.pieces[i].y(x) - self.pieces[j].y(x);
-                let ends_here = l.between != m.between && (near(self.pieces[i].to) || near(self.pieces[j].from));
-                let to = if ends_here { event } else { bisected(l.x, m.x, |x| over(x) * over(m.x)) };
+                let ends_here =
+                    l.between != m.between && (is_event(self.pieces[i].to) || is_event(self.pieces[j].from));
+                let to = if ends_here { event } else { bisect(l.x, m.x, |x| over(x) * over(m.x)) };
                 out.push(Span { piece: i, from, to });
                 from = to;
             }
@@ -257,16 +263,16 @@ impl Region {
     /// Returns the x at which an outermost interval ends: the neighbouring event, or a crossing of its two pieces before that.
     fn outer_end(&self, (line, v): &(&VerticalLine, Interval), event: f64) -> f64 {
         let height = |x: f64| self.pieces[v.ends[1]].y(x) - self.pieces[v.ends[0]].y(x);
-        if height(event) >= -1e-9 * self.bounds.height() { event } else { bisected(event, line.x, height) }
+        if height(event) >= -1e-9 * self.bounds.height() { event } else { bisect(event, line.x, height) }
     }
 
     /// Cuts off short and thin ends of two curves beyond a jump or a steep step.
     fn trim(&self, curves: &mut [Vec<Span>; 2]) {
         /// Greatest length of an end, as a share of the range.
         const SHORT: f64 = 0.25;
-        /// Greatest height of an end, as a share of the height on the other side of the jump, and of the step.
-        const THIN: f64 = 0.55;
-        const LOW: f64 = 0.85;
+        /// Greatest height of an end, as a share of the height on the other side: beyond a jump, and beyond a steep step.
+        const THIN_AT_JUMP: f64 = 0.55;
+        const THIN_AT_STEP: f64 = 0.85;
         /// Heights at a step are compared at this share of its distance from the end, on both sides.
         const BESIDE: f64 = 0.25;
         let (start, stop) = (curves[0][0].from, curves[0][curves[0].len() - 1].to);
@@ -275,21 +281,22 @@ impl Region {
             for w in curves.iter().flat_map(|c| c.windows(2)) {
                 let y = |s: &Span, x: f64| self.pieces[s.piece].y(x);
                 let jump = (y(&w[0], w[0].to) - y(&w[1], w[1].from)).abs() > JUMP * self.bounds.height();
-                let outer = if right { (&w[1], w[1].from) } else { (&w[0], w[0].to) };
-                let p = &self.pieces[outer.0.piece];
-                let v = p.seg.deriv(p.parameter(outer.1));
-                if jump || v.x.abs() <= 1e-6 * v.y.abs() {
+                let (outer, x) = if right { (&w[1], w[1].from) } else { (&w[0], w[0].to) };
+                let p = &self.pieces[outer.piece];
+                let v = p.seg.deriv(p.parameter(x));
+                let is_steep = v.x.abs() <= 1e-6 * v.y.abs();
+                if jump || is_steep {
                     steps.push((w[0].to, jump));
                 }
             }
             let beyond = |x: f64| if right { stop - x } else { x - start };
             steps.retain(|s| beyond(s.0) <= SHORT * (stop - start));
             steps.sort_by(|a, b| beyond(b.0).total_cmp(&beyond(a.0)));
-            let height = |x: f64| self.at(&curves[1], x) - self.at(&curves[0], x);
+            let height = |x: f64| self.y_at(&curves[1], x) - self.y_at(&curves[0], x);
             let cut = steps.into_iter().find(|(x, jump)| {
                 let aside = if *jump { 1e-6 * (stop - start) } else { BESIDE * beyond(*x) };
                 let aside = if right { aside } else { -aside };
-                height(x + aside) <= if *jump { THIN } else { LOW } * height(x - aside)
+                height(x + aside) <= if *jump { THIN_AT_JUMP } else { THIN_AT_STEP } * height(x - aside)
             });
             let Some((x, _)) = cut else { continue };
             for c in curves.iter_mut() {
@@ -301,91 +308,81 @@ impl Region {
         }
     }
 
-    /// Replaces the jumps of two curves by slopes. `None` if the curves meet.
-    fn smoothed(&mut self, mut curves: [Vec<Span>; 2], ramp: f64) -> Option<SmoothCurves> {
+    /// Replaces the jumps of two curves by slopes, in heights of the shape per width. `None` if the curves meet.
+    fn smoothed(&mut self, mut curves: [Vec<Span>; 2], slope: f64) -> Option<SmoothCurves> {
         let mut jumps = Vec::new();
-        for (curve, out) in curves.iter_mut().zip([-1.0, 1.0]) {
-            self.smooth(curve, out, ramp, &mut jumps);
+        for (curve, sign) in curves.iter_mut().zip([-1.0, 1.0]) {
+            self.smooth(curve, sign, slope, &mut jumps);
         }
         let [low, high] = &curves;
         let (from, to) = (low.first()?.from, low.last()?.to);
-        let heights = self.heights(low, high, from, to);
+        // In the middles of equal parts of the range.
+        let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
+        let heights: Vec<(f64, f64)> = xs.map(|x| (x, self.y_at(high, x) - self.y_at(low, x))).collect();
         let area = heights.iter().map(|h| h.1).sum::<f64>() * (to - from) / heights.len() as f64;
         heights.iter().all(|h| h.1 > 0.0).then_some(SmoothCurves { curves, jumps, heights, area })
     }
 
-    /// Replaces the jumps of a curve by slopes; `out` is −1 for the low and 1 for the high curve.
-    fn smooth(&mut self, curve: &mut Vec<Span>, out: f64, ramp: f64, jumps: &mut Vec<Point>) {
+    /// Replaces the jumps of a curve by slopes; `sign` is −1 for the low and 1 for the high curve.
+    fn smooth(&mut self, curve: &mut Vec<Span>, sign: f64, slope: f64, jumps: &mut Vec<Point>) {
         /// Limit on the jumps, as a slope may meet another one.
         const MAX_JUMPS: usize = 100;
         for _ in 0..MAX_JUMPS {
-            let g = |me: &Self, s: &Span, x: f64| out * me.pieces[s.piece].y(x);
+            // Ordinates count from the inside of the shape outwards.
+            let outward = |region: &Self, s: &Span, x: f64| sign * region.pieces[s.piece].y(x);
             let jump = curve.windows(2).enumerate().find_map(|(i, w)| {
-                let (a, b) = (g(self, &w[0], w[0].to), g(self, &w[1], w[1].from));
+                let (a, b) = (outward(self, &w[0], w[0].to), outward(self, &w[1], w[1].from));
                 ((a - b).abs() > JUMP * self.bounds.height()).then_some((i, w[0].to, a, b))
             });
             let Some((i, x, a, b)) = jump else { return };
-            let start = Point::new(x, out * a.min(b));
+            let start = Point::new(x, sign * a.min(b));
             jumps.push(start);
             // The slope runs outwards into the higher part, until it leaves it.
-            let (right, slope) = (b > a, ramp * self.bounds.height() / self.bounds.width());
-            let mut rest: Vec<Span> = if right { curve.split_off(i + 1) } else { curve.drain(..=i).rev().collect() };
-            let line = |x1: f64| out * start.y + slope * (x1 - x).abs();
-            let mut met = rest.last().map_or(x, |s| if right { s.to } else { s.from });
-            let mut kept = rest.len();
-            for (k, s) in rest.iter_mut().enumerate() {
+            let (right, slope) = (b > a, slope * self.bounds.height() / self.bounds.width());
+            let mut higher: Vec<Span> = if right { curve.split_off(i + 1) } else { curve.drain(..=i).rev().collect() };
+            let line = |x1: f64| sign * start.y + slope * (x1 - x).abs();
+            let mut meeting = higher.last().map_or(x, |s| if right { s.to } else { s.from });
+            let mut first_kept = higher.len();
+            for (k, s) in higher.iter_mut().enumerate() {
                 let (near, far) = if right { (s.from, s.to) } else { (s.to, s.from) };
-                let over = |x1: f64| g(self, s, x1) - line(x1);
-                let at = |n: u32| near + (far - near) * f64::from(n) / f64::from(SAMPLES);
+                let over = |x1: f64| outward(self, s, x1) - line(x1);
+                let sample = |n: u32| near + (far - near) * f64::from(n) / f64::from(SAMPLES);
                 let first = u32::from(k == 0);
-                let Some(n) = (first..=SAMPLES).find(|n| over(at(*n)) <= 0.0) else { continue };
-                met = if n == 0 { near } else { bisected(at(n - 1), at(n), over) };
-                if right {
-                    s.from = met;
-                } else {
-                    s.to = met;
-                }
-                kept = k;
+                let Some(n) = (first..=SAMPLES).find(|n| over(sample(*n)) <= 0.0) else { continue };
+                meeting = if n == 0 { near } else { bisect(sample(n - 1), sample(n), over) };
+                *if right { &mut s.from } else { &mut s.to } = meeting;
+                first_kept = k;
                 break;
             }
-            let seg = Seg::Line(Line::new(start, (met, out * line(met))));
+            let seg = Seg::Line(Line::new(start, (meeting, sign * line(meeting))));
             let seg = if right { seg } else { seg.reversed() };
-            let (from, to) = (x.min(met), x.max(met));
+            let (from, to) = (x.min(meeting), x.max(meeting));
             let ramp = Span { piece: self.pieces.len(), from, to };
-            self.pieces.push(Piece { seg, from, to, turned: false, band: false });
-            let rest = rest.into_iter().skip(kept).filter(|s| s.to > s.from);
+            self.pieces.push(Piece { seg, from, to, runs_left: false, bounds_band: false });
+            let kept = higher.into_iter().skip(first_kept).filter(|s| s.to > s.from);
             if right {
                 curve.push(ramp);
-                curve.extend(rest);
+                curve.extend(kept);
             } else {
-                let mut left: Vec<Span> = rest.collect();
-                left.reverse();
-                left.push(ramp);
-                left.append(curve);
-                *curve = left;
+                let kept: Vec<Span> = kept.collect();
+                curve.splice(0..0, kept.into_iter().rev().chain([ramp]));
             }
         }
     }
 
-    /// Returns the heights between two curves, in the middles of equal parts of their range.
-    fn heights(&self, low: &[Span], high: &[Span], from: f64, to: f64) -> Vec<(f64, f64)> {
-        let xs = (0..COLUMNS as u32).map(|i| from + (to - from) * (f64::from(i) + 0.5) / COLUMNS);
-        xs.map(|x| (x, self.at(high, x) - self.at(low, x))).collect()
-    }
-
     /// Returns the y of a curve at `x`.
-    fn at(&self, curve: &[Span], x: f64) -> f64 {
+    fn y_at(&self, curve: &[Span], x: f64) -> f64 {
         let k = curve.partition_point(|s| s.to < x).min(curve.len() - 1);
         self.pieces[curve[k].piece].y(x)
     }
 
     /// Returns the segments of a curve.
-    fn cut(&self, curve: &[Span]) -> Vec<Seg> {
-        let one = |s: &Span| {
+    fn segments(&self, curve: &[Span]) -> Vec<Seg> {
+        let segment = |s: &Span| {
             let p = &self.pieces[s.piece];
             part(&p.seg, p.parameter(s.from), p.parameter(s.to))
         };
-        let mut out: Vec<Seg> = curve.iter().filter(|s| s.to > s.from).map(one).collect();
+        let mut out: Vec<Seg> = curve.iter().filter(|s| s.to > s.from).map(segment).collect();
         // Neighbours must meet to the last bit.
         for k in 1..out.len() {
             out[k - 1] = crate::anchors::ending_at(&out[k - 1], out[k].start());
@@ -418,34 +415,31 @@ impl Piece {
 }
 
 /// Returns the sequence of adjacent intervals from left to right that has the largest area.
-fn largest(lines: &[VerticalLine]) -> Option<Vec<(&VerticalLine, Interval)>> {
+fn largest_sequence(lines: &[VerticalLine]) -> Option<Vec<(&VerticalLine, Interval)>> {
     // For every interval, the largest area of a sequence that begins with it, and the next interval of that sequence.
     let mut best: Vec<Vec<(f64, Option<usize>)>> = vec![Vec::new(); lines.len()];
     for k in (0..lines.len()).rev() {
-        let follow = |v: &Interval| {
+        let with_next = |v: &Interval| {
             let next = lines.get(k + 1).into_iter().flat_map(|l| l.intervals.iter().enumerate());
             let next = next.filter(|(_, w)| v.overlaps(w)).map(|(j, _)| (best[k + 1][j].0, j));
-            next.max_by(|a, b| a.0.total_cmp(&b.0))
-        };
-        let here = lines[k].intervals.iter().map(|v| {
-            let next = follow(v);
+            let next = next.max_by(|a, b| a.0.total_cmp(&b.0));
             (lines[k].width * v.height() + next.map_or(0.0, |n| n.0), next.map(|n| n.1))
-        });
-        best[k] = here.collect();
+        };
+        best[k] = lines[k].intervals.iter().map(with_next).collect();
     }
     let starts = best.iter().enumerate().flat_map(|(k, b)| b.iter().enumerate().map(move |(i, v)| (v.0, k, i)));
-    let (_, mut k, i) = starts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (mut out, mut at) = (Vec::new(), Some(i));
-    while let Some(i) = at {
+    let (_, mut k, first) = starts.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (mut out, mut next) = (Vec::new(), Some(first));
+    while let Some(i) = next {
         out.push((&lines[k], lines[k].intervals[i]));
-        at = best[k][i].1;
+        next = best[k][i].1;
         k += 1;
     }
     Some(out)
 }
 
 /// Returns the outline of the band that `padding` keeps free along an outline.
-fn band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
+fn padding_band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
     let tolerance = 1e-5 * (bounds.width() + bounds.height());
     let start = segs.first().map_or(Point::ORIGIN, Seg::start);
     let outline = Outline { subpaths: vec![Subpath { start, segs: segs.to_vec(), closed: true }] };
@@ -455,7 +449,7 @@ fn band(segs: &[Seg], padding: f64, bounds: Rect) -> Vec<Seg> {
 }
 
 /// Returns the parameters at which a segment's direction along x may change.
-fn turns(s: &Seg) -> Vec<f64> {
+fn vertical_tangents(s: &Seg) -> Vec<f64> {
     match s {
         Seg::Line(_) => Vec::new(),
         Seg::Quad(q) => {
@@ -476,7 +470,7 @@ fn turns(s: &Seg) -> Vec<f64> {
 }
 
 /// Returns the zero between `a` and `b` of a function that is positive at one end only.
-pub(super) fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn bisect(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(b) > 0.0;
     // Sixty halvings exhaust double precision.
     for _ in 0..60 {
@@ -486,60 +480,52 @@ pub(super) fn bisected(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (a + b)
 }
 
-pub(super) fn nothing(shape: &Subpath) -> Error {
-    let b = bounds(shape);
-    let problem = format!(
-        "leaves no room: the shape is {:.6} × {:.6}; take less `padding` or smaller `ends`",
-        b.width(),
-        b.height()
-    );
+/// Returns the error for a shape of which the margins leave nothing.
+pub(super) fn no_room(shape: &Subpath) -> Error {
+    let Size { width, height } = bounds(shape).size();
+    let problem =
+        format!("leaves no room: the shape is {width:.6} × {height:.6}; take less `padding` or smaller `ends`");
     Error::usage("envelope", "the shape", problem)
 }
 
 /// Builds the map of a box into the columns (or the rows) of a closed path.
-pub(super) fn filled(frame: Rect, shape: &Subpath, upright: bool, room: &Room) -> Result<Built, Error> {
-    let ends = room.ends.unwrap_or(0.0);
-    let c = Columns::new(shape, upright, room).ok_or_else(|| nothing(shape))?;
+pub(super) fn fill(frame: Rect, shape: &Subpath, upright: bool, margins: &Margins) -> Result<Built, Error> {
+    let c = Columns::new(shape, upright, margins).ok_or_else(|| no_room(shape))?;
     let pace = if upright { Pace::Width } else { Pace::Height };
     let [a, b] = c.curves.each_ref().map(|s| Side::new(s, pace));
-    let (Some(a), Some(b)) = (a, b) else { return Err(nothing(shape)) };
+    let (Some(a), Some(b)) = (a, b) else { return Err(no_room(shape)) };
     let ([a0, a1], [b0, b1]) = (a.ends(), b.ends());
     let (first, last) = (Side::straight(a0, b0), Side::straight(a1, b1));
     let [from, to] = c.range;
-    let unit = to_unit(frame);
-    let (pre, sides) = if upright {
-        let pre = Affine::new([to - from, 0.0, 0.0, 1.0, from, 0.0]);
-        (pre * unit, Sides { bottom: a, top: b, left: first, right: last })
+    let (to_range, sides) = if upright {
+        let to_range = Affine::new([to - from, 0.0, 0.0, 1.0, from, 0.0]);
+        (to_range, Sides { bottom: a, top: b, left: first, right: last })
     } else {
-        let pre = Affine::new([1.0, 0.0, 0.0, to - from, 0.0, from]);
-        (pre * unit, Sides { left: a, right: b, bottom: first, top: last })
+        let to_range = Affine::new([1.0, 0.0, 0.0, to - from, 0.0, from]);
+        (to_range, Sides { left: a, right: b, bottom: first, top: last })
     };
     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
     let (what, lines) = if upright { ("columns", "verticals") } else { ("rows", "horizontals") };
-    let (length, place) = if upright { ("height", "x") } else { ("width", "y") };
-    let corner = |p: Point| if upright { p.x } else { p.y };
-    let at = |s: f64| corner(a0) + s * (corner(a1) - corner(a0));
+    let (length, axis) = if upright { ("height", "x") } else { ("width", "y") };
+    let coordinate = |p: Point| if upright { p.x } else { p.y };
+    let [first, last] = c.range.map(|s| coordinate(a0) + s * (coordinate(a1) - coordinate(a0)));
+    let ends = 100.0 * margins.ends;
     built.note(format!(
-        "filled in {what}, {lines} kept: from {place} = {:.6} to {:.6}, where the shape is still {:.0} % of its greatest {length}",
-        at(from),
-        at(to),
-        100.0 * ends
+        "filled in {what}, {lines} kept: from {axis} = {first:.6} to {last:.6}, where the shape is still {ends:.0} % of its greatest \
+{length}"
     ));
-    if room.padding == 0.0 && c.coverage < 1.0 - 1e-3 {
-        built.note(format!(
-            "the {what} hold {:.0} % of the shape: elsewhere such lines would leave it",
-            100.0 * c.coverage
-        ));
+    if margins.padding == 0.0 && c.coverage < 1.0 - 1e-3 {
+        let held = 100.0 * c.coverage;
+        built.note(format!("the {what} hold {held:.0} % of the shape: elsewhere such lines would leave it"));
     }
     if !c.jumps.is_empty() {
-        let places: Vec<String> = c.jumps.iter().map(|p| show(*p)).collect();
+        let jumps = c.jumps.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" and ");
         built.warn(format!(
-            "envelope: the outline jumps at {}, where no {what} can follow it: part of the shape stays empty there; `--keep nothing` bends the \
-artwork round instead",
-            places.join(" and ")
+            "envelope: the outline jumps at {jumps}, where no {what} can follow it: part of the shape stays empty there; `--keep nothing` \
+bends the artwork round instead"
         ));
     }
-    built.overlay(Role::Cage, shown(shape));
-    built.map = Coons::new(sides, pre).simplest();
+    built.overlay(Role::Cage, preview(shape));
+    built.map = Coons::new(sides, to_range * to_unit(frame)).simplest();
     Ok(built)
 }

@@ -5,23 +5,23 @@ use kurbo::{Point, Vec2};
 
 /// Returns `n` × `n` points of the unit square, in the middles of equal cells.
 pub(super) fn grid(n: u32) -> impl Iterator<Item = Point> {
-    let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
-    (0..n * n).map(move |k| Point::new(at(k % n), at(k / n)))
+    let middle = move |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+    (0..n * n).map(move |k| Point::new(middle(k % n), middle(k / n)))
 }
 
 /// Returns the sum of the squared logarithms of both [`stretches`], averaged over all points.
 pub(super) fn distortion(jets: &[Jet]) -> f64 {
     /// The limit at a point, reached at folds and where the artwork is squeezed to nothing.
     const MAX: f64 = 100.0;
-    let one = |[a, b]: [f64; 2]| {
+    let at_point = |[a, b]: [f64; 2]| {
         let d = a.ln().powi(2) + b.ln().powi(2);
         if b > 0.0 && d < MAX { d } else { MAX }
     };
-    stretches(jets).into_iter().map(one).sum::<f64>() / jets.len() as f64
+    stretches(jets).into_iter().map(at_point).sum::<f64>() / jets.len() as f64
 }
 
 /// Returns the cost of turning a box, from the images of its corners (bottom left, bottom right, top right, top left) with y downwards.
-pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
+pub(super) fn turning_cost([a, b, c, d]: [Point; 4]) -> f64 {
     /// The cost of a radian.
     const RADIAN: f64 = 2.0;
     let (right, down) = ((b - a) + (c - d), (a - d) + (b - c));
@@ -33,11 +33,11 @@ pub(super) fn turned([a, b, c, d]: [Point; 4]) -> f64 {
 pub(super) fn stretches(jets: &[Jet]) -> Vec<[f64; 2]> {
     let mean = |v: fn(&Jet) -> Vec2| jets.iter().map(|j| v(j).hypot()).sum::<f64>() / jets.len() as f64;
     let (x, y) = (mean(|j| j.dx), mean(|j| j.dy));
-    let one = |j: &Jet| {
+    let singular_values = |j: &Jet| {
         let (dx, dy) = (j.dx / x, j.dy / y);
-        // The singular values are the sum and the difference of the conformal and the anticonformal part, halved.
+        // They are the sum and the difference of the conformal and the anticonformal part, halved.
         let (c, a) = ((dx.x + dy.y).hypot(dx.y - dy.x), (dx.x - dy.y).hypot(dx.y + dy.x));
         [0.5 * (c + a), 0.5 * (c - a)]
     };
-    jets.iter().map(one).collect()
+    jets.iter().map(singular_values).collect()
 }

@@ -1,5 +1,6 @@
-//! The Coons patch of a box into a ring of four sides.
+//! The Coons patch of a box into a ring of four sides, with warnings where sides cross or the map folds.
 
+use super::distortion::grid;
 use crate::anchors;
 use crate::deform::entry::{Built, Role};
 use crate::error::{Error, show};
@@ -46,11 +47,11 @@ choice! {
 }
 
 impl Spread {
-    /// Returns the pace along a side, which lies or stands.
-    fn pace(self, lying: bool) -> Pace {
+    /// Returns the pace along a side: bottom and top if `horizontal`, or left and right.
+    fn pace(self, horizontal: bool) -> Pace {
         match self {
             Self::Parameter => Pace::Parameter,
-            Self::Extent if lying => Pace::Width,
+            Self::Extent if horizontal => Pace::Width,
             Self::Extent => Pace::Height,
             Self::Length => Pace::Length,
         }
@@ -62,11 +63,10 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
     let anchors::Anchors::Four(from) = anchors::frame_corners(&Frame::new(frame))? else {
         return Err(no_length("frame"));
     };
-    let pre = to_unit(frame);
     let mut built = Built::new(Arc::new(AffineMap::IDENTITY));
     built.explanation.notes.clone_from(&ring.notes);
     built.explanation.warnings.clone_from(&ring.warnings);
-    built.overlay(Role::Cage, ring.path());
+    built.overlay(Role::Cage, preview(&ring.closed()));
 
     if keep == Keep::Lines {
         for (side, name) in ring.sides.iter().zip(SIDES) {
@@ -78,11 +78,12 @@ pub(in crate::deform) fn fit(frame: Rect, ring: &Ring, keep: Keep, spread: Optio
         return Ok(built);
     }
 
-    let map = Coons::new(paced(ring, spread, keep, &mut built)?, pre);
-    let inverse = Affine::new([frame.width(), 0.0, 0.0, -frame.height(), frame.x0, frame.y1]);
-    built.explanation.warnings.extend(warnings(&map, inverse));
-    let map = map.simplest();
-    built.map = anchors::settled(map, frame);
+    let map = Coons::new(sides_at_pace(ring, spread, keep, &mut built)?, to_unit(frame));
+    let from_unit = Affine::new([frame.width(), 0.0, 0.0, -frame.height(), frame.x0, frame.y1]);
+    let s = map.sides();
+    built.explanation.warnings.extend(crossings([&s.bottom, &s.right, &s.top, &s.left]));
+    built.explanation.warnings.extend(fold_warning(&map, from_unit));
+    built.map = anchors::settled(map.simplest(), frame);
     Ok(built)
 }
 
@@ -92,13 +93,13 @@ pub(super) fn to_unit(frame: Rect) -> Affine {
     Affine::new([1.0 / w, 0.0, 0.0, -1.0 / h, -frame.x0 / w, frame.y1 / h])
 }
 
-/// Returns the sides, parametrised at their pace, with straight ones where `keep` needs them.
-pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut Built) -> Result<Sides, Error> {
+/// Returns the sides, parametrised at the `given` pace or at the one that suits `keep`, with straight ones where `keep` needs them.
+pub(super) fn sides_at_pace(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut Built) -> Result<Sides, Error> {
     let [bottom, right, top, left] = &ring.sides;
     let (top, left) = (reversed(top), reversed(left));
     let spread = given.unwrap_or(Spread::Length);
-    let side = |c: &[Seg], k: usize, lying: bool| {
-        let pace = spread.pace(lying);
+    let side = |c: &[Seg], k: usize, horizontal: bool| {
+        let pace = spread.pace(horizontal);
         Side::new(c, pace).ok_or_else(|| no_pace(SIDES[k], pace, spread))
     };
     let straight = |c: &[Seg], k: usize| {
@@ -108,7 +109,7 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
         let ends = c.first().zip(c.last()).map(|(a, b)| (a.start(), b.end()));
         ends.map(|(a, b)| Side::straight(a, b)).ok_or_else(|| no_length(SIDES[k]))
     };
-    let (lying, axis) = match keep {
+    let (horizontal, axis) = match keep {
         Keep::Verticals => (true, Pace::Width),
         Keep::Horizontals => (false, Pace::Height),
         Keep::Auto | Keep::Nothing | Keep::Lines => {
@@ -121,39 +122,40 @@ pub(super) fn paced(ring: &Ring, given: Option<Spread>, keep: Keep, built: &mut 
         }
     };
     // The kept lines run between a pair of curves; the other two sides are kept lines, too.
-    let (pair, names) = if lying { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
-    let exact = if given.is_some() { None } else { Side::new(pair[0], axis).zip(Side::new(pair[1], axis)) };
+    let ([c, d], [i, j]) = if horizontal { ([bottom, &top], [0, 2]) } else { ([&left, right], [3, 1]) };
+    // At even steps along the axis, lines do not lean; a curve that turns back has none.
+    let exact = if given.is_some() { None } else { Side::new(c, axis).zip(Side::new(d, axis)) };
     let (a, b) = match exact {
         Some(pair) => pair,
-        None => (side(pair[0], names[0], lying)?, side(pair[1], names[1], lying)?),
+        None => (side(c, i, horizontal)?, side(d, j, horizontal)?),
     };
-    let lean = lean(&a, &b, lying);
-    let what = if lying { "verticals" } else { "horizontals" };
-    built.note(format!(
-        "kept: {what} are straight and lean by at most {lean:.3}°, by the ruled map between the two curves"
-    ));
+    let lean = lean(&a, &b, horizontal);
+    let what = if horizontal { "verticals" } else { "horizontals" };
+    let note =
+        format!("kept: {what} are straight and lean by at most {lean:.3}°, by the ruled map between the two curves");
+    built.note(note);
     if given.is_none() && lean >= VISIBLE_LEAN {
         built.warn(format!(
             "envelope: {what} stay straight but lean by up to {lean:.1}°: a curve turns back, or the curves do not span the same range"
         ));
     }
-    Ok(if lying {
+    Ok(if horizontal {
         Sides { bottom: a, top: b, right: straight(right, 1)?, left: straight(&left, 3)? }
     } else {
         Sides { left: a, right: b, bottom: straight(bottom, 0)?, top: straight(&top, 2)? }
     })
 }
 
-/// Returns the largest lean of the lines between two curves, degrees.
-fn lean(a: &Side, b: &Side, lying: bool) -> f64 {
+/// Returns the largest angle of the lines between two curves with the vertical, or between vertical curves with the horizontal, in degrees.
+fn lean(a: &Side, b: &Side, horizontal: bool) -> f64 {
     const SAMPLES: u32 = 256;
-    let one = |i: u32| {
+    let angle = |i: u32| {
         let u = f64::from(i) / f64::from(SAMPLES);
         let v = b.at(u).0 - a.at(u).0;
-        let (off, along) = if lying { (v.x, v.y) } else { (v.y, v.x) };
-        off.abs().atan2(along.abs()).to_degrees()
+        let (across, along) = if horizontal { (v.x, v.y) } else { (v.y, v.x) };
+        across.abs().atan2(along.abs()).to_degrees()
     };
-    (0..=SAMPLES).map(one).fold(0.0, f64::max)
+    (0..=SAMPLES).map(angle).fold(0.0, f64::max)
 }
 
 /// Returns `true` if a side of a ring is not straight.
@@ -164,12 +166,13 @@ pub(super) fn is_curved(ring: &Ring, k: usize) -> bool {
 /// Refuses a curved side; a side without length is accepted. `what` begins the message.
 fn demand_straight(c: &[Seg], name: &str, what: &str) -> Result<(), Error> {
     let Some(side) = Side::new(c, Pace::Length) else { return Ok(()) };
-    let (off, at) = side.off_straight();
-    if off <= STRAIGHT * side.length() {
+    let (distance, at) = side.farthest_from_chord();
+    if distance <= STRAIGHT * side.length() {
         return Ok(());
     }
+    let at = show(at);
     let problem =
-        format!("{what}; the {name} side is curved: near {} it is {off:.6} off the line between its ends", show(at));
+        format!("{what}; the {name} side is curved: near {at} it is {distance:.6} off the line between its ends");
     Err(Error::advised("keep", "the envelope", problem, ". No map keeps such lines then: omit `keep`"))
 }
 
@@ -177,6 +180,7 @@ fn no_length(name: &str) -> Error {
     Error::usage("envelope", format!("the {name} side"), "has no length")
 }
 
+/// Returns the error for a side that has no parametrisation at a pace.
 fn no_pace(name: &str, pace: Pace, spread: Spread) -> Error {
     if !matches!(pace, Pace::Width | Pace::Height) {
         return no_length(name);
@@ -187,8 +191,6 @@ fn no_pace(name: &str, pace: Pace, spread: Spread) -> Error {
     Error::usage("by", spread.name(), problem)
 }
 
-// Warnings about an envelope: sides that cross, and folds of the map.
-
 /// Chords per side.
 const CHORDS: u32 = 400;
 /// Chords per block. Only blocks whose box is met are searched.
@@ -198,38 +200,27 @@ const ROUNDING: f64 = 1e-9;
 /// Samples of the map's determinant along an axis.
 const GRID: u32 = 64;
 
-/// Returns warnings about crossings and folds. `inverse` takes the unit square to the source.
-fn warnings(map: &Coons, inverse: Affine) -> Vec<String> {
-    let s = map.sides();
-    let sides = [&s.bottom, &s.right, &s.top, &s.left];
-    let mut out = crossings(sides);
-    out.extend(fold(map, inverse));
-    out
-}
-
+/// Warns of sides, in the order of [`SIDES`], that cross one another or themselves.
 fn crossings(sides: [&Side; 4]) -> Vec<String> {
     let size = sides[0].length() + sides[2].length();
     let chords = sides.map(|s| Chords::new(s, ROUNDING * size));
     let mut out = Vec::new();
     for i in 0..4 {
         for j in i..4 {
-            let meets = |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
+            let is_end =
+                |p: Point| sides[i].ends().iter().chain(&sides[j].ends()).any(|e| e.distance(p) <= 1e-6 * size);
             let pairs = chords[i].all.iter().enumerate().flat_map(|(k, a)| {
                 // Within a side, each pair of chords is compared once, without neighbours.
                 let from = if i == j { k + 2 } else { 0 };
                 chords[j].near(a, from).map(move |b| (a, b))
             });
-            let found = pairs.filter_map(|(a, b)| crossing(a, b)).find(|p| !meets(*p));
-            if let Some(at) = found {
+            if let Some(at) = pairs.filter_map(|(a, b)| crossing(a, b)).find(|p| !is_end(*p)).map(show) {
                 let what = if i == j {
                     format!("the {} side crosses itself", SIDES[i])
                 } else {
                     format!("the {} and the {} side cross", SIDES[i], SIDES[j])
                 };
-                out.push(format!(
-                    "envelope: {what} near {}: the artwork folds over there; move the curves apart",
-                    show(at)
-                ));
+                out.push(format!("envelope: {what} near {at}: the artwork folds over there; move the curves apart"));
             }
         }
     }
@@ -244,15 +235,15 @@ struct Chords {
 }
 
 impl Chords {
-    /// Cuts a side into chords. Boxes are enlarged by `room`.
-    fn new(side: &Side, room: f64) -> Self {
+    /// Cuts a side into chords. Boxes are enlarged by `margin`.
+    fn new(side: &Side, margin: f64) -> Self {
         let points: Vec<Point> = (0..=CHORDS).map(|i| side.at(f64::from(i) / f64::from(CHORDS)).0).collect();
         let all: Vec<Line> = points.windows(2).map(|p| Line::new(p[0], p[1])).collect();
-        let of = |lines: &[Line]| {
+        let block_box = |lines: &[Line]| {
             let start = Rect::from_points(lines[0].p0, lines[0].p1);
-            lines.iter().fold(start, |b, l| b.union_pt(l.p1)).inflate(room, room)
+            lines.iter().fold(start, |b, l| b.union_pt(l.p1)).inflate(margin, margin)
         };
-        let boxes = all.chunks(BLOCK).map(of).collect();
+        let boxes = all.chunks(BLOCK).map(block_box).collect();
         Self { all, boxes }
     }
 
@@ -277,29 +268,27 @@ fn crossing(a: &Line, b: &Line) -> Option<Point> {
         return None;
     }
     let (t, u) = (d.cross(w) / det, d.cross(v) / det);
-    let inside = |t: f64| (-ROUNDING..=1.0 + ROUNDING).contains(&t);
-    (inside(t) && inside(u)).then(|| a.p0 + v * t)
+    let is_on_chord = |t: f64| (-ROUNDING..=1.0 + ROUNDING).contains(&t);
+    (is_on_chord(t) && is_on_chord(u)).then(|| a.p0 + v * t)
 }
 
-fn fold(map: &Coons, inverse: Affine) -> Option<String> {
-    /// Negative determinants below this share of the mean count as zero, since the determinant vanishes at smooth corners.
-    const NOTHING: f64 = 1e-6;
-    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(GRID);
-    let places = (0..GRID * GRID).map(|k| Point::new(at(k % GRID), at(k / GRID)));
-    let dets: Vec<(Point, f64)> = places.map(|q| (q, map.jet(inverse * q).det())).collect();
+/// Warns of a fold. `from_unit` takes the unit square to the source.
+fn fold_warning(map: &Coons, from_unit: Affine) -> Option<String> {
+    /// Determinants of the other sign below this share of the mean count as zero, since the determinant vanishes at smooth corners.
+    const NEGLIGIBLE: f64 = 1e-6;
+    let dets: Vec<(Point, f64)> = grid(GRID).map(|q| (q, map.jet(from_unit * q).det())).collect();
     let sum: f64 = dets.iter().map(|d| d.1).sum();
     let mean = dets.iter().map(|d| d.1.abs()).sum::<f64>() / dets.len() as f64;
-    let up = sum.signum();
-    let folded: Vec<_> = dets.iter().filter(|d| d.1 * up < -NOTHING * mean).collect();
-    let worst = folded.iter().min_by(|a, b| (a.1 * up).total_cmp(&(b.1 * up)))?;
-    let q = worst.0;
+    let sign = sum.signum();
+    let folded: Vec<_> = dets.iter().filter(|d| d.1 * sign < -NEGLIGIBLE * mean).collect();
+    let (q, _) = folded.iter().min_by(|a, b| (a.1 * sign).total_cmp(&(b.1 * sign)))?;
     let distances = [q.y, 1.0 - q.x, 1.0 - q.y, q.x];
     let side = (0..4).fold(0, |best, i| if distances[i] < distances[best] { i } else { best });
     let along = 100.0 * if side % 2 == 0 { q.x } else { q.y };
     Some(format!(
         "envelope: the map folds over near {} (nearest to the {} side, {along:.0} % along it; {:.1} % of the box): a side there \
 bends too sharply for its neighbours; straighten it, or move the corners",
-        show(map.point(inverse * q)),
+        show(map.point(from_unit * *q)),
         SIDES[side],
         100.0 * folded.len() as f64 / dets.len() as f64
     ))
@@ -337,21 +326,16 @@ impl Ring {
 
     /// Returns `true` if the bottom and the top meet at an end.
     pub(super) fn meets(&self) -> bool {
-        let point = |side: &[Seg]| side.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
-        point(&self.sides[1]) || point(&self.sides[3])
-    }
-
-    /// Returns the sides for a preview.
-    pub(super) fn path(&self) -> BezPath {
-        shown(&self.closed())
+        let is_point = |side: &[Seg]| side.iter().all(|s| s.bounding_box().size().max_side() == 0.0);
+        is_point(&self.sides[1]) || is_point(&self.sides[3])
     }
 }
 
-/// Returns a closed path for a preview.
-pub(super) fn shown(path: &Subpath) -> BezPath {
-    let all = Outline { subpaths: vec![path.clone()] };
-    let size = all.bounding_box().map_or(1.0, |b| b.width() + b.height());
-    all.to_bez_path(1e-4 * size)
+/// Draws a closed path.
+pub(super) fn preview(path: &Subpath) -> BezPath {
+    let outline = Outline { subpaths: vec![path.clone()] };
+    let size = outline.bounding_box().map_or(1.0, |b| b.width() + b.height());
+    outline.to_bez_path(1e-4 * size)
 }
 
 /// Reverses a side.
@@ -364,10 +348,10 @@ pub(super) fn mirrored([bottom, right, top, left]: [Vec<Seg>; 4]) -> [Vec<Seg>; 
     [reversed(&bottom), reversed(&left), reversed(&top), reversed(&right)]
 }
 
-/// Returns twice the area between a piece and the origin.
+/// Returns twice the signed area between a piece and the origin. The sum over a closed path is positive if it runs clockwise on the screen.
 pub(super) fn area(s: &Seg) -> f64 {
-    let at = |i: u32| s.eval(f64::from(i) / f64::from(SAMPLES)).to_vec2();
-    (0..SAMPLES).map(|i| at(i).cross(at(i + 1))).sum()
+    let point = |i: u32| s.eval(f64::from(i) / f64::from(SAMPLES)).to_vec2();
+    (0..SAMPLES).map(|i| point(i).cross(point(i + 1))).sum()
 }
 
 /// Returns the box of a closed path.

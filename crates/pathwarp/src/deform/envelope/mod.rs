@@ -1,7 +1,8 @@
 //! Artwork put into a shape: an envelope of four sides, each a curve of any number of pieces.
 //!
 //! The map is the Coons patch of the sides ([`Coons`](crate::map::Coons)), which equals the shaper's if every side is one cubic
-//! (Koppinen, *A plane transformation from 16 control points*, equation 7); or it fills a closed shape in columns, rows or lines.
+//! (Koppinen, *A plane transformation from 16 control points*, equation 7); or it fills a closed shape in columns, rows or lines of
+//! lettering. [`Choice`] decides among them. The four sides, bottom, right, top and left, make a [`Ring`].
 
 mod columns;
 mod corners;
@@ -16,9 +17,9 @@ use crate::error::{Error, show};
 use crate::map::{Coons, Jet, Map, Pace, Side, Sides, TileRow, Tiled};
 use crate::outline::{Outline, Seg, Subpath};
 use crate::param::{Axis, Choice as _, Kind, Letter, NamedPath, Settings, Value as _, choice, parameters};
-use columns::{Columns, Region, Room, bisected, filled, nothing};
-use distortion::{distortion, grid, stretches, turned};
-use fit::{Corners, SIDES, area, bounds, is_curved, reversed, shown};
+use columns::{Columns, Margins, Region, bisect, fill, no_room};
+use distortion::{distortion, grid, stretches, turning_cost};
+use fit::{Corners, SIDES, area, bounds, is_curved, preview, reversed};
 use kurbo::{Affine, Line, Point, Rect, Vec2};
 use std::sync::Arc;
 
@@ -159,57 +160,56 @@ impl Envelope {
     /// Builds the map. Sides that cross, and folds, give warnings.
     ///
     /// # Errors
-    /// [`Error::Geometry`] for a shape that is not closed or a flat box; [`Error::Usage`] for curves that do not meet, corners
-    /// that cannot be found, sides too curved to keep lines, and values that contradict each other.
+    /// [`Error::Geometry`] when the shape is not closed or the box is flat; [`Error::Usage`] when curves do not meet, corners cannot be
+    /// found, sides are too curved to keep lines, or values contradict each other.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         self.check_together()?;
-        let shape =
-            self.shape.as_ref().map(|path| Ok::<_, Error>((&*path.name, corners::closed(path)?))).transpose()?;
-        let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
-        let whole = divided || matches!(self.keep, Keep::Nothing | Keep::Lines);
-        let (shape, tips) = match shape {
-            Some((name, path)) if !whole => {
-                let (path, tips) = corners::trimmed(&path);
-                (Some((name, path)), tips)
-            }
-            shape => (shape, Vec::new()),
+        let mut shape = match &self.shape {
+            Some(path) => Some((&*path.name, corners::closed_path(path)?)),
+            None => None,
         };
+        // Options about the four sides of a closed path ask for the patch between them.
+        let divided = self.corners.is_some() || self.bottom_side.is_some() || self.reverse || self.spread.is_some();
+        let mut tips = Vec::new();
+        if let Some((_, path)) =
+            shape.as_mut().filter(|_| !divided && !matches!(self.keep, Keep::Nothing | Keep::Lines))
+        {
+            (*path, tips) = corners::without_tails(path);
+        }
         let lines = match self.lines {
-            Lines::Fit => lines::lines(&self.letters, &self.ink),
+            Lines::Fit => lines::divide(&self.letters, &self.ink),
             Lines::Together => Vec::new(),
         };
         let choice = Choice {
             frame: self.frame,
             keep: self.keep,
             spread: self.spread,
-            room: Room {
-                ends: Some(self.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 })),
+            margins: Margins {
+                ends: self.ends.unwrap_or(if self.lettering { ENDS } else { 0.0 }),
                 padding: self.padding,
             },
             lettering: self.lettering,
             lines: &lines,
-            letters: self.letters.len(),
+            letter_count: self.letters.len(),
             ink: &self.ink,
         };
         let ring = self.ring(shape.as_ref());
         let mut built = choice.build(shape.map(|s| s.1).filter(|_| !divided), ring)?;
         if !tips.is_empty() {
-            built.note(format!(
-                "left free: what sticks out at {}",
-                tips.into_iter().map(show).collect::<Vec<_>>().join(" ")
-            ));
+            let tips = tips.into_iter().map(show).collect::<Vec<_>>().join(" ");
+            built.note(format!("left free: what sticks out at {tips}"));
         }
         Ok(built)
     }
 
     /// Returns a few points of the artwork, in the unit square with v upwards. Every choice of corners is judged at all of them.
-    fn places(&self) -> Vec<Point> {
+    fn sample_points(&self) -> Vec<Point> {
         /// Points along an axis, if the artwork is unknown.
-        const PLACES: u32 = 5;
-        let step = (self.ink.len() / (2 * PLACES * PLACES) as usize).max(1);
-        let places: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
-        if places.is_empty() { grid(PLACES).collect() } else { places }
+        const SAMPLES: u32 = 5;
+        let step = (self.ink.len() / (2 * SAMPLES * SAMPLES) as usize).max(1);
+        let points: Vec<Point> = self.ink.iter().step_by(step).map(|p| fit::to_unit(self.frame) * *p).collect();
+        if points.is_empty() { grid(SAMPLES).collect() } else { points }
     }
 
     /// Refuses values that contradict each other.
@@ -237,19 +237,20 @@ impl Envelope {
         }
     }
 
-    /// Returns the four sides as drawn.
+    /// Returns the four sides: of a closed path with its name, or as drawn one by one.
     fn ring(&self, shape: Option<&(&str, Subpath)>) -> Result<Ring, Error> {
         if let Some((name, path)) = shape {
-            return corners::ring(name, path, self.corners.as_ref(), self.bottom_side, self.reverse, &self.places());
+            return corners::ring(
+                name,
+                path,
+                self.corners.as_ref(),
+                self.bottom_side,
+                self.reverse,
+                &self.sample_points(),
+            );
         }
-        let curves = corners::Curves {
-            drawn: &self.curves,
-            height: self.height,
-            frame_height: self.frame.height(),
-            square: self.square,
-            reverse: self.reverse,
-        };
-        curves.ring()
+        let (drawn, height, frame_height) = (&self.curves, self.height, self.frame.height());
+        corners::Curves { drawn, height, frame_height, square: self.square, reverse: self.reverse }.ring()
     }
 }
 
@@ -339,9 +340,9 @@ a projective map. --keep nothing bends artwork between four sides, whatever the 
     ])
     .cases(&[
         // Half a circle of radius 50, and the same 40 higher: quarter of the way along is 45° round.
-        Case { args: ARCH, at: (25.0, 100.0), to: (50.0 - 50.0 * R2, 100.0 - 50.0 * R2), tolerance: 1e-10 },
+        Case { args: ARCH, at: (25.0, 100.0), to: (50.0 - 50.0 * SIN_45, 100.0 - 50.0 * SIN_45), tolerance: 1e-10 },
         Case { args: ARCH, at: (50.0, 0.0), to: (50.0, 10.0), tolerance: 1e-10 },
-        Case { args: ARCH, at: (75.0, 50.0), to: (50.0 + 50.0 * R2, 80.0 - 50.0 * R2), tolerance: 1e-10 },
+        Case { args: ARCH, at: (75.0, 50.0), to: (50.0 + 50.0 * SIN_45, 80.0 - 50.0 * SIN_45), tolerance: 1e-10 },
         // The middle of the Coons patch, as for the shaper.
         Case { args: CAGE, at: (50.0, 50.0), to: (46.875, 55.625), tolerance: 1e-12 },
         // y = 100 − 1.6·x·(100−x)/100: at x = 20 the curve is 25.6 higher.
@@ -353,18 +354,15 @@ const CIRCLE: &str = "M100,50 A50,50 0 1 1 0,50 A50,50 0 1 1 100,50 Z";
 const ARCH: Pairs = &[("bottom", "M0,100 A50,50 0 0 1 100,100"), ("height", "40")];
 const CAGE: Pairs = &[("envelope", "M 10,90 Q 40,110 95,85 L 90,15 5,10 Z"), ("by", "parameter")];
 const UPRIGHT: Pairs = &[("bottom", "M0,100 Q50,20 100,100"), ("height", "50"), ("keep", "verticals")];
-const R2: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const SIN_45: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Envelope::read(s)?.build());
 
-/// Reads the curves.
+/// Reads the curves of the sides.
 fn curves(s: &Settings<'_>) -> Result<[Option<NamedPath>; 4], Error> {
-    let mut curves: [Option<NamedPath>; 4] = Default::default();
-    for (curve, name) in curves.iter_mut().zip(SIDES) {
-        *curve = s.path_if(name)?;
-    }
-    Ok(curves)
+    let [bottom, right, top, left] = SIDES.map(|name| s.path_if(name));
+    Ok([bottom?, right?, top?, left?])
 }
 
 /// Reads the corners: four numbers of nodes, or points.
@@ -372,35 +370,30 @@ fn corners(s: &Settings<'_>) -> Result<Option<Corners>, Error> {
     let Some(text) = s.texts("corners").pop() else { return Ok(None) };
     let words: Vec<&str> = text.split([',', ' ', ';']).filter(|w| !w.is_empty()).collect();
     let numbers: Option<Vec<usize>> = words.iter().map(|w| w.parse().ok()).collect();
-    match numbers.map(<[usize; 4]>::try_from) {
-        Some(Ok(nodes)) => Ok(Some(Corners::Nodes(nodes))),
-        _ => {
-            let points = s.points_in("corners", text).ok().and_then(|p| p.try_into().ok());
-            let problem = "is neither four numbers of nodes (1,4,7,9) nor four points x,y";
-            points.map(|p| Some(Corners::Points(p))).ok_or_else(|| Error::usage("corners", text, problem))
-        }
+    if let Some(Ok(nodes)) = numbers.map(<[usize; 4]>::try_from) {
+        return Ok(Some(Corners::Nodes(nodes)));
     }
+    let points = s.points_in("corners", text).ok().and_then(|p| p.try_into().ok());
+    let problem = "is neither four numbers of nodes (1,4,7,9) nor four points x,y";
+    points.map(|p| Some(Corners::Points(p))).ok_or_else(|| Error::usage("corners", text, problem))
 }
-
-// The choice of the map for a shape and its artwork: the patch of four sides, columns, rows or lines.
 
 /// Columns that hold at least this share of a shape's area fill it.
 const FILLS: f64 = 0.8;
-/// Samples along each axis of the box if the artwork is unknown.
+/// Samples along each axis of a box.
 const GRID: u32 = 24;
 
-/// The settings and the artwork that decide on the map.
+/// The settings and the artwork that decide on the map: the patch of four sides, columns, rows or lines.
 #[derive(Clone, Copy)]
 struct Choice<'a> {
     frame: Rect,
     keep: Keep,
     spread: Option<Spread>,
-    room: Room,
+    margins: Margins,
     lettering: bool,
     /// The lines of lettering.
     lines: &'a [lines::Line],
-    /// The number of letters.
-    letters: usize,
+    letter_count: usize,
     /// Points of the artwork; empty if they are not known.
     ink: &'a [Point],
 }
@@ -413,34 +406,34 @@ impl Choice<'_> {
         match (self.keep, closed) {
             (Keep::Verticals, Some(shape)) if self.lines.len() > 1 => self.in_lines(&shape),
             (Keep::Verticals | Keep::Horizontals, Some(shape)) => {
-                filled(self.frame, &shape, self.keep == Keep::Verticals, &self.room)
+                fill(self.frame, &shape, self.keep == Keep::Verticals, &self.margins)
             }
-            (Keep::Auto, Some(shape)) => self.suited(&shape, ring.ok()),
+            (Keep::Auto, Some(shape)) => self.most_suitable(&shape, ring.ok()),
             (keep, _) => {
                 let ring = ring?;
                 // Between curved sides, only columns and rows keep lines.
                 let across = match keep {
                     Keep::Verticals => [1, 3],
                     Keep::Horizontals => [0, 2],
-                    _ => return self.patched(&ring, keep),
+                    _ => return self.patch(&ring, keep),
                 };
                 if across.iter().any(|k| is_curved(&ring, *k)) {
-                    return filled(self.frame, &ring.closed(), keep == Keep::Verticals, &self.room);
+                    return fill(self.frame, &ring.closed(), keep == Keep::Verticals, &self.margins);
                 }
-                self.patched(&ring, keep)
+                self.patch(&ring, keep)
             }
         }
     }
 
     /// Builds the patch of four sides.
-    fn patched(&self, ring: &Ring, keep: Keep) -> Result<Built, Error> {
+    fn patch(&self, ring: &Ring, keep: Keep) -> Result<Built, Error> {
         let keep = if keep == Keep::Auto { Keep::Nothing } else { keep };
-        fit(padded(self.frame, ring, self.room.padding)?, ring, keep, self.spread)
+        fit(with_padding(self.frame, ring, self.margins.padding)?, ring, keep, self.spread)
     }
 
     /// Builds the map that suits the shape and the artwork best.
-    fn suited(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
-        let has_corners = ring.as_ref().is_some_and(|ring| has_own_corners(shape, ring));
+    fn most_suitable(&self, shape: &Subpath, ring: Option<Ring>) -> Result<Built, Error> {
+        let has_corners = ring.as_ref().is_some_and(|ring| has_four_corners(shape, ring));
         if self.lines.len() > 1 {
             let built = ring.as_ref().filter(|_| has_corners).and_then(|ring| self.in_rows(ring, shape));
             return built.map_or_else(|| self.in_lines(shape), Ok);
@@ -452,140 +445,129 @@ impl Choice<'_> {
             }
             ring => (ring, self.frame),
         };
-        let patch = || Choice { frame, ..*self }.patched(ring.as_ref()?, Keep::Nothing).ok();
+        let patch = || Choice { frame, ..*self }.patch(ring.as_ref()?, Keep::Nothing).ok();
         if has_corners && let Some(built) = patch() {
             return Ok(built);
         }
         if self.lettering {
-            return filled(self.frame, shape, true, &self.room).or_else(|e| patch().ok_or(e));
+            return fill(self.frame, shape, true, &self.margins).or_else(|e| patch().ok_or(e));
         }
-        let fills = |upright: bool| Columns::new(shape, upright, &Room::default()).map_or(0.0, |c| c.coverage);
-        let scored = |b: Built| {
-            let d = self.distortion(&*b.map);
-            (b, d)
-        };
-        let mut all: Vec<(Built, f64)> = Vec::new();
-        all.extend(patch().map(scored));
-        for upright in [true, false].into_iter().filter(|u| fills(*u) >= FILLS) {
-            all.extend(filled(self.frame, shape, upright, &self.room).map(scored).ok());
-        }
-        let best = all.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
-        best.map(|b| b.0).ok_or_else(|| nothing(shape))
+        let fills = |upright: bool| Columns::new(shape, upright, &Margins::default()).map_or(0.0, |c| c.coverage);
+        let in_columns = [true, false].into_iter().filter(|upright| fills(*upright) >= FILLS);
+        let in_columns = in_columns.filter_map(|upright| fill(self.frame, shape, upright, &self.margins).ok());
+        let scored = patch().into_iter().chain(in_columns).map(|built| (self.distortion(&*built.map), built));
+        let best = scored.reduce(|a, b| if b.0 < a.0 { b } else { a });
+        best.map(|b| b.1).ok_or_else(|| no_room(shape))
     }
 
     /// Fits the lines one by one.
     fn in_lines(&self, shape: &Subpath) -> Result<Built, Error> {
-        let region = Region::new(shape, Affine::IDENTITY, self.room.padding).ok_or_else(|| nothing(shape))?;
-        let mut strips = lines::Strips::new(self.lines, self.letters);
-        let (map, notes) = lines::fitted(self.lines, &region, &mut strips)?;
+        let region = Region::new(shape, Affine::IDENTITY, self.margins.padding).ok_or_else(|| no_room(shape))?;
+        let mut strips = lines::Strips::new(self.lines, self.letter_count);
+        let (map, notes) = lines::fit_lines(self.lines, &region, &mut strips)?;
         let mut built = Built::new(map);
         built.explanation.notes = notes;
-        built.overlay(Role::Cage, shown(shape));
-        Ok(placed(built, &strips))
+        built.overlay(Role::Cage, preview(shape));
+        Ok(with_placement(built, &strips))
     }
 
     /// Puts the lines into rows of the patch of four sides.
     fn in_rows(&self, ring: &Ring, shape: &Subpath) -> Option<Built> {
         let length = |k: usize| Side::new(&ring.sides[k], Pace::Length).map_or(0.0, |s| s.length());
+        // The mean lengths of bottom and top, and of both other sides.
         let size = [0, 1].map(|k| 0.5 * (length(k) + length(k + 2)));
-        let mut strips = lines::Strips::new(self.lines, self.letters);
+        let mut strips = lines::Strips::new(self.lines, self.letter_count);
         let row = |frame: Rect| {
             let (ring, frame) = between_notches(ring.clone(), shape, frame);
-            Choice { frame, ..*self }.patched(&ring, Keep::Nothing)
+            Choice { frame, ..*self }.patch(&ring, Keep::Nothing)
         };
         let rows = strips.frames(self.lines, size)?.into_iter().map(row).collect::<Result<Vec<Built>, _>>().ok()?;
         let tiles = rows.iter().map(|b| TileRow { cuts: Vec::new(), maps: vec![Arc::clone(&b.map)] }).collect();
         let map = Tiled::over(self.frame, strips.cuts.clone(), tiles)?;
-        Some(placed(Built { map, ..rows.into_iter().next()? }, &strips))
+        Some(with_placement(Built { map, ..rows.into_iter().next()? }, &strips))
     }
 
-    /// Returns the distortion of the artwork.
+    /// Returns the distortion of the artwork by a map, in the units of [`distortion`].
     fn distortion(&self, map: &dyn Map) -> f64 {
         let f = self.frame;
         let grid: Vec<Point> = grid(GRID).map(|p| f.origin() + Vec2::new(p.x * f.width(), p.y * f.height())).collect();
         let points = if self.ink.is_empty() { &grid } else { self.ink };
         let corners = [(f.x0, f.y1), (f.x1, f.y1), (f.x1, f.y0), (f.x0, f.y0)].map(|p| map.point(p.into()));
-        distortion(&points.iter().map(|p| map.jet(*p)).collect::<Vec<_>>()) + turned(corners)
+        distortion(&points.iter().map(|p| map.jet(*p)).collect::<Vec<_>>()) + turning_cost(corners)
     }
 }
 
-/// Moves letters, before the map, to the positions in its strips.
-fn placed(mut built: Built, strips: &lines::Strips) -> Built {
-    built.placement.letters = strips.places();
+/// Adds the maps that take letters into the strips before they are bent.
+fn with_placement(mut built: Built, strips: &lines::Strips) -> Built {
+    built.placement.letters = strips.letter_maps();
     built.placement.before = !built.placement.letters.is_empty();
     built
 }
 
 /// Returns `true` if a shape clearly has four corners: no other sharp node points outwards, the bottom runs to the right and the
 /// sides upwards, and the patch folds nowhere and is nowhere stretched much more in one direction than in the other.
-fn has_own_corners(shape: &Subpath, ring: &Ring) -> bool {
+fn has_four_corners(shape: &Subpath, ring: &Ring) -> bool {
     /// The largest angle of the bottom and of the sides with the screen's axes, as a tangent.
-    const TURNED: f64 = 0.9;
+    const MAX_LEAN: f64 = 0.9;
     /// The largest ratio of both stretches, relative to their means, in nine tenths of the samples.
-    const UNEVEN: f64 = 2.2;
+    const MAX_RATIO: f64 = 2.2;
     let around: f64 = shape.segs.iter().map(area).sum();
-    let pointed: Vec<Point> = corners::sharp(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
+    let tips: Vec<Point> = corners::sharp_nodes(shape, around.signum()).map(|i| shape.segs[i].start()).collect();
     let size = bounds(shape).size().max_side();
     let is_corner =
         |p: &Point| ring.sides.iter().flat_map(|s| s.first()).any(|s| s.start().distance(*p) <= 1e-9 * size);
-    if pointed.len() != 4 || !pointed.iter().all(is_corner) {
+    if tips.len() != 4 || !tips.iter().all(is_corner) {
         return false;
     }
-    let side = |k: usize, back: bool| {
-        let s = &ring.sides[k];
-        Side::new(&if back { reversed(s) } else { s.clone() }, Pace::Length)
-    };
-    let (Some(bottom), Some(right), Some(top), Some(left)) =
-        (side(0, false), side(1, false), side(2, true), side(3, true))
-    else {
-        return false;
-    };
+    let [bottom, right, top, left] = &ring.sides;
+    let sides = [bottom, right, &reversed(top), &reversed(left)].map(|s| Side::new(s, Pace::Length));
+    let [Some(bottom), Some(right), Some(top), Some(left)] = sides else { return false };
     let map = Coons::new(Sides { bottom, right, top, left }, Affine::IDENTITY);
     let jets: Vec<Jet> = grid(GRID).map(|p| map.jet(p)).collect();
     let [right, up] = [jets.iter().map(|j| j.dx).sum::<Vec2>(), jets.iter().map(|j| j.dy).sum::<Vec2>()];
-    let level = right.y.abs() <= TURNED * right.x && up.x.abs() <= -TURNED * up.y;
+    let is_upright = right.y.abs() <= MAX_LEAN * right.x && up.x.abs() <= -MAX_LEAN * up.y;
     let screen: Vec<Jet> = jets.iter().map(|j| Jet { dy: -j.dy, ..*j }).collect();
     let mut ratios: Vec<f64> =
         stretches(&screen).iter().map(|[a, b]| if *b > 0.0 { a / b } else { f64::INFINITY }).collect();
     ratios.sort_by(f64::total_cmp);
-    level && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= UNEVEN
+    is_upright && ratios[ratios.len() - 1] < f64::INFINITY && ratios[ratios.len() * 9 / 10] <= MAX_RATIO
 }
 
 /// Ends lettering at the notches of a swallow-tailed banner: a side with a notch becomes straight, and the box is widened so that
 /// the letters end at the upright through the notch.
 fn between_notches(mut ring: Ring, shape: &Subpath, frame: Rect) -> (Ring, Rect) {
     let around: f64 = shape.segs.iter().map(area).sum();
-    let notches: Vec<Point> = corners::sharp(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
+    let notches: Vec<Point> = corners::sharp_nodes(shape, -around.signum()).map(|i| shape.segs[i].start()).collect();
     let (Some(bottom), Some(top)) =
         (Side::new(&ring.sides[0], Pace::Length), Side::new(&reversed(&ring.sides[2]), Pace::Length))
     else {
         return (ring, frame);
     };
-    // The share of the width between a side and the upright through its notch.
+    // The share of the width between a side and the upright through its notch, on which the notch lies where it changes from left to right.
     let share = |notch: Point, right: bool| {
         let outside = |t: f64| {
             let u = if right { 1.0 - t } else { t };
             let (from, to) = (bottom.at(u).0, top.at(u).0);
             ((to - from).cross(notch - from) > 0.0) != right
         };
-        (outside(0.0) && !outside(0.5)).then(|| bisected(0.5, 0.0, |t| if outside(t) { 1.0 } else { -1.0 }))
+        (outside(0.0) && !outside(0.5)).then(|| bisect(0.5, 0.0, |t| if outside(t) { 1.0 } else { -1.0 }))
     };
     let [mut left, mut right] = [0.0_f64; 2];
-    for (k, is_right, out) in [(3, false, &mut left), (1, true, &mut right)] {
+    for (k, is_right, share_cut) in [(3, false, &mut left), (1, true, &mut right)] {
         let side = &ring.sides[k];
         let nodes: Vec<Point> = side.iter().skip(1).map(Seg::start).filter(|p| notches.contains(p)).collect();
         let Some(deepest) = nodes.iter().filter_map(|p| share(*p, is_right)).reduce(f64::max) else { continue };
         let (from, to) = (side[0].start(), side[side.len() - 1].end());
         ring.notes.push(format!("the letters end at {}", nodes.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")));
         ring.sides[k] = vec![Seg::Line(Line::new(from, to))];
-        *out = deepest;
+        *share_cut = deepest;
     }
     let width = frame.width() / (1.0 - left - right);
     (ring, Rect::new(frame.x0 - left * width, frame.y0, frame.x1 + right * width, frame.y1))
 }
 
 /// Returns a larger box, whose map into the sides keeps `frame` a distance of `padding` away from them.
-fn padded(frame: Rect, ring: &Ring, padding: f64) -> Result<Rect, Error> {
+fn with_padding(frame: Rect, ring: &Ring, padding: f64) -> Result<Rect, Error> {
     if padding == 0.0 {
         return Ok(frame);
     }

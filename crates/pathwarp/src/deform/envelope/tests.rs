@@ -1,6 +1,6 @@
 //! Compares the envelope with formulas written out independently, and with the shaper.
 
-use super::fit::paced;
+use super::fit::sides_at_pace;
 use super::*;
 use crate::deform::Deformation as _;
 use crate::deform::Registry;
@@ -205,7 +205,8 @@ fn nothing_is_mirrored_and_the_bottom_is_below() {
                 turned.start = turned.segs[0].start();
                 let ring = corners::ring("envelope", &turned, None, None, false, &super::grid(5).collect::<Vec<_>>())
                     .unwrap_or_else(|e| panic!("{shape} {start}: {e}"));
-                let sides = paced(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
+                let sides =
+                    sides_at_pace(&ring, None, Keep::Nothing, &mut Built::new(Arc::new(AffineMap::IDENTITY))).unwrap();
                 let m = Coons::new(sides, Affine::new([0.01, 0.0, 0.0, -0.01, 0.0, 1.0]));
                 // The heart has a notch in the middle, so both sides of it are tested.
                 let [l, r] = [40.0, 60.0].map(|x| m.jet(Point::new(x, 50.0)));

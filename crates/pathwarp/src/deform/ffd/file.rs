@@ -36,6 +36,17 @@ fn one() -> [usize; 2] {
     [1, 1]
 }
 
+/// Returns the box that a file gives as x, y, width and height, or else `frame`.
+pub(in crate::deform) fn region_in_file(name: &str, given: Option<[f64; 4]>, frame: Rect) -> Result<Rect, Error> {
+    match given {
+        None => Ok(frame),
+        Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
+            Ok(Rect::new(x, y, x + w, y + h))
+        }
+        Some(r) => Err(Error::input(name, format!("its region {r:?} is not a box x, y, width, height"))),
+    }
+}
+
 /// Reads a lattice. The flag is `true` if the file names its region; otherwise the region is `frame`.
 pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool), Error> {
     let file: LatticeFile = serde_json::from_str(text)
@@ -47,22 +58,13 @@ pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<(Lattice, bool
     if file.cells.iter().any(|c| !(1..=MAX_CELLS).contains(c)) {
         return Err(wrong(format!("its cells are {:?}; each number must be 1 to {MAX_CELLS}", file.cells)));
     }
-    let region = match file.region {
-        None => frame,
-        Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
-            Rect::new(x, y, x + w, y + h)
-        }
-        Some(r) => return Err(wrong(format!("its region {r:?} is not a box x, y, width, height"))),
-    };
+    let region = region_in_file(name, file.region, frame)?;
     let mut lattice = Lattice::regular(region, file.degree, file.cells);
-    if file.points.len() != lattice.rows() {
-        return Err(wrong(format!(
-            "it has {} rows of points; degree {} with {} cells down needs {}",
-            file.points.len(),
-            file.degree[1],
-            file.cells[1],
-            lattice.rows()
-        )));
+    let (found, needed) = (file.points.len(), lattice.rows());
+    if found != needed {
+        let ([_, degree], [_, cells]) = (file.degree, file.cells);
+        let problem = format!("it has {found} rows of points; degree {degree} with {cells} cells down needs {needed}");
+        return Err(wrong(problem));
     }
     for (j, row) in file.points.iter().enumerate() {
         if row.len() != lattice.columns() {

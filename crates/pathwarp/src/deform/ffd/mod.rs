@@ -21,6 +21,8 @@ use crate::solve::{misses, smallest_change};
 use kurbo::{BezPath, Point, Rect, Vec2};
 use std::sync::Arc;
 
+#[cfg(feature = "serde")]
+pub(super) use file::region_in_file;
 pub(super) use save::{MAX_CELLS, MAX_DEGREE};
 
 /// Free-form deformation: artwork follows a grid of control points.
@@ -60,16 +62,16 @@ impl Ffd {
     /// [extended](Self::extend).
     #[must_use]
     pub fn new(region: Rect) -> Self {
-        Self::with(Grid::Regular { region, degree: [3, 3], cells: [1, 1] })
+        Self::from_grid(Grid::Regular { region, degree: [3, 3], cells: [1, 1] })
     }
 
     /// Starts from the control points of a lattice.
     #[must_use]
     pub fn from_lattice(lattice: Lattice) -> Self {
-        Self::with(Grid::Given(lattice))
+        Self::from_grid(Grid::Given(lattice))
     }
 
-    fn with(grid: Grid) -> Self {
+    fn from_grid(grid: Grid) -> Self {
         Self { grid, changes: Vec::new(), pins: Vec::new(), frozen: [0; 4], extended: false }
     }
 
@@ -131,8 +133,8 @@ impl Ffd {
     /// Builds the map. Borders that tear the artwork and pins that are missed give warnings.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a region without area, degrees or control points out of range, changes of frozen points, too many
-    /// pins, and pins outside the region of a map that is not extended.
+    /// [`Error::Usage`] when the region has no area, degrees or control points are out of range, frozen points are changed, there are too
+    /// many pins, or a pin is outside the region of a map that is not extended.
     pub fn build(&self) -> Result<Built, Error> {
         Ok(self.build_with_lattice()?.0)
     }
@@ -142,14 +144,14 @@ impl Ffd {
     /// # Errors
     /// [`Error::Usage`] in the cases listed for [`Ffd::build`].
     pub fn build_with_lattice(&self) -> Result<(Built, Lattice), Error> {
-        let mut lattice = self.start()?;
+        let mut lattice = self.initial_lattice()?;
         let mut warnings = Vec::new();
-        let size = [lattice.columns(), lattice.rows()];
-        let held: Vec<_> =
-            indices(&lattice).filter(|&(i, j)| self.holds(size, i, j) && lattice.is_changed(i, j)).collect();
-        if !held.is_empty() {
-            warnings.push(format!("frozen control points of the grid are put back in place: {}", names(&held)));
-            for (i, j) in held {
+        let (columns, rows) = (lattice.columns(), lattice.rows());
+        let is_reset = |&(i, j): &(usize, usize)| self.is_frozen([columns, rows], i, j) && lattice.is_changed(i, j);
+        let reset: Vec<_> = indices(&lattice).filter(is_reset).collect();
+        if !reset.is_empty() {
+            warnings.push(format!("frozen control points of the grid are put back in place: {}", list_points(&reset)));
+            for (i, j) in reset {
                 lattice.place(i, j, lattice.regular_point(i, j));
                 lattice.set_weight(i, j, 1.0);
             }
@@ -165,29 +167,20 @@ impl Ffd {
             Class::Affine(m) => Arc::new(AffineMap(m)),
             _ => Arc::new(map),
         };
-        let r = lattice.region();
+        let (region, [m, n]) = (lattice.region(), lattice.degree());
+        let Rect { x0, y0, x1, y1 } = region;
         let mut built = Built::new(map);
         built.explanation.warnings = warnings;
-        built.note(format!(
-            "grid: {} by {} control points of degree {}x{} over {},{} to {},{}",
-            lattice.columns(),
-            lattice.rows(),
-            lattice.degree()[0],
-            lattice.degree()[1],
-            r.x0,
-            r.y0,
-            r.x1,
-            r.y1
-        ));
-        built
-            .note(format!("outside the region: {}", if self.extended { "the map continues" } else { "nothing moves" }));
-        built.overlay(Role::Base, net(&Lattice::regular(r, lattice.degree(), lattice.cells())));
-        built.overlay(Role::Cage, net(&lattice));
+        built.note(format!("grid: {columns} by {rows} control points of degree {m}x{n} over {x0},{y0} to {x1},{y1}"));
+        let outside = if self.extended { "the map continues" } else { "nothing moves" };
+        built.note(format!("outside the region: {outside}"));
+        built.overlay(Role::Base, polylines(&Lattice::regular(region, [m, n], lattice.cells())));
+        built.overlay(Role::Cage, polylines(&lattice));
         Ok((built, lattice))
     }
 
     /// Returns the grid before its changes.
-    fn start(&self) -> Result<Lattice, Error> {
+    fn initial_lattice(&self) -> Result<Lattice, Error> {
         let lattice = match &self.grid {
             Grid::Given(lattice) => lattice.clone(),
             Grid::Regular { region, degree, cells } => {
@@ -203,16 +196,17 @@ impl Ffd {
         if !(r.width() > 0.0 && r.height() > 0.0) {
             return Err(Error::usage("region", "artwork", "has no area: the artwork is flat; name a box x,y,w,h"));
         }
+        // Columns along the left and the right side, rows along the top and the bottom.
         let size = [lattice.columns(), lattice.rows()];
-        if let Some(k) = (0..4).find(|k| self.frozen[*k] > size[k / 2]) {
-            let problem = format!("freezes too many: 0 to {} there", size[k / 2]);
-            return Err(Error::usage("freeze", format!("{}:{}", SIDES[k], self.frozen[k]), problem));
+        if let Some(side) = (0..4).find(|side| self.frozen[*side] > size[side / 2]) {
+            let problem = format!("freezes too many: 0 to {} there", size[side / 2]);
+            return Err(Error::usage("freeze", format!("{}:{}", SIDES[side], self.frozen[side]), problem));
         }
         Ok(lattice)
     }
 
     /// Returns `true` if control point (i, j) of a grid of this size is frozen.
-    fn holds(&self, [columns, rows]: [usize; 2], i: usize, j: usize) -> bool {
+    fn is_frozen(&self, [columns, rows]: [usize; 2], i: usize, j: usize) -> bool {
         let [left, right, top, bottom] = self.frozen;
         i < left || i + right >= columns || j < top || j + bottom >= rows
     }
@@ -224,7 +218,7 @@ impl Ffd {
                 let (m, n) = (l.columns() - 1, l.rows() - 1);
                 return Err(wrong(format!("is not a control point: i goes from 0 to {m}, j from 0 to {n}")));
             }
-            if self.holds([l.columns(), l.rows()], i, j) {
+            if self.is_frozen([l.columns(), l.rows()], i, j) {
                 return Err(wrong("is a control point that `freeze` keeps in place".into()));
             }
             match change {
@@ -242,19 +236,19 @@ impl Ffd {
             return Err(Error::usage("pin", shown(extra), format!("is one too many: {MAX_PINS} pins at most")));
         }
         let r = l.region();
-        for pin in &self.pins {
-            if !self.extended && !(r.x0..=r.x1).contains(&pin.0.x) | !(r.y0..=r.y1).contains(&pin.0.y) {
-                return Err(Error::usage("pin", shown(pin), "takes hold outside the region, where nothing moves"));
-            }
+        let in_region = |p: Point| (r.x0..=r.x1).contains(&p.x) && (r.y0..=r.y1).contains(&p.y);
+        if let Some(pin) = self.pins.iter().find(|(from, _)| !self.extended && !in_region(*from)) {
+            return Err(Error::usage("pin", shown(pin), "takes hold outside the region, where nothing moves"));
         }
         if self.pins.is_empty() {
             return Ok(());
         }
         let size = [l.columns(), l.rows()];
-        let off = pull(l, |i, j| !self.holds(size, i, j), &self.pins);
-        for (pin, off) in self.pins.iter().zip(off).filter(|(_, off)| *off > 1e-9 * (r.width() + r.height())) {
+        let distances = pull(l, |i, j| !self.is_frozen(size, i, j), &self.pins);
+        let rounding = 1e-9 * (r.width() + r.height());
+        for (pin, distance) in self.pins.iter().zip(distances).filter(|(_, distance)| *distance > rounding) {
             warnings.push(format!(
-                "the pin {} is missed by {off:.6}: the grid has too few control points that may move; raise `degree` or freeze fewer",
+                "the pin {} is missed by {distance:.6}: the grid has too few control points that may move; raise `degree` or freeze fewer",
                 shown(pin)
             ));
         }
@@ -267,8 +261,9 @@ fn indices(l: &Lattice) -> impl Iterator<Item = (usize, usize)> + use<> {
     (0..n).flat_map(move |j| (0..m).map(move |i| (i, j)))
 }
 
-fn names(points: &[(usize, usize)]) -> String {
-    /// Limit on the points that a message lists.
+/// Lists control points for a message.
+fn list_points(points: &[(usize, usize)]) -> String {
+    /// Limit on the points that are listed.
     const SHOWN: usize = 8;
     let mut out = points.iter().take(SHOWN).map(|(i, j)| format!("{i},{j}")).collect::<Vec<_>>().join(" ");
     if points.len() > SHOWN {
@@ -280,50 +275,45 @@ fn names(points: &[(usize, usize)]) -> String {
 /// Warns of sides at which the artwork tears.
 fn tears(l: &Lattice) -> Vec<String> {
     let (m, n) = (l.columns() - 1, l.rows() - 1);
-    let on = |k: usize, i: usize, j: usize| [i == 0, i == m, j == 0, j == n][k];
-    let side = |(k, name): (usize, &&str)| {
-        let moved: Vec<_> = indices(l).filter(|&(i, j)| on(k, i, j) && l.is_changed(i, j)).collect();
-        (!moved.is_empty()).then(|| {
+    let is_on_side = |side: usize, i: usize, j: usize| [i == 0, i == m, j == 0, j == n][side];
+    let tear = |(side, name): (usize, &&str)| {
+        let changed: Vec<_> = indices(l).filter(|&(i, j)| is_on_side(side, i, j) && l.is_changed(i, j)).collect();
+        (!changed.is_empty()).then(|| {
             format!(
                 "artwork that crosses the region's {name} border tears there, because control points {} on it were changed; keep them \
 in place with `freeze {name}:1`, or let the map continue with `extend`",
-                names(&moved)
+                list_points(&changed)
             )
         })
     };
-    SIDES.iter().enumerate().filter_map(side).collect()
+    SIDES.iter().enumerate().filter_map(tear).collect()
 }
 
-/// Draws rows and columns of control points as polylines.
-fn net(l: &Lattice) -> BezPath {
-    let mut p = BezPath::new();
-    let mut line = |points: Vec<Point>| {
-        for (k, q) in points.into_iter().enumerate() {
-            if k == 0 { p.move_to(q) } else { p.line_to(q) }
-        }
-    };
-    for j in 0..l.rows() {
-        line((0..l.columns()).map(|i| l.point(i, j)).collect());
+/// Draws rows and columns of control points.
+fn polylines(l: &Lattice) -> BezPath {
+    let mut out = BezPath::new();
+    let (columns, rows) = (l.columns(), l.rows());
+    for (i, j) in indices(l) {
+        if i == 0 { out.move_to(l.point(i, j)) } else { out.line_to(l.point(i, j)) }
     }
-    for i in 0..l.columns() {
-        line((0..l.rows()).map(|j| l.point(i, j)).collect());
+    for (i, j) in (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j))) {
+        if j == 0 { out.move_to(l.point(i, j)) } else { out.line_to(l.point(i, j)) }
     }
-    p
+    out
 }
-
-// Pins. The image of a point is Σ Rₖ Pₖ, with influences Rₖ that do not depend on the control points' positions Pₖ. A pin p → q asks for
-// changes dₖ with Σₖ Rₖ(p) dₖ = q − F(p): one row of a linear system per pin, whose solution of least norm is taken.
 
 /// Limit on pins. The work grows with the cube of their number.
 const MAX_PINS: usize = 256;
 
 /// Moves the control points that are `free` so that the lattice takes the first point of each pin to the second. Returns the
 /// distance by which each pin is missed, which is rounding if the lattice can meet all pins.
+///
+/// The image of a point is Σ Rₖ Pₖ, with influences Rₖ that do not depend on the control points' positions Pₖ. A pin p → q asks for
+/// changes dₖ with Σₖ Rₖ(p) dₖ = q − F(p): one row of a linear system per pin, whose solution of least norm is taken.
 fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Point, Point)]) -> Vec<f64> {
-    let n = pins.len();
     let columns = lattice.columns();
-    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n);
-    let mut want: Vec<[f64; 2]> = Vec::with_capacity(n);
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(pins.len());
+    let mut shifts: Vec<[f64; 2]> = Vec::with_capacity(pins.len());
     for (from, to) in pins {
         let mut row = vec![0.0; columns * lattice.rows()];
         let mut image = Vec2::ZERO;
@@ -334,17 +324,15 @@ fn pull(lattice: &mut Lattice, free: impl Fn(usize, usize) -> bool, pins: &[(Poi
             }
         }
         rows.push(row);
-        let off = to.to_vec2() - image;
-        want.push([off.x, off.y]);
+        let shift = to.to_vec2() - image;
+        shifts.push([shift.x, shift.y]);
     }
-    let moved = smallest_change(&rows, &want);
-    for (k, [x, y]) in moved.iter().enumerate().filter(|(_, d)| **d != [0.0; 2]) {
+    let changes = smallest_change(&rows, &shifts);
+    for (k, [x, y]) in changes.iter().enumerate().filter(|(_, d)| **d != [0.0; 2]) {
         lattice.shift(k % columns, k / columns, Vec2::new(*x, *y));
     }
-    misses(&rows, &want, &moved)
+    misses(&rows, &shifts, &changes)
 }
-
-// The registry's entry: reads an [`Ffd`] from text.
 
 static INFO: Info = Info::new("ffd", "pull artwork about by a grid of control points")
     .group("Lattices and nets")
@@ -434,14 +422,14 @@ laid onto that."),
 
 /// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
-    let own_region = s.rect_if("region")?;
-    let (grid, from_file) = grid(s)?;
+    let is_artworks_box = s.rect_if("region")?.is_none();
+    let (grid, has_region) = grid(s)?;
     let ffd = Ffd {
         grid,
         changes: changes(s, |text| text.split_whitespace().collect())?,
         pins: pins(s)?,
         frozen: frozen(s)?,
-        extended: s.flag("extend")? || (own_region.is_none() && !from_file),
+        extended: s.flag("extend")? || (is_artworks_box && !has_region),
     };
     let (mut built, lattice) = ffd.build_with_lattice()?;
     if let Some(name) = s.texts("save-lattice").last() {
@@ -452,7 +440,8 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
 
 /// Reads the initial grid. The flag is `true` for a lattice from a file whose region that file or `region` gives.
 fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
-    let own_region = s.rect_if("region")?;
+    // `None` for the artwork's box, whether by default or by `region artwork`.
+    let region = s.rect_if("region")?;
     let frame = s.frame().rect;
     if let Some(file) = s.file_if("lattice")? {
         for name in ["degree", "spline", "cells"] {
@@ -461,12 +450,12 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
                 return Err(Error::usage(name, s.texts(name).join(" "), problem));
             }
         }
-        let (lattice, named) = read(file, own_region.unwrap_or(frame))?;
+        let (lattice, has_region) = read(file, region.unwrap_or(frame))?;
         // The grid of a file is laid onto an explicit region.
-        return Ok(match own_region {
+        return Ok(match region {
             Some(r) => (Grid::Given(lattice.on(r)), true),
             None if s.given("region") => (Grid::Given(lattice.on(frame)), false),
-            None => (Grid::Given(lattice), named),
+            None => (Grid::Given(lattice), has_region),
         });
     }
     let degree = pair(s, "degree", MAX_DEGREE)?.unwrap_or([3, 3]);
@@ -475,7 +464,7 @@ fn grid(s: &Settings<'_>) -> Result<(Grid, bool), Error> {
         None if s.flag("spline")? => [4, 4],
         None => [1, 1],
     };
-    Ok((Grid::Regular { region: own_region.unwrap_or(frame), degree, cells }, false))
+    Ok((Grid::Regular { region: region.unwrap_or(frame), degree, cells }, false))
 }
 
 #[cfg(feature = "serde")]
@@ -499,14 +488,14 @@ fn pair(s: &Settings<'_>, name: &str, max: usize) -> Result<Option<[usize; 2]>, 
     }
 }
 
-/// Reads the changes in `at`, `move` and `weight`, in this order; `parts` divides a value into changes.
+/// Reads the changes in `at`, `move` and `weight`, in this order, of control points with N indices; `split` divides a value into changes.
 pub(super) fn changes<'a, const N: usize>(
     s: &Settings<'a>,
-    parts: impl Fn(&'a str) -> Vec<&'a str>,
+    split: impl Fn(&'a str) -> Vec<&'a str>,
 ) -> Result<Vec<([usize; N], Change)>, Error> {
     let mut out = Vec::new();
     for name in ["at", "move", "weight"] {
-        for text in s.texts(name).into_iter().flat_map(&parts) {
+        for text in s.texts(name).into_iter().flat_map(&split) {
             let (node, value) = s.node_in::<N>(name, text)?;
             let change = match name {
                 "at" => Change::Place(s.point_in(name, value)?),
@@ -525,8 +514,8 @@ pub(super) fn changes<'a, const N: usize>(
 
 fn pins(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
     let pin = |word: &str| {
-        let (from, to) =
-            word.split_once(':').ok_or_else(|| Error::usage("pin", word, "is not FROM:TO, such as 10,20:15,25"))?;
+        let wrong = || Error::usage("pin", word, "is not FROM:TO, such as 10,20:15,25");
+        let (from, to) = word.split_once(':').ok_or_else(wrong)?;
         Ok((s.point_in("pin", from)?, s.point_in("pin", to)?))
     };
     s.texts("pin").into_iter().flat_map(str::split_whitespace).map(pin).collect()
@@ -534,16 +523,13 @@ fn pins(s: &Settings<'_>) -> Result<Vec<(Point, Point)>, Error> {
 
 fn frozen(s: &Settings<'_>) -> Result<[usize; 4], Error> {
     let mut counts = [0; 4];
-    for text in s.texts("freeze") {
-        for word in text.split([',', ' ']).filter(|w| !w.is_empty()) {
-            let (side, count) = word.split_once(':').unwrap_or((word, "1"));
-            let k = SIDES.iter().position(|n| *n == side).ok_or_else(|| {
-                let problem = "is not SIDE:COUNT with a side left, right, top or bottom, such as left:2";
-                Error::usage("freeze", word, problem)
-            })?;
-            let number = count.parse().map_err(|_| Error::usage("freeze", word, "does not end with a number"));
-            counts[k] = number?;
-        }
+    for word in s.texts("freeze").into_iter().flat_map(|t| t.split([',', ' '])).filter(|w| !w.is_empty()) {
+        let wrong = |problem: &str| Error::usage("freeze", word, problem);
+        let (name, count) = word.split_once(':').unwrap_or((word, "1"));
+        let side = SIDES.iter().position(|n| *n == name);
+        let side =
+            side.ok_or_else(|| wrong("is not SIDE:COUNT with a side left, right, top or bottom, such as left:2"))?;
+        counts[side] = count.parse().map_err(|_| wrong("does not end with a number"))?;
     }
     Ok(counts)
 }

@@ -1,4 +1,4 @@
-//! Writes lattices as JSON, in the format of `file.rs`, and has the limits that files and parameters share.
+//! Writes lattices as JSON, in the format that the module `file` describes, and has the limits that files and parameters share.
 
 use crate::map::Lattice;
 
@@ -10,6 +10,7 @@ pub(in crate::deform) const MAX_CELLS: usize = 64;
 /// Returns a lattice as JSON.
 pub(super) fn write(lattice: &Lattice) -> String {
     let r = lattice.region();
+    // Adding zero turns −0 into 0.
     let numbers = |v: &[f64]| format!("[{}]", v.iter().map(|v| format!("{}", v + 0.0)).collect::<Vec<_>>().join(", "));
     let row = |j: usize| {
         let points = (0..lattice.columns()).map(|i| {

@@ -14,6 +14,7 @@
 //! is laid onto the artwork's box.
 
 use super::quilt::{Contents, Quilt};
+use crate::deform::ffd::region_in_file;
 use crate::deform::warp::{self, Style, StyleParams};
 use crate::error::Error;
 use crate::param::NamedText;
@@ -41,24 +42,14 @@ pub(super) fn read(name: &str, text: &str, frame: Rect) -> Result<Quilt, Error> 
 impl QuiltFile {
     /// Checks the file's data; `frame` is the default region.
     pub(super) fn quilt(self, name: &str, frame: Rect) -> Result<Quilt, Error> {
-        let wrong = |what: String| Error::input(name, what);
-        let region = match self.region {
-            None => frame,
-            Some([x, y, w, h]) if w > 0.0 && h > 0.0 && [x, y, w, h].iter().all(|v| v.abs() < 1e100) => {
-                Rect::new(x, y, x + w, y + h)
-            }
-            Some(r) => return Err(wrong(format!("its region {r:?} is not a box x, y, width, height"))),
-        };
-        let points: Vec<Vec<Point>> =
-            self.points.iter().map(|row| row.iter().map(|[x, y]| Point::new(*x, *y)).collect()).collect();
-        let quilt = Quilt::new(name, region, points, self.x, self.y)?;
-        Ok(if self.fit { quilt.on(frame) } else { quilt })
+        let region = region_in_file(name, self.region, frame)?;
+        let row = |row: Vec<[f64; 2]>| row.into_iter().map(|[x, y]| Point::new(x, y)).collect();
+        let quilt = Quilt::new(name, region, self.points.into_iter().map(row).collect(), self.x, self.y)?;
+        Ok(if self.fit { quilt.laid_onto(frame) } else { quilt })
     }
 }
 
-// Warps of Photoshop layers, as JSON made from the warp descriptors of a file or written by hand.
-
-/// The contents of a file of warps.
+/// Warps of Photoshop layers, as JSON made from the warp descriptors of a file or written by hand.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Warps {
@@ -91,39 +82,29 @@ struct LayerWarp {
 
 /// Reads the warp over `region` of the named layer, by default the only warped one.
 pub(super) fn read_psd(file: &NamedText, layer: Option<&str>, region: Rect) -> Result<Contents, Error> {
-    let parsed: Warps = serde_json::from_str(&file.text).map_err(|_| {
-        Error::input(
-            &file.name,
-            "is neither a Photoshop file nor JSON of a warp: {\"style\": \"warpArc\", \"value\": 50}",
-        )
-    })?;
-    let warps = match parsed {
+    let wrong = |what: String| Error::input(&file.name, what);
+    let expected = "is neither a Photoshop file nor JSON of a warp: {\"style\": \"warpArc\", \"value\": 50}";
+    let warps = match serde_json::from_str(&file.text).map_err(|_| wrong(expected.into()))? {
         Warps::All { warps } => warps,
         Warps::One(warp) => vec![warp],
     };
-    let wrong = |what: String| Error::input(&file.name, what);
-    let listed = warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
-    let mut fits = warps.into_iter().filter(|w| layer.map_or(w.style != "warpNone", |l| w.layer == l));
-    let warp = match (fits.next(), fits.next()) {
+    let all = warps.iter().map(|w| format!("`{}` ({})", w.layer, w.style)).collect::<Vec<_>>().join(", ");
+    let mut chosen = warps.into_iter().filter(|w| layer.map_or(w.style != "warpNone", |l| w.layer == l));
+    let warp = match (chosen.next(), chosen.next()) {
         (Some(one), None) => one,
-        (None, _) if listed.is_empty() => return Err(wrong("has no layer with a warp".into())),
-        (None, _) => return Err(wrong(format!("has no such warped layer; there are {listed}"))),
-        (Some(_), Some(_)) => {
-            return Err(wrong(format!("has several warped layers; choose one with `layer`: {listed}")));
-        }
+        (None, _) if all.is_empty() => return Err(wrong("has no layer with a warp".into())),
+        (None, _) => return Err(wrong(format!("has no such warped layer; there are {all}"))),
+        (Some(_), Some(_)) => return Err(wrong(format!("has several warped layers; choose one with `layer`: {all}"))),
     };
     if let Some(mesh) = warp.mesh {
-        return Ok(Contents::Quilt(mesh.quilt(&file.name, region)?.on(region), Some(warp.layer)));
+        return Ok(Contents::Quilt(mesh.quilt(&file.name, region)?.laid_onto(region), Some(warp.layer)));
     }
     let style = Style::named(&warp.style).ok_or_else(|| {
         wrong(format!("layer `{}` has the warp {}, which has no known formula", warp.layer, warp.style))
     })?;
-    let bent = StyleParams {
-        bend: warp.value / 100.0,
-        distortion: [warp.perspective / 100.0, warp.perspective_other / 100.0],
-        vertical: warp.vertical,
-    };
-    let net = style.net(region.width(), region.height(), &bent).map_err(|e| wrong(format!("its style {e}")))?;
+    let distortion = [warp.perspective / 100.0, warp.perspective_other / 100.0];
+    let params = StyleParams { bend: warp.value / 100.0, distortion, vertical: warp.vertical };
+    let net = style.net(region.width(), region.height(), &params).map_err(|e| wrong(format!("its style {e}")))?;
     let mut built = warp::over(region, &net)?;
     built.note(format!("layer {}: style {}, bend {}%", warp.layer, style.name(), warp.value));
     Ok(Contents::Style(built))

@@ -77,7 +77,7 @@ impl Mesh {
     /// Builds the map. Kinks at the joints give a warning.
     ///
     /// # Errors
-    /// [`Error::Geometry`] for a flat box, [`Error::Input`] for rows of illegal or different length.
+    /// [`Error::Geometry`] when the box is flat, [`Error::Input`] when rows have an illegal length or differ in it.
     pub fn build(&self) -> Result<Built, Error> {
         let mut quilt = match &self.source {
             Source::Quilt(quilt) => quilt.clone(),
@@ -89,26 +89,26 @@ impl Mesh {
             quilt.smooth();
         }
         let [columns, rows] = quilt.size();
-        let (kinks, worst) = quilt.kinks();
+        let (kinks, worst_kink) = quilt.kinks();
         let r = quilt.region;
         let frame = self.frame.unwrap_or(r);
         let map = quilt.map().ok_or(GeometryError::FlatFrame { width: r.width(), height: r.height() })?;
         let map = crate::anchors::settled(map, frame);
         let mut built = Built::new(map);
-        let joints = if worst < VISIBLE_KINK { "smooth" } else { "kinked" };
+        let joints = if worst_kink < VISIBLE_KINK { "smooth" } else { "kinked" };
         built.note(format!("mesh: {columns} by {rows} patches; joints: {joints}"));
-        let beyond = r.inflate(BEYOND * r.width(), BEYOND * r.height());
-        if !matches!(built.map.class(), Class::Affine(_)) && frame.union(beyond) != beyond {
+        let controlled = r.inflate(BEYOND * r.width(), BEYOND * r.height());
+        if !matches!(built.map.class(), Class::Affine(_)) && frame.union(controlled) != controlled {
             built.warn(format!(
                 "mesh: the artwork extends far past its box {} {} to {} {}, where a mesh has little control: `region artwork` \
 lays it onto the artwork",
                 r.x0, r.y0, r.x1, r.y1
             ));
         }
-        if worst >= VISIBLE_KINK {
+        if worst_kink >= VISIBLE_KINK {
             built.warn(format!(
                 "mesh: {kinks} pairs of control points beside joints make kinks (by up to {:.0} % of the slope); `smooth` evens them out",
-                100.0 * worst
+                100.0 * worst_kink
             ));
         }
         built.overlay(Role::Base, r.to_path(0.1));
@@ -116,8 +116,6 @@ lays it onto the artwork",
         Ok(built)
     }
 }
-
-// The registry's entry: reads a [`Mesh`] from text.
 
 static INFO: Info = Info::new("mesh", "bend artwork by a mesh of bicubic patches, or by a Photoshop warp")
     .group("Lattices and nets")
@@ -194,6 +192,7 @@ Specification, descriptor structure and placed layer data")
 /// Two patches that rise in the middle.
 const DEMO: &str = "M0,10 C20,10 30,0 50,0 C70,0 80,10 100,10 M0,40 C20,40 35,30 50,33 C65,36 80,40 100,40 \
 M5,70 C20,70 30,60 50,66 C70,72 80,70 95,70 M0,100 C20,105 30,95 50,100 C70,105 80,105 100,110";
+/// The control points of the identity.
 const REST: &str = "M0,0 C33.333333333333336,0 66.66666666666667,0 100,0 \
 M0,33.333333333333336 C33.333333333333336,33.333333333333336 66.66666666666667,33.333333333333336 100,33.333333333333336 \
 M0,66.66666666666667 C33.333333333333336,66.66666666666667 66.66666666666667,66.66666666666667 100,66.66666666666667 \
@@ -212,7 +211,7 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
         (Quilt::from_path(&path, region)?, None)
     } else {
         let file = s.file_if(source)?.ok_or_else(|| Error::missing(source, "its file"))?;
-        match from_file(s, source, file, region)? {
+        match contents(s, source, file, region)? {
             Contents::Style(built) => return Ok(built),
             Contents::Quilt(quilt, layer) => (quilt, layer),
         }
@@ -224,17 +223,17 @@ pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| {
     Ok(built)
 });
 
-/// Reads a mesh or a Photoshop file.
+/// Reads the file of the parameter `param`: a mesh or a Photoshop file.
 #[cfg(feature = "serde")]
-fn from_file(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
+fn contents(s: &Settings<'_>, param: &str, file: &NamedText, region: Rect) -> Result<Contents, Error> {
     if param == "psd" {
         return file::read_psd(file, s.texts("layer").last().copied(), region);
     }
     let quilt = file::read(&file.name, &file.text, region)?;
-    Ok(Contents::Quilt(if s.given("region") { quilt.on(region) } else { quilt }, None))
+    Ok(Contents::Quilt(if s.given("region") { quilt.laid_onto(region) } else { quilt }, None))
 }
 
 #[cfg(not(feature = "serde"))]
-fn from_file(_: &Settings<'_>, _: &str, file: &NamedText, _: Rect) -> Result<Contents, Error> {
+fn contents(_: &Settings<'_>, _: &str, file: &NamedText, _: Rect) -> Result<Contents, Error> {
     Err(crate::error::no_json(&file.name))
 }

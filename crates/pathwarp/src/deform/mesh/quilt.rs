@@ -1,4 +1,5 @@
-//! Quilts: rows and columns of bicubic patches.
+//! Quilts: rows and columns of bicubic patches. Patch (i, j), the i-th from the left and the j-th from the top, has the control points of
+//! columns 3i to 3i + 3 and rows 3j to 3j + 3; those of the last column and row belong to its neighbours too.
 
 use crate::deform::entry::Built;
 use crate::error::Error;
@@ -22,6 +23,14 @@ pub(super) struct Quilt {
     points: Vec<Vec<Point>>,
 }
 
+/// Three control points in a row or column, with a joint in the middle one.
+struct Joint {
+    /// Row and column of each.
+    nodes: [[usize; 2]; 3],
+    /// The shares of the box of the patches before and after.
+    widths: [f64; 2],
+}
+
 /// The deformation that a file describes.
 pub(super) enum Contents {
     /// The map of a warp style.
@@ -30,14 +39,14 @@ pub(super) enum Contents {
     Quilt(Quilt, Option<String>),
 }
 
-/// Returns the number of patches that `points` make; `None` unless it is a whole number from 1 to [`MAX_PATCHES`].
+/// Returns the number of patches that a row of `points` points makes; `None` unless it is a whole number from 1 to [`MAX_PATCHES`].
 fn patches(points: usize) -> Option<usize> {
     let n = points.checked_sub(1)? / 3;
     (n * 3 + 1 == points && (1..=MAX_PATCHES).contains(&n)).then_some(n)
 }
 
-/// Returns the cuts with 0 and 1; without cuts, an even division into `n`. `None` if they do not rise.
-fn ends(cuts: Option<Vec<f64>>, n: usize) -> Option<Vec<f64>> {
+/// Returns the cuts between 0 and 1 with these ends; without cuts, an even division into `n`. `None` unless they are n − 1 and rise.
+fn with_ends(cuts: Option<Vec<f64>>, n: usize) -> Option<Vec<f64>> {
     let Some(inner) = cuts else { return Some((0..=n).map(|i| i as f64 / n as f64).collect()) };
     let all: Vec<f64> = [0.0].into_iter().chain(inner).chain([1.0]).collect();
     (all.len() == n + 1 && all.windows(2).all(|w| w[0] < w[1])).then_some(all)
@@ -62,18 +71,11 @@ impl Quilt {
         y: Option<Vec<f64>>,
     ) -> Result<Self, Error> {
         let wrong = |what: String| Error::input(name, what);
-        let Some(rows) = patches(points.len()) else {
-            let found = points.len();
-            return Err(wrong(format!(
-                "has {found} rows of points; patches take 4, 7, 10, … (up to {MAX_PATCHES} patches)"
-            )));
-        };
+        let allowed = format!("patches take 4, 7, 10, … (up to {MAX_PATCHES} patches)");
+        let height = points.len();
+        let rows = patches(height).ok_or_else(|| wrong(format!("has {height} rows of points; {allowed}")))?;
         let width = points.first().map_or(0, Vec::len);
-        let Some(columns) = patches(width) else {
-            return Err(wrong(format!(
-                "has {width} points in a row; patches take 4, 7, 10, … (up to {MAX_PATCHES} patches)"
-            )));
-        };
+        let columns = patches(width).ok_or_else(|| wrong(format!("has {width} points in a row; {allowed}")))?;
         if let Some(j) = points.iter().position(|r| r.len() != width) {
             return Err(wrong(format!("row {j} has {} points, row 0 has {width}", points[j].len())));
         }
@@ -81,7 +83,7 @@ impl Quilt {
             return Err(wrong("has a point larger than 1e100".into()));
         }
         let shares = |given: Option<Vec<f64>>, n: usize, axis: &str| {
-            ends(given, n).ok_or_else(|| {
+            with_ends(given, n).ok_or_else(|| {
                 let inner = n - 1;
                 wrong(format!("its `{axis}` must be {inner} rising number(s) between 0 and 1, where {n} patches meet"))
             })
@@ -91,11 +93,11 @@ impl Quilt {
     }
 
     /// Lays the quilt onto another box.
-    pub(super) fn on(mut self, region: Rect) -> Self {
+    pub(super) fn laid_onto(mut self, region: Rect) -> Self {
         let r = self.region;
-        let (kx, ky) = (region.width() / r.width(), region.height() / r.height());
+        let (scale_x, scale_y) = (region.width() / r.width(), region.height() / r.height());
         for p in self.points.iter_mut().flatten() {
-            *p = Point::new(region.x0 + (p.x - r.x0) * kx, region.y0 + (p.y - r.y0) * ky);
+            *p = Point::new(region.x0 + (p.x - r.x0) * scale_x, region.y0 + (p.y - r.y0) * scale_y);
         }
         Self { region, ..self }
     }
@@ -109,25 +111,39 @@ impl Quilt {
         std::array::from_fn(|r| std::array::from_fn(|c| self.points[3 * j + r][3 * i + c]))
     }
 
+    /// Returns the joints: along rows, then along columns.
+    fn joints(&self) -> Vec<Joint> {
+        let along = |cuts: &[f64]| -> Vec<_> {
+            (1..cuts.len() - 1).map(|i| (3 * i, [cuts[i] - cuts[i - 1], cuts[i + 1] - cuts[i]])).collect()
+        };
+        let mut out = Vec::new();
+        for r in 0..self.points.len() {
+            out.extend(
+                along(&self.x).into_iter().map(|(c, w)| Joint { nodes: [[r, c - 1], [r, c], [r, c + 1]], widths: w }),
+            );
+        }
+        for (r, widths) in along(&self.y) {
+            let nodes = |c| [[r - 1, c], [r, c], [r + 1, c]];
+            out.extend((0..self.points[0].len()).map(|c| Joint { nodes: nodes(c), widths }));
+        }
+        out
+    }
+
+    /// Returns the derivatives on both sides of a joint, and its middle point.
+    fn slopes(&self, joint: &Joint) -> ([Vec2; 2], Point) {
+        let [a, b, c] = joint.nodes.map(|[r, c]| self.points[r][c]);
+        ([(b - a) / joint.widths[0], (c - b) / joint.widths[1]], b)
+    }
+
     /// Makes the joints C¹: handles on both sides of a joint get the mean of their two derivatives. Columns come after rows, so that
     /// the cross derivatives agree too.
     pub(super) fn smooth(&mut self) {
-        let level = |a: Point, b: Point, c: Point, before: f64, after: f64| {
-            let slope = ((b - a) / before + (c - b) / after) * 0.5;
-            (b - slope * before, b + slope * after)
-        };
-        for row in &mut self.points {
-            for i in 1..self.x.len() - 1 {
-                let (before, after) = (self.x[i] - self.x[i - 1], self.x[i + 1] - self.x[i]);
-                (row[3 * i - 1], row[3 * i + 1]) = level(row[3 * i - 1], row[3 * i], row[3 * i + 1], before, after);
-            }
-        }
-        for j in 1..self.y.len() - 1 {
-            let (before, after) = (self.y[j] - self.y[j - 1], self.y[j + 1] - self.y[j]);
-            for c in 0..self.points[0].len() {
-                let [a, b, d] = [3 * j - 1, 3 * j, 3 * j + 1].map(|r| self.points[r][c]);
-                (self.points[3 * j - 1][c], self.points[3 * j + 1][c]) = level(a, b, d, before, after);
-            }
+        for joint in self.joints() {
+            let ([before, after], p) = self.slopes(&joint);
+            let slope = (before + after) * 0.5;
+            let [[r0, c0], _, [r1, c1]] = joint.nodes;
+            self.points[r0][c0] = p - slope * joint.widths[0];
+            self.points[r1][c1] = p + slope * joint.widths[1];
         }
     }
 
@@ -135,28 +151,12 @@ impl Quilt {
     pub(super) fn kinks(&self) -> (usize, f64) {
         /// Smaller jumps are rounding: files keep about seven digits.
         const ROUNDING: f64 = 1e-6;
-        let (mut count, mut worst) = (0, 0.0_f64);
-        let mut joint = |a: Point, b: Point, c: Point, before: f64, after: f64| {
-            let (l, r): (Vec2, Vec2) = ((b - a) / before, (c - b) / after);
-            let jump = (r - l).hypot() / l.hypot().max(r.hypot()).max(f64::MIN_POSITIVE);
-            if jump > ROUNDING {
-                count += 1;
-                worst = worst.max(jump);
-            }
+        let jump = |joint: Joint| {
+            let ([before, after], _) = self.slopes(&joint);
+            (after - before).hypot() / before.hypot().max(after.hypot()).max(f64::MIN_POSITIVE)
         };
-        for row in &self.points {
-            for i in 1..self.x.len() - 1 {
-                let k = 3 * i;
-                joint(row[k - 1], row[k], row[k + 1], self.x[i] - self.x[i - 1], self.x[i + 1] - self.x[i]);
-            }
-        }
-        for j in 1..self.y.len() - 1 {
-            for c in 0..self.points[0].len() {
-                let [a, b, d] = [3 * j - 1, 3 * j, 3 * j + 1].map(|r| self.points[r][c]);
-                joint(a, b, d, self.y[j] - self.y[j - 1], self.y[j + 1] - self.y[j]);
-            }
-        }
-        (count, worst)
+        let kinks = self.joints().into_iter().map(jump).filter(|jump| *jump > ROUNDING);
+        kinks.fold((0, 0.0), |(count, worst), jump| (count + 1, f64::max(worst, jump)))
     }
 
     /// Returns the map; `None` if the region has no area.

@@ -3,7 +3,12 @@
 //! The map is F = h₂ ∘ F₀ ∘ h₁ (Markku Koppinen, *A plane transformation from 16 control points*, equation 8, to which all numbers
 //! of equations here refer). F₀ is the bicubic map of a 4×4 net (equation 3). The user draws its outer twelve points as a closed path
 //! of four cubic sides; the inner four follow by equation 7 ([`complete_net`](crate::map::complete_net)). h₁ takes the base to the
-//! unit square, h₂ the shaper's corners to the target. They are direct similitudes for two anchors, projective maps for four.
+//! unit square, h₂ the shaper's corners to the target. They are direct similitudes for two anchors, projective maps for four. In a net,
+//! row 0 is the bottom side run left to right, and column 0 is the left side run upwards.
+//!
+//! Of the eight ways to lay the corners of a base on the corners of a cage, the one that distorts least is chosen, judged by the best
+//! direct similitude between them. Relative to their means, let the corners be the complex numbers bᵢ and cᵢ. The residual, as a share of
+//! the cage's size, is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)).
 
 #[cfg(test)]
 mod tests;
@@ -12,7 +17,7 @@ use super::entry::{Built, ByHand, Case, Entry, Example, Explanation, Info, Law, 
 use crate::anchors::{self, Anchors, Arrangement};
 use crate::error::{Error, GeometryError, check_range, show};
 use crate::map::{AffineMap, BicubicNet, Chain, Class, Map, Net, complete_net};
-use crate::outline::{Outline, Seg};
+use crate::outline::Outline;
 use crate::param::{Frame, Kind, NamedPath, Settings, parameters};
 use kurbo::{BezPath, CubicBez, Point, Rect, Vec2};
 use std::sync::Arc;
@@ -95,14 +100,17 @@ impl Shaper {
     ///
     /// # Errors
     /// [`Error::Geometry`] when the path is not closed or has other than four sides, when anchors coincide, or when three of the four
-    /// anchors of a projective map lie on a line (also the shaper's, for four targets); [`Error::Usage`] for a bottom side out of range.
+    /// anchors of a projective map lie on a line (also the shaper's, for four targets); [`Error::Usage`] when there is no such bottom side.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let mut explanation = Explanation::default();
         if let Bottom::Side(n) = self.bottom {
             check_range("bottom", n as f64, 1.0, 4.0)?;
         }
-        let base = self.base_anchors();
+        let base = match &self.base {
+            Some(path) => anchors::of_path(path, self.base_as_drawn),
+            None => anchors::frame_corners(&Frame::new(self.frame)),
+        };
         let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
         // Only a projective map to the target forbids corners on a line.
         let usable = if matches!(target, Some(Anchors::Four(_))) { anchors::general } else { anchors::distinct };
@@ -122,27 +130,27 @@ impl Shaper {
             usable(name, &corners)?;
         }
         let notes = &mut explanation.notes;
-        notes.push(format!("corners of {name}: {} (bottom left, bottom right, top right, top left)", list(&corners)));
+        let listed = list_points(&corners);
+        notes.push(format!("corners of {name}: {listed} (bottom left, bottom right, top right, top left)"));
 
         let base = base?;
-        notes.push(format!("base: {} ({})", list(base.points()), wrapper(&base)));
-        let after = match &target {
+        notes.push(format!("base: {} ({})", list_points(base.points()), kind_of_map(&base)));
+        let h2 = match &target {
             None => {
                 notes.push("target: none, the result lies where the shaper lies".into());
                 None
             }
             Some(t) => {
-                notes.push(format!("target: {} ({})", list(t.points()), wrapper(t)));
+                notes.push(format!("target: {} ({})", list_points(t.points()), kind_of_map(t)));
                 Some(to_target(name, &corners, t)?)
             }
         };
-        let map = compose(&anchors::to_standard("base", &base)?, net, after);
+        let map = compose(&anchors::to_standard("base", &base)?, net, h2);
         // If only rounding moves the frame, the map is the identity.
         let map = anchors::settled(map, self.frame);
 
         let mut built = Built::new(map);
-        built.explanation.notes = explanation.notes;
-        built.explanation.warnings = explanation.warnings;
+        built.explanation = explanation;
         built.overlay(Role::Cage, path);
         built.overlay(Role::Base, base.outline().to_bez_path(0.0));
         if let Some(t) = target {
@@ -187,30 +195,23 @@ impl Shaper {
         ));
         Ok(complete_net(outer_net(&sides, &arrangement)))
     }
-
-    fn base_anchors(&self) -> Result<Anchors, Error> {
-        match &self.base {
-            Some(path) => anchors::of_path(path, self.base_as_drawn),
-            None => anchors::frame_corners(&Frame::new(self.frame)),
-        }
-    }
 }
 
-/// Composes h₂ ∘ F₀ ∘ h₁, with affine wrappers folded into the net.
+/// Composes h₂ ∘ F₀ ∘ h₁, with h₁ and h₂ folded into F₀ where they are affine.
 fn compose(h1: &Arc<dyn Map>, net: Net, h2: Option<Arc<dyn Map>>) -> Arc<dyn Map> {
     let (net, h2) = match h2.as_ref().map(Map::class) {
         Some(Class::Affine(m)) => (net.map(|row| row.map(|p| m * p)), None),
         _ => (net, h2),
     };
-    let (before, pre) = match h1.class() {
+    let (h1, to_square) = match h1.class() {
         Class::Affine(m) => (None, m),
         _ => (Some(h1.clone()), kurbo::Affine::IDENTITY),
     };
-    let f0 = Arc::new(BicubicNet::new(&net, pre)) as Arc<dyn Map>;
-    if before.is_none() && h2.is_none() {
+    let f0 = Arc::new(BicubicNet::new(&net, to_square)) as Arc<dyn Map>;
+    if h1.is_none() && h2.is_none() {
         return f0;
     }
-    Arc::new(Chain::new(before.into_iter().chain([f0]).chain(h2)))
+    Arc::new(Chain::new(h1.into_iter().chain([f0]).chain(h2)))
 }
 
 /// Returns the map of the shaper's corners to the target.
@@ -228,26 +229,24 @@ fn to_target(name: &str, corners: &[Point; 4], target: &Anchors) -> Result<Arc<d
     }
 }
 
-fn wrapper(a: &Anchors) -> &'static str {
+/// Describes h₁ or h₂ by its anchors.
+fn kind_of_map(a: &Anchors) -> &'static str {
     match a {
         Anchors::Two(_) => "two anchors: a similitude",
         Anchors::Four(_) => "four anchors: a projective map",
     }
 }
 
-fn list(points: &[Point]) -> String {
+fn list_points(points: &[Point]) -> String {
     points.iter().map(|p| show(*p)).collect::<Vec<_>>().join(" ")
 }
-
-// Nets of 16 points, from a closed path of four sides or given in full. In `net[r][s]`, row 0 is the bottom side run left to right, and
-// column 0 is the left side run upwards.
 
 /// The rule that chooses the bottom side of a cage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bottom {
     /// The way of laying the base's corners on the cage's that distorts least.
     LeastDistorting,
-    /// The paper's rule.
+    /// The paper's rule: the side that lies lowest on the screen.
     Lowest,
     /// This side, 1 to 4 in the order drawn.
     Side(usize),
@@ -279,15 +278,13 @@ fn least_distorting(
         ));
     }
     let side = lowest.bottom + 1;
-    (
-        best.arrangement,
-        format!(
-            "it distorts the corners least ({chosen} %; side {side}, the lowest on the screen, {rule_distortion} %)"
-        ),
-    )
+    let least = format!(
+        "it distorts the corners least ({chosen} %; side {side}, the lowest on the screen, {rule_distortion} %)"
+    );
+    (best.arrangement, least)
 }
 
-/// Returns the net with its outer twelve points, before the inner four are completed.
+/// Returns the net of four sides, with the inner four points still at the origin.
 fn outer_net(sides: &[CubicBez; 4], a: &Arrangement) -> Net {
     let backwards = |c: CubicBez| CubicBez::new(c.p3, c.p2, c.p1, c.p0);
     // Four sides head to tail: bottom, right, top (right to left), left (downwards).
@@ -310,11 +307,8 @@ fn from_rows(given: &[NamedPath]) -> Result<Net, Error> {
     let subpaths: Vec<_> = given.iter().flat_map(|p| &p.outline.subpaths).collect();
     let points: Vec<Point> = given.iter().flat_map(|p| p.outline.anchors()).collect();
     let rows: Option<Vec<[Point; 4]>> = if subpaths.len() == 4 && subpaths.iter().all(|s| s.segs.len() == 1) {
-        let row = |s: &Seg| {
-            let c = s.to_cubic();
-            [c.p0, c.p1, c.p2, c.p3]
-        };
-        Some(subpaths.iter().map(|s| row(&s.segs[0])).collect())
+        let cubics = subpaths.iter().map(|s| s.segs[0].to_cubic());
+        Some(cubics.map(|c| [c.p0, c.p1, c.p2, c.p3]).collect())
     } else {
         (points.len() == 16).then(|| points.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]).collect())
     };
@@ -349,11 +343,6 @@ pub(in crate::deform) fn rows_path(n: &Net) -> BezPath {
     p
 }
 
-// The eight ways to lay the corners of a base on the corners of a cage, and the one that distorts least.
-//
-// A way is judged by the best direct similitude from the base's corners to the cage's. Relative to their means, let the corners be the
-// complex numbers bᵢ and cᵢ. The residual, as a share of the cage's size, is √(1 − |Σ b̄ᵢcᵢ|² ÷ (Σ|bᵢ|² Σ|cᵢ|²)).
-
 /// Distortions that differ by less than this are ties. So neither artwork nor cages with sides up to about 1:1.3 are turned on their side.
 const TIE: f64 = 0.25;
 
@@ -382,10 +371,10 @@ impl CornerMatch {
     fn best(base: &[Point; 4], cage: &[Point; 4], lowest: Arrangement) -> Self {
         let by_rule = Self::new(base, cage, lowest);
         let all = (0..8).map(|i| Self::new(base, cage, Arrangement { bottom: i % 4, reversed: i >= 4 }));
-        let mirrors = |w: &Self| area(base) * area(&w.arrangement.order().map(|i| cage[i])) < 0.0;
-        let all: Vec<Self> = all.filter(|w| !mirrors(w)).collect();
-        let least = all.iter().map(|w| w.distortion).fold(by_rule.distortion, f64::min);
-        let ties = |w: &Self| w.distortion < least + TIE;
+        let mirrors = |m: &Self| area(base) * area(&m.arrangement.order().map(|i| cage[i])) < 0.0;
+        let all: Vec<Self> = all.filter(|m| !mirrors(m)).collect();
+        let least = all.iter().map(|m| m.distortion).fold(by_rule.distortion, f64::min);
+        let ties = |m: &Self| m.distortion < least + TIE;
         if ties(&by_rule) {
             return by_rule;
         }

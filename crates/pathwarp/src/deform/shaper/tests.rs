@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::deform::Deformation as _;
+use crate::outline::Seg;
 use crate::param::Args;
 use kurbo::ParamCurve;
 

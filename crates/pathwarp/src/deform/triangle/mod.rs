@@ -95,7 +95,8 @@ impl Triangle {
     /// Builds the map. A side that tears the artwork gives a warning.
     ///
     /// # Errors
-    /// [`GeometryError::Collinear`] for a flat triangle, [`Error::Usage`] for a degree, control point or weight out of range.
+    /// [`GeometryError::Collinear`] when the triangle is flat, [`Error::Usage`] when a degree, control point or weight is out of range, or
+    /// no weights make the map birational.
     pub fn build(&self) -> Result<Built, Error> {
         self.check()?;
         let Self { corners, extend, .. } = *self;
@@ -124,7 +125,7 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
                 ));
             }
         }
-        built.overlay(Role::Base, outline(corners));
+        built.overlay(Role::Base, polygon(&corners));
         built.overlay(Role::Cage, cage(&net));
         Ok(built)
     }
@@ -135,8 +136,8 @@ is torn apart; keep that side's points in place, choose a larger `reference`, or
         if self.degree != 2 {
             return Err(wrong("is for degree 2, whose net has six points"));
         }
-        let between = |node: &[usize; 3]| !node.contains(&2);
-        if self.changes.iter().any(|(node, change)| between(node) && matches!(change, Change::Weight(_))) {
+        let is_corner = |node: &[usize; 3]| node.contains(&2);
+        if self.changes.iter().any(|(node, change)| !is_corner(node) && matches!(change, Change::Weight(_))) {
             return Err(wrong("sets the weights of the points between the corners: give weights of corners only"));
         }
         let points: Vec<Point> = indices(2).into_iter().map(|ijk| net.point(ijk)).collect();
@@ -154,16 +155,13 @@ move it nearer to the side between them",
     }
 
     fn change(&self, net: &mut TriangleNet, node: [usize; 3], change: Change) -> Result<(), Error> {
-        let [i, j, k] = node;
+        let ([i, j, k], degree) = (node, self.degree);
         let wrong = |problem: String| Error::usage(change.param(), format!("{i},{j},{k}"), problem);
-        if node.iter().try_fold(0usize, |sum, v| sum.checked_add(*v)) != Some(self.degree) {
-            return Err(wrong(format!(
-                "is not a control point: I, J and K must add up to {}, the degree",
-                self.degree
-            )));
+        if node.iter().try_fold(0usize, |sum, v| sum.checked_add(*v)) != Some(degree) {
+            return Err(wrong(format!("is not a control point: I, J and K must add up to {degree}, the degree")));
         }
         match change {
-            Change::Place(p) => net.place(node, p),
+            Change::Place(p) => net.moves[index(node)] = p - regular_point(net.corners, node),
             Change::Shift(v) => net.shift(node, v),
             Change::Weight(w) if w > 0.0 && w <= 1e6 => net.set_weight(node, w),
             Change::Weight(_) => return Err(wrong("has a weight out of range: above 0, up to a million".into())),
@@ -172,20 +170,20 @@ move it nearer to the side between them",
     }
 }
 
-/// Draws a reference triangle.
-pub(super) fn outline(corners: [Point; 3]) -> BezPath {
+/// Draws a closed polygon.
+pub(super) fn polygon(corners: &[Point]) -> BezPath {
     let mut path = BezPath::new();
-    path.move_to(corners[0]);
-    path.line_to(corners[1]);
-    path.line_to(corners[2]);
+    for (i, p) in corners.iter().enumerate() {
+        if i == 0 { path.move_to(*p) } else { path.line_to(*p) }
+    }
     path.close_path();
     path
 }
 
 /// Returns `true` if the line between two points runs through a box or along its edge.
 fn meets(r: Rect, a: Point, b: Point) -> bool {
-    let room = 1e-9 * (r.width() + r.height());
-    let r = r.inflate(room, room);
+    let rounding = 1e-9 * (r.width() + r.height());
+    let r = r.inflate(rounding, rounding);
     // Clip the line's parameter range by the box's two slabs.
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (p, d, lo, hi) in [(a.x, b.x - a.x, r.x0, r.x1), (a.y, b.y - a.y, r.y0, r.y1)] {
@@ -204,19 +202,10 @@ fn meets(r: Rect, a: Point, b: Point) -> bool {
 
 /// Draws the net's lines in three directions.
 fn cage(net: &TriangleNet) -> BezPath {
-    let mut path = BezPath::new();
-    for [i, j, k] in indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0) {
-        let (left, right) = (net.point([i - 1, j + 1, k]), net.point([i - 1, j, k + 1]));
-        path.move_to(net.point([i, j, k]));
-        path.line_to(left);
-        path.line_to(right);
-        path.close_path();
-    }
-    path
+    let cell = |[i, j, k]: [usize; 3]| [[i, j, k], [i - 1, j + 1, k], [i - 1, j, k + 1]].map(|ijk| net.point(ijk));
+    indices(net.degree).into_iter().filter(|ijk| ijk[0] > 0).flat_map(|ijk| polygon(&cell(ijk))).collect()
 }
 
-// Evaluation of Bézier triangles.
-//
 // A straight line becomes a curve of degree n whatever its direction: a triangle of degree n has total degree n, a rectangle of
 // degree n × n twice that. The net is expanded once in powers of u₁ − ⅓ and u₂ − ⅓, by running de Casteljau's algorithm on polynomials.
 // This multiplies rounding by at most (1 + 2|u₁ − ⅓| + 2|u₂ − ⅓|)ⁿ, which is 3ⁿ in a corner: negligible at practical degrees.
@@ -279,13 +268,14 @@ pub(super) fn basis(corners: [Point; 3], n: usize, p: Point) -> Vec<f64> {
     let (u1, u2) = (at.x + THIRD, at.y + THIRD);
     let u0 = 1.0 - u1 - u2;
     let mut values = vec![1.0];
+    // Bⁿᵢⱼₖ = u₀Bⁿ⁻¹ᵢ₋₁ⱼₖ + u₁Bⁿ⁻¹ᵢⱼ₋₁ₖ + u₂Bⁿ⁻¹ᵢⱼₖ₋₁, without terms of negative index.
     for level in 1..=n {
-        let before = values;
-        let of = |ok: bool, ijk: [usize; 3]| if ok { before[index(ijk)] } else { 0.0 };
+        let lower = values;
+        let term = |exists: bool, ijk: [usize; 3]| if exists { lower[index(ijk)] } else { 0.0 };
         let value = |[i, j, k]: [usize; 3]| {
-            u0 * of(i > 0, [i.wrapping_sub(1), j, k])
-                + u1 * of(j > 0, [i, j.wrapping_sub(1), k])
-                + u2 * of(k > 0, [i, j, k.wrapping_sub(1)])
+            u0 * term(i > 0, [i.wrapping_sub(1), j, k])
+                + u1 * term(j > 0, [i, j.wrapping_sub(1), k])
+                + u2 * term(k > 0, [i, j, k.wrapping_sub(1)])
         };
         values = indices(level).into_iter().map(value).collect();
     }
@@ -299,22 +289,13 @@ impl TriangleNet {
         let area = (b - a).cross(c - a);
         let size = (b - a).hypot2().max((c - a).hypot2());
         let count = (degree + 1) * (degree + 2) / 2;
-        (area.is_finite() && area.abs() > 1e-12 * size).then(|| Self {
-            corners,
-            degree,
-            moves: vec![Vec2::ZERO; count],
-            weights: vec![1.0; count],
-        })
+        let (moves, weights) = (vec![Vec2::ZERO; count], vec![1.0; count]);
+        (area.is_finite() && area.abs() > 1e-12 * size).then_some(Self { corners, degree, moves, weights })
     }
 
     /// Returns control point (i, j, k).
     fn point(&self, ijk: [usize; 3]) -> Point {
         regular_point(self.corners, ijk) + self.moves[index(ijk)]
-    }
-
-    /// Moves control point (i, j, k) to `p`.
-    fn place(&mut self, ijk: [usize; 3], p: Point) {
-        self.moves[index(ijk)] = p - regular_point(self.corners, ijk);
     }
 
     /// Moves control point (i, j, k) by `v`.
@@ -330,16 +311,18 @@ impl TriangleNet {
     /// Returns `true` if no control point of side 0 (AB), 1 (BC) or 2 (CA) moves.
     fn side_is_fixed(&self, side: usize) -> bool {
         let size = self.corners.iter().fold(0.0, |m, p| f64::max(m, p.x.abs() + p.y.abs()));
-        let on: Vec<usize> =
+        // On the side between two corners, the index that belongs to the third corner is 0.
+        let nodes: Vec<usize> =
             indices(self.degree).into_iter().filter(|ijk| ijk[(side + 2) % 3] == 0).map(index).collect();
-        on.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[on[0]])
+        nodes.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[nodes[0]])
     }
 
     /// Returns the map, with the inverse `back` if it is known. Outside the triangle it is the identity or, if `extended`, continues.
     fn map(&self, extended: bool, back: Option<Quotient>) -> Arc<dyn Map> {
-        let pre = coordinates(self.corners);
+        let to_coordinates = coordinates(self.corners);
         let [a, b, c] = self.corners;
         let bounds = Rect::from_points(a, b).union_pt(c);
+        // The polynomial with these Bernstein coefficients, given by `f(index, [i, j, k])`.
         let plane = |f: &dyn Fn(usize, [usize; 3]) -> f64| {
             let all: Vec<f64> = indices(self.degree).into_iter().enumerate().map(|(at, ijk)| f(at, ijk)).collect();
             expanded(self.degree, &all)
@@ -347,19 +330,20 @@ impl TriangleNet {
         let domain = if extended { bounds.inflate(0.5 * bounds.width(), 0.5 * bounds.height()) } else { bounds };
         let mut whole = if self.weights.iter().all(|w| *w == self.weights[0]) {
             let (x, y) = (plane(&|at, _| self.moves[at].x), plane(&|at, _| self.moves[at].y));
-            Quotient::polynomial(pre, x, y, domain)
+            Quotient::polynomial(to_coordinates, x, y, domain)
         } else {
             let origin = bounds.center();
             let x = plane(&|at, ijk| (self.point(ijk).x - origin.x) * self.weights[at]);
             let y = plane(&|at, ijk| (self.point(ijk).y - origin.y) * self.weights[at]);
-            Quotient::rational(pre, origin, x, y, plane(&|at, _| self.weights[at]), domain)
+            Quotient::rational(to_coordinates, origin, x, y, plane(&|at, _| self.weights[at]), domain)
         };
         whole.back = back.map(Box::new);
         if extended {
             return whole.simplest();
         }
-        let sound = self.weights.iter().all(|w| *w > 0.0);
-        let whole: Arc<dyn Map> = if sound { Arc::new(whole.without_poles()) } else { Arc::new(whole) };
+        // With positive weights, the denominator is positive in the triangle.
+        let has_no_poles = self.weights.iter().all(|w| *w > 0.0);
+        let whole: Arc<dyn Map> = if has_no_poles { Arc::new(whole.without_poles()) } else { Arc::new(whole) };
         if whole.class() == Class::Affine(Affine::IDENTITY) {
             return Arc::new(AffineMap::IDENTITY);
         }

@@ -280,7 +280,7 @@ fn samples() -> impl Iterator<Item = (f64, f64)> {
 }
 
 pub(super) fn length(guide: &[Seg]) -> f64 {
-    guide.iter().map(|s| ArcLength::of(s).length()).sum()
+    guide.iter().map(|s| ArcLength::of_segment(s).length()).sum()
 }
 
 /// Returns the total turn of the tangent, radians, clockwise on the screen.

@@ -1,21 +1,16 @@
-//! Free-form deformation of degree 1×n with a closed-form inverse.
+//! Free-form deformation of degree 1×n with a closed-form inverse, by the formula at [`Birational`].
 //!
-//! > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
-//!
-//! with P₀, P₁ rational Bézier curves of degree n, the rows. Their control points are free. The weights make both rows monoids
-//! that are followed by the same line L(t), which turns about the point A in which the lines through the first and through the
-//! last pair of control points meet (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*,
-//! CAGD 44, 2016).
-//! Then t and s of a point X have closed forms:
+//! The control points of the rows are free. The weights make both rows monoids that are followed by the same line L(t), which turns about
+//! the point A in which the lines through the first and through the last pair of control points meet (T. W. Sederberg, R. N. Goldman, X.
+//! Wang, *Birational 2D free-form deformation of degree 1×n*, CAGD 44, 2016). Then t and s of a point X have closed forms:
 //!
 //! > t = ℓ₀·X / (ℓ₀·X − ℓ₁·X),  s = f₀(X) / (f₀(X) − f₁(X))
 //!
 //! with f₀, f₁ the implicit equations of the rows (`Monoid::implicit`). The code computes s from the rows at t: the same number
 //! with less rounding. Lines of constant t stay straight lines.
 //!
-//! **Normalisation of the weights.** Scaling ℓ₁ multiplies wᵢ by gⁱ in both rows, which changes only the speed of t; a common
-//! factor of a row changes nothing. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a
-//! rectangle gives the identity.
+//! **Normalisation of the weights.** Scaling ℓ₁ multiplies wᵢ by gⁱ in both rows, which changes only the speed of t; a common factor of a
+//! row changes nothing. Here w₀₀ = w₁₀ = 1 and w₀ₙ·w₁ₙ = 1, so that the map depends on the points alone and a rectangle gives the identity.
 //!
 //! **B-spline rows** are cut into Bézier pieces by knot insertion, each with a point A of its own. Adjacent pieces share the line between
 //! them and its points: the rows of a piece start with the weights with which the rows of the previous piece end. Speeds are chosen so
@@ -26,7 +21,7 @@ mod monoid;
 #[cfg(test)]
 mod tests;
 
-use super::rational_bezier::Scaled;
+use super::rational_bezier::{Scaled, binomials};
 use super::{Class, Crease, Creases, Formula, Jet, Level, Map, Patch, RationalBezier, Real, bspline};
 use crate::error::GeometryError;
 use kurbo::{Point, Rect, Vec2};
@@ -47,10 +42,9 @@ pub enum Rows {
 ///
 /// > P(s,t) = (1−s)·P₀(t) + s·P₁(t)
 ///
-/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points,
-/// such that s and t of a point have closed forms (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of
-/// degree 1×n*, CAGD 44, 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases
-/// between them.
+/// with P₀, P₁ rational Bézier curves of degree n through free control points, the rows. Their weights follow from the points, such that s
+/// and t of a point have closed forms (T. W. Sederberg, R. N. Goldman, X. Wang, *Birational 2D free-form deformation of degree 1×n*, CAGD
+/// 44, 2016). Lines of constant t stay straight. B-spline rows make one such map for each Bézier piece, with creases between them.
 ///
 /// ```
 /// use pathwarp::kurbo::{Point, Rect};
@@ -99,7 +93,7 @@ impl Birational {
             Some(d) => (d.min(count - 1), count - d.min(count - 1)),
             None => (count - 1, 1),
         };
-        let mut raw = Vec::with_capacity(cells);
+        let mut unscaled = Vec::with_capacity(cells);
         for (k, matrix) in bspline::extraction(degree, cells).iter().enumerate() {
             let bezier = points.map(|row| {
                 let point = |m: &Vec<f64>| {
@@ -110,35 +104,35 @@ impl Birational {
             });
             let name =
                 |n: &str| if cells == 1 { n.to_owned() } else { format!("{n} (Bézier piece {} of {cells})", k + 1) };
-            raw.push(general_rows(&bezier, allow_poles, &names.map(name))?);
+            unscaled.push(general_rows(&bezier, allow_poles, &names.map(name))?);
         }
-        let rows_of = chained(raw).ok_or(GeometryError::NotFinite { shape: names[0].to_owned(), at: points[0][0] })?;
-        Ok(Self::from_monoids(region, rows, rows_of))
+        let not_finite = || GeometryError::NotFinite { shape: names[0].to_owned(), at: points[0][0] };
+        Ok(Self::from_monoids(region, rows, normalised(unscaled).ok_or_else(not_finite)?))
     }
 
     /// The map with one piece for each pair of rows, whose weights are given.
     fn from_monoids(region: Rect, rows: Rows, monoids: Vec<[Monoid; 2]>) -> Self {
         let cells = monoids.len();
-        let share = |a: f64, size: f64, k: usize| a + size * (k as f64 / cells as f64);
+        let joint = |a: f64, size: f64, k: usize| a + size * (k as f64 / cells as f64);
         let piece = |(k, pair): (usize, [Monoid; 2])| {
             let homogeneous = |r: usize, j: usize| {
                 let (p, w) = (pair[r].points[j], pair[r].weights[j]);
                 [p.x * w, p.y * w, w]
             };
-            let n = pair[0].points.len() - 1;
-            let r = region;
-            let (rect, degree, net): (_, _, Vec<[f64; 3]>) = match rows {
-                Rows::LeftRight => (
-                    Rect::new(r.x0, share(r.y0, r.height(), k), r.x1, share(r.y0, r.height(), k + 1)),
-                    [1, n],
-                    (0..=n).flat_map(|j| [homogeneous(0, j), homogeneous(1, j)]).collect(),
-                ),
-                Rows::TopBottom => (
-                    Rect::new(share(r.x0, r.width(), k), r.y0, share(r.x0, r.width(), k + 1), r.y1),
-                    [n, 1],
-                    [0, 1].iter().flat_map(|&s| (0..=n).map(move |j| (s, j))).map(|(s, j)| homogeneous(s, j)).collect(),
-                ),
+            let (n, r) = (pair[0].points.len() - 1, region);
+            let (rect, degree) = match rows {
+                Rows::LeftRight => {
+                    (Rect::new(r.x0, joint(r.y0, r.height(), k), r.x1, joint(r.y0, r.height(), k + 1)), [1, n])
+                }
+                Rows::TopBottom => {
+                    (Rect::new(joint(r.x0, r.width(), k), r.y0, joint(r.x0, r.width(), k + 1), r.y1), [n, 1])
+                }
             };
+            let point = |i: usize| match rows {
+                Rows::LeftRight => homogeneous(i % 2, i / 2),
+                Rows::TopBottom => homogeneous(i / (n + 1), i % (n + 1)),
+            };
+            let net: Vec<[f64; 3]> = (0..2 * (n + 1)).map(point).collect();
             BirationalPiece { patch: Arc::new(Patch::rational(rect, degree, &net)), rows: pair }
         };
         Self { region, rows, pieces: monoids.into_iter().enumerate().map(piece).collect() }
@@ -160,8 +154,8 @@ impl Birational {
     pub fn respaced(&self, k: [f64; 2], g: f64) -> Option<Self> {
         let [BirationalPiece { rows: [a, b], .. }] = self.pieces.as_slice() else { return None };
         let pair = [a.paced(g)?.weighted(k[0]), b.paced(g)?.weighted(k[1])];
-        let sound = |m: &Monoid| m.weights.iter().all(|w| w.is_normal());
-        (k[0] > 0.0 && k[1] > 0.0 && g > 0.0 && pair.iter().all(sound))
+        let is_valid = |m: &Monoid| m.weights.iter().all(|w| w.is_normal());
+        (k[0] > 0.0 && k[1] > 0.0 && g > 0.0 && pair.iter().all(is_valid))
             .then(|| Self::from_monoids(self.region, self.rows, vec![pair]))
     }
 
@@ -171,10 +165,10 @@ impl Birational {
         let Monoid { first, last, .. } = &self.pieces[0].rows[0];
         // Relative to a point on the first line, on which A lies.
         let (det, c) = (first.normal.cross(last.normal), last.at(first.through));
-        let (at, along) = (first.through.to_vec2(), Vec2::new(first.normal.y, -first.normal.x));
+        let (through, along) = (first.through.to_vec2(), Vec2::new(first.normal.y, -first.normal.x));
         let size = first.normal.hypot() * last.normal.hypot();
         let w = if det.abs() <= PARALLEL * size { 0.0 } else { det };
-        [along.x * c + at.x * w, along.y * c + at.y * w, w]
+        [along.x * c + through.x * w, along.y * c + through.y * w, w]
     }
 
     /// The map with one Bézier piece whose line of parameter t joins A and (1 − t)·Q₀ + t·Q₁, two points on the lines through the first
@@ -192,12 +186,11 @@ impl Birational {
     #[must_use]
     pub fn kink(&self) -> Option<(f64, Point)> {
         const SAMPLES: usize = 16;
-        let at = |n: usize| n as f64 / SAMPLES as f64;
         let turn = |w: &[BirationalPiece], n: usize| {
-            let r = w[1].patch.rect();
+            let (r, share) = (w[1].patch.rect, n as f64 / SAMPLES as f64);
             let (p, along): (Point, fn(&Jet) -> Vec2) = match self.rows {
-                Rows::LeftRight => (Point::new(r.x0 + r.width() * at(n), r.y0), |j| j.dy),
-                Rows::TopBottom => (Point::new(r.x0, r.y0 + r.height() * at(n)), |j| j.dx),
+                Rows::LeftRight => (Point::new(r.x0 + r.width() * share, r.y0), |j| j.dy),
+                Rows::TopBottom => (Point::new(r.x0, r.y0 + r.height() * share), |j| j.dx),
             };
             let [a, b] = [w[0].patch.jet(p), w[1].patch.jet(p)];
             let angle = along(&a).cross(along(&b)).atan2(along(&a).dot(along(&b)));
@@ -213,18 +206,14 @@ impl Birational {
         BirationalInverse { forward: self.clone() }
     }
 
-    /// The piece at a source point.
-    fn piece(&self, p: Point) -> usize {
-        let r = self.region;
+    /// The patch at a source point.
+    fn patch(&self, p: Point) -> &Arc<Patch> {
+        let (r, pieces) = (self.region, &self.pieces);
         let t = match self.rows {
             Rows::LeftRight => (p.y - r.y0) / r.height(),
             Rows::TopBottom => (p.x - r.x0) / r.width(),
         };
-        ((t * self.pieces.len() as f64).max(0.0) as usize).min(self.pieces.len() - 1)
-    }
-
-    fn patch(&self, p: Point) -> &Arc<Patch> {
-        &self.pieces[self.piece(p)].patch
+        &pieces[((t * pieces.len() as f64).max(0.0) as usize).min(pieces.len() - 1)].patch
     }
 }
 
@@ -268,8 +257,8 @@ impl Map for Birational {
             }));
         }
         if self.pieces.iter().any(|p| p.patch.has_edge()) {
-            let own = self.clone();
-            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| own.patch(p).denominator(p)))));
+            let map = self.clone();
+            out.push(Crease::edge(Level::Field(Arc::new(move |p: Point| map.patch(p).denominator(p)))));
         }
     }
 
@@ -296,8 +285,8 @@ impl Map for Birational {
         let (back, last) = (self.inverted(), self.pieces.len() - 1);
         let found = |k: usize| {
             let (s, t) = BirationalInverse::parameters(&self.pieces[k].rows, q.x, q.y);
-            let within = (t >= -NEAR || k == 0) && (t <= 1.0 + NEAR || k == last);
-            within.then(|| Point::from(back.source(k, s, t)))
+            let is_in_piece = (t >= -NEAR || k == 0) && (t <= 1.0 + NEAR || k == last);
+            is_in_piece.then(|| Point::from(back.source(k, s, t)))
         };
         Some((0..=last).filter_map(found).collect())
     }
@@ -321,9 +310,8 @@ pub struct BirationalInverse {
 impl BirationalInverse {
     /// The parameters (s, t) of a point by the rows of one piece.
     fn parameters<S: Real>(rows: &[Monoid; 2], x: S, y: S) -> (S, S) {
-        let (alpha, beta) = (-rows[0].last.of(x, y), rows[0].first.of(x, y));
-        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line
-        // through (x, y).
+        let (alpha, beta) = (-rows[0].last.value_at(x, y), rows[0].first.value_at(x, y));
+        // The homogeneous points of the rows at t, times (α+β)ⁿ, relative to (x, y). They lie at opposite ends of a line through (x, y).
         let relative = |m: &Monoid| {
             // Relative to a control point, so that the sums are not differences of large numbers.
             let o = m.points[0];
@@ -402,11 +390,11 @@ impl Formula for BirationalInverse {
             out.push(Crease::kink(Level::Line { a: l.normal.x, b: l.normal.y, c }));
         }
         // The forward denominator is infinite where s or t is; its reciprocal changes sign there.
-        let own = self.clone();
+        let inverse = self.clone();
         let level = move |q: Point| {
-            let k = own.piece(q);
-            let (s, t) = Self::parameters(&own.forward.pieces[k].rows, q.x, q.y);
-            1.0 / own.forward.pieces[k].patch.denominator(own.source(k, s, t).into())
+            let k = inverse.piece(q);
+            let (s, t) = Self::parameters(&inverse.forward.pieces[k].rows, q.x, q.y);
+            1.0 / inverse.forward.pieces[k].patch.denominator(inverse.source(k, s, t).into())
         };
         if !self.forward.pieces.iter().all(|p| p.patch.is_polynomial()) {
             out.push(Crease::edge(Level::Field(Arc::new(level))));
@@ -426,10 +414,8 @@ impl Formula for BirationalInverse {
         let sum = |c: &[f64]| {
             let n = c.len() - 1;
             let mut out = Scaled::zero(n * curve.degree());
-            let mut binomial = 1.0;
-            for (i, c) in c.iter().enumerate() {
+            for (i, (c, binomial)) in c.iter().zip(binomials(n)).enumerate() {
                 out.add_scaled(c * binomial, &alpha[n - i].times(&beta[i]));
-                binomial = binomial * (n - i) as f64 / (i + 1) as f64;
             }
             out
         };
@@ -455,12 +441,8 @@ impl Formula for BirationalInverse {
         if self.forward.pieces.len() == 1 {
             return None;
         }
-        let k = self.piece(inside);
-        let one = Birational {
-            region: self.forward.pieces[k].patch.rect(),
-            rows: self.forward.rows,
-            pieces: vec![self.forward.pieces[k].clone()],
-        };
+        let piece = self.forward.pieces[self.piece(inside)].clone();
+        let one = Birational { region: piece.patch.rect, rows: self.forward.rows, pieces: vec![piece] };
         Some(Arc::new(one.inverted()))
     }
 
@@ -499,18 +481,12 @@ fn general_rows(
     let side = if first.at(points[0][n]) >= 0.0 { 1.0 } else { -1.0 };
     for (row, name) in points.iter().zip(names) {
         for (i, p) in row.iter().enumerate() {
-            let off = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
-            for (counts, d, end) in off {
-                if counts && (d <= ON_LINE && !allow_poles || d.abs() <= ON_LINE) {
-                    let j = if end == "first" { 0 } else { n };
-                    return Err(GeometryError::WrongSide {
-                        path: name.clone(),
-                        which: i + 1,
-                        at: *p,
-                        end,
-                        line: [points[0][j], points[1][j]],
-                        on: d.abs() <= ON_LINE,
-                    });
+            let distances = [(i > 0, side * first.at(*p), "first"), (i < n, -side * last.at(*p), "last")];
+            for (is_off_end, d, end) in distances {
+                if is_off_end && ((d <= ON_LINE && !allow_poles) || d.abs() <= ON_LINE) {
+                    let (path, which, at, on) = (name.clone(), i + 1, *p, d.abs() <= ON_LINE);
+                    let line = points.each_ref().map(|row| row[if end == "first" { 0 } else { n }]);
+                    return Err(GeometryError::WrongSide { path, which, at, end, line, on });
                 }
             }
         }
@@ -521,27 +497,27 @@ fn general_rows(
     rows.map(|(a, b)| [a, b]).ok_or_else(not_finite)
 }
 
-/// Normalises the speeds and the common factors of the rows, piece after piece.
-fn chained(raw: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
-    let n = raw[0][0].points.len() - 1;
-    let product = |rows: &[Monoid; 2], over: usize, under: usize| -> f64 {
-        rows.iter().map(|m| (m.weights[over] / m.weights[under]).abs().ln()).sum()
+/// Normalises the speeds and the common factors of the rows, piece after piece. `None` if a weight is zero or not finite.
+fn normalised(pieces: Vec<[Monoid; 2]>) -> Option<Vec<[Monoid; 2]>> {
+    let n = pieces[0][0].points.len() - 1;
+    // ln |w₀ᵢ·w₁ᵢ / (w₀ⱼ·w₁ⱼ)|.
+    let log_ratio = |rows: &[Monoid; 2], i: usize, j: usize| -> f64 {
+        rows.iter().map(|m| (m.weights[i] / m.weights[j]).abs().ln()).sum()
     };
     // ln g is alternately a + x and a − x; x brings the end weights as close to 1 as possible.
     let mut a = vec![0.0];
-    for w in raw.windows(2) {
-        let next = 0.5 * (product(&w[0], n - 1, n) - product(&w[1], 1, 0)) - a[a.len() - 1];
+    for w in pieces.windows(2) {
+        let next = 0.5 * (log_ratio(&w[0], n - 1, n) - log_ratio(&w[1], 1, 0)) - a[a.len() - 1];
         a.push(next);
     }
     let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let ends = raw.iter().zip(&a).enumerate();
-    let sum: f64 = ends.map(|(k, (rows, a))| sign(k) * (product(rows, n, 0) + 2.0 * n as f64 * a)).sum();
-    let x = -sum / (2 * n * raw.len()) as f64;
+    let ends = pieces.iter().zip(&a).enumerate();
+    let sum: f64 = ends.map(|(k, (rows, a))| sign(k) * (log_ratio(rows, n, 0) + 2.0 * n as f64 * a)).sum();
+    let x = -sum / (2 * n * pieces.len()) as f64;
     let mut factor = [1.0; 2];
-    let mut out = Vec::with_capacity(raw.len());
-    for (k, (rows, a)) in raw.into_iter().zip(a).enumerate() {
+    let mut out = Vec::with_capacity(pieces.len());
+    for (k, ([p, q], a)) in pieces.into_iter().zip(a).enumerate() {
         let g = (a + sign(k) * x).exp();
-        let [p, q] = rows;
         let pair = [p.paced(g)?.weighted(factor[0]), q.paced(g)?.weighted(factor[1])];
         factor = [0, 1].map(|r| pair[r].weights[n]);
         out.push(pair);

@@ -38,7 +38,7 @@ impl ImplicitLine {
 
     /// ℓ·X for any number type.
     #[inline]
-    pub(super) fn of<S: Real>(&self, x: S, y: S) -> S {
+    pub(super) fn value_at<S: Real>(&self, x: S, y: S) -> S {
         (x - self.through.x) * self.normal.x + (y - self.through.y) * self.normal.y
     }
 
@@ -104,7 +104,9 @@ impl Monoid {
             return Err(GeometryError::anchor_count(&path, points, "at least 2"));
         }
         let lines = q.map(|q| ImplicitLine { through: q, normal: Vec2::new(a[1] - a[2] * q.y, a[2] * q.x - a[0]) });
-        for (line, end, name, own, at) in [(lines[0], 0, "Q0", "first", q[0]), (lines[1], n - 1, "Q1", "last", q[1])] {
+        for (line, end, name, end_name, at) in
+            [(lines[0], 0, "Q0", "first", q[0]), (lines[1], n - 1, "Q1", "last", q[1])]
+        {
             let size = points.iter().map(|p| p.distance(at)).fold(0.0, f64::max);
             if line.normal.hypot() <= ON_LINE * (a[2] * size).abs() || line.normal == Vec2::ZERO {
                 return Err(GeometryError::Coincident { path: name.to_owned(), which: [1, 1], at });
@@ -112,7 +114,7 @@ impl Monoid {
             let is_on = |p: Point| line.at(p).abs() <= ON_LINE * line.normal.hypot() * size;
             let wrong = |path: &str, which: usize, at: Point, on: bool| {
                 let line = [points[end], line.through];
-                Err(GeometryError::WrongSide { path: path.to_owned(), which, at, end: own, line, on })
+                Err(GeometryError::WrongSide { path: path.to_owned(), which, at, end: end_name, line, on })
             };
             if !is_on(points[end]) {
                 return wrong(name, 1, at, false);
