@@ -322,8 +322,12 @@ impl Display for Warning {
                 write_names(f, names)
             }
             Self::Arrivals(names) => {
-                let [shapes, have] = if names.len() == 1 { ["shape", "has"] } else { ["shapes", "have"] };
-                write!(f, "{} {shapes} that lay off the page {have} moved onto it", names.len())?;
+                let shapes = if names.len() == 1 {
+                    "shape that lay off the page has"
+                } else {
+                    "shapes that lay off the page have"
+                };
+                write!(f, "{} {shapes} moved onto it", names.len())?;
                 write_names(f, names)
             }
         }
