@@ -617,7 +617,7 @@ impl Session {
     }
 
     fn refuse_for_program(&self, what: &str) -> Result<(), String> {
-        self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this one")))
+        self.purpose.program().map_or(Ok(()), |name| Err(format!("{what}: {name} waits for this drawing")))
     }
 
     /// Confirms the present steps as the result for the program that waits.
