@@ -1,11 +1,13 @@
 //! Polar coordinates: a rectangle is bent into a sector of a ring, or into the whole ring.
 //!
-//! In the formulas of [`Polar`], x is measured from the artwork's middle, and g = 1 unless both radii are given. The conformal radius is
+//! > F = C + r·(sin φ, −cos φ) with φ = κ·x, κ = sweep/width, and r = ρ + g·y or, if conformal, ρ·exp(κ·y)
+//!
+//! x is measured from the artwork's middle, y upwards from the inner edge, and g = 1 unless both radii are given. The conformal radius is
 //! that of the complex exponential: heights grow with it. With ρ = 1/κ the inner edge keeps its length. A negative sweep (a smile) makes r
-//! and κ negative; the top edge is then the inner one. The image is F = C + r·(sin φ, −cos φ). It is computed from the image O of the
-//! artwork's middle, at height yₘ, as F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the
-//! centre C far away. The inverse takes r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn
-//! meets itself: artwork that crosses the ray is cut there and joined by a straight line, and the recipe warns of it.
+//! and κ negative; the top edge is then the inner one. F is computed from the image O of the artwork's middle, at height yₘ, as
+//! F = O + (r·sin φ, r(yₘ) − r + 2r·sin²(φ/2)), which loses no digits where the sweep is small and the centre C far away. The inverse takes
+//! r from the distance to C and φ from the direction. At the ray opposite the middle, a whole turn meets itself: artwork that crosses the
+//! ray is cut there and joined by a straight line, and the recipe warns of it.
 
 use super::entry::{Built, ByHand, Case, Entry, Example, Info, Law, Pairs, Seam};
 use crate::error::{Error, show};
@@ -81,27 +83,27 @@ impl Polar {
             return Err(Error::usage("sweep", degrees, "cannot bend artwork that has no width"));
         }
         let (near, far) = self.radii(sweep)?;
-        let up = sweep.signum();
+        let sign = sweep.signum();
         let mut map = PolarMap {
             conformal,
-            up,
+            sign,
             sweep: sweep.abs(),
             k: sweep / width,
-            radius: up * near,
+            radius: sign * near,
             gain: if height > 0.0 && !conformal { (far - near) / height } else { 1.0 },
-            edge: if up > 0.0 { rect.y1 } else { rect.y0 },
+            inner_y: if sign > 0.0 { rect.y1 } else { rect.y0 },
             middle: rect.center(),
-            to: rect.center(),
+            image_of_middle: rect.center(),
             turn: Vec2::from_angle(self.turn.to_radians()),
         };
         if let Some(center) = self.center {
             // The centre lies r(yₘ) below the image of the middle, before the turn.
-            map.to = center + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
+            map.image_of_middle = center + map.turned(Vec2::new(0.0, -map.radius_at(map.middle.y)));
         }
         let mut built = Built::new(Arc::new(map));
         if map.is_whole() {
             let c = map.centre();
-            built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, up)) });
+            built.seam = Some(Seam { end: c, through: c + map.turned(Vec2::new(0.0, sign)) });
         }
         if used < 1.0 {
             built.note(format!("a gap of {gap:.6} between the ends leaves a sweep of {:.6}°", sweep.to_degrees()));
@@ -127,7 +129,9 @@ impl Polar {
             (None, Some(o)) => (o - height, o),
             (Some(i), Some(o)) => (i, o),
         };
-        if near < 0.0 || (far <= near && height > 0.0) || (conformal && near == 0.0) {
+        let leaves_none = near < 0.0 || (far <= near && height > 0.0) || (conformal && near == 0.0);
+        let far = if conformal { near * (sweep.abs() / width * height).exp() } else { far };
+        if leaves_none {
             let name = if outer.is_some() { "outer" } else { "inner" };
             let problem = format!("leaves no ring: the inner radius would be {near:.6}, the outer one {far:.6}");
             return Err(Error::usage(name, "", problem));
@@ -186,7 +190,6 @@ const RING: Pairs = &[("sweep", "360"), ("inner", "10"), ("outer", "60"), ("cent
 const SMILE: Pairs = &[("sweep", "-360"), ("outer", "60"), ("inner", "10"), ("center", "50,15")];
 const SMILE_AT_0: Pairs = &[("sweep", "-180"), ("outer", "60"), ("inner", "10"), ("center", "0,0")];
 
-/// Reads the deformation from text.
 pub(super) const ENTRY: Entry = Entry::new(&INFO, |s| Polar::read(s)?.build());
 
 /// A sweep that falls short of a whole turn by less than this fraction counts as one.
@@ -197,7 +200,7 @@ const WHOLE: f64 = 1e-9;
 struct PolarMap {
     conformal: bool,
     /// +1 for an arch, −1 for a smile.
-    up: f64,
+    sign: f64,
     /// The absolute value of the sweep, in radians.
     sweep: f64,
     /// κ, in radians per unit of x.
@@ -206,24 +209,22 @@ struct PolarMap {
     radius: f64,
     /// g, the gain of radius per unit of height.
     gain: f64,
-    /// The y of the inner edge.
-    edge: f64,
-    /// The artwork's middle, and its image O.
+    inner_y: f64,
     middle: Point,
-    to: Point,
+    /// O.
+    image_of_middle: Point,
     /// The image of the x direction under the additional turn, a unit vector.
     turn: Vec2,
 }
 
 impl PolarMap {
-    /// Applies the additional turn to a vector.
     fn turned(&self, v: Vec2) -> Vec2 {
         Vec2::new(v.x * self.turn.x - v.y * self.turn.y, v.x * self.turn.y + v.y * self.turn.x)
     }
 
     /// Returns r at the ordinate `y` of the artwork.
     fn radius_at<S: Real>(&self, y: S) -> S {
-        let h = -(y - self.edge);
+        let h = -(y - self.inner_y);
         if self.conformal { (h * self.k).exp() * self.radius } else { h * self.gain + self.radius }
     }
 
@@ -233,7 +234,7 @@ impl PolarMap {
     }
 
     fn centre(&self) -> Point {
-        self.to + self.turned(Vec2::new(0.0, self.radius_at(self.middle.y)))
+        self.image_of_middle + self.turned(Vec2::new(0.0, self.radius_at(self.middle.y)))
     }
 }
 
@@ -244,15 +245,15 @@ impl Formula for PolarMap {
         let down = if self.conformal { -r + self.radius_at(self.middle.y) } else { (y - self.middle.y) * self.gain };
         let (a, sin_half) = (r * angle.sin(), (angle * 0.5).sin());
         let b = down + r * sin_half * sin_half * 2.0;
-        let t = self.turn;
-        (a * t.x - b * t.y + self.to.x, a * t.y + b * t.x + self.to.y)
+        let (o, t) = (self.image_of_middle, self.turn);
+        (a * t.x - b * t.y + o.x, a * t.y + b * t.x + o.y)
     }
 
     /// Adds the horizontal that becomes the centre.
     fn creases(&self, out: &mut Creases) {
         if !self.conformal {
-            let c = self.up * (self.radius + self.gain * self.edge);
-            out.push(Crease::edge(Level::Line { a: 0.0, b: -self.up * self.gain, c }));
+            let c = self.sign * (self.radius + self.gain * self.inner_y);
+            out.push(Crease::edge(Level::Line { a: 0.0, b: -self.sign * self.gain, c }));
         }
     }
 
@@ -276,7 +277,7 @@ impl PolarInverse {
         let (c, t) = (m.centre(), m.turn);
         let (u, v) = (x - c.x, y - c.y);
         let (a, b) = (u * t.x + v * t.y, v * t.x - u * t.y);
-        let angle = (a * m.up).atan2(b * -m.up);
+        let angle = (a * m.sign).atan2(b * -m.sign);
         // On the ray itself, rounding picks either end of the turn.
         let angle = match self.half {
             Some(sign) if angle.value() * sign < -FRAC_PI_2 => angle + sign * TAU,
@@ -290,9 +291,9 @@ impl Formula for PolarInverse {
     fn f<S: Real>(&self, x: S, y: S) -> (S, S) {
         let m = &self.ring;
         let (r, angle) = self.polar(x, y);
-        let r = r * m.up;
+        let r = r * m.sign;
         let h = if m.conformal { (r / m.radius).ln() / m.k } else { (r - m.radius) / m.gain };
-        (angle / m.k + m.middle.x, -h + m.edge)
+        (angle / m.k + m.middle.x, -h + m.inner_y)
     }
 
     /// The inverse ends at the ray opposite the middle: each end of the ring extends over half of the angle that the sweep leaves
@@ -336,6 +337,18 @@ mod tests {
 
     fn build(pairs: &[(&str, &str)]) -> Result<Built, Error> {
         ENTRY.build_from(&Args::from_pairs(pairs), &check::frame())
+    }
+
+    #[test]
+    fn the_note_states_the_radii_of_the_image() {
+        for (sweep, spacing) in [("60", "even"), ("60", "conformal"), ("-90", "conformal")] {
+            let built = build(&[("sweep", sweep), ("spacing", spacing), ("center", "0,0")]).unwrap();
+            let mut radii = [0.0, 100.0].map(|y| built.map.point(Point::new(20.0, y)).to_vec2().hypot());
+            radii.sort_by(f64::total_cmp);
+            let stated = format!("radii {:.6} and {:.6}", radii[0], radii[1]);
+            let notes = &built.explanation.notes;
+            assert!(notes.iter().any(|n| n.ends_with(&stated)), "{sweep} {spacing}: {stated}, but {notes:?}");
+        }
     }
 
     #[test]
