@@ -31,7 +31,7 @@ pub(crate) struct Covered<'a, S> {
 }
 
 impl<'a, S: Source> Covered<'a, S> {
-    /// Appends the stretch to a list: piece by piece if it has at least [`LONG`], whose last ends are `joints`; else as a whole.
+    /// Appends the stretch to a list: piece by piece if it has at least [`LONG`] pieces, else as a whole. `joints` are their last ends.
     pub(crate) fn append_to(self, joints: &[BreakPoint], out: &mut Vec<Self>) {
         let Self { part, pieces, report } = self;
         if pieces.len() < LONG || pieces.len() != joints.len() || !report.unresolved.is_empty() {
@@ -58,7 +58,8 @@ pub(crate) fn join<S: Source>(
 ) -> Result<()> {
     let mut i = 0;
     while let Some(first) = covered.get(i) {
-        let mut run = SegmentRun::new(first.part.is_simple(), 8);
+        let usual_length = 8;
+        let mut run = SegmentRun::new(first.part.is_simple(), usual_length);
         if settings.finely {
             (run.grid, run.per_segment) = (LONG_GRID, 2 * LONG_GRID);
         }
@@ -113,6 +114,7 @@ pub fn cover_far<S: Source>(
     let settings = JoinSettings { tolerance, corner, certify: fitter.form.is_some(), finely: true, evenly };
     fitter.extra.set(fitter.extra.get() + (2 * LONG_GRID + LONG_WORK) * covered.len());
     let lanes = covered.iter().flat_map(|c| sample_lanes(2 * LONG_GRID).map(move |t| (&c.part, t)));
+    // The ends are known already.
     Source::announce(&mut { lanes }, &mut std::iter::empty());
     join(&covered, settings, &mut ReachMemory::default(), pieces, report)
 }
@@ -127,6 +129,7 @@ pub(crate) fn fewest<S: Source + Clone>(
     report: &mut Report,
 ) -> Result<usize> {
     let proof = run.segments.first().is_some_and(RunSegment::is_provable);
+    // No cubics are carried to copies of the shape.
     let settings = MergeSettings { tolerance, proof, marks: false, again: false, evenly };
     let mut reaches = Reaches::new(run, own, settings, memory);
     let legs = match evenly {
@@ -135,6 +138,7 @@ pub(crate) fn fewest<S: Source + Clone>(
         false => reaches.fewest()?,
     };
     let tried = reaches.tried();
+    // On a finer grid, even legs would not stay alike from either end.
     let (mut own, legs) = if evenly { (reaches.own, legs) } else { refined(run, reaches.own, legs, settings, memory)? };
     own.append(legs, run.assurance(tolerance), pieces, report)?;
     Ok(tried)

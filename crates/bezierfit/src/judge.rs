@@ -21,6 +21,7 @@ impl<S: Source> StretchFitter<'_, S> {
     /// Error of a fit; above the tolerance if the fit must be rejected.
     #[inline(never)]
     pub(crate) fn judge(&self, request: &mut FitRequest<'_>, fit: &Fit) -> Result<f64> {
+        // The foot points after the Newton step that is left, and the errors there.
         let fitted = settled(&request.frame, request.g, fit, self.tolerance);
         if let Some(error) = self.by_eight(request, &fitted) {
             return Ok(error);
@@ -167,7 +168,7 @@ impl FitRequest<'_> {
             pace[i] = pace2;
             slowness[i] = -pace2;
         }
-        // Nor must the cubic turn back between its ends and the outermost foot points.
+        // The cubic must not turn back between its ends and the outermost foot points either.
         let slope = |s: f64| c1 + (c2 * 2.0 + c3 * (3.0 * s)) * s;
         let resolved = largest(&margin) < 0.0
             && turns_little(self.frame.t0, slope(s0[0]))

@@ -1,4 +1,6 @@
 //! Fits one piece to one stretch of a curve: a line if the samples are on one, the Hermite cubic if it fits, else the best cubic found.
+//! Samples lie at seventeenths ([`UNIT`]) of a stretch: eight ([`FITTED`]) are fitted, the eight others ([`CHECKED`]) check the fit. With
+//! the ends, they are [`IN_ORDER`].
 
 use crate::fit::{ChordFrame, DRIFT, Fit, FitRequest, FitState, Fitting, USUAL, best_fit, size};
 use crate::limits::{
@@ -33,11 +35,10 @@ const NINTHS: usize = 9;
 const SHORTEST: f64 = 1e-6;
 
 /// Most parts of a piece that are searched, and the evaluations that count for each.
-const MAX_LOOKS: usize = 2_000;
-const LOOK_WORK: usize = 8;
+const MAX_PARTS: usize = 2_000;
+const PART_WORK: usize = 8;
 
-/// Attempts from which on each counts as a thorough check: the curve may oscillate too fast for its samples, so that most attempts need
-/// one.
+/// After this many attempts, each counts as a thorough check: a curve that takes so many may oscillate too fast for its samples.
 const HARD_ATTEMPTS: usize = 64;
 
 /// Fits pieces to stretches of one smooth curve.
@@ -202,13 +203,13 @@ impl<'a, S: Source> StretchFitter<'a, S> {
             let error = largest_distance(&spaced(from, to - from, &UNEVEN))?;
             return Ok(if error > self.tolerance { missed(error) } else { outcome });
         }
-        let (mut worst, mut looked) = (outcome.error, 0);
+        let (mut worst, mut parts) = (outcome.error, 0);
         let mut stretches = vec![[from, to]];
         while let Some([t0, t1]) = stretches.pop() {
-            looked += 1;
-            self.extra.set(self.extra.get() + LOOK_WORK);
+            parts += 1;
+            self.extra.set(self.extra.get() + PART_WORK);
             let resolved = self.source.resolved([t0, t1], NINTHS, self.tolerance) == Some(true);
-            if !resolved && t1 - t0 > SHORTEST * (to - from) && looked < MAX_LOOKS {
+            if !resolved && t1 - t0 > SHORTEST * (to - from) && parts < MAX_PARTS {
                 let mid = 0.5 * (t0 + t1);
                 stretches.extend([[mid, t1], [t0, mid]]);
                 continue;
@@ -218,7 +219,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
             if worst > self.tolerance {
                 return Ok(missed(worst));
             }
-            if looked >= MAX_LOOKS {
+            if parts >= MAX_PARTS {
                 return Ok(missed(worst.max(self.tolerance * 2.0)));
             }
         }
@@ -248,6 +249,7 @@ impl<'a, S: Source> StretchFitter<'a, S> {
         let start = FitState { a: larger(a, frame.floor[0]), b: larger(b, frame.floor[1]), s: first.feet(&FITTED) };
         let mut attempt = Attempt { fitter: self, request };
         let best = best_fit(&mut attempt, &USUAL, start, self.tolerance)?;
+        // `best.error` is the judged error, or a prediction above the tolerance; `best.fit.error` is the error at the fitted samples.
         let (piece, error) = (Piece::Cubic(attempt.request.cubic(&best.fit.state)), best.error);
         if error <= self.tolerance {
             return Ok(FitOutcome { piece, error, predicted: best.fit.error, cusp: None });
@@ -358,7 +360,6 @@ impl<'a, S: Source> StretchFitter<'a, S> {
     }
 }
 
-/// The outcome of fitting one piece to a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FitOutcome {
     /// The best piece found.
@@ -390,6 +391,7 @@ struct Attempt<'f, 'r, 'a, S> {
 }
 
 impl<S: Source> Fitting for Attempt<'_, '_, '_, S> {
+    /// The fits of single stretches are not carried to copies of a shape.
     type Mark = ();
 
     #[inline(always)]

@@ -76,11 +76,12 @@ pub(crate) fn for_each_row(
     let targets = table.targets(out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
     let mut files = Files::default();
     reads.iter().chain([&file]).for_each(|f| files.read(f));
+    // Refuses outputs that are read, or have the same file. No option of its own names one.
     targets.iter().try_for_each(|t| files.write(t, ""))?;
     let _empty_ones_removed_at_the_end = Folders::of(targets.iter().map(PathBuf::as_path))?;
     let (mut failures, mut partial) = (Vec::new(), false);
     for ((number, cells), target) in table.rows.iter().zip(&targets) {
-        let _watched = watch::InBatch::begin();
+        let _own_allowance = watch::InBatch::begin();
         match draw(&Row { names: &table.names, cells }, target) {
             Ok(status) => {
                 partial |= status == Status::Partial;
@@ -90,6 +91,7 @@ pub(crate) fn for_each_row(
         }
     }
     let (all, failed) = (table.rows.len(), failures.len());
+    // If all rows fail, it is probably for the same reason.
     if failed == all {
         return failures.pop().map_or(Ok(Status::Complete), |(_, failure)| Err(failure));
     }
@@ -112,9 +114,7 @@ pub(crate) fn decoded(bytes: &[u8], name: &str) -> Result<String, Failure> {
     })
 }
 
-/// A table.
 struct Table {
-    /// The columns' names.
     names: Vec<String>,
     /// The rows below the names, numbered as in a spreadsheet.
     rows: Vec<(usize, Vec<String>)>,
@@ -198,7 +198,7 @@ impl Table {
 
 /// Explains why cells do not form a name of a file or folder, with their columns.
 fn name_fault(row: &Row<'_>, pattern: &str) -> Option<String> {
-    /// Characters and names that Windows reserves, the names also before a dot (Win32, Naming Files, Paths, and Namespaces).
+    /// Characters that Windows reserves, and names that it reserves with any ending (Win32, Naming Files, Paths, and Namespaces).
     const RESERVED: &str = "/\\<>:\"|?*";
     const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
     const PORTS: [&str; 2] = ["COM", "LPT"];

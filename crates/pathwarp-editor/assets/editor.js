@@ -671,7 +671,7 @@
       return this.handles.filter(({ shape }) => shape === "node").reduce((best, h2) => best && distance2(best) <= distance2(h2) ? best : h2, null);
     }
     /** Returns `true` if points are added to all rows, or removed from all, at once. */
-    isRows(param) {
+    editsAllRows(param) {
       return this.pointsOf(param) === "rows";
     }
     /** Returns `true` if a point added at `at` adds no others. */
@@ -878,7 +878,7 @@
     }
     /** Returns a function that removes a node of a path, if enough remain. */
     remover(param, sub, n, nodes) {
-      if (this.isRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
+      if (this.editsAllRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
         return () => {
           for (const [name, row] of this.rows) {
             drop(row, n);
@@ -1165,7 +1165,7 @@
     /** `true` while a handle is dragged; the handles then stay as they are. */
     isDragging = false;
     /** Cancels the drag or the drawing of a line in progress. */
-    hold = null;
+    cancelGesture = null;
     screen = { show: () => {
     }, pixel: 1, reveal: () => {
     } };
@@ -1383,7 +1383,7 @@
     }
     /** Cancels a drag: restores the step as it was before. */
     cancel(step2, before2) {
-      this.hold = null;
+      this.cancelGesture = null;
       this.isDragging = false;
       this.isDraftWanted = false;
       this.steps = this.steps.map((s2) => s2 === step2 ? before2 : s2);
@@ -1399,7 +1399,7 @@
     }
     /** Undoes or redoes; during a drag, undoing only cancels the drag. */
     async turn(direction) {
-      if (this.hold) return direction === "undo" ? this.hold() : void 0;
+      if (this.cancelGesture) return direction === "undo" ? this.cancelGesture() : void 0;
       this.takeTyped();
       return this.inTurn(async () => {
         if (!this.state?.[direction]) return;
@@ -1567,7 +1567,7 @@
     }
     /** Removes the handles of a step that is being replaced, so that they cannot be dragged meanwhile. */
     dropHandles() {
-      this.hold?.();
+      this.cancelGesture?.();
       this.handles = null;
       this.grips = [];
       this.tell("handles");
@@ -1584,7 +1584,7 @@
       if (news.event !== "changed" || !news.state) return;
       if (this.isDragging) {
         if (news.state.drawing === this.state?.drawing) return;
-        this.hold?.();
+        this.cancelGesture?.();
         this.stopCommitTimer();
       }
       const { file } = this.state ?? news.state;
@@ -1694,7 +1694,7 @@
     const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     return copy(root, lines);
   }
-  function apart(text, prefix) {
+  function parseWithPrefix(text, prefix) {
     const root = text ? parse(text) : null;
     for (const element of Array.from(root?.querySelectorAll("*") ?? [])) {
       for (const { name, value } of Array.from(element.attributes)) {
@@ -2034,7 +2034,7 @@
       if (outlines.childElementCount === 0) {
         const bytes = await base64(file);
         const answer = await app2.request({ do: "drawn", name: file.name, bytes });
-        const root = apart(answer?.svg, "behind");
+        const root = parseWithPrefix(answer?.svg, "behind");
         if (!root) return;
         outlines.dataset.width = root.getAttribute("width") ?? "1";
         outlines.replaceChildren(...Array.from(root.children));
@@ -3001,7 +3001,7 @@
     focusedKey = null;
     /** `true` while the view shows the whole page, unmoved by the user. */
     isFitted = false;
-    /** `true` until the first picture of a drawing arrives. */
+    /** `true` until the first picture of a drawing arrives; drafts, whose answers have no summary, do not count. */
     awaitsPicture = true;
     drawingName = "";
     /** `true` from the first picture of a drawing until its handles arrive. */
@@ -3149,7 +3149,7 @@
       this.isBefore = on2;
       if (on2 && this.beforeArt.childElementCount === 0) {
         const answer = await this.app.request({ do: "before" });
-        this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
+        this.beforeArt.replaceChildren(...Array.from(parseWithPrefix(answer?.svg, "before")?.children ?? []));
       }
       this.svg.classList.toggle("before", this.isBefore);
       this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
@@ -3175,7 +3175,7 @@
       const start = performance.now();
       const answer = isEarlier() ? await app2.connection.ask({ do: "ahead", steps: app2.steps, draft }).catch(() => null) : null;
       if (answer) this.endTime = performance.now() - start;
-      this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : void 0, "ahead")?.children ?? []));
+      this.aheadArt.replaceChildren(...Array.from(parseWithPrefix(isEarlier() ? answer?.svg : void 0, "ahead")?.children ?? []));
     });
     /** Positions everything on the screen. */
     layout() {
@@ -3208,7 +3208,7 @@
         const [x, y] = this.camera.toScreen(handle.get());
         this.knobOf.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
       }
-      this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
+      this.selection.place(this.app.isDragging && this.app.cancelGesture ? null : handles, (p) => this.camera.toScreen(p));
     }
     /** `true` if dragging the background selects points. */
     get selects() {
@@ -3318,7 +3318,7 @@
       this.pick(null);
       take?.(path, this.camera.toUser(this.point(e)));
     }
-    /** Reports the innermost part at the pointer, or the outermost copy that contains it; a copy is one part, whatever its content. */
+    /** Reports the innermost part at the pointer, or the outermost copy around it: one part, named like `use at 12:5` without an id. */
     pickPartAt(e) {
       let name = null;
       for (let element = this.pathAt(e, ".art *"); element && !element.matches(".art"); element = element.parentElement) {
@@ -3386,7 +3386,7 @@
     writeHandle(handle, since) {
       this.app.handles.write(handle.param);
       this.placeHandles();
-      if (this.app.hold) this.showValue(handle);
+      if (this.app.cancelGesture) this.showValue(handle);
       this.onFocus(handle);
       this.app.tell("values");
       this.app.draft(since);
@@ -3461,7 +3461,7 @@
     remove(handle) {
       const { handles } = this.app;
       if (!handle.remove || !handles) return;
-      const partner = this.modes.mirrors && !handles.isRows(handle.param) ? handles.partner(handle) : null;
+      const partner = this.modes.mirrors && !handles.editsAllRows(handle.param) ? handles.partner(handle) : null;
       this.removeAll(partner ? [handle, partner] : [handle]);
     }
     /** Moves a handle by keys or typed numbers. */
@@ -3469,7 +3469,7 @@
       const { handles } = this.app;
       if (!handles) return;
       this.app.commitSoon();
-      this.modes.mover(handles, handle)(to, null);
+      this.modes.mover(handles, handle)(to);
       this.writeHandle(handle, performance.now());
     }
   };
@@ -3595,11 +3595,11 @@
       app2.isDragging = true;
       const stop = () => {
         app2.isDragging = false;
-        app2.hold = null;
+        app2.cancelGesture = null;
         this.stage.showValue(null);
         done();
       };
-      app2.hold = this.follow(e, {
+      app2.cancelGesture = this.follow(e, {
         move: (to, event) => {
           hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= CLICK_DISTANCE;
           if (hasMoved) move(to, event);
@@ -4477,7 +4477,7 @@
         if (!isDragged2) {
           const step2 = app2.step;
           const before2 = structuredClone(step2);
-          app2.hold = () => {
+          app2.cancelGesture = () => {
             isCancelled = true;
             app2.cancel(step2, before2);
           };
@@ -4487,7 +4487,7 @@
         app2.tell("values");
       });
       slider.addEventListener("change", () => {
-        app2.hold = null;
+        app2.cancelGesture = null;
         if (isCancelled) this.refresh();
         else if (isDragged2) app2.set(...values(Number(slider.value)), true);
         else app2.setSoon(...values(Number(slider.value)));
@@ -4612,9 +4612,9 @@
       this.stop = () => {
         stop.abort();
         hideHint();
-        if (app2.hold === cancel) app2.hold = null;
+        if (app2.cancelGesture === cancel) app2.cancelGesture = null;
       };
-      app2.hold = cancel;
+      app2.cancelGesture = cancel;
       stage2.svg.classList.add("picking");
       const done = (value) => {
         this.end();
@@ -4940,7 +4940,7 @@
     if (e.key === " " || e.key === "Enter") void stage.showBefore(true);
   });
   function escape() {
-    app.hold?.();
+    app.cancelGesture?.();
     stage.pick(null);
     if (app.appends) app.append(false);
   }

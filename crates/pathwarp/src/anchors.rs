@@ -1,7 +1,7 @@
 //! Anchors of user-drawn paths, and the rules that give them an order.
 //!
-//! Users seldom know the direction of a path or the start of a closed one. The rule is the one of the shaper paper: the side that lies
-//! lowest on the screen is the bottom, and it runs left to right.
+//! Users seldom know the direction of a path or the start of a closed one. The rule is that of the paper (see `deform::shaper`): the
+//! side that lies lowest on the screen is the bottom, and it runs left to right.
 
 use crate::deform::{Built, Role};
 use crate::error::{Error, GeometryError};
@@ -55,8 +55,8 @@ pub(crate) fn only_subpath(path: &NamedPath, expected: &'static str) -> Result<S
     Ok(sub)
 }
 
-/// Returns the only run of a path that is closed, returns to its start, or is a polyline of a number of lines that `is_polygon` accepts:
-/// plain points cannot be closed explicitly.
+/// Returns the only run of a path, closed. A run that returns to its start counts as closed; plain points, which cannot be closed
+/// explicitly, are closed if `is_polygon` accepts their number of lines.
 pub(crate) fn closed_subpath(
     path: &NamedPath,
     expected: &'static str,
@@ -102,11 +102,11 @@ pub(crate) fn two_or_four(path: &NamedPath) -> Result<Anchors, Error> {
     let a = sub.anchors();
     match a[..] {
         [p, q] => {
-            distinct(&path.name, &a)?;
+            check_distinct(&path.name, &a)?;
             Ok(Anchors::Two([p, q]))
         }
         [p, q, r, s] => {
-            general(&path.name, &a)?;
+            check_general(&path.name, &a)?;
             Ok(Anchors::Four([p, q, r, s]))
         }
         _ => Err(GeometryError::anchor_count(&path.name, &a, "two or four").into()),
@@ -114,7 +114,7 @@ pub(crate) fn two_or_four(path: &NamedPath) -> Result<Anchors, Error> {
 }
 
 /// Refuses coincident anchors.
-pub(crate) fn distinct(path: &str, a: &[Point]) -> Result<(), GeometryError> {
+pub(crate) fn check_distinct(path: &str, a: &[Point]) -> Result<(), GeometryError> {
     let near = NEAR * spread(a);
     for (i, p) in a.iter().enumerate() {
         for (j, q) in a.iter().enumerate().take(i) {
@@ -127,8 +127,8 @@ pub(crate) fn distinct(path: &str, a: &[Point]) -> Result<(), GeometryError> {
 }
 
 /// Refuses coincident anchors, and three on a line.
-pub(crate) fn general(path: &str, a: &[Point]) -> Result<(), GeometryError> {
-    distinct(path, a)?;
+pub(crate) fn check_general(path: &str, a: &[Point]) -> Result<(), GeometryError> {
+    check_distinct(path, a)?;
     let flat = NEAR * spread(a).powi(2);
     for k in 0..a.len() {
         for j in 0..k {
@@ -202,10 +202,10 @@ fn from_settings(s: &Settings<'_>, name: &str, as_drawn: &str) -> Result<Option<
     s.path_if(name)?.map(|path| of_path(&path, s.flag(as_drawn)?)).transpose()
 }
 
-/// Returns the frame's corners as anchors, the default base.
+/// Returns the frame's corners as anchors, the default base: bottom left, bottom right, top right, top left.
 pub(crate) fn frame_corners(frame: &Frame) -> Result<Anchors, Error> {
     let c = frame.corners();
-    if general("", &c).is_err() {
+    if check_general("", &c).is_err() {
         let (width, height) = (frame.rect.width(), frame.rect.height());
         return Err(GeometryError::FlatFrame { width, height }.into());
     }
@@ -230,8 +230,8 @@ impl FourToFour {
 
     /// Refuses coincident anchors, and three on a line.
     pub(crate) fn check(&self) -> Result<(), GeometryError> {
-        general("base", &self.from)?;
-        general("target", &self.to)
+        check_general("base", &self.from)?;
+        check_general("target", &self.to)
     }
 
     /// Adds the preview's guides.

@@ -111,7 +111,7 @@ pub enum GeometryError {
         /// Their position.
         at: Point,
     },
-    /// A control point of a row lies on, or beyond, the line through the row's end and the facing row's end.
+    /// A control point lies on, or beyond, the line that joins the ends of the two facing rows.
     #[error(
         "{path}: point {which} ({}) lies {} the line through the {end} points of both rows ({}), so that the map would have a pole: move it off, to the side of the other points{}",
         show(*at), if *on { "on" } else { "beyond" }, show_all(line), if *on { "" } else { ", or allow poles" }
@@ -127,7 +127,7 @@ pub enum GeometryError {
         end: &'static str,
         /// The line.
         line: [Point; 2],
-        /// `true` if it lies on the line itself, where no weight helps.
+        /// `true` if it lies on the line itself, where its weight in the map would have to be zero or infinite.
         on: bool,
     },
     /// The artwork is as flat as a line, so that its box cannot be the base.

@@ -66,11 +66,12 @@ fn drawing(k: u64) -> String {
     )
 }
 
-/// A filter of one to four effects on a shape with this box: a blur, or shadows beneath and inside it.
+/// A filter of one to three effects on a shape with this box: a blur, or up to two shadows beneath it and one inside.
 fn filter(n: &mut Numbers, name: &str, [x, y, w, h]: [i64; 4]) -> String {
     let shape =
         |last: &str| format!("<feBlend mode=\"normal\" in=\"SourceGraphic\" in2=\"{last}\" result=\"shape\"/>\n");
     let (mut effects, mut last, mut margin) = (String::new(), "BackgroundImageFix".to_owned(), 0);
+    // −1 stands for a blur.
     let drops = n.pick(-1, 2);
     if drops < 0 {
         let sigma = n.pick(2, 30);

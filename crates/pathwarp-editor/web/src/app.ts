@@ -61,7 +61,7 @@ export class App {
   /** `true` while a handle is dragged; the handles then stay as they are. */
   isDragging = false;
   /** Cancels the drag or the drawing of a line in progress. */
-  hold: (() => void) | null = null;
+  cancelGesture: (() => void) | null = null;
   screen: Screen = { show: () => {}, pixel: 1, reveal: () => {} };
 
   private listeners: { changes: Change[]; listener: () => void }[] = [];
@@ -306,7 +306,7 @@ export class App {
 
   /** Cancels a drag: restores the step as it was before. */
   cancel(step: Step, before: Step): void {
-    this.hold = null;
+    this.cancelGesture = null;
     this.isDragging = false;
     this.isDraftWanted = false;
     this.steps = this.steps.map((s) => (s === step ? before : s));
@@ -324,7 +324,7 @@ export class App {
 
   /** Undoes or redoes; during a drag, undoing only cancels the drag. */
   async turn(direction: "undo" | "redo"): Promise<void> {
-    if (this.hold) return direction === "undo" ? this.hold() : undefined;
+    if (this.cancelGesture) return direction === "undo" ? this.cancelGesture() : undefined;
     this.takeTyped();
     return this.inTurn(async () => {
       if (!this.state?.[direction]) return;
@@ -510,7 +510,7 @@ export class App {
 
   /** Removes the handles of a step that is being replaced, so that they cannot be dragged meanwhile. */
   private dropHandles(): void {
-    this.hold?.();
+    this.cancelGesture?.();
     this.handles = null;
     this.grips = [];
     this.tell("handles");
@@ -530,7 +530,7 @@ export class App {
     if (this.isDragging) {
       // A drag in the same drawing takes precedence.
       if (news.state.drawing === this.state?.drawing) return;
-      this.hold?.();
+      this.cancelGesture?.();
       this.stopCommitTimer();
     }
     const { file } = this.state ?? news.state;

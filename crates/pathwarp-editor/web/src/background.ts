@@ -2,7 +2,7 @@
 
 import type { App } from "./app";
 import { ARROWS, byId, onFile, s } from "./dom";
-import { apart } from "./drawing";
+import { parseWithPrefix } from "./drawing";
 import { Field, asked, inUnits, MM } from "./fields";
 import { base64 } from "./opening";
 import type { Stage } from "./stage";
@@ -273,7 +273,7 @@ export class Background {
     if (outlines.childElementCount === 0) {
       const bytes = await base64(file);
       const answer = await app.request({ do: "drawn", name: file.name, bytes });
-      const root = apart(answer?.svg, "behind");
+      const root = parseWithPrefix(answer?.svg, "behind");
       if (!root) return;
       outlines.dataset.width = root.getAttribute("width") ?? "1";
       outlines.replaceChildren(...Array.from(root.children));

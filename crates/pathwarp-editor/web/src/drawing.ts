@@ -69,7 +69,7 @@ function parse(text: string, lines: (Element | null)[] | null = null): Element |
 }
 
 /** Parses a drawing that is shown beside the picture; its ids get another prefix. */
-export function apart(text: string | undefined, prefix: string): Element | null {
+export function parseWithPrefix(text: string | undefined, prefix: string): Element | null {
   const root = text ? parse(text) : null;
   for (const element of Array.from(root?.querySelectorAll("*") ?? [])) {
     for (const { name, value } of Array.from(element.attributes)) {

@@ -96,7 +96,7 @@ export class Handles {
   }
 
   /** Returns `true` if points are added to all rows, or removed from all, at once. */
-  isRows(param: string): boolean {
+  editsAllRows(param: string): boolean {
     return this.pointsOf(param) === "rows";
   }
 
@@ -281,7 +281,7 @@ export class Handles {
 
   /** Returns a function that removes a node of a path, if enough remain. */
   private remover(param: string, sub: Subpath, n: number, nodes: number): (() => void) | undefined {
-    if (this.isRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
+    if (this.editsAllRows(param) && nodes > 2 && n > 0 && n < nodes - 1) {
       return () => {
         for (const [name, row] of this.rows) {
           drop(row, n);

@@ -152,7 +152,7 @@ before.addEventListener("keydown", (e) => {
 
 /** Cancels the drag in progress, and any request for a click. */
 function escape(): void {
-  app.hold?.();
+  app.cancelGesture?.();
   stage.pick(null);
   if (app.appends) app.append(false);
 }

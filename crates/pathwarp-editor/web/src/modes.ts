@@ -43,7 +43,7 @@ export class Modes {
   }
 
   /** Returns a function that moves a handle, and its partner if symmetry is on. */
-  mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
+  mover(handles: Handles, handle: Handle): (to: XY, e?: PointerEvent) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
     // The other handles do not move, so the lines to snap to are collected once.

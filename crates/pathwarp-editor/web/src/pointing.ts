@@ -109,7 +109,7 @@ export class Pointing {
     const { app } = this;
     const start = this.stage.point(e);
     hush();
-    // Commit changes by keys first. An undo during the drag calls `hold`.
+    // Commit changes by keys first. An undo during the drag calls `cancelGesture`.
     void app.flush();
     const step = app.step!;
     const before = structuredClone(step);
@@ -117,11 +117,11 @@ export class Pointing {
     app.isDragging = true;
     const stop = () => {
       app.isDragging = false;
-      app.hold = null;
+      app.cancelGesture = null;
       this.stage.showValue(null);
       done();
     };
-    app.hold = this.follow(e, {
+    app.cancelGesture = this.follow(e, {
       move: (to, event) => {
         // Small moves still count as a click.
         hasMoved ||= Math.hypot(to[0] - start[0], to[1] - start[1]) >= CLICK_DISTANCE;

@@ -315,7 +315,7 @@ export class Settings {
       if (!isDragged) {
         const step = app.step!;
         const before = structuredClone(step);
-        app.hold = () => {
+        app.cancelGesture = () => {
           isCancelled = true;
           app.cancel(step, before);
         };
@@ -325,7 +325,7 @@ export class Settings {
       app.tell("values");
     });
     slider.addEventListener("change", () => {
-      app.hold = null;
+      app.cancelGesture = null;
       if (isCancelled) this.refresh();
       else if (isDragged) app.set(...values(Number(slider.value)), true);
       else app.setSoon(...values(Number(slider.value)));

@@ -47,9 +47,9 @@ export class Sketching {
     this.stop = () => {
       stop.abort();
       hideHint();
-      if (app.hold === cancel) app.hold = null;
+      if (app.cancelGesture === cancel) app.cancelGesture = null;
     };
-    app.hold = cancel;
+    app.cancelGesture = cancel;
     stage.svg.classList.add("picking");
     const done = (value: string | null) => {
       this.end();

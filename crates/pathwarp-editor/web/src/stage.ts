@@ -3,7 +3,7 @@
 import type { App } from "./app";
 import { Camera } from "./camera";
 import { ARROWS, byId, s } from "./dom";
-import { apart, Drawing } from "./drawing";
+import { Drawing, parseWithPrefix } from "./drawing";
 import { cells } from "./heat";
 import { Modes } from "./modes";
 import { Selection, together } from "./selection";
@@ -23,7 +23,7 @@ export const REACH = 18;
 const PICK_REACH = 8;
 /** The key under which the browser stores the deformations whose handles have been highlighted. */
 const GREETED_KEY = "pathwarp-greeted";
-/** While something is dragged: tolerance of the faint result in px of the screen, and the longest time for it, in ms. */
+/** While something is dragged: tolerance of the faint result of all steps, in screen px, and the time in ms beyond which it is left out. */
 const END_TOLERANCE = 1;
 const END_TIME_LIMIT = 60;
 
@@ -75,7 +75,7 @@ export class Stage {
   private focusedKey: string | null = null;
   /** `true` while the view shows the whole page, unmoved by the user. */
   private isFitted = false;
-  /** `true` until the first picture of a drawing arrives. */
+  /** `true` until the first picture of a drawing arrives; drafts, whose answers have no summary, do not count. */
   private awaitsPicture = true;
   private drawingName = "";
   /** `true` from the first picture of a drawing until its handles arrive. */
@@ -261,7 +261,7 @@ export class Stage {
     this.isBefore = on;
     if (on && this.beforeArt.childElementCount === 0) {
       const answer = await this.app.request({ do: "before" });
-      this.beforeArt.replaceChildren(...Array.from(apart(answer?.svg, "before")?.children ?? []));
+      this.beforeArt.replaceChildren(...Array.from(parseWithPrefix(answer?.svg, "before")?.children ?? []));
     }
     this.svg.classList.toggle("before", this.isBefore);
     this.art.setAttribute("visibility", this.isBefore ? "hidden" : "visible");
@@ -285,13 +285,13 @@ export class Stage {
   readonly drawEnd = latest(async () => {
     const { app } = this;
     const isEarlier = () => this.showsEnd && app.selected < app.steps.length - 1;
-    // During a drag, skip this in a large drawing.
     const draft = app.isDragging ? END_TOLERANCE * this.camera.pixel : null;
+    // During a drag, skip this in a large drawing.
     if (draft !== null && this.endTime > END_TIME_LIMIT) return;
     const start = performance.now();
     const answer = isEarlier() ? await app.connection.ask({ do: "ahead", steps: app.steps, draft }).catch(() => null) : null;
     if (answer) this.endTime = performance.now() - start;
-    this.aheadArt.replaceChildren(...Array.from(apart(isEarlier() ? answer?.svg : undefined, "ahead")?.children ?? []));
+    this.aheadArt.replaceChildren(...Array.from(parseWithPrefix(isEarlier() ? answer?.svg : undefined, "ahead")?.children ?? []));
   });
 
   /** Positions everything on the screen. */
@@ -326,7 +326,7 @@ export class Stage {
       const [x, y] = this.camera.toScreen(handle.get());
       this.knobOf.get(handle.key)?.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
     }
-    this.selection.place(this.app.isDragging && this.app.hold ? null : handles, (p) => this.camera.toScreen(p));
+    this.selection.place(this.app.isDragging && this.app.cancelGesture ? null : handles, (p) => this.camera.toScreen(p));
   }
 
   /** `true` if dragging the background selects points. */
@@ -450,7 +450,7 @@ export class Stage {
     take?.(path, this.camera.toUser(this.point(e)));
   }
 
-  /** Reports the innermost part at the pointer, or the outermost copy that contains it; a copy is one part, whatever its content. */
+  /** Reports the innermost part at the pointer, or the outermost copy around it: one part, named like `use at 12:5` without an id. */
   pickPartAt(e: PointerEvent): void {
     let name: string | null = null;
     for (let element: Element | null = this.pathAt(e, ".art *"); element && !element.matches(".art"); element = element.parentElement) {
@@ -526,7 +526,7 @@ export class Stage {
   writeHandle(handle: Handle, since: number): void {
     this.app.handles!.write(handle.param);
     this.placeHandles();
-    if (this.app.hold) this.showValue(handle);
+    if (this.app.cancelGesture) this.showValue(handle);
     this.onFocus(handle);
     this.app.tell("values");
     this.app.draft(since);
@@ -610,7 +610,7 @@ export class Stage {
   remove(handle: Handle): void {
     const { handles } = this.app;
     if (!handle.remove || !handles) return;
-    const partner = this.modes.mirrors && !handles.isRows(handle.param) ? handles.partner(handle) : null;
+    const partner = this.modes.mirrors && !handles.editsAllRows(handle.param) ? handles.partner(handle) : null;
     this.removeAll(partner ? [handle, partner] : [handle]);
   }
 
@@ -619,7 +619,7 @@ export class Stage {
     const { handles } = this.app;
     if (!handles) return;
     this.app.commitSoon();
-    this.modes.mover(handles, handle)(to, null);
+    this.modes.mover(handles, handle)(to);
     this.writeHandle(handle, performance.now());
   }
 }

@@ -161,7 +161,7 @@ impl pulp::WithSimd for TracedTile<'_, '_> {
             method = TileMethod::Each;
         }
         for j in 0..area.height {
-            let row = trace.pixels(j);
+            let row = trace.pixel_row(j);
             let out = band.row(area, j);
             let single = |i: usize| bytes(sample::pixel(&painter.pyramid, &trace.pixel(i, j)));
             match method {

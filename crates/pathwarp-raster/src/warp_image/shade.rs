@@ -144,7 +144,7 @@ impl<'a> ShadePainter<'a> {
                 for tile in area.tiles().filter_map(|tile| self.visible(tile)) {
                     let (right, down) = (tile.left - area.left, tile.top - area.top);
                     self.paint(band, tile, |j| {
-                        let row = trace.pixels(down + j);
+                        let row = trace.pixel_row(down + j);
                         move |i| row.point(right + i)
                     });
                 }

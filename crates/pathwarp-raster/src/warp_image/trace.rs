@@ -7,7 +7,7 @@
 use kurbo::{Point, Vec2};
 use pathwarp::map::Jet;
 
-/// Largest error of a source point in source pixels: a quarter of a level at the sharpest possible edge.
+/// Largest error of a source point, in source pixels. At an edge from black to white within a pixel, it is a quarter of a level.
 pub(super) const MAX_ERROR: f64 = 1.0 / 1024.0;
 /// Interpolation points along a side.
 const NODES: usize = 4;
@@ -71,7 +71,6 @@ impl ChebyshevBasis {
     }
 }
 
-/// The polynomial of a tile.
 pub(super) struct Trace {
     /// Coefficients of both coordinates of the source point by powers of v, then of u.
     coefficients: [[[f64; 2]; NODES]; NODES],
@@ -103,8 +102,7 @@ impl Trace {
         out
     }
 
-    /// Row `j` of the tile.
-    pub(super) fn pixels(&self, j: usize) -> TraceRow {
+    pub(super) fn pixel_row(&self, j: usize) -> TraceRow {
         self.row(j as f64 * self.per_pixel.1)
     }
 }
@@ -181,7 +179,7 @@ mod tests {
             assert!((jet.p - f(x, y)).hypot() < 1e-11);
             assert!((jet.dx - Vec2::new(1.0 - 0.01 * y, 2e-4 * x * y)).hypot() < 1e-11);
             assert!((jet.dy - Vec2::new(3e-4 * y * y - 0.01 * x, 2.0 + 1e-4 * x * x)).hypot() < 1e-11);
-            let row = found.pixels(j);
+            let row = found.pixel_row(j);
             for (k, want) in [jet.p.x, jet.p.y].into_iter().enumerate() {
                 let c = row.coordinate(k, 3.0);
                 let x = i as f32;

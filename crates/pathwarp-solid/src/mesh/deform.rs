@@ -134,7 +134,6 @@ fn tears(mesh: &Mesh, before: &[DVec3], map: &dyn Map3, creases: &Creases3) -> (
     (count, first)
 }
 
-/// Turns the normals with the surface.
 fn turn_normals(mesh: &mut Mesh, before: &[DVec3], map: &dyn Map3) {
     // Make one normal for each pair of a vertex and a normal. Most files pair them one to one.
     let are_paired = mesh.corners.par_iter().all(|c| c.normal == NONE || c.normal == c.vertex);
@@ -173,14 +172,14 @@ const MAX_ROUNDS: usize = 16;
 /// and middles of edges and the middles of faces.
 ///
 /// An edge is halved while the map bends it away from its chord by more than the tolerance; a face whose middle bulges gets all its
-/// edges halved. The decision depends only on the positions of an edge's ends. Faces that share them are therefore split alike and the
-/// mesh has no cracks, even where a file repeats vertices along a seam. Faces without a split edge stay as they are; others become
-/// triangles.
+/// edges halved. Whether an edge is bent depends only on the positions of its ends, so faces that share them agree, also where a file
+/// repeats vertices along a seam. Such a seam may open beside a bulging face, by about the tolerance. Faces without a split edge stay as
+/// they are; others become triangles.
 ///
 /// # Errors
 /// [`MeshFault::Limit`](super::MeshFault::Limit) when the evaluations of the map or the number of edges exceed the budget.
 pub fn refine(mesh: &mut Mesh, map: &dyn Map3, tolerance: f64, budget: &Budget) -> Result<(), MeshError> {
-    let mut refiner = Refiner { images: mesh.positions.clone(), map, tolerance, budget, fine: HashSet::new() };
+    let mut refiner = Refiner { images: mesh.positions.clone(), map, tolerance, budget, accepted: HashSet::new() };
     refiner.map.points(&mut refiner.images);
     for _ in 0..MAX_ROUNDS {
         let to_split = refiner.edges_to_split(mesh)?;
@@ -224,7 +223,7 @@ struct Refiner<'a> {
     tolerance: f64,
     budget: &'a Budget,
     /// Edges whose images are within the tolerance.
-    fine: HashSet<Edge>,
+    accepted: HashSet<Edge>,
 }
 
 impl Refiner<'_> {
@@ -238,13 +237,13 @@ impl Refiner<'_> {
                 PolygonKind::Points => 0,
             };
             for e in polygon_edges(corners).take(count) {
-                if e.0 == e.1 || to_split.contains(&e) || self.fine.contains(&e) {
+                if e.0 == e.1 || to_split.contains(&e) || self.accepted.contains(&e) {
                     continue;
                 }
                 if self.is_bent(mesh, e)? {
                     to_split.insert(e);
                 } else {
-                    self.fine.insert(e);
+                    self.accepted.insert(e);
                 }
             }
         }
@@ -281,7 +280,6 @@ impl Refiner<'_> {
         Ok((self.map.point(middle) - image).dot(normal.normalize_or_zero()).abs() > self.tolerance)
     }
 
-    /// Halves edges of a mesh.
     fn split(&mut self, mesh: &mut Mesh, to_split: &HashSet<Edge>) {
         let mut out = Mesh {
             positions: std::mem::take(&mut mesh.positions),
@@ -357,20 +355,20 @@ impl Halves {
                 mesh.colors.push(std::array::from_fn(|k| 0.5 * (p[k] + q[k])));
             }
             let middle = 0.5 * (mesh.positions[i] + mesh.positions[j]);
-            push(&mut mesh.positions, middle)
+            append(&mut mesh.positions, middle)
         });
         let uv = match (a.uv, b.uv) {
             (NONE, _) | (_, NONE) => NONE,
             (i, j) => *self.uvs.entry(edge(i, j)).or_insert_with(|| {
                 let (p, q) = (mesh.uvs[i as usize], mesh.uvs[j as usize]);
-                push(&mut mesh.uvs, std::array::from_fn(|k| 0.5 * (p[k] + q[k])))
+                append(&mut mesh.uvs, std::array::from_fn(|k| 0.5 * (p[k] + q[k])))
             }),
         };
         let normal = match (a.normal, b.normal) {
             (NONE, _) | (_, NONE) => NONE,
             (i, j) => *self.normals.entry(edge(i, j)).or_insert_with(|| {
                 let (p, q) = (mesh.normals[i as usize], mesh.normals[j as usize]);
-                push(&mut mesh.normals, (p + q).try_normalize().unwrap_or(p))
+                append(&mut mesh.normals, (p + q).try_normalize().unwrap_or(p))
             }),
         };
         Corner { vertex, uv, normal }
@@ -378,7 +376,7 @@ impl Halves {
 }
 
 /// Appends a value, and returns its index.
-fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
+fn append<T>(list: &mut Vec<T>, value: T) -> u32 {
     list.push(value);
     index32(list.len() - 1)
 }
@@ -386,7 +384,7 @@ fn push<T>(list: &mut Vec<T>, value: T) -> u32 {
 /// Appends a triangle, some sides of which, each from a corner to the next, are halved.
 fn add_triangle(mesh: &mut Mesh, halves: &mut Halves, t: [Corner; 3], halved: [bool; 3]) {
     let mut corners = [t[0], t[1], t[2], t[0], t[1], t[2]];
-    // Middles are numbered along the triangle, from the end of a side that stays whole.
+    // The middles are numbered from the end of a side that stays whole on, so that the triangle's first corner does not matter.
     let start = halved.iter().position(|h| !h).map_or(0, |i| i + 1);
     for i in (start..start + 3).map(|i| i % 3).filter(|i| halved[*i]) {
         corners[3 + i] = halves.middle(mesh, t[i], t[(i + 1) % 3]);

@@ -16,15 +16,16 @@ pub fn read(text: &[u8]) -> Result<Vec<Surface>, MeshError> {
     let mut lines = lines.filter(|(_, l)| !l.trim().is_empty());
     let (count, _) = whole_numbers::<1>(lines.next(), "the number of patches")?;
     let mut out = Vec::new();
-    for n in 1..=count[0] {
-        let (degree, line) = whole_numbers::<2>(lines.next(), &format!("the degrees of patch {n} of {}", count[0]))?;
+    for number in 1..=count[0] {
+        let (degree, line) =
+            whole_numbers::<2>(lines.next(), &format!("the degrees of patch {number} of {}", count[0]))?;
         if degree.iter().any(|d| !(1..=MAX_DEGREE).contains(d)) {
             return Err(MeshError::at_line(line, format!("degrees are 1 to {MAX_DEGREE}")));
         }
         let [rows, columns] = degree.map(|d| d + 1);
         let mut points = Vec::with_capacity(rows * columns);
         for _ in 0..rows * columns {
-            points.push(point(lines.next(), n)?);
+            points.push(point(lines.next(), number)?);
         }
         // In [`Surface`], the first index runs fastest.
         let transposed = (0..points.len()).map(|k| points[(k % rows) * columns + (k / rows)]).collect();

@@ -18,8 +18,14 @@ use pathwarp::{Error, Outline};
 pub(crate) struct Line {
     pub(crate) data: String,
     pub(crate) bounds: Rect,
-    /// Path data and bounds of the line to which the artwork's colours are continued.
-    pub(crate) bled: Option<(String, Rect)>,
+    pub(crate) bled: Option<Bleed>,
+}
+
+/// The line to which the artwork's colours are continued.
+#[derive(Debug)]
+pub(crate) struct Bleed {
+    pub(crate) data: String,
+    pub(crate) bounds: Rect,
 }
 
 /// Draws the line, if one is wanted, and reports it.
@@ -57,7 +63,7 @@ pub(super) fn draw(
     let bleed = options.line.bleed;
     let bled = (bleed > 0.0).then(|| line(contour.by + bleed)).transpose().map_err(Error::Geometry)?;
     out.shapes.push(ShapeReport::new("the contour", around.islands, around.report));
-    let bled = bled.and_then(|(around, data)| Some((data, self::bounds(&around.outline)?)));
+    let bled = bled.and_then(|(around, data)| Some(Bleed { data, bounds: self::bounds(&around.outline)? }));
     Ok(Some(Line { data, bounds, bled }))
 }
 

@@ -144,8 +144,8 @@ pub(crate) enum Node {
     Text {
         element: Option<ElementId>,
         content: Box<Group>,
-        /// The source element of each node of the content; empty if nothing inside has a name or a colour that is declared elsewhere.
-        owners: Vec<ElementId>,
+        /// The source element of each child of the content; empty if nothing inside has a name, or a colour that is declared elsewhere.
+        sources: Vec<ElementId>,
     },
 }
 
@@ -205,7 +205,7 @@ pub(crate) struct Slot {
     pub(crate) frame: Affine,
     /// Area to fit, in the slot's coordinates.
     pub(crate) area: Rect,
-    /// `true` if the fit is applied outside of the group's transform, `false` if inside.
+    /// `true` if the written transform is fit · transform, `false` if it is transform · fit.
     pub(crate) fits_outside: bool,
     /// The element whose `transform` takes the fit.
     pub(crate) element: Option<ElementId>,
@@ -214,7 +214,6 @@ pub(crate) struct Slot {
     pub(crate) parts: Range<usize>,
 }
 
-/// A bitmap image.
 #[derive(Debug)]
 pub(crate) struct Bitmap {
     pub(crate) image: Box<usvg::Image>,
@@ -242,12 +241,13 @@ impl Bitmap {
 #[derive(Debug)]
 pub(crate) struct Clip {
     pub(crate) id: String,
+    /// The definition's `transform`: from the content to the user space of the referrers.
     pub(crate) transform: Affine,
     /// Index of the clip path that clips this one.
     pub(crate) clip: Option<usize>,
     pub(crate) root: Group,
     pub(crate) referrers: Vec<Referrer>,
-    /// In a divided drawing, the index of the bend of the referrers.
+    /// If several maps bend parts of the drawing, the index in `Bends::each` of the one that bends the referrers.
     pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,
@@ -285,7 +285,7 @@ pub(crate) struct Mask {
     pub(crate) frame: Affine,
     pub(crate) slot: Option<usize>,
     pub(crate) referrers: Vec<Referrer>,
-    /// In a divided drawing, the index of the bend of the referrers.
+    /// If several maps bend parts of the drawing, the index in `Bends::each` of the one that bends the referrers.
     pub(crate) bend: Option<usize>,
     /// The parts inside.
     pub(crate) parts: Range<usize>,

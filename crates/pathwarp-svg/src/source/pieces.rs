@@ -238,6 +238,7 @@ impl Divider<'_> {
         let db = &mut self.out.db;
         let fonts = self.fonts.entry((span.font().clone(), language)).or_insert_with(|| {
             let faces = self.chooser.candidates(span.font(), db);
+            // `None`: for every writing.
             faces.into_iter().filter_map(|face| TextFont::of_face(face, None, db)).collect()
         });
         let look = Look::of_text(span.font());
@@ -351,7 +352,7 @@ impl Divider<'_> {
                 TextFlow::Path(_) => format!(" x=\"{x}\" dy=\"{y}\""),
             };
             attributes += &self.style(span, part, group, is_apart);
-            // usvg adds no space after the last letter, where an underline would lack it, so an invisible character follows.
+            // usvg adds no letter spacing after the last letter, which would cut an underline short; an invisible character gets it.
             let around = match part.run.rtl {
                 // The mark at the end keeps white space in the direction of the line.
                 true if !mark.is_empty() => [mark, "\u{200f}"],
@@ -395,8 +396,8 @@ impl Divider<'_> {
         style
     }
 
-    /// The index in [`Divided::fonts`] of a piece's fonts. For each font that replaces the text's face, that face is in the database once
-    /// more.
+    /// The index in [`Divided::fonts`] of a piece's fonts: a copy of the text's face, from which usvg takes the heights, and the `face`
+    /// that draws the letters. By the copy's own id, [`Chooser`] finds the other one.
     fn font(&mut self, span: &TextSpan, face: ID, writing: Writing) -> Option<usize> {
         let first = self.fonts.get(&(span.font().clone(), self.language.clone()))?.first()?.face?;
         // A font without colours may have letters for emoji, so usvg must not look into it.
@@ -438,6 +439,7 @@ fn sets_alike(a: &TextSpan, b: &TextSpan) -> bool {
 /// Returns `true` if usvg would shape a chunk differently from its parts.
 fn is_divided(chunk: &TextChunk, parts: &[Part]) -> bool {
     let lacks_spacing = |p: &Part| ignores_spacing(p.run.writing) && chunk.spans()[p.span].letter_spacing() != 0.0;
+    // A shaper may take plain writings, whose letters do not join, for one.
     let mixed = |a: &Part, b: &Part| {
         let (x, y) = (&a.run, &b.run);
         x.level_run == y.level_run && x.writing != y.writing && !(x.writing.is_plain() && y.writing.is_plain())

@@ -4,7 +4,7 @@
 use super::fragment::Writer;
 use super::input::WriteInput;
 use super::markup::{data_url, svg};
-use crate::bend::line::Line;
+use crate::bend::line::{Bleed, Line};
 use crate::bend::outcome::{Notes, Skipped};
 use crate::scene::geometry::stretch;
 use crate::source::number::{path_data, rectangle, single};
@@ -26,14 +26,13 @@ const RADIUS: f64 = 1.5;
 
 /// The box of the line with its bleed and marks.
 pub(super) fn bounds(input: &WriteInput<'_>, line: &Line) -> Rect {
-    let bounds = line.bled.as_ref().map_or(line.bounds, |b| b.1);
-    let marks = if input.options.line.marks { (GAP + ARM) * MM * unit(input) } else { 0.0 };
-    let half_width = 0.5 * HAIRLINE * unit(input);
+    let bounds = line.bled.as_ref().map_or(line.bounds, |b| b.bounds);
+    let marks = if input.options.line.marks { (GAP + ARM) * MM * px_in_user_units(input) } else { 0.0 };
+    let half_width = 0.5 * HAIRLINE * px_in_user_units(input);
     bounds.inflate(marks + half_width, marks + half_width)
 }
 
-/// A px in root user units.
-fn unit(input: &WriteInput<'_>) -> f64 {
+fn px_in_user_units(input: &WriteInput<'_>) -> f64 {
     1.0 / stretch(input.scene.to_px)
 }
 
@@ -46,9 +45,10 @@ pub(super) fn layers(w: &mut Writer<'_>) -> [String; 2] {
     let name = style.spot.as_deref().unwrap_or("Contour");
     let mut above = sight + &layer(w, name, ("#ec008c", &line.data), style.spot.as_deref());
     if style.marks {
-        let bled = line.bled.as_ref().map_or(line.bounds, |b| b.1);
+        let bled = line.bled.as_ref().map_or(line.bounds, |b| b.bounds);
         // Every plate of a print has the marks.
-        above.push_str(&layer(w, "Marks", ("#000", &marks(line.bounds, bled, MM * unit(&w.input))), Some("All")));
+        let data = marks(line.bounds, bled, MM * px_in_user_units(&w.input));
+        above.push_str(&layer(w, "Marks", ("#000", &data), Some("All")));
     }
     [beneath, above]
 }
@@ -78,11 +78,11 @@ fn sight(w: &mut Writer<'_>, sight: &SightMark) -> String {
     group.around(&(path.empty() + &label.around(text))) + "\n"
 }
 
-/// A layer of Inkscape's with a hairline. `spot` names its colour for printers.
+/// A hairline in a layer as Inkscape has them. `data-spot` tells the PDF writer its ink, `data-knockout` to leave out the inks beneath.
 fn layer(w: &mut Writer<'_>, name: &str, (color, data): (&str, &str), spot: Option<&str>) -> String {
     let id: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let group = w.defs.new_id(&id);
-    let width = single(HAIRLINE * unit(&w.input));
+    let width = single(HAIRLINE * px_in_user_units(&w.input));
     let path = w.markup.element("path").with("id", &w.defs.new_id(&format!("{id}-line"))).with("d", data);
     let path = path.with("style", &format!("fill:none;stroke:{color};stroke-width:{width}"));
     let path = path.with_all(spot.map(|name| ("data-spot", name)));
@@ -122,12 +122,13 @@ fn marks(line: Rect, bled: Rect, mm: f64) -> String {
 
 /// A picture of the artwork's colours, continued beyond its edge.
 fn bleed(w: &mut Writer<'_>, line: &Line) -> Option<String> {
-    let (input, (data, area)) = (w.input, line.bled.as_ref()?);
+    let (input, Bleed { data, bounds: area }) = (w.input, line.bled.as_ref()?);
     let (mut skipped, mut notes) = (Vec::new(), Notes::default());
-    let mut plain = Writer::new(WriteInput { line: None, ..input }, false, &mut skipped, &mut notes);
+    let in_source = false;
+    let mut plain = Writer::new(WriteInput { line: None, ..input }, in_source, &mut skipped, &mut notes);
     let body: String = input.scene.root.children.iter().map(|n| plain.node(n)).collect();
     let text = svg(*area).around(&format!("<defs>{}</defs>{body}", plain.defs.text));
-    let size = area.size() / unit(&input);
+    let size = area.size() / px_in_user_units(&input);
     let png = match input.options.painter.as_ref()?.continued(&text, [size.width, size.height]) {
         Ok(png) => png,
         Err(why) => {

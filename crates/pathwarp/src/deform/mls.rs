@@ -71,7 +71,7 @@ impl Mls {
             let problem = format!("pairs are too many; at most {MAX_HANDLES} are possible");
             return Err(Error::usage("pair", handles.len().to_string(), problem));
         }
-        anchors::distinct("the points to be moved", &from)?;
+        anchors::check_distinct("the points to be moved", &from)?;
         let mut built = Built::new(match handles[..] {
             [] => return Err(Error::missing("pair", "a point and its image, such as 10,20:15,20")),
             [(p, q)] => Arc::new(AffineMap(Affine::translate(q - p))),

@@ -203,7 +203,7 @@ fn three_anchors(path: &NamedPath) -> Result<[Point; 3], Error> {
     let [p, q, r] = a[..] else {
         return Err(GeometryError::anchor_count(&path.name, &a, "three").into());
     };
-    anchors::distinct(&path.name, &a)?;
+    anchors::check_distinct(&path.name, &a)?;
     Ok([p, q, r])
 }
 

@@ -36,8 +36,8 @@ impl Similitude {
     /// # Errors
     /// [`GeometryError::Coincident`] when the points `from` are equal, or the points `to`.
     pub fn build(&self) -> Result<Built, Error> {
-        anchors::distinct("base", &self.from)?;
-        anchors::distinct("target", &self.to)?;
+        anchors::check_distinct("base", &self.from)?;
+        anchors::check_distinct("target", &self.to)?;
         let ([a, b], [p, q]) = (self.from, self.to);
         let coincident = || GeometryError::Coincident { path: "base".into(), which: [1, 2], at: a };
         let map = AffineMap::similitude(a, b, p, q).ok_or_else(coincident)?;

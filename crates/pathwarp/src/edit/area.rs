@@ -11,6 +11,8 @@ use kurbo::{BezPath, Join, ParamCurve as _, ParamCurveNearest as _, PathSeg, Poi
 const FIT_TOLERANCE: f64 = 0.1;
 /// Distance within which outlines that close a gap follow lines and arcs of the sources, as a fraction of its width.
 const SNAP_DISTANCE: f64 = 0.8;
+/// Distance of exact edges beside the sources.
+const ON_SOURCES: f64 = 0.0;
 
 /// Parameters at which segments of outlines that close gaps are compared with the original outlines.
 const SAMPLES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
@@ -90,7 +92,7 @@ impl Area {
             for seg in &line.segs {
                 let (mut from, mut pieces) = (0.0, Vec::new());
                 let distance = |t: f64| signed_distance(&edges, seg.eval(t));
-                sides(&distance, largest_speed(seg), [0.0, 1.0], tolerance, &mut pieces);
+                cut_by_sign(&distance, largest_speed(seg), [0.0, 1.0], tolerance, &mut pieces);
                 for (to, is_outside) in pieces {
                     match parts.last_mut().filter(|_| is_outside) {
                         Some(part) => part.push(subsegment(seg, from, to)),
@@ -124,10 +126,10 @@ impl Area {
         &self.0
     }
 
-    /// Returns the outlines, with circular arcs of the sources where the outlines follow them within `tolerance`.
+    /// Returns the outlines, with lines and arcs of the sources, not lengthened, where the outlines follow them within `tolerance`.
     #[must_use]
     pub fn with_arcs_of(&self, sources: &Outline, tolerance: f64) -> Outline {
-        exact_edges::insert(self.0.clone(), sources, 0.0, Some(0.0), tolerance)
+        exact_edges::insert(self.0.clone(), sources, ON_SOURCES, Some(0.0), tolerance)
     }
 
     /// Returns the numbers of islands and of holes.
@@ -137,13 +139,12 @@ impl Area {
         [outer, self.0.subpaths.len() - outer]
     }
 
-    /// Returns the outlines around the islands.
     pub(super) fn islands(&self) -> Vec<Subpath> {
         outer(&self.0, 1.0).cloned().collect()
     }
 
-    /// Returns the area with gaps and holes narrower than `width` closed, where that joins islands or fills holes. Lines and circular arcs
-    /// of the sources stay exact. Gaps stay where the crossings of outlines so close are not found.
+    /// Closes gaps and holes narrower than `width`, but only where that joins islands or fills holes. Lines and circular arcs of the
+    /// sources stay exact. Where the crossings of the grown outlines are not found, the gaps stay.
     #[must_use]
     pub fn with_gaps_closed(&self, width: f64, sources: &Outline) -> Self {
         let boxes: Vec<Rect> = self.0.subpaths.iter().map(|s| s.bounding_box().inflate(width, width)).collect();
@@ -167,8 +168,8 @@ impl Area {
             return None;
         }
         let closed = Outline::from(&offset(&grown, -0.5 * width)?);
-        // Lines may continue across gaps.
-        let exact = exact_edges::insert(closed, sources, 0.0, Some(f64::INFINITY), SNAP_DISTANCE * width);
+        // Lines of the sources may continue across gaps.
+        let exact = exact_edges::insert(closed, sources, ON_SOURCES, Some(f64::INFINITY), SNAP_DISTANCE * width);
         let exact = exact.to_bez_path(ARCS * width);
         // The result must run along the original outlines.
         let original: Vec<(Rect, PathSeg)> =
@@ -293,7 +294,6 @@ pub fn united(outline: &Outline, even_odd: bool, tolerance: f64) -> Result<Optio
     let is_simple = is_closed && united.subpaths.len() == outline.subpaths.len();
     Ok((!is_simple || (area.area().abs() - path.area().abs()).abs() > max_change).then_some(united))
 }
-/// Returns the part of a segment between two parameters.
 fn subsegment(seg: &Seg, from: f64, to: f64) -> Seg {
     match seg {
         Seg::Arc(arc) => Seg::Arc(arc.subsegment(from, to)),
@@ -325,13 +325,13 @@ fn signed_distance(edges: &[(PathSeg, Rect)], p: Point) -> f64 {
 }
 
 /// Divides the interval `[from, to]` where `distance` changes its sign: adds the ends of pieces, with `true` for positive ones. The
-/// distance changes by at most `speed` per unit. Pieces shorter than `tolerance` are not divided.
-fn sides(distance: &dyn Fn(f64) -> f64, speed: f64, [from, to]: [f64; 2], tolerance: f64, out: &mut Vec<(f64, bool)>) {
+/// distance changes by at most `speed` per unit. Pieces shorter than `min` are not divided.
+fn cut_by_sign(distance: &dyn Fn(f64) -> f64, speed: f64, [from, to]: [f64; 2], min: f64, out: &mut Vec<(f64, bool)>) {
     let middle = 0.5 * (from + to);
     let at_middle = distance(middle);
-    if at_middle.abs() < 0.5 * speed * (to - from) && speed * (to - from) > tolerance {
-        sides(distance, speed, [from, middle], tolerance, out);
-        sides(distance, speed, [middle, to], tolerance, out);
+    if at_middle.abs() < 0.5 * speed * (to - from) && speed * (to - from) > min {
+        cut_by_sign(distance, speed, [from, middle], min, out);
+        cut_by_sign(distance, speed, [middle, to], min, out);
         return;
     }
     match out.last_mut() {

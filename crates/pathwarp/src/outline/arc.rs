@@ -39,8 +39,8 @@ impl EllipticArc {
         Self { p0, p1, center, a, b, start, sweep }
     }
 
-    /// Creates the arc of SVG's `A` command, converted as in the SVG 2 specification, §B.2.4 and §B.2.5. `None` if the command draws
-    /// a straight line (a zero radius) or nothing (coincident ends).
+    /// Creates the arc of SVG's `A` command, converted as in the SVG 2 specification, §B.2.4 and §B.2.5, whose equations have the numbers
+    /// B.5.x. `None` if the command draws a straight line (a zero radius) or nothing (coincident ends).
     #[must_use]
     pub fn from_svg(
         p0: Point,
@@ -224,7 +224,7 @@ impl EllipticArc {
     }
 
     /// Returns `true` if every coordinate is below `limit` in magnitude.
-    pub(super) fn is_finite(&self, limit: f64) -> bool {
+    pub(super) fn is_within(&self, limit: f64) -> bool {
         let points = [self.p0, self.p1, self.center, self.a.to_point(), self.b.to_point()];
         points.iter().all(|p| p.x.abs() < limit && p.y.abs() < limit)
     }

@@ -355,7 +355,7 @@ impl Seg {
             Self::Line(s) => is_small(s.p0) & is_small(s.p1),
             Self::Quad(s) => is_small(s.p0) & is_small(s.p1) & is_small(s.p2),
             Self::Cubic(s) => is_small(s.p0) & is_small(s.p1) & is_small(s.p2) & is_small(s.p3),
-            Self::Arc(s) => s.is_finite(HUGE),
+            Self::Arc(s) => s.is_within(HUGE),
         }
     }
 }

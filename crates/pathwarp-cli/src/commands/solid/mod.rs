@@ -52,23 +52,23 @@ pub(super) fn solid_command() -> Command {
         .subcommands([map_command(&registry), run_command(), list_command()])
 }
 
-/// Runs a subcommand; `later` holds the parts of a chain after each `+`.
-pub(super) fn solid(m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
+/// Runs a subcommand; `further_parts` are those of a chain, after each `+`.
+pub(super) fn solid(m: &ArgMatches, further_parts: &[&[OsString]]) -> Result<Status, Ending> {
     let registry = Registry3::builtin();
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
     match name {
-        "map" => map(&registry, m, later),
+        "map" => map(&registry, m, further_parts),
         _ if registry.get(name).is_some() => {
             let mut recipe = Recipe { steps: vec![steps::step(&registry, name, m)] };
             let mut given = Given::default();
-            for part in steps::parts(&registry, later, &options())? {
+            for part in steps::parts(&registry, further_parts, &options())? {
                 recipe.steps.push(part.step);
                 given = given.joined(&part.options)?;
             }
             let given = given.joined(&arguments::given(m))?;
             Ok(warp::run(&registry, &recipe, &given, &SolidOptions::read(m)?, None)?)
         }
-        _ if !later.is_empty() => {
+        _ if !further_parts.is_empty() => {
             Err(Failure::usage(format!("{name} is not a deformation of space; `+` chains deformations")).into())
         }
         "run" => Ok(run_recipe(&registry, m)?),
@@ -110,12 +110,12 @@ fn map_command(registry: &Registry3) -> Command {
         .subcommands(registry.entries().iter().map(|e| deformation(&e.about().info)))
 }
 
-/// Runs `map`; `later` holds the parts of the chain after each `+`.
-fn map(registry: &Registry3, m: &ArgMatches, later: &[&[OsString]]) -> Result<Status, Ending> {
+/// Runs `map`; `further_parts` are those of the chain, after each `+`.
+fn map(registry: &Registry3, m: &ArgMatches, further_parts: &[&[OsString]]) -> Result<Status, Ending> {
     let reading = arguments::reading(m)?;
     let Some((name, m)) = m.subcommand() else { return Err(Failure::usage("a deformation is required").into()) };
     let mut recipe = Recipe { steps: vec![steps::step(registry, name, m)] };
-    recipe.steps.extend(steps::parts(registry, later, &[])?.into_iter().map(|part| part.step));
+    recipe.steps.extend(steps::parts(registry, further_parts, &[])?.into_iter().map(|part| part.step));
     references::resolve_files(registry, &mut recipe, &reading)?;
     let (points, bytes) = read_points(m, "three numbers x y z")?;
     let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();

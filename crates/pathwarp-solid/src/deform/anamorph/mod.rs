@@ -56,7 +56,7 @@ impl Push3 {
     fn text(self, reference: &Reference3) -> String {
         match self {
             Self::By(n, _) | Self::Away(n, _) | Self::To(n, _) => {
-                n[..reference.indices()].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
+                n[..reference.index_count()].iter().map(usize::to_string).collect::<Vec<_>>().join(",")
             }
             Self::Prescribe(p, by) => format!("{}:{by}", show(p)),
         }
@@ -784,7 +784,7 @@ fn node_pushes(s: &Settings3<'_>, reference: &Reference3) -> Result<Vec<Push3>, 
     let mut out = Vec::new();
     for name in ["push", "away", "at"] {
         for word in s.words(name) {
-            let (node, value) = match reference.indices() {
+            let (node, value) = match reference.index_count() {
                 4 => s.flat().node_in::<4>(name, word)?,
                 1 => s.flat().node_in::<1>(name, word).map(|([i], value)| ([i, 0, 0, 0], value))?,
                 _ => s.flat().node_in::<3>(name, word).map(|([i, j, k], value)| ([i, j, k, 0], value))?,

@@ -57,7 +57,7 @@ impl Eye3 {
     }
 }
 
-/// A regular net of control points, before any is moved.
+/// A net of control points, before any is moved.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference3 {
     /// Points (i·A + j·B + k·C + l·D)/n with i + j + k + l = n.
@@ -65,7 +65,7 @@ pub enum Reference3 {
     /// A pentahedron over the triangle A, B, C, with edges parallel to A–D, by the degrees n of the triangle and m along the edges: points
     /// (i·A + j·B + k·C)/n + l·(D − A)/m with i + j + k = n and l from 0 to m.
     Prism([DVec3; 4], [usize; 2]),
-    /// Control points that need not be regular, between which a rational lattice finds local coordinates.
+    /// A lattice of any shape. A point's local coordinates are the parameters at which the rational lattice takes this value.
     Hull(Lattice3),
     /// A sheet: points (i·A + j·B + k·C)/n with i + j + k = n.
     Triangle([DVec3; 3], usize),
@@ -83,7 +83,7 @@ pub enum Reference3 {
 const FLAT: f64 = 1e-9;
 
 impl Reference3 {
-    /// Makes a reference from its points (four corners of a tetrahedron, three of a triangle, two of a box) for an eye.
+    /// Makes a reference from points (corners: four of a tetrahedron, six of a pentahedron, three of a triangle, two of a box) and an eye.
     ///
     /// # Errors
     /// [`Error::Usage`] when the points do not span such a reference, or the eye lies in the plane of a sheet.
@@ -216,7 +216,6 @@ impl Reference3 {
         Some([names_of(&|_, n| n > 1), names_of(&|f, n| n == 1 && f.iter().any(|i| values[*i] != 1.0))])
     }
 
-    /// Returns the bounding box.
     pub(super) fn bounds(&self) -> Box3 {
         let around =
             |all: &[DVec3]| Box3::around(all.iter().copied()).unwrap_or(Box3 { min: DVec3::ZERO, max: DVec3::ZERO });
@@ -263,13 +262,13 @@ impl Reference3 {
             }
             Self::Tetrahedra(ref points, _) => (0..points.len()).map(|i| [i, 0, 0, 0]).collect(),
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) | Self::Hull(_) => {
-                grid(self.last().map(|n| n + 1)).map(|[i, j, k]| [i, j, k, 0]).collect()
+                grid(self.highest().map(|n| n + 1)).map(|[i, j, k]| [i, j, k, 0]).collect()
             }
         }
     }
 
     /// Returns the highest numbers along the axes of a box.
-    fn last(&self) -> [usize; 3] {
+    fn highest(&self) -> [usize; 3] {
         match self {
             Self::Cuboid(_, degree) | Self::Rectangle(_, _, degree) => *degree,
             Self::Spline(_, degree, cells) => [0, 1, 2].map(|a| degree[a] + cells[a] - 1),
@@ -279,7 +278,7 @@ impl Reference3 {
     }
 
     /// Returns the count of numbers by which users name a control point.
-    pub(super) fn indices(&self) -> usize {
+    pub(super) fn index_count(&self) -> usize {
         match self {
             Self::Tetrahedron(..) | Self::Prism(..) => 4,
             Self::Tetrahedra(..) => 1,
@@ -319,14 +318,14 @@ impl Reference3 {
             Self::Triangle(_, n) => format!("I,J,K must add up to {n}, the degree"),
             Self::Prism(_, [n, m]) => format!("I,J,K must add up to {n}, and L runs from 0 to {m}"),
             Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) | Self::Hull(_) => {
-                let [l, m, n] = self.last();
+                let [l, m, n] = self.highest();
                 format!("I runs from 0 to {l}, J from 0 to {m}, K from 0 to {n}")
             }
         }
     }
 
     /// Returns `true` if a prescribed point must not move a control point: on the face ABC of a tetrahedron or pentahedron, on the side AB
-    /// of a triangle and, if `local`, on the boundary of a box or rectangle.
+    /// of a triangle and, if the deformation is `local` (nothing moves outside the reference), on the boundary of a box or rectangle.
     #[must_use]
     pub(super) fn is_held(&self, node: [usize; 4], local: bool) -> bool {
         match self {
@@ -334,8 +333,8 @@ impl Reference3 {
             Self::Tetrahedron(..) | Self::Prism(..) => node[3] == 0,
             Self::Triangle(..) => node[2] == 0,
             Self::Hull(..) | Self::Spline(..) | Self::Cuboid(..) | Self::Rectangle(..) => {
-                let last = self.last();
-                local && (0..3).any(|a| last[a] > 0 && (node[a] == 0 || node[a] == last[a]))
+                let highest = self.highest();
+                local && (0..3).any(|a| highest[a] > 0 && (node[a] == 0 || node[a] == highest[a]))
             }
         }
     }

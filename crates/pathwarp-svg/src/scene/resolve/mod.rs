@@ -189,8 +189,8 @@ fn resolve_text(b: &mut SceneBuilder<'_>, t: &usvg::Text, frame: Affine, context
         let text = std::ptr::from_ref(t) as usize;
         b.scene.texts.push(PlacedText { text, owner: context.owner, frame, first });
     }
-    let owners = element.and_then(|e| b.letters.get(&e)).cloned().unwrap_or_default();
-    Node::Text { element, content: Box::new(content), owners }
+    let sources = element.and_then(|e| b.letters.get(&e)).cloned().unwrap_or_default();
+    Node::Text { element, content: Box::new(content), sources }
 }
 
 /// Adds the part of a path. Returns its index.

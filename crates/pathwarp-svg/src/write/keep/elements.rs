@@ -37,7 +37,7 @@ pub(super) fn patch_group(k: &mut Keeper<'_, '_>, g: &Group) {
                 _ => patch_group(k, c),
             },
             Node::Text { element: Some(e), .. } if k.input.is_absorbed(n) => k.edits.replace(*e, String::new()),
-            Node::Text { element: Some(e), content, owners } => text::patch_text(k, *e, content, owners),
+            Node::Text { element: Some(e), content, sources } => text::patch_text(k, *e, content, sources),
             Node::Text { element: None, .. } => {}
             Node::Image(i) => patch_bitmap(k, g, *i),
             Node::Part(i) => {

@@ -113,7 +113,8 @@ impl Shaper {
         };
         let target = self.target.as_ref().map(|t| anchors::of_path(t, self.target_as_drawn)).transpose()?;
         // Only a projective map to the target forbids corners on a line.
-        let usable = if matches!(target, Some(Anchors::Four(_))) { anchors::general } else { anchors::distinct };
+        let usable =
+            if matches!(target, Some(Anchors::Four(_))) { anchors::check_general } else { anchors::check_distinct };
         let (net, path, name) = match &self.cage {
             Cage::Path(path) => {
                 let corners = match &base {

@@ -31,11 +31,11 @@ pub struct TextShape {
     /// Alternative names.
     #[serde(default)]
     also: Vec<String>,
-    /// The adjust values.
     #[serde(default)]
     pub(super) adj: Vec<Adjust>,
+    /// Formulas `name = …`, which later ones and the guides may use.
     #[serde(default, rename = "let")]
-    names: Vec<String>,
+    definitions: Vec<String>,
     /// Top and bottom guides, one pair below the other.
     #[serde(default)]
     bands: Vec<[String; 2]>,
@@ -146,7 +146,7 @@ impl TextShape {
         for (a, value) in self.adj.iter().zip(adjusted) {
             names.set(&a.name, *value);
         }
-        for text in &self.names {
+        for text in &self.definitions {
             names.define(text)?;
         }
         if !self.paths.is_empty() {
@@ -225,7 +225,7 @@ pub enum ShapeBox {
 
 /// A guide that returns to its start within this fraction of its length is closed.
 const CLOSED: f64 = 1e-3;
-/// Limit on the widening of letters that stand outside a guide: their tops are at most 1 + this times as wide as their feet.
+/// On the outside of a guide, the tops of letters are at most 1 + this times as wide as their feet.
 const WIDEST: f64 = 1.0;
 /// Limit on the narrowing of letters that stand inside a guide: their tops are at least 1 − this times as wide as their feet.
 const NARROWEST: f64 = 0.5;
@@ -356,6 +356,7 @@ pub(super) struct TextLine {
 /// Returns the lines of the letters within `rect`, from top to bottom.
 pub(super) fn lines(letters: &[Letter], rect: Rect) -> Vec<TextLine> {
     let mut lines: Vec<TextLine> = Vec::new();
+    // Letters may stick out at the sides; on the upper edge, the middle of one must be within.
     let is_within = |l: &&Letter| rect.contains(l.middle()) || (rect.y0 < l.origin.y && l.origin.y <= rect.y1);
     for l in letters.iter().filter(is_within) {
         let (Some(b), baseline) = (l.outline.bounding_box(), l.origin.y) else { continue };
