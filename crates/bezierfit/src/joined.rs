@@ -138,7 +138,7 @@ pub(crate) fn fewest<S: Source + Clone>(
         false => reaches.fewest()?,
     };
     let tried = reaches.tried();
-    // On a finer grid, even legs would not stay alike from either end.
+    // The search on a finer grid does not keep legs alike from either end.
     let (mut own, legs) = if evenly { (reaches.own, legs) } else { refined(run, reaches.own, legs, settings, memory)? };
     own.append(legs, run.assurance(tolerance), pieces, report)?;
     Ok(tried)

@@ -76,7 +76,7 @@ pub(crate) fn for_each_row(
     let targets = table.targets(out).map_err(|e| Failure::Input(format!("{name}: {e}")))?;
     let mut files = Files::default();
     reads.iter().chain([&file]).for_each(|f| files.read(f));
-    // Refuses outputs that are read, or have the same file. No option of its own names one.
+    // Refuses outputs that are also read, or given twice. No option of their own names them.
     targets.iter().try_for_each(|t| files.write(t, ""))?;
     let _empty_ones_removed_at_the_end = Folders::of(targets.iter().map(PathBuf::as_path))?;
     let (mut failures, mut partial) = (Vec::new(), false);
