@@ -329,9 +329,9 @@
     return whole > 0 ? percent(100 * value / whole) : short(value);
   }
   function pathData(subpaths) {
-    return subpaths.map(({ start, segments, closed: closed2 }) => {
+    return subpaths.map(({ start, segments, closed }) => {
       const body = segments.map((seg) => (seg.length === 2 ? "L" : "C") + pairs(seg));
-      return `M${pairs(start)} ${body.join(" ")}${closed2 ? " Z" : ""}`;
+      return `M${pairs(start)} ${body.join(" ")}${closed ? " Z" : ""}`;
     }).join(" ");
   }
   function pairs(numbers) {
@@ -538,7 +538,7 @@
     for (let row = points; row.length > 1; rows.push(row)) row = row.slice(1).map((p, i) => mix(row[i], p, t));
     return rows;
   }
-  function closed(sub) {
+  function withClosingLine(sub) {
     const last = sub.segments[sub.segments.length - 1];
     const isOpen = last && Math.hypot(end(last)[0] - sub.start[0], end(last)[1] - sub.start[1]) > 1e-9;
     if (sub.closed && isOpen) sub.segments.push([...sub.start]);
@@ -638,7 +638,7 @@
         if (name === this.deformation.gallery?.bend && grip.value !== void 0) this.addBend(name, grip);
         if (name === "radius" && grip.value !== void 0 && this.grips.center?.point) this.addRadius(name, grip);
         if (grip.circle) this.addCircle(name, grip);
-        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
+        grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? withClosingLine(sub) : sub, `${i}.${j}`)));
       }
       const place2 = { deformation: this.deformation, grips: this.grips, frame: this.frame };
       this.dials = this.handles.every(({ param }) => param === "about") ? dials(place2) : this.grips.eye || this.grips["eye-height"] ? inSpace(place2) : [];
@@ -2030,9 +2030,9 @@
     /** Bends the artwork into an outline of the background: a clicked path, or points around the object in a photograph. */
     async shape() {
       const { app: app2, file, stage: stage2, outlines } = this;
-      const closed2 = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
-      if (!file || !closed2) return;
-      const choose = (value) => void app2.choose("envelope", { envelope: [value] }, closed2.label);
+      const closed = app2.deformation("envelope")?.variants.find(({ param }) => param === "envelope");
+      if (!file || !closed) return;
+      const choose = (value) => void app2.choose("envelope", { envelope: [value] }, closed.label);
       this.show(false);
       if (!this.isDrawing) return this.onRound(choose);
       if (outlines.childElementCount === 0) {
@@ -2045,7 +2045,7 @@
         this.lay({});
       }
       const paths = Array.from(outlines.querySelectorAll("path")).filter((path) => !path.closest("defs"));
-      if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${closed2.label}”`);
+      if (paths.length === 0) return app2.fail(`${file.name} has no paths: click points around a shape with “Draw path” among the settings of “${closed.label}”`);
       const [only] = paths;
       if (only && paths.length === 1 && !/Z.*M/i.test(only.getAttribute("d") ?? "")) return choose(ring(only, stage2, this.corners[0]));
       stage2.pick((path, at) => choose(ring(path, stage2, stage2.camera.inPx(at))), ".outlines path", `Click a path of ${file.name}`);
@@ -4673,9 +4673,9 @@
       const text = (p) => p.map(short).join(",");
       const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < NEAR * stage2.camera.pixel;
       const place2 = (e) => stage2.camera.toUser(stage2.point(e));
-      const path = (closed2) => {
+      const path = (closed) => {
         if (kind === "round") return points.length < 3 ? null : around(points, text);
-        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed2 ? " Z" : ""}`;
+        return points.length < 2 ? null : `M${points.map(text).join(" L")}${closed ? " Z" : ""}`;
       };
       const isClicked = kind === "path" || kind === "round";
       stage2.svg.addEventListener("pointerdown", (e) => {

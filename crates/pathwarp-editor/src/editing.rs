@@ -235,7 +235,7 @@ impl EditedArtwork {
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 
@@ -352,7 +352,7 @@ impl Artwork for EditedArtwork {
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bent(recipe, fineness);
         let mut bent = self.said(bent)?;
-        bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
+        bent.warnings.iter_mut().for_each(|w| *w = self.names.without_options(w));
         Ok(bent)
     }
 
@@ -365,7 +365,7 @@ impl Artwork for EditedArtwork {
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
         let (bytes, warnings) = self.said(written)?;
-        Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
+        Ok((bytes, warnings.iter().map(|w| self.names.without_options(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
@@ -455,7 +455,7 @@ impl EngineHost {
     }
 
     fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
-        result.map_err(|f| self.names.plain(&f.message(&self.flags)))
+        result.map_err(|f| self.names.without_options(&f.message(&self.flags)))
     }
 }
 

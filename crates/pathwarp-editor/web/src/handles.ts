@@ -5,7 +5,7 @@ import { length, node, readAdjust, valuesOf, writeAdjust } from "./values";
 import { dials, type Dial } from "./dials";
 import { called, words } from "./names";
 import { inSpace } from "./space";
-import { closed, drop, end, middle, nearest, raised, split, type Spot } from "./knots";
+import { drop, end, middle, nearest, raised, split, type Spot, withClosingLine } from "./knots";
 
 /** A point on a path of a parameter. */
 interface Near {
@@ -75,7 +75,7 @@ export class Handles {
       if (name === this.deformation.gallery?.bend && grip.value !== undefined) this.addBend(name, grip);
       if (name === "radius" && grip.value !== undefined && this.grips.center?.point) this.addRadius(name, grip);
       if (grip.circle) this.addCircle(name, grip);
-      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? closed(sub) : sub, `${i}.${j}`)));
+      grip.paths?.forEach((path, i) => path.forEach((sub, j) => this.addSubpath(name, path, this.isAny(name) ? withClosingLine(sub) : sub, `${i}.${j}`)));
     }
     // The fixed point of a rotation or scaling has no effect alone, so dials are added.
     const place = { deformation: this.deformation, grips: this.grips, frame: this.frame };

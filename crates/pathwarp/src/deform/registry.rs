@@ -115,7 +115,7 @@ mod tests {
             "Formulas",
             "Basics",
         ];
-        // New headings come at the end.
+        // Other headings come after these.
         assert_eq!(headings[..expected.len()], expected);
         let mut titles: Vec<&str> = infos.iter().map(|i| i.title).collect();
         titles.sort_unstable();
