@@ -267,7 +267,7 @@ pub(crate) const SHARP_TURN: f64 = 0.25;
 /// possible, because it grows a little when carried.
 pub(crate) const CARRY_BELOW: f64 = 0.7;
 
-// Placed nodes
+// Nodes placed by `Nodes::Auto` and `Nodes::Extremes`
 
 /// A node moves to an extreme if the curve turns by less than this up to the extreme, as a sine (20°).
 pub(crate) const MOVED_TURN: f64 = 0.342;

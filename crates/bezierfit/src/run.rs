@@ -371,7 +371,7 @@ pub(crate) struct RunCubic {
     pub(crate) b: f64,
     /// Set if the image is a line to rounding.
     is_line: bool,
-    /// Samples of the run at the ends.
+    /// Numbers of the run's samples at the ends.
     pub(crate) samples: [usize; 2],
     /// Lengths up to the sixteen samples and the ends, as shares of the whole, and their foot points.
     pub(crate) shares: InOrder,

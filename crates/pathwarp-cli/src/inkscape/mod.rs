@@ -89,7 +89,7 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(sorted.words()).collect();
     line = with_ids(line, &all);
     line.extend(words_of_options(call));
-    // On the whole page, locked objects are excluded.
+    // Without a selection, locked objects are excluded.
     let takes_all = call.ids.is_empty();
     if takes_all {
         line.extend(exclusions(&all));

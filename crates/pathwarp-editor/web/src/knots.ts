@@ -85,7 +85,7 @@ export function split(sub: Subpath, { piece: k, t }: Spot): number {
   return k + 1;
 }
 
-/** Removes a node; the adjacent pieces are joined, and keep their outer control points. A closed path must have two, with its closing line. */
+/** Removes a node; the adjacent pieces are joined, and keep their outer control points. A closed path has two or more, none omitted. */
 export function drop(sub: Subpath, node: number): void {
   const { segments } = sub;
   if (!sub.closed && node === 0) {

@@ -135,7 +135,7 @@ impl Picture {
             if let Some((from_x, from_y)) = bend.source(x, y).filter(|(x, y)| is_on_page(*x, *y, 0)) {
                 let from = 4 * (from_y * self.width + from_x);
                 data[4 * i..4 * i + 4].copy_from_slice(&self.data[from..from + 4]);
-                // A shift brings in hidden content from beyond the left edge, up to column `by`; as much again is a margin.
+                // A shift moves nothing across the upper and lower edges, but brings in hidden columns from the left: `by`, and a margin.
                 *is_comparable = match bend {
                     Bend::Shift(by) => x >= 2 * by + EDGE && x + EDGE < page[0],
                     Bend::Curve { .. } => is_on_page(x, y, EDGE) && is_on_page(from_x, from_y, EDGE),
