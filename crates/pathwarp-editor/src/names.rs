@@ -131,7 +131,6 @@ mod tests {
         }
     }
 
-    /// No option of the engine remains, at any position in a sentence.
     #[test]
     fn no_option_is_left() {
         let registry = Registry::builtin();

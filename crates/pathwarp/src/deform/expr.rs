@@ -334,7 +334,6 @@ mod tests {
         ENTRY.build_from(&Args::from_pairs(pairs), &check::frame()).map(|b| b.map)
     }
 
-    /// Checks the value and the derivatives of every function, through the parser.
     #[test]
     fn functions_and_their_derivatives() {
         let p = Point::new(0.6, 0.3);

@@ -57,7 +57,6 @@ impl Registry {
     }
 }
 
-/// Every file in `src/deform/` is an entry, and names are unique.
 #[cfg(test)]
 mod tests {
     use super::Registry;

@@ -197,8 +197,7 @@ impl Badge<'_> {
         Ok(set)
     }
 
-    /// Returns half the badge's width.
-    fn half(&self) -> f64 {
+    fn half_width(&self) -> f64 {
         0.5 * self.em.size
     }
 
@@ -208,7 +207,7 @@ impl Badge<'_> {
 
     /// Returns the outline of the badge, moved inwards.
     fn inset(&self, by: f64) -> Result<Outline, Failure> {
-        let half = self.half();
+        let half = self.half_width();
         let ellipse = |a: f64, b: f64| {
             let data = format!("M{},0A{a},{b} 0 0 1 {a},0A{a},{b} 0 0 1 {},0Z", -a, -a);
             Outline::from_svg(&data).map_err(|e| pathwarp::Error::from(e).into())
@@ -228,7 +227,7 @@ impl Badge<'_> {
 
     /// Returns a path moved to one side.
     fn offset(&self, path: &Outline, by: f64, side: &str) -> Result<Outline, Failure> {
-        if by < 1e-9 * self.half() {
+        if by < 1e-9 * self.half_width() {
             return Ok(path.clone());
         }
         let values = [("by", by.to_string()), ("side", side.to_owned())];
@@ -240,7 +239,7 @@ impl Badge<'_> {
     /// Returns the middle line of a band between two distances from the outline, and its length.
     fn band_middle(&self, from: f64, to: f64) -> Result<(Outline, f64), Failure> {
         let path = self.inset(0.5 * (from + to))?;
-        let fine = 1e-5 * self.half();
+        let fine = 1e-5 * self.half_width();
         let length = path.to_bez_path(fine).perimeter(fine);
         Ok((path, length))
     }
@@ -310,7 +309,7 @@ fn centroid(path: &BezPath, tolerance: f64) -> Option<(Point, f64)> {
 impl Badge<'_> {
     /// Computes the layout with the largest type that fits.
     fn layout(&self, natural: &[OutlinedText], separator: Option<&Outline>) -> Result<Layout, Failure> {
-        let (half, rings) = (self.half(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
+        let (half, rings) = (self.half_width(), self.m.get_one::<u8>("ring").copied().unwrap_or(2));
         let line_width = LINE * half;
         // Outside of the band are a line, or a thin one, a gap and a line.
         let band_start = match rings {
@@ -462,7 +461,7 @@ impl Badge<'_> {
         /// Strokes enlarge the box of the paths by at most this factor. Shadows enlarge it more, and may overlap.
         const MOST_BEYOND: f64 = 1.2;
         let Some(file) = self.m.get_one::<PathBuf>("center") else { return Ok(None) };
-        let (half, reading) = (self.half(), &self.options.reading);
+        let (half, reading) = (self.half_width(), &self.options.reading);
         let doc = input::document(file, reading)?;
         let (seen, content) =
             embedded(&doc.decoded(), &input::display(file), "center-", &input::read_options(file, reading))?;
