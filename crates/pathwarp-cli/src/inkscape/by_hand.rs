@@ -56,7 +56,7 @@ pub(super) fn by_hand(stage: &Stage<'_>) -> Result<String, Failure> {
     }
     let line = [words_of(stage, &recipe), options].concat();
     let outcome = stage.warp(&svg, &line, &scope, None)?;
-    stage.check(&svg, &outcome)?;
+    stage.report_left_out(&svg, &outcome)?;
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
     let recipe = joined(&with_frame(stage, line, &outcome));
     let result = with_sources(stage, &svg, &outcome.svg, &artwork, &recipe, &guides)?;

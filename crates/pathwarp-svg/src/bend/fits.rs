@@ -73,7 +73,7 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     affine.is_finite().then_some(PaintFit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
 }
 
-/// Finds the fit of a shape with copies: the paint of one copy is stretched over the box of all. If no affine map comes near
+/// Finds the fit of a shape with copies, to which `copies` move it in root user space: its paint is stretched over the box of all. If no affine map comes near
 /// the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
 pub(crate) fn fit_copies(
     area: Rect,
@@ -120,10 +120,10 @@ fn grid(r: Rect) -> impl Iterator<Item = Point> {
     (0..=N).flat_map(move |i| (0..=N).map(move |j| Point::new(r.x0 + r.width() * at(i), r.y0 + r.height() * at(j))))
 }
 
-/// A slot under a map.
+/// A slot, which moves as a whole, under a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedSlot {
-    /// The affine fit, applied to the slot's transform.
+    /// The affine fit, in the slot's coordinates.
     pub(crate) fit: Affine,
     /// Leads from the slot's coordinates to root user space in the result.
     write: Affine,
@@ -244,6 +244,7 @@ pub(super) fn bend_bitmap(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend:
     };
     let after = (write * b.placing.inverse()).inverse();
     let pixelated = matches!(b.image.rendering_mode(), ImageRendering::Pixelated | ImageRendering::CrispEdges);
+    // A bent JPEG cannot be transparent around the image.
     let clip = if is_jpeg(data) { visible_outline(b, area, after, (*map, options)) } else { None };
     let clipped = clip.is_some();
     let (placed, crop, to_px) = (b.frame, b.crop, scene.to_px);
@@ -281,6 +282,7 @@ pub(crate) fn with_tiles(drawing: &Drawing, bends: &Bends<'_>) -> Result<Option<
     let needed = |painted: Painted, area: Rect, frame: Affine| {
         let bend = match painted {
             Painted::Element(e) => bends.bend_of(e),
+            // Without a division, the first bend stands for all.
             Painted::Mask(bend) => bend.or(Some(0)),
         };
         bend.and_then(|k| bends.each.get(k)).is_some_and(|bend| lays_out(bend, area, frame))

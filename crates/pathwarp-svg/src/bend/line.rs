@@ -4,7 +4,7 @@ use super::bends::Bends;
 use super::options::Edit;
 use super::outcome::{ShapeReport, WarpedDocument};
 use super::path::warp_path;
-use super::visible::Seen;
+use super::visible::SelectedArt;
 use crate::scene::drawing::Drawing;
 use pathwarp::edit::{Contour, around};
 use pathwarp::engine::decimal::trimmed;
@@ -40,8 +40,8 @@ pub(super) fn draw(
     let bitmaps: Vec<bool> =
         drawing.scene().bitmaps.iter().map(|b| b.bends && bends.bend_of(b.owner) == Some(k)).collect();
     let fine = FINE * options.refit.tolerance;
-    let seen = Seen { drawing, parts: &parts, bitmaps: &bitmaps, painter: options.painter.as_ref(), fine };
-    let area = seen.area().map_err(Error::Geometry)?;
+    let art = SelectedArt { drawing, parts: &parts, bitmaps: &bitmaps, painter: options.painter.as_ref(), fine };
+    let area = art.area().map_err(Error::Geometry)?;
     if area.is_empty() {
         return Err(Error::input(&drawing.name, "there is nothing to draw a line around: nothing is visible"));
     }

@@ -12,7 +12,7 @@ use pathwarp::{GeometryError, Outline};
 use usvg::{FillRule, ImageKind, MaskType, Paint};
 
 /// The selected parts and bitmaps, with the settings for finding their visible area.
-pub(super) struct Seen<'a> {
+pub(super) struct SelectedArt<'a> {
     pub(super) drawing: &'a Drawing,
     pub(super) parts: &'a [bool],
     pub(super) bitmaps: &'a [bool],
@@ -33,7 +33,7 @@ enum Ink {
     Light,
 }
 
-impl Seen<'_> {
+impl SelectedArt<'_> {
     pub(super) fn area(&self) -> Result<Area, GeometryError> {
         self.group_area(&self.drawing.scene().root, Ink::Paint)
     }
@@ -53,6 +53,7 @@ impl Seen<'_> {
             match n {
                 Node::Group(g) => self.add_group(g, ink, out)?,
                 Node::Text { content, .. } => self.add_group(content, ink, out)?,
+                // A luminance mask takes every picture for bright.
                 Node::Image(i) if ink == Ink::Light || (ink == Ink::Paint && self.bitmaps[*i]) => {
                     out.push(self.picture_area(*i)?);
                 }
@@ -85,6 +86,7 @@ impl Seen<'_> {
             out.extend(p.visible.then(|| self.fill_area(i)).transpose()?);
             return Ok(());
         }
+        // Tiles lie in the area of the shape that they paint.
         if !is_seen(p) || p.in_tile || (p.role == PartRole::Paint && !self.parts[i]) {
             return Ok(());
         }
@@ -131,8 +133,8 @@ impl Seen<'_> {
 
     /// The area in which a picture is more than half opaque.
     fn picture_area(&self, i: usize) -> Result<Area, GeometryError> {
-        /// Distance in pixels within which the edge of a picture is uncertain.
-        const UNKNOWN: f64 = 0.2;
+        /// Tolerance, in pixels, of a traced edge.
+        const EDGE_TOLERANCE: f64 = 0.2;
         let b = &self.drawing.scene().bitmaps[i];
         let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };
         let shown = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
@@ -143,7 +145,8 @@ impl Seen<'_> {
             return Ok(shown);
         };
         let traced = opacity.traced().transformed(b.frame);
-        let options = refit::Options::new(self.fine.max(UNKNOWN * stretch(b.frame))).with_nodes(refit::Nodes::Source);
+        let options =
+            refit::Options::new(self.fine.max(EDGE_TOLERANCE * stretch(b.frame))).with_nodes(refit::Nodes::Source);
         let outline = Outline::from(&refit::simplified(&traced, None, &options, &[])?.path);
         Area::of(&outline, false, self.fine)?.intersection(&shown, self.fine)
     }

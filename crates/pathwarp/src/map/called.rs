@@ -35,18 +35,18 @@ pub trait Callee: Send + Sync {
     /// Any [`Error`] by which the callee fails. The map is undefined everywhere from then on, and reports this error.
     fn ask(&self, ask: Ask, points: &[Point]) -> Result<Vec<f64>, Error>;
 
-    /// Answers for the values at `points` and the jets at `others`, neither of them empty.
+    /// Answers for the values at `points` and the jets at `jets_at`, neither of them empty.
     ///
     /// # Errors
     /// Any [`Error`] by which the callee fails.
-    fn ask_both(&self, points: &[Point], others: &[Point]) -> Result<[Vec<f64>; 2], Error> {
-        Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, others)?])
+    fn ask_both(&self, points: &[Point], jets_at: &[Point]) -> Result<[Vec<f64>; 2], Error> {
+        Ok([self.ask(Ask::Points, points)?, self.ask(Ask::Jets, jets_at)?])
     }
 
     /// Returns the error for an answer at `at`, within the domain, that is not finite.
     fn not_finite(&self, at: Point) -> Error;
 
-    /// Returns the work of asking for one point, in evaluations of a net.
+    /// Returns the work of asking for one point, in evaluations of a bicubic net.
     fn work(&self) -> f64 {
         2.0
     }
@@ -99,7 +99,7 @@ impl Called {
         self.failed.get().cloned()
     }
 
-    /// Returns `true` if the map may be undefined at points that are known only by their values.
+    /// Returns `true` if the map may be undefined at points that no declared crease excludes, which only its values show.
     #[must_use]
     pub fn is_partial(&self) -> bool {
         self.abilities.partial
@@ -211,12 +211,12 @@ impl Batches for Called {
         }
         images.fill(UNDEFINED);
         jets.fill(Jet::UNDEFINED);
-        let (points, others) = (finite(ps), finite(qs));
-        let answers = self.answers(|callee| match (points.is_empty(), others.is_empty()) {
+        let (points, jets_at) = (finite(ps), finite(qs));
+        let answers = self.answers(|callee| match (points.is_empty(), jets_at.is_empty()) {
             (true, true) => Ok([Vec::new(), Vec::new()]),
             (false, true) => Ok([callee.ask(Ask::Points, &points)?, Vec::new()]),
-            (true, false) => Ok([Vec::new(), callee.ask(Ask::Jets, &others)?]),
-            (false, false) => callee.ask_both(&points, &others),
+            (true, false) => Ok([Vec::new(), callee.ask(Ask::Jets, &jets_at)?]),
+            (false, false) => callee.ask_both(&points, &jets_at),
         });
         if let Some([values, derivatives]) = answers {
             self.write(Ask::Points, (ps, images), &values, point);
@@ -237,7 +237,8 @@ struct OneSided {
 }
 
 impl OneSided {
-    /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal.
+    /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal. Levels
+    /// are taken for distances.
     const NEAR: f64 = 1e-11;
 
     /// Moves a point on a crease slightly towards `inside`.
@@ -252,7 +253,8 @@ impl OneSided {
         self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
     }
 
-    /// Returns two directions from `p` for differences that cross no crease; `None` if central differences cross none.
+    /// Returns two directions from `p` along which one-sided differences cross no crease; `None` if central differences cross none, or if
+    /// there are no such directions.
     fn directions(&self, p: Point) -> Option<[Vec2; 2]> {
         let crosses_none = |d: &Vec2, share: f64| self.is_on_side(p + *d * (share * self.map.size));
         let around = (0..16).map(|k| Vec2::from_angle(f64::from(k) * (TAU / 16.0)));
