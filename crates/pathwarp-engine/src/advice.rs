@@ -185,10 +185,9 @@ impl Flags {
         if self.params.contains(name) { format!("--{message}") } else { message.to_owned() }
     }
 
-    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter.
+    /// Replaces `` `name` `` and `` `name value` `` by `--name` and `--name value` where `name` is a parameter of several letters.
     pub fn in_text(&self, message: &str) -> String {
         let is_param = |span: &str| {
-            // A single letter is a variable in a formula.
             let mut words = span.split(' ');
             let known = words.next().is_some_and(|w| w.len() > 1 && self.params.contains(w));
             known && words.count() < 2 && !span.ends_with(' ')

@@ -96,7 +96,7 @@ impl PageNews {
         }
     }
 
-    /// Reports that `--fit auto` has changed the page, or that `--fit shrink` keeps the result on it.
+    /// Reports that `--fit auto` has enlarged the page, or moved it when nothing was left on it, or that `--fit shrink` keeps it.
     pub fn note(&self) -> Option<String> {
         if let Some(scale) = self.shrunk {
             return Some(match three_figures(100.0 * scale).as_str() {
@@ -107,7 +107,6 @@ impl PageNews {
         let [before, after] = self.change.filter(|_| self.is_automatic)?;
         let size = |r: Rect| format!("{} × {}", trimmed(r.width(), 2), trimmed(r.height(), 2));
         let (old, new) = (size(before), size(after));
-        // `--fit auto` moves the page only if nothing is left on it.
         Some(if before.union(after) == after {
             format!("the page grew from {old} to {new}; --fit none keeps it")
         } else {

@@ -57,7 +57,7 @@ pub(crate) fn draw_over(stream: &mut Stream, object: Ref, area: Rect) {
     stream.object_at(object, unit);
 }
 
-/// Adds the pixels of a picture, not turned by its metadata. If it cannot be decoded, it is not drawn, as in browsers; if it is too large, that is an error.
+/// Adds the pixels of a picture as stored, not turned. If it cannot be decoded, it is not drawn, as in browsers; if too large, this fails.
 fn add_pixels(file: &mut File<'_>, data: &[u8], smooth: bool) -> Option<Ref> {
     if file.failed.is_some() {
         return None;

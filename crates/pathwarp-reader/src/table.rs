@@ -1,8 +1,7 @@
 //! A table of the properties that determine how a drawing looks, with the values that browsers accept, spelled as usvg 0.49 reads
 //! them.
 //!
-//! The facts are Chromium's computed values. A [`Kind`] other than [`Any`] means that usvg reads the property differently, so that its
-//! values are rewritten for usvg.
+//! The facts are Chromium's computed values. Values of a [`Kind`] other than [`Any`] are rewritten, as usvg reads them differently.
 
 use Kind::{
     Any, AnyKeywords, BaselineShift, Color, Dashes, Filter, FontSize, FontWeight, Geometry, Keyword, Length, Link,

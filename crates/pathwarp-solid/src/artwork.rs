@@ -77,8 +77,7 @@ pub enum Error {
     },
 }
 
-/// Returns the filled shapes as a mesh in OBJ format. The image of the midpoint of every edge
-/// in the plane is within `tolerance` (user units) of the edge, as far as [`MAX_ROUNDS`] and [`MAX_HALVINGS`] allow.
+/// Returns the filled shapes as a mesh in OBJ format, every edge within `tolerance` (user units) of the image of its midpoint in the plane.
 ///
 /// `budget` counts the sides of the triangles as segments.
 ///

@@ -14,8 +14,7 @@ pub struct Camera3 {
     half: f64,
 }
 
-/// Depth below which nothing is drawn, as a fraction of a typical depth: of the distance to the middle of the scene, or in [`draw`] of the
-/// greatest depth.
+/// Depth below which nothing is drawn, as a fraction of the distance to the middle of the scene, or in [`draw`] of the greatest depth.
 const NEAR: f64 = 1e-3;
 
 impl Camera3 {
@@ -118,9 +117,7 @@ pub fn draw(mesh: &Mesh, guides: &[Vec<DVec3>], camera: &Camera3, side: usize) -
             }
         }
     }
-    for (ends, color) in lines {
-        canvas.line(ends, near, color);
-    }
+    lines.into_iter().for_each(|(ends, color)| canvas.line(ends, near, color));
     for guide in guides {
         for w in guide.windows(2) {
             canvas.line([w[0], w[1]].map(|p| camera.project(p, fine as f64)), near, GUIDE);
@@ -203,25 +200,16 @@ mod tests {
     use crate::mesh::obj;
 
     #[test]
-    fn the_nearer_face_is_seen_and_the_background_is_white() {
-        let two = "o far\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\no near\nv -.5 -.5 1\nv .5 -.5 1\nv .5 .5 1\nv -.5 .5 1\nf 5 6 7 8\n";
+    fn the_nearer_face_and_lines_are_seen_and_the_background_is_white() {
+        let two = "o far\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nl 1 3\nf 1 2 3 4\no near\nv -.5 -.5 1\nv .5 -.5 1\nv .5 .5 1\nv -.5 .5 1\nf 5 6 7 8\n";
         let mesh = obj::read(two.as_bytes()).unwrap();
         let camera = Camera3::at(DVec3::new(0.0, 0.0, 10.0), mesh.bounds().unwrap()).unwrap();
         let picture = draw(&mesh, &[], &camera, 64);
         let at = |x: usize, y: usize| &picture[4 * (y * 64 + x)..][..3];
         assert!(at(32, 32)[0] > at(32, 32)[2], "orange: {:?}", at(32, 32));
         assert!(at(6, 32)[0] < at(6, 32)[2], "blue: {:?}", at(6, 32));
+        assert_ne!(at(32, 31), at(36, 32), "the line lies over the faces, which follow it");
         assert_eq!(at(0, 0), [255; 3]);
         assert!(Camera3::at(DVec3::new(0.0, 0.0, 0.5), mesh.bounds().unwrap()).is_none());
-    }
-
-    #[test]
-    fn lines_are_seen_over_faces_that_follow_them() {
-        let crossed = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nl 1 3\nf 1 2 3 4\n";
-        let mesh = obj::read(crossed.as_bytes()).unwrap();
-        let camera = Camera3::at(DVec3::new(0.0, 0.0, 10.0), mesh.bounds().unwrap()).unwrap();
-        let picture = draw(&mesh, &[], &camera, 64);
-        let at = |x: usize, y: usize| &picture[4 * (y * 64 + x)..][..3];
-        assert_ne!(at(32, 31), at(32, 20));
     }
 }

@@ -103,8 +103,8 @@ pub(crate) fn parse(text: &str, names: &Names<'_>, program: &mut Program) -> Res
     Err(SyntaxError::new(parser.at, problem))
 }
 
-/// A sum of plane waves with lengths from 1 to 2 in all directions, most of its values between −1 and 1. Directions, lengths and phases
-/// are evenly spread without a pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
+/// A sum of plane waves with lengths from 1 to 2, mostly between −1 and 1. Their directions, lengths and phases are evenly spread without
+/// a pattern: the spectral representation of a random field (M. Shinozuka, G. Deodatis, *Simulation of stochastic processes by spectral
 /// representation*, Applied Mechanics Reviews 44, 1991).
 fn noise() -> String {
     // Powers of 1/g, where g is the golden ratio or, for two numbers at once, the root of g³ = g + 1.
@@ -442,8 +442,7 @@ impl Program {
         Some(format!("{operation} {what}"))
     }
 
-    /// Returns the kinks of two results and of everything they depend on. The jump of an angle, which mostly vanishes in its sine and cosine,
-    /// is not among them.
+    /// Returns the kinks of two results and of everything they depend on. Jumps of `atan2` are not among them.
     pub(crate) fn kinks(&self, results: [u32; 2]) -> Vec<Kink> {
         let needed = self.needed(results);
         let ops = self.ops.iter().enumerate().filter(|(i, _)| needed[*i]);
@@ -721,7 +720,6 @@ mod tests {
         c.define("f = -d ? 1 : e").unwrap();
         assert_eq!(c.value("f"), c.value("e"));
         assert_eq!((c.value("e"), c.value("e + 1")), (Ok(24.0), Ok(25.0)));
-        // ln(2·|a|), although a² overflows.
         assert_eq!(c.value("asinh(-10^200)").map(|v| (v + 461.210165793).abs() < 1e-6), Ok(true));
         for (text, part) in [
             ("x", "NAME = FORMULA"),

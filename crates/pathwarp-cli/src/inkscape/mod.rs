@@ -14,7 +14,7 @@ mod stage;
 
 use crate::ending::Status;
 use crate::plugins;
-use guides::sorted_selection;
+use guides::divide;
 use line::{
     change, check_recipe, exclusions, referred, with_frame, with_ids, without_missing, words_of_deformation,
     words_of_options,
@@ -38,10 +38,9 @@ pub(crate) fn is_call(args: &[OsString]) -> bool {
 /// Executes a call by Inkscape.
 pub(crate) fn run(registry: &Registry, args: &[OsString], convert: Convert) -> Result<Status, Failure> {
     let call = Call::read(args)?;
-    // The command that needs the same plug-ins.
+    // A command that needs the same plug-ins: a recipe may name any deformation.
     let command = match &call.job {
         Job::Deformation(name) => name,
-        // A recipe may name any deformation, so all plug-ins are loaded.
         Job::Edit | Job::EditByHand => "list",
         Job::Release | Job::Convert(_) => "convert",
     };
@@ -73,7 +72,7 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     let drawing = stage.drawing()?;
     let all = objects(&drawing, &stage.limits())?;
     let given = words_of_deformation(entry.info(), call);
-    let selection = sorted_selection(entry.info(), &all, call, &given)?;
+    let chosen = divide(entry.info(), &all, call, &given)?;
 
     let mode = call.value(AGAIN).unwrap_or_default();
     let starts_again = |o: &&Object| {
@@ -83,12 +82,12 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
             line.first().is_some_and(|w| w == name) && !line.iter().any(|w| w == CHAIN)
         };
         let is_replaced = |recipe: &str| mode == REPLACE || (mode != ADD && is_of_this_kind(recipe));
-        selection.artwork.contains(&o.id) && o.recipe.as_deref().is_some_and(is_replaced)
+        chosen.artwork.contains(&o.id) && o.recipe.as_deref().is_some_and(is_replaced)
     };
     let again: Vec<String> = all.iter().filter(starts_again).map(|o| o.id.clone()).collect();
     let Restoration { svg, objects: restored } = restore(stage, &drawing, &again, call.is_on(DISCARD))?;
 
-    let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(selection.words()).collect();
+    let mut line: Vec<String> = std::iter::once(name.to_owned()).chain(given).chain(chosen.words()).collect();
     line = with_ids(line, &all);
     line.extend(words_of_options(call));
     // On the whole page, locked objects are excluded.
@@ -96,13 +95,12 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     if is_whole_page {
         line.extend(exclusions(&all));
     }
-    let outcome =
-        stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &selection.artwork } }, None)?;
+    let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &chosen.artwork } }, None)?;
     stage.report_left_out(&svg, &outcome)?;
 
     let guides = Guides::of(&svg, &referred(&line), &stage.limits())?;
     let recipe = joined(&with_frame(stage, line, &outcome));
-    let result = with_sources(stage, &svg, &outcome.svg, &selection.artwork, &recipe, &guides)?;
+    let result = with_sources(stage, &svg, &outcome.svg, &chosen.artwork, &recipe, &guides)?;
     with_changes_by_hand(stage, &drawing, result, &restored)
 }
 

@@ -73,8 +73,8 @@ pub(crate) fn fit(area: Rect, read: Affine, write: Affine, map: &dyn Map) -> Opt
     affine.is_finite().then_some(PaintFit { affine, residual: if size > 0.0 { miss / size } else { 0.0 }, miss })
 }
 
-/// Finds the fit of a shape with copies, to which `copies` move it in root user space: its paint is stretched over the box of all. If no affine map comes near
-/// the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
+/// Finds the fit of a shape that `copies` move in root user space: the paint of one is stretched over the box of all. If no affine map
+/// comes near the image of that box, as around a ring, the paint is stretched over the box of the image, `result`.
 pub(crate) fn fit_copies(
     area: Rect,
     read: Affine,
@@ -214,7 +214,7 @@ pub(crate) enum EmbeddedImage {
     /// Bent, in the user space outside its placing transform.
     Bent {
         image: BentImage,
-        /// Path data of the outline that clips the image, which may extend beyond it.
+        /// Path data of the outline that clips the image, if it extends beyond, as a JPEG has no transparency.
         clip: Option<String>,
     },
 }
@@ -244,7 +244,6 @@ pub(super) fn bend_bitmap(b: &Bitmap, scene: &Scene, slots: &[PlacedSlot], bend:
     };
     let after = (write * b.placing.inverse()).inverse();
     let pixelated = matches!(b.image.rendering_mode(), ImageRendering::Pixelated | ImageRendering::CrispEdges);
-    // A bent JPEG cannot be transparent around the image.
     let clip = if is_jpeg(data) { visible_outline(b, area, after, (*map, options)) } else { None };
     let clipped = clip.is_some();
     let (placed, crop, to_px) = (b.frame, b.crop, scene.to_px);

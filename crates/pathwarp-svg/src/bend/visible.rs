@@ -25,11 +25,11 @@ pub(super) struct SelectedArt<'a> {
 /// The content of a group that counts.
 #[derive(Clone, Copy, PartialEq)]
 enum Ink {
-    /// Everything painted.
+    /// Everything painted. Tiles lie within the shape that they paint, which counts.
     Paint,
     /// All areas, whatever their paint, as in clip paths.
     Clip,
-    /// Everything painted that is not black, as in luminance masks.
+    /// Everything painted that is not black, as in luminance masks. Pictures count as bright.
     Light,
 }
 
@@ -53,7 +53,6 @@ impl SelectedArt<'_> {
             match n {
                 Node::Group(g) => self.add_group(g, ink, out)?,
                 Node::Text { content, .. } => self.add_group(content, ink, out)?,
-                // A luminance mask takes every picture for bright.
                 Node::Image(i) if ink == Ink::Light || (ink == Ink::Paint && self.bitmaps[*i]) => {
                     out.push(self.picture_area(*i)?);
                 }
@@ -86,7 +85,6 @@ impl SelectedArt<'_> {
             out.extend(p.visible.then(|| self.fill_area(i)).transpose()?);
             return Ok(());
         }
-        // Tiles lie in the area of the shape that they paint.
         if !is_seen(p) || p.in_tile || (p.role == PartRole::Paint && !self.parts[i]) {
             return Ok(());
         }
@@ -134,7 +132,7 @@ impl SelectedArt<'_> {
     /// The area in which a picture is more than half opaque.
     fn picture_area(&self, i: usize) -> Result<Area, GeometryError> {
         /// Tolerance, in pixels, of a traced edge.
-        const EDGE_TOLERANCE: f64 = 0.2;
+        const SLACK: f64 = 0.2;
         let b = &self.drawing.scene().bitmaps[i];
         let Some(corners) = picture_corners(b) else { return Ok(Area::default()) };
         let shown = Area::of(&Outline::from_points(&corners, true), false, self.fine)?;
@@ -145,8 +143,7 @@ impl SelectedArt<'_> {
             return Ok(shown);
         };
         let traced = opacity.traced().transformed(b.frame);
-        let options =
-            refit::Options::new(self.fine.max(EDGE_TOLERANCE * stretch(b.frame))).with_nodes(refit::Nodes::Source);
+        let options = refit::Options::new(self.fine.max(SLACK * stretch(b.frame))).with_nodes(refit::Nodes::Source);
         let outline = Outline::from(&refit::simplified(&traced, None, &options, &[])?.path);
         Area::of(&outline, false, self.fine)?.intersection(&shown, self.fine)
     }

@@ -237,8 +237,7 @@ struct OneSided {
 }
 
 impl OneSided {
-    /// The distance within which rounding may put a point on either side of a crease, as a fraction of the frame's diagonal. Levels
-    /// are taken for distances.
+    /// The level, taken for a distance, at which rounding may put a point on either side of a crease, as a share of the frame's diagonal.
     const NEAR: f64 = 1e-11;
 
     /// Moves a point on a crease slightly towards `inside`.
@@ -253,8 +252,7 @@ impl OneSided {
         self.map.abilities.creases.items().iter().all(|c| c.level.at(p) * c.level.at(self.inside) > 0.0)
     }
 
-    /// Returns two directions from `p` along which one-sided differences cross no crease; `None` if central differences cross none, or if
-    /// there are no such directions.
+    /// Returns two directions from `p` in which one-sided differences cross no crease; `None` if central ones cross none, or all cross one.
     fn directions(&self, p: Point) -> Option<[Vec2; 2]> {
         let crosses_none = |d: &Vec2, share: f64| self.is_on_side(p + *d * (share * self.map.size));
         let around = (0..16).map(|k| Vec2::from_angle(f64::from(k) * (TAU / 16.0)));

@@ -39,7 +39,7 @@ impl Enclosure {
     pub(crate) const LAST_SPREAD: f64 = 4.0;
 
     /// Encloses v + hτ and v − hτ, for every v for which they stay at most `far` from the middle.
-    pub(crate) fn with_slope(middle: f64, [far, h]: [f64; 2]) -> Self {
+    pub(crate) fn sloped(middle: f64, [far, h]: [f64; 2]) -> Self {
         let mut d = [0.0; ORDER];
         d[0] = h;
         Self { lo: middle - far, hi: middle + far, d }
@@ -338,7 +338,7 @@ mod tests {
     use crate::map::Dual;
 
     /// Formulas of all operations, along the line x = 0.3 + w·τ, y = 1.7 − 2w·τ.
-    fn every_operation<S: Real>(x: S, y: S) -> [S; 16] {
+    fn all<S: Real>(x: S, y: S) -> [S; 16] {
         [
             x * y - x / y,
             (x * 9.0).sin() * (y * 7.0).cos(),
@@ -364,11 +364,9 @@ mod tests {
     fn enclosures_hold() {
         for w in [1e-3, 0.02, 0.1, 0.4, 1.2] {
             let along = [Enclosure::between(0.3, 0.3 + w), Enclosure::between(1.7, 1.7 - 2.0 * w)];
-            let bounds = every_operation(along[0], along[1]);
-            let at = |t: f64| {
-                let (x, y) = (0.3 + w * t, 1.7 - 2.0 * w * t);
-                every_operation(Dual { v: x, x: w, y: 0.0 }, Dual { v: y, x: -2.0 * w, y: 0.0 })
-            };
+            let bounds = all(along[0], along[1]);
+            let at =
+                |t: f64| all(Dual { v: 0.3 + w * t, x: w, y: 0.0 }, Dual { v: 1.7 - 2.0 * w * t, x: -2.0 * w, y: 0.0 });
             const N: usize = 24;
             let samples: Vec<[Dual; 16]> = (0..=N).map(|i| at(i as f64 / N as f64)).collect();
             for (f, e) in bounds.iter().enumerate() {

@@ -71,8 +71,7 @@ pub trait Formula: Send + Sync {
         None
     }
 
-    /// See [`Map::jet`]. Pointers to maps are formulas, which forward this method and those below to their map: as maps, they can override
-    /// nothing.
+    /// See [`Map::jet`]. Pointers to maps are formulas too, which forward this method and those below to their map.
     #[doc(hidden)]
     #[inline]
     fn dual(&self, p: Point) -> Jet {
@@ -263,7 +262,7 @@ mod tests {
     /// Compares the derivative of every operation with central differences.
     #[test]
     fn derivatives_agree_with_differences() {
-        fn every_operation<S: Real>(x: S, y: S) -> [S; 14] {
+        fn all<S: Real>(x: S, y: S) -> [S; 14] {
             [
                 x + y * 2.0,
                 x - y / 3.0,
@@ -282,11 +281,10 @@ mod tests {
             ]
         }
         let (x, y, h) = (0.8, 1.7, 1e-6);
-        let d = every_operation(Dual { v: x, x: 1.0, y: 0.0 }, Dual { v: y, x: 0.0, y: 1.0 });
-        let [xp, xm] = [h, -h].map(|h| every_operation(x + h, y));
-        let [yp, ym] = [h, -h].map(|h| every_operation(x, y + h));
+        let d = all(Dual { v: x, x: 1.0, y: 0.0 }, Dual { v: y, x: 0.0, y: 1.0 });
+        let (xp, xm, yp, ym) = (all(x + h, y), all(x - h, y), all(x, y + h), all(x, y - h));
         for i in 0..d.len() {
-            assert_eq!(d[i].v, every_operation(x, y)[i], "value {i}");
+            assert_eq!(d[i].v, all(x, y)[i], "value {i}");
             assert!((d[i].x - (xp[i] - xm[i]) / (2.0 * h)).abs() < 1e-8, "d/dx {i}");
             assert!((d[i].y - (yp[i] - ym[i]) / (2.0 * h)).abs() < 1e-8, "d/dy {i}");
         }

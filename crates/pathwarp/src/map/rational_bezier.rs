@@ -146,8 +146,7 @@ impl RationalBezier {
 }
 
 /// The exact image of a segment, of the lowest degree that its coordinates allow: one curve for each part between the creases of the map
-/// and, of an arc, between its quarters.
-/// `None` if a part has no such image ([`Map::image`]).
+/// and, of an arc, between its quarters. `None` if a part has no such image ([`Map::image`]).
 ///
 /// ```
 /// use pathwarp::kurbo::{Line, Rect, Vec2};

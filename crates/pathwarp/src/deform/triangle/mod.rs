@@ -52,8 +52,7 @@ parameters! {
         birational: bool = flag("birational");
         /// Let the map continue outside the triangle instead of leaving everything there in place.
         extend: bool = flag("extend");
-        // Every value is one change.
-        let changes: Vec<([usize; 3], Change)> = changes(s, |text| vec![text])?;
+        let changes: Vec<([usize; 3], Change)> = changes(s, |change| vec![change])?;
         let frame: Option<Rect> = Some(s.frame().rect);
     }
 }
@@ -318,7 +317,7 @@ impl TriangleNet {
         nodes.iter().all(|&k| self.moves[k].hypot() <= 1e-12 * size && self.weights[k] == self.weights[nodes[0]])
     }
 
-    /// Returns the map, with its `inverse` if that is known. Outside the triangle it is the identity or, if `extended`, continues.
+    /// Returns the map: outside the triangle the identity or, if `extended`, continued. Without an `inverse`, that is sought in `domain`.
     fn map(&self, extended: bool, inverse: Option<Quotient>) -> Arc<dyn Map> {
         let to_coordinates = coordinates(self.corners);
         let [a, b, c] = self.corners;
@@ -328,16 +327,15 @@ impl TriangleNet {
             let all: Vec<f64> = indices(self.degree).into_iter().enumerate().map(|(at, ijk)| f(at, ijk)).collect();
             expanded(self.degree, &all)
         };
-        let inverse_domain =
-            if extended { bounds.inflate(0.5 * bounds.width(), 0.5 * bounds.height()) } else { bounds };
+        let domain = if extended { bounds.inflate(0.5 * bounds.width(), 0.5 * bounds.height()) } else { bounds };
         let mut whole = if self.weights.iter().all(|w| *w == self.weights[0]) {
             let (x, y) = (plane(&|at, _| self.moves[at].x), plane(&|at, _| self.moves[at].y));
-            Quotient::polynomial(to_coordinates, x, y, inverse_domain)
+            Quotient::polynomial(to_coordinates, x, y, domain)
         } else {
             let origin = bounds.center();
             let x = plane(&|at, ijk| (self.point(ijk).x - origin.x) * self.weights[at]);
             let y = plane(&|at, ijk| (self.point(ijk).y - origin.y) * self.weights[at]);
-            Quotient::rational(to_coordinates, origin, x, y, plane(&|at, _| self.weights[at]), inverse_domain)
+            Quotient::rational(to_coordinates, origin, x, y, plane(&|at, _| self.weights[at]), domain)
         };
         whole.back = inverse.map(Box::new);
         if extended {
