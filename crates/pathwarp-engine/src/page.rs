@@ -96,7 +96,7 @@ impl PageNews {
         }
     }
 
-    /// Reports that `--fit auto` has enlarged the page, or moved it when nothing was left on it, or that `--fit shrink` keeps it.
+    /// Reports that `--fit auto` enlarged the page, or moved it when nothing was left on it, or that `--fit shrink` keeps the result on it.
     pub fn note(&self) -> Option<String> {
         if let Some(scale) = self.shrunk {
             return Some(match three_figures(100.0 * scale).as_str() {

@@ -172,7 +172,7 @@ impl Map for Called {
         if self.abilities.jacobian {
             self.points_and_jets((&[], &mut []), (ps, out));
         } else {
-            out.copy_from_slice(&differences(ps, self.size, |ps, out| self.points(ps, out)));
+            out.copy_from_slice(&jets_by_differences(ps, self.size, |ps, out| self.points(ps, out)));
         }
     }
 
@@ -358,7 +358,7 @@ const STENCIL: [(f64, f64); 8] =
     [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)];
 
 /// Computes the jets at `ps` by differences of `values`, which evaluates many points at once. `size` is the frame's diagonal.
-fn differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
+fn jets_by_differences(ps: &[Point], size: f64, values: impl Fn(&[Point], &mut [Point])) -> Vec<Jet> {
     let mut out: Vec<Jet> = vec![Jet::UNDEFINED; ps.len()];
     let mut errors = vec![f64::INFINITY; ps.len()];
     let mut pending: Vec<usize> = (0..ps.len()).collect();
@@ -433,7 +433,7 @@ mod tests {
             let k = TAU / length;
             let f = |p: Point| Point::new(p.x + (k * p.y).sin() / k, p.y * 2.0 + 0.5 * (k * p.x).cos() / k);
             let ps: Vec<Point> = (0..50).map(|i| Point::new(3.7 * f64::from(i), 90.0 - 1.9 * f64::from(i))).collect();
-            let found = differences(&ps, 100.0, |ps, out| {
+            let found = jets_by_differences(&ps, 100.0, |ps, out| {
                 for (p, o) in ps.iter().zip(out) {
                     *o = f(*p);
                 }
@@ -479,7 +479,8 @@ mod tests {
 
     #[test]
     fn outside_of_the_domain_the_jet_is_undefined() {
-        let found = differences(&[Point::new(1.0, 1.0)], 1.0, |_, out| out.fill(Point::new(f64::NAN, f64::NAN)));
+        let found =
+            jets_by_differences(&[Point::new(1.0, 1.0)], 1.0, |_, out| out.fill(Point::new(f64::NAN, f64::NAN)));
         assert!(found[0].p.is_nan() && found[0].dx.is_nan());
     }
 }
