@@ -1,6 +1,10 @@
 // The server's messages, and geometry.
 
 export type XY = [number, number];
+/** A box as x, y, width and height. */
+export type Frame = [number, number, number, number];
+/** A circle or arc: its centre's x and y, its radius, and its start and end angles in degrees, clockwise from the right. */
+export type Arc = [number, number, number, number, number];
 
 export interface Step {
   deformation: string;
@@ -66,6 +70,7 @@ export interface Deformation {
   gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
 }
 
+/** Each segment has two coordinates for a line, and six for a cubic. */
 export interface Subpath {
   start: XY;
   segments: number[][];
@@ -79,6 +84,7 @@ export interface Net {
   lines: number[][];
 }
 
+/** The images of a grid's points, row by row, and for each cell the factor of lengths, which is negative in folds. */
 export interface Stretch {
   columns: number;
   points: (XY | null)[];
@@ -101,15 +107,14 @@ export interface Grip {
   pairs?: [XY, XY][];
   net?: Net;
   paths?: Subpath[][];
-  /** A circle or arc: its centre, radius, and start and end angles in degrees. */
-  circle?: [number, number, number, number, number];
+  circle?: Arc;
   value?: number;
   /** A surface as typed, with its lengths in units of the drawing. */
   surface?: { text: string; sizes: [string, number][] };
 }
 
 export interface StepGrips {
-  frame: [number, number, number, number];
+  frame: Frame;
   params: Record<string, Grip>;
 }
 
@@ -132,8 +137,9 @@ export interface State {
   program: string | null;
   restored: boolean;
   problem: string | null;
+  /** The coefficients of the map from user units to px of the drawing, as in SVG's `matrix`. */
   toPx: [number, number, number, number, number, number];
-  page: [number, number, number, number];
+  page: Frame;
   missing: string[];
   /** The words that the drawing was set from, if any. */
   words: Words | null;
@@ -171,7 +177,7 @@ export interface Answer {
   /** Characters that no font has. */
   lacking?: string[];
   /** The page of the saved result, if it is not the drawing's. */
-  page?: [number, number, number, number] | null;
+  page?: Frame | null;
   summary?: Summary;
   state?: State;
   catalogue?: Deformation[];
@@ -210,7 +216,7 @@ export interface Handle {
   /** The row or path that it belongs to, in which symmetry looks for partners. */
   group: string;
   get: () => XY;
-  /** Moves it, and the points that depend on it. */
+  /** Moves it, and the points that depend on it; `smooth` keeps smooth nodes smooth. */
   set: (to: XY, smooth: boolean) => void;
   /** Removes it, if there may be any number of its kind. */
   remove?: () => void;
