@@ -34,7 +34,7 @@
 //!
 //! [`warp_path`]: crate::refit::warp_path
 
-/// Forwards the methods that a [`Map`] and a [`Formula`] have in common, except the inverse and the cost.
+/// Forwards the methods of the same name in [`Map`] and [`Formula`], except the inverse and the cost, which wrappers of maps change.
 macro_rules! forward_common {
     ($self:ident => $trait:ident, $to:expr) => {
         fn class(&$self) -> Class {
