@@ -91,8 +91,8 @@ fn warp(stage: &Stage<'_>, name: &str) -> Result<String, Failure> {
     line = with_ids(line, &all);
     line.extend(words_of_options(call));
     // Without a selection, locked objects are excluded.
-    let takes_all = call.ids.is_empty();
-    if takes_all {
+    let is_whole_page = call.ids.is_empty();
+    if is_whole_page {
         line.extend(exclusions(&all));
     }
     let outcome = stage.warp(&svg, &line, &Scope { ids: if is_whole_page { &[] } else { &chosen.artwork } }, None)?;
