@@ -2420,7 +2420,8 @@
     picksParts = false;
     mirrors = false;
     smooths = true;
-    marks = [];
+    /** Points of other handles to snap to, collected at the start of a drag. */
+    snapTargets = [];
     /** Shows the lines to which the handle has snapped, in user units. */
     onSnap = () => {
     };
@@ -2428,12 +2429,12 @@
     reflection(handles) {
       return reflection(handles);
     }
-    /** Returns the other points to add with a point: its reflection, if symmetry is on. */
+    /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
     reflections(handles, at, reach) {
       const other = reflection(handles)(at);
       return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
     }
-    /** Returns a function that drags a line, and its reflection if symmetry is on. */
+    /** Returns a function that drags a line (by its handles `own`), and its reflection if symmetry is on. */
     puller(handles, { handles: own, targets }) {
       const partners = own.map((handle) => this.mirrors ? handles.partner(handle) : null);
       const mirrored = reflection(handles);
@@ -2442,11 +2443,11 @@
         own.forEach((handle, i) => {
           const partner = partners[i] ?? null;
           const at = wanted[i];
-          const k = partner ? own.indexOf(partner) : -1;
-          const other = k < 0 ? at : mirrored(wanted[k]);
+          const partnerIndex = partner ? own.indexOf(partner) : -1;
+          const other = partnerIndex < 0 ? at : mirrored(wanted[partnerIndex]);
           const target = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
           handle.set(target, this.smooths);
-          if (k < 0) partner?.set(mirrored(target), this.smooths);
+          if (partnerIndex < 0) partner?.set(mirrored(target), this.smooths);
         });
       };
     }
@@ -2454,7 +2455,7 @@
     mover(handles, handle) {
       const partner = this.mirrors ? handles.partner(handle) : null;
       const mirrored = reflection(handles);
-      this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
+      this.snapTargets = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
       const start = [...handle.get()];
       return (to, e) => {
         const [dx, dy] = [to[0] - start[0], to[1] - start[1]];
@@ -2463,15 +2464,15 @@
         partner?.set(mirrored(target), this.smooths);
       };
     }
-    /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
+    /** Returns the point within `reach` (user units) of `to` that is aligned with the frame or another handle; Alt disables that. */
     snapped(to, handle, handles, reach, e) {
       if (!this.snaps || e.altKey || handle.shape === "control") {
         this.onSnap(null, null);
         return to;
       }
       const [x, y, w, h2] = handles.frame;
-      const xs = [x, x + w / 2, x + w, ...this.marks.map((p) => p[0])];
-      const ys = [y, y + h2 / 2, y + h2, ...this.marks.map((p) => p[1])];
+      const xs = [x, x + w / 2, x + w, ...this.snapTargets.map((p) => p[0])];
+      const ys = [y, y + h2 / 2, y + h2, ...this.snapTargets.map((p) => p[1])];
       const [nx, ny] = [nearest2(to[0], xs, reach), nearest2(to[1], ys, reach)];
       this.onSnap(nx, ny);
       return [nx ?? to[0], ny ?? to[1]];

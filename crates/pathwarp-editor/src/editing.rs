@@ -50,7 +50,6 @@ enum Version {
     Small,
 }
 
-/// A drawing in the editor.
 struct EditedArtwork {
     svg: SvgArtwork,
     /// The drawing with an id for every element, which tells the page what is clicked; `None` if all elements have one.
@@ -71,7 +70,7 @@ struct EditedArtwork {
     /// The drawing's file; results go to its folder.
     file: PathBuf,
     /// The frame of the last picture.
-    framed: Option<Framed>,
+    last_frame: Option<Framed>,
 }
 
 impl EditedArtwork {
@@ -96,18 +95,17 @@ impl EditedArtwork {
             names: Arc::clone(&host.names),
             plugins: host.plugins.clone(),
             file: file.to_owned(),
-            framed: None,
+            last_frame: None,
         }
     }
 
-    /// Returns the folder of the drawing.
     fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
 
     /// Makes the bitmap of a large drawing, unless it exists.
     fn draw_sketch(&mut self) -> Result<(), Failure> {
-        /// Length of a drawing's text, with pictures, from which thumbnails bend a bitmap: a page bends fifty of them.
+        /// Length of a drawing's text, with pictures embedded, from which thumbnails bend a bitmap of it: a page shows fifty thumbnails.
         const LARGE: usize = 256 << 10;
         /// The longer side of the bitmap, in pixels; thumbnails are half as large.
         const PIXELS: f32 = 256.0;
@@ -119,11 +117,11 @@ impl EditedArtwork {
             return Ok(());
         }
         let bitmap = page::Picture::bitmap(document.text(), PIXELS, reading);
-        let (png, filled) = bitmap.map_err(Failure::Input)?;
-        let place = document.user_to_px().inverse().transform_rect_bbox(filled);
+        let (png, filled_box) = bitmap.map_err(Failure::Input)?;
+        let place = document.user_to_px().inverse().transform_rect_bbox(filled_box);
         let boxed = |r: Rect| [r.x0, r.y0, r.width(), r.height()];
         let ([x, y, width, height], page) = (boxed(place), boxed(document.view_box()).map(|v| v.to_string()).join(" "));
-        // The width keeps the resolution, since drafts draw few pixels per px of the page.
+        // Drafts draw one pixel for 4 px of the page in each direction, so this width keeps the resolution.
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{page}\" width=\"{}\"><image preserveAspectRatio=\"none\" x=\"{x}\" \
              y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/></svg>",
@@ -156,21 +154,21 @@ impl EditedArtwork {
     ) -> Result<T, Failure> {
         let mut resolved = recipe.clone();
         references::resolve_files(&*self.registry, &mut resolved, &self.options.reading)?;
-        let Self { svg, shown, light, sketch, registry, given, options, framed, .. } = self;
-        let (svg, framed) = match version {
-            Version::File => (svg, framed),
-            Version::Page => (shown.as_mut().unwrap_or(svg), framed),
-            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), framed),
+        let Self { svg, shown, light, sketch, registry, given, options, last_frame, .. } = self;
+        let (svg, frame_cache) = match version {
+            Version::File => (svg, last_frame),
+            Version::Page => (shown.as_mut().unwrap_or(svg), last_frame),
+            Version::Light => (light.as_mut().and_then(Option::as_mut).or(shown.as_mut()).unwrap_or(svg), last_frame),
             Version::Small => match sketch {
                 // The bitmap's frame differs.
                 Some(sketch) => (sketch, &mut None),
-                None => (svg, framed),
+                None => (svg, last_frame),
             },
         };
         svg.renew_budget();
-        svg.restore(options);
+        svg.restore(options); // The last result may have been divided into parts.
         let session = Session { registry, recipe: &resolved, options, given };
-        let ready = session.ready(svg, Some(framed))?;
+        let ready = session.ready(svg, Some(frame_cache))?;
         work(&session, svg, ready)
     }
 
@@ -200,16 +198,16 @@ impl EditedArtwork {
             };
             let embedded_recipe = embeds.then(text).transpose()?;
             let request = WarpRequest { recipe, embedded_recipe, ..session.request(svg, &ready)? };
-            if format.of_picture(None).is_none() {
+            if !PICTURES.contains(&format) {
                 svg.send(format, to);
             }
             let written = svg.written(&request);
-            svg.send(Format::Svg, Destination::Back);
+            svg.send(Format::Svg, Destination::Back); // For the next result.
             ready.checked(written)
         })
     }
 
-    /// Returns the contents of the file `to`, and the losses of its format.
+    /// Returns the contents of the file `to`, and the losses of its format. Linked pictures are embedded unless it `stays` on this machine.
     fn written(
         &mut self,
         recipe: &Recipe,
@@ -222,7 +220,7 @@ impl EditedArtwork {
         let destination = if stays { Destination::of(Some(to)) } else { Destination::Anywhere };
         let Exported { bytes, mut warnings, kerf } = self.finished(recipe, format, destination)?;
         warnings.extend(kerf.map(|k| k.note()));
-        if format.of_picture(None).is_none() {
+        if !PICTURES.contains(&format) {
             return Ok((bytes, warnings));
         }
         let limits = self.options.reading.limits.for_input(bytes.len());
@@ -234,12 +232,12 @@ impl EditedArtwork {
         Ok((encode(drawn, format, None)?, warnings))
     }
 
-    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+    fn in_plain_words<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
 
-/// Replaces the options that abbreviate edits by steps, which the page has.
+/// Turns the options that abbreviate edits into steps, as the page shows only these.
 fn put_edits(saved: &mut SavedRecipe) -> Result<(), Failure> {
     let mut edits = saved.options.read()?.edits;
     ["simplify", "outset"].iter().for_each(|name| drop(saved.options.take(name)));
@@ -278,7 +276,7 @@ fn bent(
 ) -> Result<Bent, Failure> {
     let mut request = WarpRequest { recipe: given, same_view: true, ..session.request(svg, &ready)? };
     if let Fineness::Draft(draft) | Fineness::Small(draft) = fineness {
-        (request.tolerance, request.suited) = (draft.max(request.tolerance), false);
+        (request.tolerance, request.suited) = (draft.max(request.tolerance), false); // Also for small contours.
         let (svg, page) = ready.checked(svg.draft(&request))?;
         let Ready { recipe: resolved, built, .. } = ready;
         return Ok(Bent { svg, page, resolved, built: built.whole, summary: None, warnings: Vec::new() });
@@ -294,6 +292,7 @@ fn bent(
     let shapes = &warped.shapes;
     let fold = |s: &ReportedShape| s.fold.at.map(|at| (s.shape.id.clone(), at));
     let bent = [0, 1].map(|i| shapes.iter().map(|s| [s.shape.path.segments_in, s.shape.path.segments_out][i]).sum());
+    // Edits come before bending.
     let edited = edited.unwrap_or(bent);
     let summary = Summary {
         segments_in: edited[0],
@@ -302,8 +301,8 @@ fn bent(
         tolerance,
         folds: shapes.iter().filter_map(fold).collect(),
     };
-    let own = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
-    let mut warnings: Vec<String> = own.cloned().chain(warped.warnings).collect();
+    let warnings_of_steps = built.whole.steps.iter().flat_map(|s| &s.explanation.warnings);
+    let mut warnings: Vec<String> = warnings_of_steps.cloned().chain(warped.warnings).collect();
     warnings.extend(warped.page.arrivals.iter().map(ToString::to_string));
     warnings.extend(warped.skipped.iter().map(ToString::to_string));
     let page = warped.page.change.map(|[_, after]| after);
@@ -324,7 +323,7 @@ impl Artwork for EditedArtwork {
         }
         if self.captioned.as_ref().is_none_or(|(of, _)| *of != captions) {
             let set = captioned(self.svg.document(), &captions, self.svg.reading(), &self.options);
-            let (document, _) = self.said(set)?;
+            let (document, _) = self.in_plain_words(set)?;
             self.captioned = Some((captions, document));
         }
         Ok(match &mut self.captioned {
@@ -341,7 +340,7 @@ impl Artwork for EditedArtwork {
     }
 
     fn frame(&self) -> Rect {
-        let known = self.framed.as_ref().map(|f| f.frame.rect);
+        let known = self.last_frame.as_ref().map(|f| f.frame.rect);
         known.or_else(|| self.svg.bounding_box(Which::All)).unwrap_or_else(|| self.document().view_box())
     }
 
@@ -351,7 +350,7 @@ impl Artwork for EditedArtwork {
 
     fn bend(&mut self, recipe: &Recipe, fineness: Fineness) -> Result<Bent, String> {
         let bent = self.bent(recipe, fineness);
-        let mut bent = self.said(bent)?;
+        let mut bent = self.in_plain_words(bent)?;
         bent.warnings.iter_mut().for_each(|w| *w = self.names.plain(w));
         Ok(bent)
     }
@@ -364,13 +363,13 @@ impl Artwork for EditedArtwork {
         picture: &PictureOptions,
     ) -> Result<(Vec<u8>, Vec<String>), String> {
         let written = Self::written(self, recipe, to, stays, picture);
-        let (bytes, warnings) = self.said(written)?;
+        let (bytes, warnings) = self.in_plain_words(written)?;
         Ok((bytes, warnings.iter().map(|w| self.names.plain(w)).collect()))
     }
 
     fn settle(&mut self, recipe: &Recipe) -> Result<(Recipe, BuiltRecipe), String> {
         let settled = self.with_steps(recipe, Version::File, |_, _, ready| Ok((ready.recipe, ready.built.whole)));
-        self.said(settled)
+        self.in_plain_words(settled)
     }
 
     fn options(&self) -> Vec<(String, String)> {
@@ -380,8 +379,8 @@ impl Artwork for EditedArtwork {
     }
 
     fn recipe_text(&self, recipe: &Recipe) -> Result<String, String> {
-        let told = on_a_line(recipe, &self.given);
-        self.said(told.and_then(|(recipe, given)| recipe_file::write(&*self.registry, &recipe, &given, self.folder())))
+        let (recipe, given) = self.in_plain_words(on_a_line(recipe, &self.given))?;
+        self.in_plain_words(recipe_file::write(&*self.registry, &recipe, &given, self.folder()))
     }
 }
 
@@ -423,8 +422,8 @@ impl EngineHost {
         let reading = self.given.read()?.reading;
         reading.check()?;
         let limits = reading.limits.for_input(bytes.len());
-        let framed = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
-        let bytes = framed.as_deref().unwrap_or(bytes);
+        let as_svg = framed(bytes, &limits).map_err(|e| Failure::file(file, e.message(&self.flags)))?;
+        let bytes = as_svg.as_deref().unwrap_or(bytes); // A picture is opened as a drawing of it.
         let origin = Origin::of_file(bytes, "the drawing", &limits).unwrap_or(None);
         let folder = file.parent().unwrap_or(Path::new(""));
         let (source, saved) = match &origin {
@@ -454,7 +453,7 @@ impl EngineHost {
         Ok(Opened { artwork: Box::new(artwork), recipe, is_result })
     }
 
-    fn said<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
+    fn in_plain_words<T>(&self, result: Result<T, Failure>) -> Result<T, String> {
         result.map_err(|f| self.names.plain(&f.message(&self.flags)))
     }
 }
@@ -475,18 +474,18 @@ impl Host for EngineHost {
     }
 
     fn families(&self) -> Result<Vec<String>, String> {
-        self.said(self.given.read().map(|o| families(&o.reading.read_options())))
+        self.in_plain_words(self.given.read().map(|o| families(&o.reading.read_options())))
     }
 
     fn set_words(&self, words: &Words) -> Result<(String, Vec<char>), String> {
         let letter_spacing = 0.01 * words.spacing * words.size;
         let style = TextStyle { size: words.size, letter_spacing, ..TextStyle::default() };
         let set = |options: CommonOptions| set_plainly(&words.text, words.font.as_deref(), &style, &options.reading);
-        self.said(self.given.read().and_then(set))
+        self.in_plain_words(self.given.read().and_then(set))
     }
 
     fn open(&self, file: &Path, bytes: &[u8]) -> Result<Opened, String> {
-        self.said(self.open_drawing(file, bytes))
+        self.in_plain_words(self.open_drawing(file, bytes))
     }
 
     fn reference(&self, file: &Path) -> String {
@@ -494,7 +493,7 @@ impl Host for EngineHost {
     }
 
     fn write(&self, to: &Path, bytes: &[u8]) -> Result<(), String> {
-        self.said(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
+        self.in_plain_words(PendingFile::new(to, bytes).and_then(|file| PendingFile::commit_all(vec![file])))
     }
 }
 

@@ -12,7 +12,8 @@ export class Modes {
   picksParts = false;
   mirrors = false;
   smooths = true;
-  private marks: XY[] = [];
+  /** Points of other handles to snap to, collected at the start of a drag. */
+  private snapTargets: XY[] = [];
   /** Shows the lines to which the handle has snapped, in user units. */
   onSnap: (x: number | null, y: number | null) => void = () => {};
 
@@ -21,13 +22,13 @@ export class Modes {
     return reflection(handles);
   }
 
-  /** Returns the other points to add with a point: its reflection, if symmetry is on. */
+  /** Returns the other points to add with a point: its reflection, if symmetry is on and that is more than `reach` (user units) away. */
   reflections(handles: Handles, at: XY, reach: number): XY[] {
     const other = reflection(handles)(at);
     return this.mirrors && Math.hypot(other[0] - at[0], other[1] - at[1]) > reach ? [other] : [];
   }
 
-  /** Returns a function that drags a line, and its reflection if symmetry is on. */
+  /** Returns a function that drags a line (by its handles `own`), and its reflection if symmetry is on. */
   puller(handles: Handles, { handles: own, targets }: Pull): (to: XY) => void {
     const partners = own.map((handle) => (this.mirrors ? handles.partner(handle) : null));
     const mirrored = reflection(handles);
@@ -36,12 +37,12 @@ export class Modes {
       own.forEach((handle, i) => {
         const partner = partners[i] ?? null;
         const at = wanted[i]!;
-        // Each end of a line that is its reflection moves by the mean of both motions.
-        const k = partner ? own.indexOf(partner) : -1;
-        const other = k < 0 ? at : mirrored(wanted[k]!);
+        // If the line is its own reflection, each end moves by the mean of its motion and the reflected motion of the other end.
+        const partnerIndex = partner ? own.indexOf(partner) : -1;
+        const other = partnerIndex < 0 ? at : mirrored(wanted[partnerIndex]!);
         const target: XY = [(at[0] + other[0]) / 2, (at[1] + other[1]) / 2];
         handle.set(target, this.smooths);
-        if (k < 0) partner?.set(mirrored(target), this.smooths);
+        if (partnerIndex < 0) partner?.set(mirrored(target), this.smooths);
       });
     };
   }
@@ -50,8 +51,8 @@ export class Modes {
   mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
-    // The other handles do not move, so the lines to snap to are collected once.
-    this.marks = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
+    // They do not move during the drag.
+    this.snapTargets = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
     return (to, e) => {
       // Shift restricts the direction, as in drawing programs.
@@ -62,15 +63,15 @@ export class Modes {
     };
   }
 
-  /** Returns the point near `to` that is aligned with the frame or another handle; Alt disables that. */
+  /** Returns the point within `reach` (user units) of `to` that is aligned with the frame or another handle; Alt disables that. */
   snapped(to: XY, handle: Handle, handles: Handles, reach: number, e: PointerEvent): XY {
     if (!this.snaps || e.altKey || handle.shape === "control") {
       this.onSnap(null, null);
       return to;
     }
     const [x, y, w, h] = handles.frame;
-    const xs = [x, x + w / 2, x + w, ...this.marks.map((p) => p[0])];
-    const ys = [y, y + h / 2, y + h, ...this.marks.map((p) => p[1])];
+    const xs = [x, x + w / 2, x + w, ...this.snapTargets.map((p) => p[0])];
+    const ys = [y, y + h / 2, y + h, ...this.snapTargets.map((p) => p[1])];
     const [nx, ny] = [nearest(to[0], xs, reach), nearest(to[1], ys, reach)];
     this.onSnap(nx, ny);
     return [nx ?? to[0], ny ?? to[1]];

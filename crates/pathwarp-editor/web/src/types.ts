@@ -63,22 +63,25 @@ export interface Deformation {
   params: Param[];
   /** Alternative starts, each by one parameter. */
   variants: { label: string; param: string }[];
+  /** A set of presets: the parameters that choose one, its bend and its axis. */
   gallery: { title: string; presets: string; bend: string | null; axis: string | null } | null;
 }
 
 export interface Subpath {
   start: XY;
+  /** For each segment the points after its start: x, y of a line's end, or three points of a cubic. */
   segments: number[][];
   closed: boolean;
 }
 
-/** Control points with their indices as typed, and the lines that connect them. */
+/** Control points, `names` with their indices as typed, and the lines that connect them, lists of indices into `points`. */
 export interface Net {
   names: string[];
   points: XY[];
   lines: number[][];
 }
 
+/** A grid of cells in rows of `columns`: the images of their corners, each cell's factor of lengths, negative at folds. */
 export interface Stretch {
   columns: number;
   points: (XY | null)[];
@@ -94,6 +97,7 @@ export interface Adjust {
   value?: number;
 }
 
+/** The handles of a parameter; its kind determines which field is set. A pair leads from the artwork to where it goes. */
 export interface Grip {
   adjust?: Adjust[];
   point?: XY;
@@ -125,16 +129,16 @@ export interface State {
   savedTo: string | null;
   /** The folder of the saved result, if it is not the drawing's. */
   savedIn: string | null;
-  target: string;
+  target: string; // The file that *Save* writes by default.
   /** The command that continues with the steps. */
   again: string;
   /** The program that waits for the steps, if any. */
   program: string | null;
-  restored: boolean;
+  restored: boolean; // `true` if the steps are unsaved ones of an earlier session.
   problem: string | null;
   toPx: [number, number, number, number, number, number];
   page: [number, number, number, number];
-  missing: string[];
+  missing: string[]; // Sentences about fonts and images that were not found.
   /** The words that the drawing was set from, if any. */
   words: Words | null;
   /** `true` if the drawing consists of a photograph, with one px for each pixel. */
@@ -149,6 +153,7 @@ export interface Words {
   spacing: number;
 }
 
+/** `error` and `tolerance` are in user units; folds have the shape's id and a point of the drawing. */
 export interface Summary {
   segmentsIn: number;
   segmentsOut: number;
@@ -157,6 +162,7 @@ export interface Summary {
   folds: [string, XY][];
 }
 
+/** The SVG, or what differs from the last one: the line of the element, the attribute's name and its value. */
 export type Picture = { whole: string } | { changes: [number, string, string][] };
 
 export interface Answer {
@@ -179,26 +185,27 @@ export interface Answer {
   step?: Step;
   /** The largest distance by which a new net moves points, in user units. */
   moved?: number;
-  at?: XY | null;
-  text?: string;
-  /** The stored background, with its content as base64. */
+  at?: XY | null; // The point that the last step maps to the requested one, if there is one.
+  text?: string; // The command line.
+  /** The stored background, with its content as base64 and its position, as in `Lie`. */
   background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
   written?: string;
-  exists?: string;
+  exists?: string; // The name of an existing file that was not replaced.
   /** The reason why nothing could be written. */
   unwritable?: string;
   /** The content of a file as base64. */
   bytes?: string;
-  copied?: boolean;
+  copied?: boolean; // `true` if the file was written beside the drawing; `false` if it was there.
   presets?: string[];
   parts?: Part[];
   families?: string[];
   steps?: Step[];
   stretch?: Stretch | null;
-  event?: string;
-  done?: boolean;
+  event?: string; // `changed` in a message that answers nothing: another page has changed the steps.
+  done?: boolean; // `true` once the waiting program has the steps.
 }
 
+/** `source` is a point in the artwork before the step. */
 export type Shape = "node" | "control" | "source";
 
 export interface Handle {
@@ -210,7 +217,7 @@ export interface Handle {
   /** The row or path that it belongs to, in which symmetry looks for partners. */
   group: string;
   get: () => XY;
-  /** Moves it, and the points that depend on it. */
+  /** Moves it, and the points that depend on it; `smooth` keeps smooth nodes smooth. */
   set: (to: XY, smooth: boolean) => void;
   /** Removes it, if there may be any number of its kind. */
   remove?: () => void;
