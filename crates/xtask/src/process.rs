@@ -74,8 +74,8 @@ impl Job {
     }
 }
 
-/// Runs two jobs alternately, so that the machine's speed affects both alike, and returns the pair of runs with the median ratio of
-/// CPU times. `None` if a run gives `None`.
+/// Runs two jobs alternately, so that drifts of the machine's speed affect both alike, and returns the pair of runs with the median
+/// ratio of CPU times. `None` if a run gives `None`.
 pub(crate) fn paired(a: &Job, b: &Job, rounds: usize) -> Result<Option<(Usage, Usage)>, ChoreError> {
     let mut pairs = Vec::with_capacity(rounds);
     for _ in 0..rounds {

@@ -65,7 +65,7 @@ pub(super) fn install(registry: &Registry, m: &ArgMatches) -> Result<Status, Fai
     let is_dry = m.get_flag("dry-run");
     let mut lines = String::new();
     for folder in folders {
-        let plug_in_folder = folder.join(if is_gimp { GIMP_HOME } else { INKSCAPE_HOME });
+        let plug_in_folder = folder.join(if is_gimp { GIMP_PLUG_IN } else { INKSCAPE_EXTENSION });
         lines += &if m.get_flag("uninstall") {
             let names = if is_gimp { gimp_names().to_vec() } else { inkscape_installed(&plug_in_folder) };
             uninstall_files(&plug_in_folder, &names, is_dry)?
@@ -160,12 +160,12 @@ fn settings_folders(name: &str, flatpak: &str, macos: &[&str]) -> Vec<PathBuf> {
 /// The plug-in's source. GIMP 3 looks for `plug-ins/NAME/NAME.py`.
 const PLUG_IN: &str = include_str!("../../plug-ins/gimp/pathwarp-gimp.py");
 /// The plug-in's folder within GIMP's folder of plug-ins.
-const GIMP_HOME: &str = "pathwarp-gimp";
+const GIMP_PLUG_IN: &str = "pathwarp-gimp";
 
 /// Returns the paths of the script and the program, relative to the plug-in's folder.
 fn gimp_names() -> [PathBuf; 2] {
     let program = Path::new("bin").join("pathwarp").with_extension(env::consts::EXE_EXTENSION);
-    [PathBuf::from(GIMP_HOME).with_extension("py"), program]
+    [PathBuf::from(GIMP_PLUG_IN).with_extension("py"), program]
 }
 
 /// Returns the files to install for GIMP.
@@ -191,7 +191,7 @@ fn gimp_folders() -> Vec<PathBuf> {
 }
 
 /// The extension's folder within Inkscape's folder of extensions.
-const INKSCAPE_HOME: &str = "pathwarp";
+const INKSCAPE_EXTENSION: &str = "pathwarp";
 
 /// Returns the files to install for Inkscape. The extension calls `program`, a name or path, or by default a copy of this program.
 fn inkscape_parts(registry: &Registry, program: Option<&Path>) -> Result<Vec<Part>, Failure> {

@@ -118,7 +118,6 @@ impl Inputs<'_> {
         Ok(())
     }
 
-    /// Returns the outputs of an input.
     fn job(&self, options: &CommonOptions, input: &InputFile) -> Result<Job, Failure> {
         let InputFile { path, subfolder, refused } = input;
         let unnamed = |option: &str| Failure::usage(format!("{option} needs named {}s", self.kind));

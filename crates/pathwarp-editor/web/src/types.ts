@@ -113,7 +113,7 @@ export interface Grip {
 }
 
 export interface StepGrips {
-  frame: [number, number, number, number];
+  frame: [number, number, number, number]; // x, y, width, height
   params: Record<string, Grip>;
 }
 
@@ -135,9 +135,9 @@ export interface State {
   /** The program that waits for the steps, if any. */
   program: string | null;
   restored: boolean; // `true` if the steps are unsaved ones of an earlier session.
-  problem: string | null;
-  toPx: [number, number, number, number, number, number];
-  page: [number, number, number, number];
+  problem: string | null; // The reason why the draft of unsaved steps could not be stored.
+  toPx: [number, number, number, number, number, number]; // The affine map of user units to px.
+  page: [number, number, number, number]; // x, y, width, height in user units
   missing: string[]; // Sentences about fonts and images that were not found.
   /** The words that the drawing was set from, if any. */
   words: Words | null;
@@ -172,7 +172,7 @@ export interface Answer {
   grips?: StepGrips[];
   /** The indices of steps for parts that the drawing lacks. */
   gone?: number[];
-  guides?: string[];
+  guides?: string[]; // Path data of cages and other lines that no parameter defines.
   warnings?: string[];
   /** Characters that no font has. */
   lacking?: string[];
@@ -189,7 +189,7 @@ export interface Answer {
   text?: string; // The command line.
   /** The stored background, with its content as base64 and its position, as in `Lie`. */
   background?: { name: string; type: string; bytes: string; lie: { x: number; y: number; width: number; turn: number }; opacity: string } | null;
-  written?: string;
+  written?: string; // The name of the file written.
   exists?: string; // The name of an existing file that was not replaced.
   /** The reason why nothing could be written. */
   unwritable?: string;

@@ -63,7 +63,6 @@ impl Trims {
         Self(self.0.iter().map(clip_all).collect()).reduced()
     }
 
-    /// Returns the loops with u and v exchanged.
     pub(super) fn transposed(&self) -> Self {
         let swap = |c: &Curve| c.iter().map(|p| DVec4::new(p.y, p.x, 0.0, p.w)).collect();
         Self(self.0.iter().map(|l| l.iter().map(swap).collect()).collect())
@@ -79,7 +78,7 @@ impl Trims {
         };
         let follow_all = |curves: &Vec<Curve>| {
             let mut follower = LayerFollower { tolerance, ..LayerFollower::default() };
-            follower.beyond = curves.last().and_then(|c| side_of(to_layer(point(c, 1.0 - ON_SIDE))[1])); // The end itself may lie on a side.
+            follower.beyond = curves.last().and_then(|c| side_of(to_layer(point(c, 1.0 - ON_SIDE))[1])); // The end may lie on a side.
             for curve in curves {
                 let point_at = |t: f64| to_layer(point(curve, t));
                 spans(&point_at).into_iter().for_each(|span| follower.follow(&point_at, span));

@@ -356,12 +356,12 @@ mod tests {
         let top = "M0,0 C30,-40 70,40 100,0 L150,-20";
         let bottom = "M-10,60 L40,80 Q90,90 160,50";
         for pace in [ArcLength, Parameter] {
-            let (t, b) = (guide(top, along), guide(bottom, along));
+            let (t, b) = (guide(top, pace), guide(bottom, pace));
             let m = ruled(&t, &b);
             for i in -2..=22 {
                 let u = f64::from(i) / 20.0;
                 let (p, q) = (m.point(source(u, 0.0)), m.point(source(u, 1.0)));
-                assert!(p.distance(t.eval(u)) < 1e-9 && q.distance(b.eval(u)) < 1e-9, "{along:?} {u}");
+                assert!(p.distance(t.eval(u)) < 1e-9 && q.distance(b.eval(u)) < 1e-9, "{pace:?} {u}");
                 for v in [-0.3, 0.25, 0.5, 0.9] {
                     assert!(m.point(source(u, v)).distance(p.lerp(q, v)) < 1e-10);
                 }
@@ -371,7 +371,7 @@ mod tests {
                 let (p, j) = (source(u, v), m.jet(source(u, v)));
                 let dx = (m.point(p + (h, 0.0)) - m.point(p - (h, 0.0))) / (2.0 * h);
                 let dy = (m.point(p + (0.0, h)) - m.point(p - (0.0, h))) / (2.0 * h);
-                assert!((dx - j.dx).hypot() < 1e-6 && (dy - j.dy).hypot() < 1e-6, "{along:?} {u} {v}: {j:?} {dx} {dy}");
+                assert!((dx - j.dx).hypot() < 1e-6 && (dy - j.dy).hypot() < 1e-6, "{pace:?} {u} {v}: {j:?} {dx} {dy}");
             }
         }
     }

@@ -222,12 +222,12 @@ impl WordArt {
         let drawn = |segs: &[Seg]| -> BezPath { outline(segs).to_bez_path(tolerance) };
         match guides {
             Guides::Between(pairs) => {
-                let along = if self.by_parameter { GuidePace::Parameter } else { GuidePace::ArcLength };
+                let pace = if self.by_parameter { GuidePace::Parameter } else { GuidePace::ArcLength };
                 let row = |(k, [top, bottom]): (usize, &[Vec<Seg>; 2])| {
                     let (top, bottom) = (moved(top), moved(bottom));
                     built.overlay(Role::Cage, drawn(&top));
                     built.overlay(Role::Cage, drawn(&bottom));
-                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, along)?, &Guide::new(&bottom, along)?)
+                    tiled::ruled_row(self.band(cuts, k), &Guide::new(&top, pace)?, &Guide::new(&bottom, pace)?)
                 };
                 Ok(pairs.iter().enumerate().map(row).collect())
             }
