@@ -51,7 +51,7 @@ export class Modes {
   mover(handles: Handles, handle: Handle): (to: XY, e: PointerEvent | null) => void {
     const partner = this.mirrors ? handles.partner(handle) : null;
     const mirrored = reflection(handles);
-    // They do not move during the drag.
+    // These handles do not move during the drag.
     this.snapTargets = handles.handles.filter((o) => o !== handle && o !== partner && o.shape !== "control").map((o) => [...o.get()]);
     const start: XY = [...handle.get()];
     return (to, e) => {
